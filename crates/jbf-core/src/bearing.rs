@@ -1,0 +1,79 @@
+//! Geometry, lubricant and the dimensionless groups (3.1) to (3.4).
+
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// A journal bearing and its lubricant: what a rig knows before any fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bearing {
+    /// Journal radius R, m.
+    pub radius_m: f64,
+    /// Bearing length L, m.
+    pub length_m: f64,
+    /// Radial clearance C, m.
+    pub clearance_m: f64,
+    /// Rotating mass m, kg.
+    pub mass_kg: f64,
+    /// Bearings on the shaft.
+    pub count: u32,
+    /// Viscosity of the lubricant mu, Pa s.
+    pub viscosity_pa_s: f64,
+}
+
+impl Bearing {
+    /// The bearing of Cohn's thesis, 10W-40 oil (Tables 4.2 to 4.5).
+    pub const THESIS: Self = Self {
+        radius_m: 0.0127,
+        length_m: 0.01905,
+        clearance_m: 5.08e-5,
+        mass_kg: 2.27,
+        count: 4,
+        viscosity_pa_s: 0.002,
+    };
+
+    /// Check every size once.
+    ///
+    /// # Errors
+    /// Names the first size that is not positive and finite, or a clearance that is not
+    /// smaller than the radius.
+    pub fn checked(self) -> Result<Self, ParameterError> {
+        positive("radius_m", self.radius_m)?;
+        positive("length_m", self.length_m)?;
+        positive("clearance_m", self.clearance_m)?;
+        positive("mass_kg", self.mass_kg)?;
+        positive("viscosity_pa_s", self.viscosity_pa_s)?;
+        check(
+            self.count >= 1,
+            "count",
+            f64::from(self.count),
+            "must be at least 1",
+        )?;
+        check(
+            self.clearance_m < self.radius_m,
+            "clearance_m",
+            self.clearance_m,
+            "must be smaller than radius_m",
+        )?;
+        Ok(self)
+    }
+
+    /// Load number `Fb = C^2 F / (mu U_tr L^3)`, equation (3.1).
+    pub fn load_number<T: Real>(&self, load_n: T, u_tr_m_s: T) -> T {
+        let l3 = self.length_m * self.length_m * self.length_m;
+        let group = self.clearance_m * self.clearance_m / (self.viscosity_pa_s * l3);
+        T::of(group) * load_n / u_tr_m_s
+    }
+
+    /// Mass number `mb = C^3 U_tr m / (mu L^3 R^2)`, equation (3.4).
+    pub fn mass_number<T: Real>(&self, u_tr_m_s: T) -> T {
+        let l3 = self.length_m * self.length_m * self.length_m;
+        let c3 = self.clearance_m * self.clearance_m * self.clearance_m;
+        let group = c3 * self.mass_kg / (self.viscosity_pa_s * l3 * self.radius_m * self.radius_m);
+        T::of(group) * u_tr_m_s
+    }
+
+    /// The ratio `C R / L^2` of the viscous term in (3.14).
+    pub fn viscous_ratio(&self) -> f64 {
+        self.radius_m * self.clearance_m / (self.length_m * self.length_m)
+    }
+}

@@ -1,0 +1,164 @@
+//! The signal chain: a law with effects round it, one step at a time.
+//!
+//! ```text
+//! commanded motion -> drive -> lubricant -> film (the law) -> contact -> other -> instrument
+//! ```
+//!
+//! Each stage takes its input at both ends of the step and gives its output at the end,
+//! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
+//! load on a soft drive) does so from the step before.
+
+use crate::effect::{Effects, Resistance, Rig, States};
+use crate::law::{pressed_n, Law};
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A friction law and the effects between it and the record.
+#[derive(Clone, Copy, Debug)]
+pub struct Chain<T: Real, L> {
+    /// The friction law.
+    pub law: L,
+    /// The effects.
+    pub effects: Effects<T>,
+    /// The few numbers of the rig that effects need.
+    pub rig: Rig<T>,
+}
+
+/// Everything that changes while a chain runs.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T: Real, S> {
+    /// State of the law.
+    pub law: S,
+    effects: States<T>,
+    motion: Motion<T>,
+    journal: JournalMotion<T>,
+    film_speed_m_s: T,
+    magnitude: T,
+    resistance: Resistance<T>,
+    power_w: T,
+    /// Friction force of one bearing before the instrument, N.
+    pub force_n: T,
+    /// What the instrument shows, N.
+    pub reading_n: T,
+}
+
+impl<T: Real, S> State<T, S> {
+    /// The journal's own motion, which a soft drive parts from the commanded one.
+    pub fn journal(&self) -> &JournalMotion<T> {
+        &self.journal
+    }
+}
+
+impl<T: Real, L: Law<T>> Chain<T, L> {
+    /// The state at the first sample of a run.
+    pub fn start(&self, motion: &Motion<T>) -> State<T, L::State> {
+        let journal = JournalMotion::from(motion);
+        let mut state = State {
+            law: self.law.start(motion.load_n),
+            effects: self.effects.start(motion, &self.rig),
+            motion: *motion,
+            journal,
+            film_speed_m_s: T::ZERO,
+            magnitude: T::ZERO,
+            resistance: Resistance {
+                level_n: T::ZERO,
+                slope_n_s_m: T::ZERO,
+            },
+            power_w: T::ZERO,
+            force_n: T::ZERO,
+            reading_n: T::ZERO,
+        };
+        let factor = self.effects.lubricant(&state.effects, &journal);
+        state.film_speed_m_s = journal.velocity_m_s.abs() * factor;
+        self.act(&mut state, journal, factor, T::ZERO);
+        state.reading_n = self
+            .effects
+            .first_reading(&mut state.effects, state.force_n);
+        state
+    }
+
+    /// Advance to the motion `to`, `dt_s` later, and give the reading there, N.
+    ///
+    /// A step of no length, and a sample that is not finite, change nothing: one lost sample
+    /// of a sensor must not stay in the state of a filter for ever.
+    pub fn step(&self, state: &mut State<T, L::State>, to: &Motion<T>, dt_s: T) -> T {
+        if !(dt_s > T::ZERO && dt_s.is_finite() && to.is_finite()) {
+            return state.reading_n;
+        }
+        self.law.set_load(&mut state.law, to.load_n);
+        let journal = self.effects.drive(
+            &mut state.effects,
+            &state.motion,
+            to,
+            &state.resistance,
+            &self.rig,
+            dt_s,
+        );
+        let factor = self.effects.lubricant(&state.effects, &journal);
+        let end = journal.velocity_m_s.abs() * factor;
+        let middle =
+            (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.5) * factor);
+        self.law.advance(
+            &mut state.law,
+            [state.film_speed_m_s, middle, end],
+            T::ONE,
+            dt_s,
+        );
+        state.film_speed_m_s = end;
+        state.motion = *to;
+        self.act(state, journal, factor, dt_s);
+        state.reading_n = self
+            .effects
+            .reading(&mut state.effects, state.force_n, to.time_s, dt_s);
+        state.reading_n
+    }
+
+    /// From the film's state to the force: contact, other friction, and what feeds back.
+    #[inline]
+    fn act(&self, state: &mut State<T, L::State>, journal: JournalMotion<T>, factor: T, dt_s: T) {
+        let load_n = pressed_n(state.motion.load_n);
+        let mut sliding = self.law.friction(&state.law, journal.velocity_m_s * factor);
+        self.effects.contact(
+            &mut state.effects,
+            &state.journal,
+            &journal,
+            &mut sliding,
+            dt_s,
+        );
+        let magnitude = sliding.level + sliding.viscous.abs();
+        let before = if dt_s > T::ZERO {
+            state.magnitude
+        } else {
+            magnitude
+        };
+        let coefficient = self
+            .effects
+            .bristle(
+                &mut state.effects,
+                &state.journal,
+                &journal,
+                [before, magnitude],
+                dt_s,
+            )
+            .unwrap_or_else(|| sliding.coefficient(journal.direction));
+        let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
+        state.force_n = coefficient * load_n + level_n * journal.direction + smooth_n;
+        state.magnitude = magnitude;
+        let speed = journal.velocity_m_s;
+        let slope = if speed == T::ZERO {
+            T::ZERO
+        } else {
+            (sliding.viscous * load_n / speed).max(T::ZERO)
+        };
+        state.resistance = Resistance {
+            level_n: sliding.level * load_n + level_n,
+            slope_n_s_m: slope,
+        };
+        // Only the film's own friction warms the film; a drag elsewhere does not.
+        let power_w = (coefficient * load_n * speed).abs();
+        self.effects
+            .warm(&mut state.effects, [state.power_w, power_w], dt_s);
+        state.power_w = power_w;
+        state.journal = journal;
+    }
+}

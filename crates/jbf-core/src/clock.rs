@@ -1,0 +1,35 @@
+//! Which seconds the dimensionless equations run on.
+
+/// The clock that turns seconds into the dimensionless time of equations (3.7) to (3.19).
+///
+/// (3.4) fixes it, `tbar = t U_tr / R`: that is [`Clock::Journal`], the physics and the
+/// default. Cohn's control programs step `TS * eps'` with `TS` in seconds, as if
+/// `tbar = t / (1 s)`: that is [`Clock::Thesis`], which Tables 4.2 to 4.5 and chapter 6
+/// were tuned with. Hysteresis loops differ visibly between the two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// `tbar = t U_tr / R`.
+    #[default]
+    Journal,
+    /// `tbar = t / (1 s)`.
+    Thesis,
+}
+
+impl Clock {
+    /// The name used in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Clock::Journal => "journal",
+            Clock::Thesis => "thesis",
+        }
+    }
+
+    /// The clock of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "journal" => Some(Clock::Journal),
+            "thesis" => Some(Clock::Thesis),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! `+ F_d sgn v`: dry friction that does not depend on the bearing's load.
+//!
+//! Source: Cohn (1998), section 6.6 (the rig's ball bearings and seals); Coulomb (1785).
+
+use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Dry friction of seals and support bearings.
+#[derive(Clone, Copy, Debug)]
+pub struct CoulombDrag<T> {
+    force_n: T,
+}
+
+impl<T: Real> Effect<T> for CoulombDrag<T> {
+    const INFO: Info = Info {
+        name: "coulomb_drag",
+        stage: Stage::Other,
+        summary: "dry friction of seals or support bearings, independent of the load",
+        equation: "F -> F + F_d sgn(v)",
+        source: "Cohn 1998, section 6.6",
+        limits:
+            "seals stiffen with speed and pressure; a drag that grows with speed is not this one",
+        parameters: &[Parameter {
+            name: "F_d_n",
+            unit: "N",
+            meaning: "drag force of one bearing's share",
+            lower: 0.0,
+            upper: 1e4,
+            null: Some(0.0),
+            starts: &[0.5],
+            log: false,
+            period: None,
+        }],
+        needs_angle: false,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            force_n: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> OtherFriction<T> for CoulombDrag<T> {
+    #[inline]
+    fn level_n(&self) -> T {
+        self.force_n
+    }
+    #[inline]
+    fn smooth_n(&self, _state: &(), _journal: &JournalMotion<T>) -> T {
+        T::ZERO
+    }
+}

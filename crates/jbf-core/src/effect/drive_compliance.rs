@@ -1,0 +1,159 @@
+//! A soft drive: the encoder side is imposed, the journal follows through a spring.
+//!
+//! ```text
+//! J theta_j'' = k (theta_m - theta_j) + c (theta_m' - theta_j') - n R F(theta_j')
+//! ```
+//!
+//! with F set-valued at rest: the journal sticks while the twist torque is below the
+//! sliding friction, and the load cell then sees the twist torque.
+//!
+//! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994).
+//! The step is the midpoint rule with the set-valued force solved implicitly (a proximal
+//! step, after Moreau): it sticks, and it does not chatter.
+
+use super::{Drive, Effect, Info, Parameter, Resistance, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A spring and a damper between encoder and journal.
+#[derive(Clone, Copy, Debug)]
+pub struct DriveCompliance<T> {
+    stiffness_n_m_rad: T,
+    damping_n_m_s_rad: T,
+    inertia_kg_m2: T,
+    /// Longest inner step, s: a fraction of the period of the free journal.
+    inner_step_s: f64,
+}
+
+/// The journal's own angle and speed.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    angle_rad: T,
+    speed_rad_s: T,
+}
+
+impl<T: Real> Effect<T> for DriveCompliance<T> {
+    const INFO: Info = Info {
+        name: "drive_compliance",
+        stage: Stage::Drive,
+        summary: "belt, coupling or shaft twist between encoder and journal",
+        equation: "J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')",
+        source: "Cohn 1998, section 5.1; Harnoy et al. 1994",
+        limits:
+            "one spring, one inertia; above the first torsional mode the drive is a chain of them",
+        parameters: &[
+            Parameter {
+                name: "k_n_m_rad",
+                unit: "N m/rad",
+                meaning: "torsional stiffness between encoder and journal",
+                lower: 0.1,
+                upper: 1e7,
+                null: Some(f64::INFINITY),
+                starts: &[60.0, 600.0],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "c_n_m_s_rad",
+                unit: "N m s/rad",
+                meaning: "damping beside the spring",
+                lower: 1e-5,
+                upper: 1e3,
+                null: None,
+                starts: &[0.1],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "J_kg_m2",
+                unit: "kg m^2",
+                meaning: "inertia of the journal side",
+                lower: 1e-6,
+                upper: 1e2,
+                null: None,
+                starts: &[2e-3],
+                log: true,
+                period: None,
+            },
+        ],
+        needs_angle: true,
+    };
+    type State = State<T>;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        let (k, j) = (parameters[0].value(), parameters[2].value());
+        Ok(Self {
+            stiffness_n_m_rad: parameters[0],
+            damping_n_m_s_rad: parameters[1],
+            inertia_kg_m2: parameters[2],
+            inner_step_s: 0.3 * libm::sqrt(j / k),
+        })
+    }
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> State<T> {
+        State {
+            angle_rad: motion.angle_rad,
+            speed_rad_s: motion.velocity_m_s / rig.radius_m,
+        }
+    }
+}
+
+impl<T: Real> Drive<T> for DriveCompliance<T> {
+    fn step(
+        &self,
+        state: &mut State<T>,
+        from: &Motion<T>,
+        to: &Motion<T>,
+        resistance: &Resistance<T>,
+        rig: &Rig<T>,
+        dt_s: T,
+    ) -> JournalMotion<T> {
+        let arm = rig.count * rig.radius_m;
+        let hold = arm * resistance.level_n;
+        let slope = arm * rig.radius_m * resistance.slope_n_s_m;
+        let steps = libm::ceil(dt_s.value() / self.inner_step_s).clamp(1.0, 64.0);
+        let h = dt_s * T::of(1.0 / steps);
+        let half = h * T::of(0.5);
+        let (k, c) = (self.stiffness_n_m_rad, self.damping_n_m_s_rad);
+        // Everything that multiplies the midpoint speed.
+        let inertia = T::of(2.0) * self.inertia_kg_m2 / h;
+        let drag = inertia + k * half + c + slope;
+        let mut direction = T::ZERO;
+        let mut before = state.speed_rad_s;
+        for i in 0..steps as u32 {
+            let middle = from.towards(to, T::of((f64::from(i) + 0.5) / steps));
+            let push = inertia * state.speed_rad_s
+                + k * (middle.angle_rad - state.angle_rad)
+                + c * (middle.velocity_m_s / rig.radius_m);
+            before = state.speed_rad_s;
+            if push > hold {
+                direction = T::ONE;
+            } else if push < -hold {
+                direction = -T::ONE;
+            } else {
+                // Stuck: the friction is whatever holds the journal.
+                direction = if hold > T::ZERO { push / hold } else { T::ZERO };
+                state.speed_rad_s = T::ZERO;
+                continue;
+            }
+            let speed = (push - hold * direction) / drag;
+            state.angle_rad += speed * h;
+            let after = speed + speed - state.speed_rad_s;
+            // A midpoint step must not carry the journal through rest: it stops there first.
+            state.speed_rad_s = if after.value() * direction.value() < 0.0 {
+                T::ZERO
+            } else {
+                after
+            };
+        }
+        JournalMotion {
+            velocity_m_s: state.speed_rad_s * rig.radius_m,
+            acceleration_m_s2: (state.speed_rad_s - before) / h * rig.radius_m,
+            angle_rad: state.angle_rad,
+            direction,
+            time_s: to.time_s,
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The catalogue's page of an effect: the one source for the command line, the docs and
+//! the fit's bounds and starting values.
+
+use crate::error::ParameterError;
+use crate::real::Real;
+use core::fmt;
+
+/// Where in the signal chain an effect sits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Between encoder and journal.
+    Drive,
+    /// The oil.
+    Lubricant,
+    /// The film's own dynamics.
+    Film,
+    /// Between the surfaces.
+    Contact,
+    /// Friction beside the bearing's.
+    Other,
+    /// Between force and record.
+    Instrument,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Stage::Drive => "drive",
+            Stage::Lubricant => "lubricant",
+            Stage::Film => "film",
+            Stage::Contact => "contact",
+            Stage::Other => "other friction",
+            Stage::Instrument => "instrument",
+        })
+    }
+}
+
+/// One parameter of a law or an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Symbol and unit as one name (`sigma_1_m`), as files and options spell it.
+    pub name: &'static str,
+    /// Unit as people write it (`1/m`).
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+    /// Smallest value allowed.
+    pub lower: f64,
+    /// Largest value allowed.
+    pub upper: f64,
+    /// The value at which the effect vanishes, where this parameter has one.
+    pub null: Option<f64>,
+    /// Where a fit may start, likeliest first.
+    pub starts: &'static [f64],
+    /// True where a fit should walk in the logarithm.
+    pub log: bool,
+    /// The period of an angle, for parameters that wrap.
+    pub period: Option<f64>,
+}
+
+/// The page of one effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Info {
+    /// Fixed name.
+    pub name: &'static str,
+    /// Stage of the signal chain.
+    pub stage: Stage,
+    /// One line: what it is in a machine.
+    pub summary: &'static str,
+    /// The form, in plain characters.
+    pub equation: &'static str,
+    /// Where the form comes from.
+    pub source: &'static str,
+    /// Where the form stops being true.
+    pub limits: &'static str,
+    /// Parameters in order.
+    pub parameters: &'static [Parameter],
+    /// True where the shaft's angle must be on record.
+    pub needs_angle: bool,
+}
+
+impl Info {
+    /// Check a list of values against the bounds. A null value is always allowed, even
+    /// where it is infinite.
+    ///
+    /// # Errors
+    /// Names the first value that is missing or out of bounds.
+    pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
+        for (i, p) in self.parameters.iter().enumerate() {
+            let value = values.get(i).map_or(f64::NAN, |v| v.value());
+            if p.null == Some(value) {
+                continue;
+            }
+            if !(value >= p.lower && value <= p.upper) {
+                return Err(ParameterError {
+                    name: p.name,
+                    value,
+                    rule: "is missing or outside the bounds of the catalogue",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// True where a parameter stands at an infinite null: the effect is then left out
+    /// altogether, which is the only exact way to take such a limit.
+    pub fn absent<T: Real>(&self, values: &[T]) -> bool {
+        self.parameters.iter().zip(values).any(|(p, v)| {
+            p.null
+                .is_some_and(|null| !null.is_finite() && v.value() == null)
+        })
+    }
+}

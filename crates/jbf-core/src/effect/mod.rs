@@ -1,0 +1,133 @@
+//! What a rig adds between the commanded motion and the recorded friction, one effect a
+//! file, each at one stage of the signal chain:
+//!
+//! ```text
+//! commanded motion -> drive -> lubricant -> film (the law) -> contact -> other -> instrument
+//! ```
+//!
+//! An effect knows its own stage and nothing of the others. To add one: write its file
+//! and name it in its stage's line of `signal_chain!` below.
+
+pub mod info;
+mod registry;
+pub mod relaxation;
+
+pub use info::{Info, Parameter, Stage};
+
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// What every effect has: a page in the catalogue, a checked constructor, a state.
+pub trait Effect<T: Real>: Copy {
+    /// The page in the catalogue.
+    const INFO: Info;
+    /// What the effect remembers; `()` for most.
+    type State: Copy;
+
+    /// Build from the parameters in the order of `INFO.parameters`.
+    ///
+    /// # Errors
+    /// Names the first parameter that is missing or out of its bounds.
+    fn new(parameters: &[T]) -> Result<Self, ParameterError>;
+
+    /// The state at the start of a run that begins with `motion`.
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
+}
+
+/// The few numbers of a rig that effects need.
+#[derive(Clone, Copy, Debug)]
+pub struct Rig<T> {
+    /// Journal radius, m.
+    pub radius_m: T,
+    /// Bearings on the shaft.
+    pub count: T,
+}
+
+/// What holds the journal back, as the drive feels it: `level sgn(v) + slope v`, N a bearing.
+#[derive(Clone, Copy, Debug)]
+pub struct Resistance<T> {
+    /// Largest force that takes the sign of the motion, N.
+    pub level_n: T,
+    /// Slope of the part that grows with speed, N s/m.
+    pub slope_n_s_m: T,
+}
+
+/// Between the encoder and the journal.
+pub trait Drive<T: Real>: Effect<T> {
+    /// Advance over `dt_s` and give the journal's own motion at its end.
+    fn step(
+        &self,
+        state: &mut Self::State,
+        from: &Motion<T>,
+        to: &Motion<T>,
+        resistance: &Resistance<T>,
+        rig: &Rig<T>,
+        dt_s: T,
+    ) -> JournalMotion<T>;
+}
+
+/// Changes the speed that the film feels (its viscosity).
+pub trait Lubricant<T: Real>: Effect<T> {
+    /// Factor on `Ub`.
+    fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
+    /// Advance over `dt_s`, the friction power (W) going from the first to the second value.
+    fn step(&self, state: &mut Self::State, power_w: [T; 2], dt_s: T);
+}
+
+/// Changes the friction between the surfaces.
+pub trait Contact<T: Real>: Effect<T> {
+    /// Change the sliding friction.
+    fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Sliding<T>);
+    /// Advance over `dt_s` before `apply`.
+    fn step(
+        &self,
+        state: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        dt_s: T,
+    );
+}
+
+/// Replaces the sign of the motion by a deflection: the last step of the contact stage.
+pub trait Bristle<T: Real>: Effect<T> {
+    /// The coefficient at the start of a run: bent already where the run starts in motion.
+    fn first(&self, state: &mut Self::State, journal: &JournalMotion<T>, magnitude: T) -> T;
+    /// Advance over `dt_s`; the sliding coefficient goes from the first magnitude to the
+    /// second. Gives the coefficient, signed.
+    fn step(
+        &self,
+        state: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        magnitude: [T; 2],
+        dt_s: T,
+    ) -> T;
+}
+
+/// Friction that is not the bearing's.
+pub trait OtherFriction<T: Real>: Effect<T> {
+    /// Force that takes the sign of the motion, N, unsigned.
+    fn level_n(&self) -> T;
+    /// Any other force, N, signed.
+    fn smooth_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
+}
+
+/// Between the force and its record.
+pub trait Instrument<T: Real>: Effect<T> {
+    /// The first reading of a run that begins with `force_n`.
+    fn first(&self, state: &mut Self::State, force_n: T) -> T;
+    /// The reading `dt_s` later, at `time_s`, when the force has become `force_n`.
+    fn step(&self, state: &mut Self::State, force_n: T, time_s: T, dt_s: T) -> T;
+}
+
+// The fixed order of the chain, in one place; inside a stage effects act from left to right.
+registry::signal_chain! {
+    drive: [drive_compliance::DriveCompliance],
+    lubricant: [thermal_thinning::ThermalThinning],
+    contact: [position_ripple::PositionRipple],
+    bristle: [presliding::Presliding],
+    other: [coulomb_drag::CoulombDrag],
+    instrument: [sensor_lag::SensorLag],
+}

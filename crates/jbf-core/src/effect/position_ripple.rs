@@ -1,0 +1,83 @@
+//! Friction times `1 + a cos(theta - theta_0)`: it changes once a turn.
+//!
+//! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of
+//! friction against joint angle; in a journal, its out-of-roundness.
+
+use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Friction that depends on the shaft's angle.
+#[derive(Clone, Copy, Debug)]
+pub struct PositionRipple<T> {
+    depth: T,
+    cos_offset: T,
+    sin_offset: T,
+}
+
+impl<T: Real> Effect<T> for PositionRipple<T> {
+    const INFO: Info = Info {
+        name: "position_ripple",
+        stage: Stage::Contact,
+        summary: "friction that rises and falls once a turn (roundness, alignment)",
+        equation: "f -> f (1 + a cos(theta - theta_0))",
+        source: "Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991",
+        limits: "one harmonic only; belts and gears add others; \
+                 the angle must be absolute or the same zero in every run",
+        parameters: &[
+            Parameter {
+                name: "a",
+                unit: "-",
+                meaning: "depth of the ripple",
+                lower: 0.0,
+                upper: 1.0,
+                null: Some(0.0),
+                starts: &[0.1],
+                log: false,
+                period: None,
+            },
+            Parameter {
+                name: "theta_0_rad",
+                unit: "rad",
+                meaning: "angle of the largest friction",
+                lower: -4.0 * PI,
+                upper: 4.0 * PI,
+                null: None,
+                starts: &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
+                log: false,
+                period: Some(TAU),
+            },
+        ],
+        needs_angle: true,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            depth: parameters[0],
+            cos_offset: parameters[1].cos(),
+            sin_offset: parameters[1].sin(),
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for PositionRipple<T> {
+    #[inline]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+        // cos(theta - theta_0) with the offset's own cosine and sine taken once.
+        let wave =
+            journal.angle_rad.cos() * self.cos_offset + journal.angle_rad.sin() * self.sin_offset;
+        let factor = T::ONE + self.depth * wave;
+        sliding.level *= factor;
+        sliding.viscous *= factor;
+    }
+
+    #[inline]
+    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
+}

@@ -1,0 +1,85 @@
+//! `Ub -> Ub exp(-beta T)`, `T' = q |F v| - T/tau`: friction warms the oil, warm oil is thin.
+//!
+//! Source: Reynolds's exponential viscosity law; Cohn (1998), section 4.2, assumes a constant
+//! temperature. Viscosity and transition speed go together (mu U_tr = const), so Fb and
+//! eps_tr stay. Only the product beta q can be seen in a friction record, so the state is
+//! `beta T` and the product is the parameter.
+
+use super::relaxation::relax;
+use super::{Effect, Info, Lubricant, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Viscosity that falls as friction warms the oil.
+#[derive(Clone, Copy, Debug)]
+pub struct ThermalThinning<T> {
+    rate_1_j: T,
+    tau_s: T,
+}
+
+impl<T: Real> Effect<T> for ThermalThinning<T> {
+    const INFO: Info = Info {
+        name: "thermal_thinning",
+        stage: Stage::Lubricant,
+        summary: "friction warms the oil, and warm oil carries less",
+        equation: "Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau",
+        source: "Reynolds's viscosity law; Cohn 1998, section 4.2",
+        limits: "one lumped temperature, exponential viscosity, cold at the start of each run",
+        parameters: &[
+            Parameter {
+                name: "beta_q_1_j",
+                unit: "1/J",
+                meaning: "loss of log viscosity per joule of friction work",
+                lower: 0.0,
+                upper: 1e3,
+                null: Some(0.0),
+                starts: &[0.03, 0.3],
+                log: false,
+                period: None,
+            },
+            Parameter {
+                name: "tau_s",
+                unit: "s",
+                meaning: "time in which the film cools",
+                lower: 0.1,
+                upper: 1e5,
+                null: None,
+                starts: &[60.0],
+                log: true,
+                period: None,
+            },
+        ],
+        needs_angle: false,
+    };
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            rate_1_j: parameters[0],
+            tau_s: parameters[1],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
+        T::ZERO
+    }
+}
+
+impl<T: Real> Lubricant<T> for ThermalThinning<T> {
+    #[inline]
+    fn factor(&self, state: &T, _journal: &JournalMotion<T>) -> T {
+        (-*state).exp()
+    }
+
+    #[inline]
+    fn step(&self, state: &mut T, power_w: [T; 2], dt_s: T) {
+        let gain = self.rate_1_j * self.tau_s;
+        *state = relax(
+            *state,
+            [power_w[0] * gain, power_w[1] * gain],
+            dt_s / self.tau_s,
+        );
+    }
+}

@@ -1,0 +1,116 @@
+//! The parameters of the law: the catalogue's page, the printed tables, and the original form
+//! (3.15) of the asperity stiffness.
+
+use crate::effect::Parameter;
+use crate::error::{check, positive, ParameterError};
+
+/// One line for the catalogue.
+pub const SUMMARY: &str =
+    "hydrodynamic journal bearing, boundary to full film (reduced Harnoy-Friedland model)";
+
+/// Names, bounds and starting values of [`Parameters`], in order.
+pub const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "f_m",
+        unit: "-",
+        meaning: "largest friction coefficient of the asperities",
+        lower: 1e-4,
+        upper: 10.0,
+        null: None,
+        starts: &[0.25],
+        log: true,
+        period: None,
+    },
+    Parameter {
+        name: "U_tr_m_s",
+        unit: "m/s",
+        meaning: "transition speed from mixed to full film",
+        lower: 1e-5,
+        upper: 1e2,
+        null: None,
+        starts: &[0.055],
+        log: true,
+        period: None,
+    },
+    Parameter {
+        name: "K0",
+        unit: "-",
+        meaning: "asperity stiffness constant",
+        lower: 1.0,
+        upper: 1e12,
+        null: None,
+        starts: &[6.5e5],
+        log: true,
+        period: None,
+    },
+    Parameter {
+        name: "gamma",
+        unit: "-",
+        meaning: "slope factor of the viscous term",
+        lower: 1e-3,
+        upper: 1e5,
+        null: None,
+        starts: &[33.0],
+        log: true,
+        period: None,
+    },
+];
+
+/// The four numbers that a fit finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters<T> {
+    /// Largest friction coefficient of the asperities, -.
+    pub f_m: T,
+    /// Transition speed from mixed to full film, m/s.
+    pub u_tr_m_s: T,
+    /// Asperity stiffness constant, -, equation (3.16).
+    pub k0: T,
+    /// Slope factor of the viscous term, -, equation (3.14).
+    pub gamma: T,
+}
+
+impl Parameters<f64> {
+    /// Table 4.2: two-way motion and Stribeck curve at 104 N.
+    pub const TABLE_4_2: Self = Self {
+        f_m: 0.26,
+        u_tr_m_s: 0.06,
+        k0: 7.5e5,
+        gamma: 33.0,
+    };
+    /// Table 4.3: two-way motion at 83.5 N.
+    pub const TABLE_4_3: Self = Self {
+        f_m: 0.26,
+        u_tr_m_s: 0.05,
+        k0: 6.25e5,
+        gamma: 33.0,
+    };
+    /// Table 4.4: one-way motion at 104 N.
+    pub const TABLE_4_4: Self = Self {
+        f_m: 0.26,
+        u_tr_m_s: 0.05,
+        k0: 6.25e5,
+        gamma: 33.0,
+    };
+    /// Table 4.5: one-way motion at 83.5 N.
+    pub const TABLE_4_5: Self = Self {
+        f_m: 0.26,
+        u_tr_m_s: 0.05,
+        k0: 4.5e5,
+        gamma: 33.0,
+    };
+}
+
+/// `K0` from the original pair of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
+///
+/// # Errors
+/// `kappa0` must be positive, and `eps_b` lie between `eps_tr` and 1.
+pub fn k0_from_original(kappa0: f64, eps_b: f64, eps_tr: f64) -> Result<f64, ParameterError> {
+    positive("kappa0", kappa0)?;
+    check(
+        eps_b > eps_tr && eps_b < 1.0,
+        "eps_b",
+        eps_b,
+        "must lie between eps_tr and 1",
+    )?;
+    Ok(kappa0 / (eps_b - eps_tr))
+}

@@ -1,0 +1,53 @@
+//! The state of the film, and what of the law depends on the load.
+
+use crate::real::Real;
+
+/// What depends on the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loaded<T> {
+    pub(super) load_n: T,
+    /// Load number Fb.
+    pub load_number: T,
+    /// Transition eccentricity.
+    pub eps_tr: T,
+}
+
+/// The film now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<T> {
+    pub(super) xy: [T; 2],
+    pub(super) loaded: Loaded<T>,
+    /// How often a step had to be held inside the bearing, because `dt_s` was too coarse
+    /// or the input not finite.
+    pub clamped: u32,
+}
+
+impl<T: Real> State<T> {
+    /// A state at a given eccentricity ratio and attitude angle (rad).
+    pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
+        let xy = [eps * phi_rad.cos(), eps * phi_rad.sin()];
+        Self {
+            xy,
+            loaded,
+            clamped: 0,
+        }
+    }
+
+    /// Eccentricity ratio.
+    #[inline]
+    pub fn eps(&self) -> T {
+        (self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]).sqrt()
+    }
+
+    /// `eps cos(phi)` and `eps sin(phi)`.
+    #[inline]
+    pub fn xy(&self) -> [T; 2] {
+        self.xy
+    }
+
+    /// Transition eccentricity under the present load.
+    #[inline]
+    pub fn eps_tr(&self) -> T {
+        self.loaded.eps_tr
+    }
+}

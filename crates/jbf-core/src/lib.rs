@@ -1,0 +1,43 @@
+//! Friction that moves: the dynamic friction of a hydrodynamic journal bearing
+//! (Harnoy & Friedland 1994, as reduced by Cohn, NJIT 1998) and the effects that a
+//! measured signal adds to it, one fixed step at a time.
+//!
+//! `no_std`, no allocation, no panic in a step, the same bits on every target.
+//! Configuration ([`Chain`], [`law::journal::Journal`]) is apart from state, so one set of
+//! coefficients serves many runs.
+//!
+//! ```
+//! use jbf_core::{Bearing, Clock, law::{Law, journal::{Journal, Parameters}}};
+//! let law = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
+//! let steady = law.steady(0.02)?;
+//! assert!((steady.coefficient - 0.05782937675212433).abs() < 1e-9);
+//! # Ok::<(), jbf_core::ParameterError>(())
+//! ```
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod bearing;
+pub mod chain;
+pub mod clock;
+pub mod dual;
+pub mod effect;
+pub mod error;
+pub mod film;
+pub mod law;
+pub mod motion;
+pub mod real;
+pub mod run;
+pub mod stepper;
+pub mod transition;
+
+pub use bearing::Bearing;
+pub use chain::Chain;
+pub use clock::Clock;
+pub use dual::Dual;
+pub use error::ParameterError;
+pub use motion::Motion;
+pub use real::Real;

@@ -1,0 +1,82 @@
+//! What is imposed on the bearing at one instant.
+
+use crate::real::Real;
+
+/// The imposed motion at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Time since the run began, s.
+    pub time_s: T,
+    /// Surface speed of the shaft, signed, m/s.
+    pub velocity_m_s: T,
+    /// Its rate of change, m/s^2.
+    pub acceleration_m_s2: T,
+    /// Shaft angle, unwrapped, rad.
+    pub angle_rad: T,
+    /// Normal load on one bearing, N.
+    pub load_n: T,
+}
+
+impl<T: Real> Motion<T> {
+    /// At rest under a load.
+    pub fn at_rest(load_n: T) -> Self {
+        Self {
+            time_s: T::ZERO,
+            velocity_m_s: T::ZERO,
+            acceleration_m_s2: T::ZERO,
+            angle_rad: T::ZERO,
+            load_n,
+        }
+    }
+
+    /// True where every quantity is finite.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.time_s.is_finite()
+            && self.velocity_m_s.is_finite()
+            && self.acceleration_m_s2.is_finite()
+            && self.angle_rad.is_finite()
+            && self.load_n.is_finite()
+    }
+
+    /// The motion a `fraction` of the way to `other`: every quantity on a straight line.
+    #[inline]
+    pub fn towards(&self, other: &Self, fraction: T) -> Self {
+        let line = |a: T, b: T| a + (b - a) * fraction;
+        Self {
+            time_s: line(self.time_s, other.time_s),
+            velocity_m_s: line(self.velocity_m_s, other.velocity_m_s),
+            acceleration_m_s2: line(self.acceleration_m_s2, other.acceleration_m_s2),
+            angle_rad: line(self.angle_rad, other.angle_rad),
+            load_n: line(self.load_n, other.load_n),
+        }
+    }
+}
+
+/// The journal's own motion, behind the drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JournalMotion<T> {
+    /// Surface speed of the journal, m/s.
+    pub velocity_m_s: T,
+    /// Its rate of change, m/s^2.
+    pub acceleration_m_s2: T,
+    /// Journal angle, rad.
+    pub angle_rad: T,
+    /// The member of the set-valued sgn(v) that holds now: -1 or +1 in sliding, and between
+    /// the two where a stuck journal carries less than the sliding friction.
+    pub direction: T,
+    /// Time since the run began, s.
+    pub time_s: T,
+}
+
+impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
+    fn from(m: &Motion<T>) -> Self {
+        Self {
+            velocity_m_s: m.velocity_m_s,
+            acceleration_m_s2: m.acceleration_m_s2,
+            angle_rad: m.angle_rad,
+            direction: m.velocity_m_s.sign(),
+            time_s: m.time_s,
+        }
+    }
+}

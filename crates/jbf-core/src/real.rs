@@ -1,0 +1,182 @@
+//! The scalar that the physics is written over: `f32`, `f64`, or a [`crate::Dual`] that
+//! carries derivatives beside the value.
+//!
+//! Every function goes through `libm`, never through the platform, so that the same input
+//! gives the same bits on a laptop and on a microcontroller.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A real number that the models can be evaluated over.
+///
+/// Comparisons look at the value alone; a derivative never decides a branch.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + 'static
+{
+    /// Zero.
+    const ZERO: Self;
+    /// One.
+    const ONE: Self;
+    /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above
+    /// the rounding error of one.
+    const EPS_LIMIT: Self;
+
+    /// The nearest number of this kind; derivatives are zero.
+    fn of(value: f64) -> Self;
+    /// The value, without derivatives.
+    fn value(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Exponential.
+    fn exp(self) -> Self;
+    /// `exp(self) - 1`, exact for small `self` too.
+    fn exp_m1(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Sine of an angle in radians.
+    fn sin(self) -> Self;
+    /// Cosine of an angle in radians.
+    fn cos(self) -> Self;
+    /// `self` to the power `exponent`, for a positive base.
+    fn powf(self, exponent: Self) -> Self;
+    /// Magnitude; the derivative at zero is taken as that of `+self`.
+    fn abs(self) -> Self;
+
+    /// The root `value` of `residual(x) = 0` with the derivatives that the implicit
+    /// function theorem gives it: `residual` evaluated at the root, `slope` its derivative
+    /// with respect to the unknown.
+    fn implicit(value: f64, residual: Self, slope: f64) -> Self;
+
+    /// The larger of two.
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        if self > other {
+            self
+        } else {
+            other
+        }
+    }
+
+    /// The smaller of two.
+    #[inline]
+    fn min(self, other: Self) -> Self {
+        if self < other {
+            self
+        } else {
+            other
+        }
+    }
+
+    /// -1, 0 or +1 by the sign of the value, without derivative.
+    #[inline]
+    fn sign(self) -> Self {
+        if self > Self::ZERO {
+            Self::ONE
+        } else if self < Self::ZERO {
+            -Self::ONE
+        } else {
+            Self::ZERO
+        }
+    }
+
+    /// True for a finite value.
+    #[inline]
+    fn is_finite(self) -> bool {
+        self.value().is_finite()
+    }
+}
+
+macro_rules! real {
+    (
+        $t:ty, $limit:expr, $sqrt:path, $exp:path, $exp_m1:path, $ln:path, $sin:path, $cos:path, $pow:path,
+        $abs:path
+    ) => {
+        impl Real for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const EPS_LIMIT: Self = $limit;
+
+            #[inline]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+            #[inline]
+            fn value(self) -> f64 {
+                self as f64
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline]
+            fn exp_m1(self) -> Self {
+                $exp_m1(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline]
+            fn sin(self) -> Self {
+                $sin(self)
+            }
+            #[inline]
+            fn cos(self) -> Self {
+                $cos(self)
+            }
+            #[inline]
+            fn powf(self, exponent: Self) -> Self {
+                $pow(self, exponent)
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                $abs(self)
+            }
+            #[inline]
+            fn implicit(value: f64, _residual: Self, _slope: f64) -> Self {
+                value as $t
+            }
+        }
+    };
+}
+
+real!(
+    f32,
+    1.0 - 1e-6,
+    libm::sqrtf,
+    libm::expf,
+    libm::expm1f,
+    libm::logf,
+    libm::sinf,
+    libm::cosf,
+    libm::powf,
+    libm::fabsf
+);
+real!(
+    f64,
+    1.0 - 1e-9,
+    libm::sqrt,
+    libm::exp,
+    libm::expm1,
+    libm::log,
+    libm::sin,
+    libm::cos,
+    libm::pow,
+    libm::fabs
+);

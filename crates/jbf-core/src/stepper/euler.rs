@@ -1,0 +1,24 @@
+//! Explicit Euler: `y += dt f(y)`. First order; what the thesis ran in its 2 ms loop.
+//!
+//! (The thesis prints `eps_{i+1} = eps' dt`; the state itself is missing there.)
+
+use super::{along, Stepper, System};
+use crate::real::Real;
+
+/// Explicit Euler.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Euler;
+
+impl Stepper for Euler {
+    #[inline]
+    fn step<T: Real, S: System<T, N>, const N: usize>(
+        &self,
+        system: &S,
+        state: &mut [T; N],
+        input: [T; 3],
+        dt: T,
+    ) {
+        let slope = system.slope(state, input[0]);
+        *state = along(state, &slope, dt);
+    }
+}

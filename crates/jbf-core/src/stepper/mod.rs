@@ -1,0 +1,38 @@
+//! Fixed-step integrators, one a file. A stepper knows nothing of friction: it advances
+//! any [`System`] whose input is known at the start, middle and end of the step.
+
+mod euler;
+mod rk4;
+
+pub use euler::Euler;
+pub use rk4::Rk4;
+
+use crate::real::Real;
+
+/// `state' = slope(state, input)`: `N` states driven by one input.
+pub trait System<T: Real, const N: usize> {
+    /// Rate of change of the state.
+    fn slope(&self, state: &[T; N], input: T) -> [T; N];
+}
+
+/// One fixed step of an explicit method.
+pub trait Stepper {
+    /// Advance `state` by `dt`; `input` holds the input at the start, middle and end.
+    fn step<T: Real, S: System<T, N>, const N: usize>(
+        &self,
+        system: &S,
+        state: &mut [T; N],
+        input: [T; 3],
+        dt: T,
+    );
+}
+
+/// `state + slope * dt`.
+#[inline(always)]
+fn along<T: Real, const N: usize>(state: &[T; N], slope: &[T; N], dt: T) -> [T; N] {
+    let mut moved = *state;
+    for (m, s) in moved.iter_mut().zip(slope.iter()) {
+        *m += *s * dt;
+    }
+    moved
+}

@@ -1,0 +1,31 @@
+//! A law with one coefficient, so that effects can be held against closed forms. It also
+//! shows that a law can be written outside the crate.
+
+use jbf_core::law::{Law, Sliding};
+use jbf_core::Real;
+
+/// Friction coefficient that never changes.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstantLaw(pub f64);
+
+impl<T: Real> Law<T> for ConstantLaw {
+    /// The speed that the film was given last, m/s.
+    type State = T;
+
+    fn start(&self, _load_n: T) -> T {
+        T::ZERO
+    }
+
+    fn set_load(&self, _state: &mut T, _load_n: T) {}
+
+    fn friction(&self, _state: &T, _velocity_m_s: T) -> Sliding<T> {
+        Sliding {
+            level: T::of(self.0),
+            viscous: T::ZERO,
+        }
+    }
+
+    fn advance(&self, state: &mut T, speed_m_s: [T; 3], _rate: T, _dt_s: T) {
+        *state = speed_m_s[2];
+    }
+}

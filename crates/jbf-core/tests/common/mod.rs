@@ -1,0 +1,72 @@
+//! Pieces that several tests share. Each test file is a crate of its own, so not every one
+//! uses all of it.
+#![allow(dead_code)]
+
+pub mod constant_law;
+pub mod drive;
+pub mod motion;
+pub mod random;
+pub mod table;
+
+use jbf_core::effect::{Effects, Rig};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::Law;
+use jbf_core::{Bearing, Chain, Clock, Motion, Real};
+
+/// Load of Table 4.2, N.
+pub const LOAD_N: f64 = 104.0;
+
+/// Table 4.2 over any scalar.
+pub fn table_4_2<T: Real>() -> Parameters<T> {
+    let p = Parameters::TABLE_4_2;
+    Parameters {
+        f_m: T::of(p.f_m),
+        u_tr_m_s: T::of(p.u_tr_m_s),
+        k0: T::of(p.k0),
+        gamma: T::of(p.gamma),
+    }
+}
+
+/// The law of Table 4.2 on a clock.
+pub fn law<T: Real>(clock: Clock) -> Journal<T> {
+    Journal::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
+}
+
+/// The law of Table 4.2 on the journal clock, within the thesis's rig, and effects round it.
+pub fn chain<T: Real>(effects: &[(&str, &[f64])]) -> Chain<T, Journal<T>> {
+    chain_round(law(Clock::Journal), effects)
+}
+
+/// Any law within the thesis's rig, and effects round it.
+pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L> {
+    let mut all = Effects::NONE;
+    for (name, values) in effects {
+        let lifted: Vec<T> = values.iter().map(|&v| T::of(v)).collect();
+        all.set(name, &lifted)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+    let rig = Rig {
+        radius_m: T::of(Bearing::THESIS.radius_m),
+        count: T::of(f64::from(Bearing::THESIS.count)),
+    };
+    Chain {
+        law,
+        effects: all,
+        rig,
+    }
+}
+
+/// Readings (N) of a chain along a motion: the first sample, then `steps` steps of `dt_s`.
+pub fn readings<T: Real, L: Law<T>>(
+    chain: &Chain<T, L>,
+    dt_s: f64,
+    steps: u32,
+    motion: impl Fn(f64) -> Motion<T>,
+) -> Vec<T> {
+    let mut state = chain.start(&motion(0.0));
+    let mut out = vec![state.reading_n];
+    out.extend(
+        (1..=steps).map(|i| chain.step(&mut state, &motion(dt_s * f64::from(i)), T::of(dt_s))),
+    );
+    out
+}

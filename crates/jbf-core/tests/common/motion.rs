@@ -1,0 +1,100 @@
+//! Motions to drive a chain with.
+
+use super::random::Random;
+use super::LOAD_N;
+use jbf_core::{Bearing, Motion, Real};
+
+/// `U = offset + sum of amplitude sin(omega t + phase)`, with its exact rate and angle, under
+/// a constant load. `sign` = -1 mirrors it.
+#[derive(Clone, Debug)]
+pub struct Sines {
+    pub offset_m_s: f64,
+    /// Amplitude in m/s, angular frequency in rad/s, phase in rad.
+    pub waves: Vec<[f64; 3]>,
+    pub sign: f64,
+}
+
+impl Sines {
+    /// Two-way motion of chapter 4 at 104 N.
+    pub fn two_way(omega_rad_s: f64) -> Self {
+        Self {
+            offset_m_s: 0.0,
+            waves: vec![[0.127, omega_rad_s, 0.0]],
+            sign: 1.0,
+        }
+    }
+
+    /// One-way motion of chapter 4 at 104 N.
+    pub fn one_way(omega_rad_s: f64) -> Self {
+        Self {
+            offset_m_s: 0.0728,
+            waves: vec![[0.0595, omega_rad_s, 0.0]],
+            sign: 1.0,
+        }
+    }
+
+    /// Three sines of random size, frequency and phase.
+    pub fn random(random: &mut Random) -> Self {
+        let wave = |r: &mut Random| {
+            [
+                r.log_uniform(1e-4, 1.0),
+                r.log_uniform(0.05, 5.0),
+                r.uniform(0.0, 6.3),
+            ]
+        };
+        let offset_m_s = if random.chance(0.5) {
+            0.0
+        } else {
+            random.uniform(-0.3, 0.3)
+        };
+        Self {
+            offset_m_s,
+            waves: (0..3).map(|_| wave(random)).collect(),
+            sign: 1.0,
+        }
+    }
+
+    pub fn mirrored(&self) -> Self {
+        Self {
+            sign: -self.sign,
+            ..self.clone()
+        }
+    }
+
+    pub fn at<T: Real>(&self, time_s: f64) -> Motion<T> {
+        let (mut v, mut a) = (self.offset_m_s, 0.0);
+        let mut path_m = self.offset_m_s * time_s;
+        for &[size, omega, phase] in &self.waves {
+            let (sin, cos) = (omega * time_s + phase).sin_cos();
+            v += size * sin;
+            a += size * omega * cos;
+            path_m += size / omega * (phase.cos() - cos);
+        }
+        Motion {
+            time_s: T::of(time_s),
+            velocity_m_s: T::of(self.sign * v),
+            acceleration_m_s2: T::of(self.sign * a),
+            angle_rad: T::of(self.sign * path_m / Bearing::THESIS.radius_m),
+            load_n: T::of(LOAD_N),
+        }
+    }
+}
+
+/// Turning at one speed from angle zero.
+pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
+    Sines {
+        offset_m_s: velocity_m_s,
+        waves: vec![],
+        sign: 1.0,
+    }
+    .at(time_s)
+}
+
+/// At rest at an angle, rad.
+pub fn held<T: Real>(angle_rad: f64, time_s: f64) -> Motion<T> {
+    Motion {
+        time_s: T::of(time_s),
+        angle_rad: T::of(angle_rad),
+        ..Motion::at_rest(T::of(LOAD_N))
+    }
+}

@@ -1,0 +1,44 @@
+//! A small generator with a seed, so that a failure can be run again: xorshift64*
+//! (Vigna 2016).
+
+/// The generator.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    /// Uniform in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        let bits = self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11;
+        bits as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Uniform in the logarithm.
+    pub fn log_uniform(&mut self, low: f64, high: f64) -> f64 {
+        (low.ln() + (high / low).ln() * self.unit())
+            .exp()
+            .clamp(low, high)
+    }
+
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    /// A value within the bounds of a parameter: over all decades where the bounds allow.
+    pub fn parameter(&mut self, p: &jbf_core::effect::Parameter) -> f64 {
+        if p.lower < 0.0 {
+            self.uniform(p.lower, p.upper)
+        } else {
+            self.log_uniform(p.lower.max(1e-12 * p.upper), p.upper)
+        }
+    }
+}

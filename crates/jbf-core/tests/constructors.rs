@@ -1,0 +1,184 @@
+//! Constructors: the original form (3.15), and errors that name parameter, value and rule.
+
+mod common;
+
+use jbf_core::effect::{Effects, CATALOGUE};
+use jbf_core::law::journal::{k0_from_original, Journal, Parameters};
+use jbf_core::{Bearing, Clock, ParameterError};
+
+fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), ParameterError> {
+    Journal::new(&bearing, load_n, &p, Clock::Journal).map(|_| ())
+}
+
+/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` and `K0 (eps - eps_tr)` are one line.
+#[test]
+fn original_form_is_the_same_stiffness() {
+    let eps_tr = 0.9723504945734831;
+    let (kappa0, eps_b) = (18_000.0, 0.9995);
+    let k0 = k0_from_original(kappa0, eps_b, eps_tr).expect("valid");
+    for eps in [0.975, 0.98, 0.99] {
+        let original = kappa0 * (eps - eps_tr) / (eps_b - eps_tr);
+        assert!((k0 * (eps - eps_tr) / original - 1.0).abs() < 1e-14);
+    }
+    // And back: the eps_b that gives Table 4.2 its K0.
+    let eps_b = eps_tr + 18_000.0 / 7.5e5;
+    assert!(
+        (k0_from_original(18_000.0, eps_b, eps_tr).expect("valid") / 7.5e5 - 1.0).abs() < 1e-12
+    );
+}
+
+#[test]
+fn original_form_names_what_is_wrong() {
+    for (kappa0, eps_b, name) in [
+        (0.0, 0.999, "kappa0"),
+        (-1.0, 0.999, "kappa0"),
+        (f64::NAN, 0.999, "kappa0"),
+        (f64::INFINITY, 0.999, "kappa0"),
+        (1e4, 0.97, "eps_b"),
+        (1e4, 1.0, "eps_b"),
+        (1e4, f64::NAN, "eps_b"),
+    ] {
+        let error = k0_from_original(kappa0, eps_b, 0.972).expect_err(name);
+        assert_eq!(error.name, name);
+    }
+}
+
+#[test]
+fn sizes_of_the_bearing_are_named() {
+    let good = Bearing::THESIS;
+    for (bearing, name) in [
+        (
+            Bearing {
+                radius_m: 0.0,
+                ..good
+            },
+            "radius_m",
+        ),
+        (
+            Bearing {
+                length_m: -1.0,
+                ..good
+            },
+            "length_m",
+        ),
+        (
+            Bearing {
+                clearance_m: f64::NAN,
+                ..good
+            },
+            "clearance_m",
+        ),
+        (
+            Bearing {
+                clearance_m: 0.02,
+                ..good
+            },
+            "clearance_m",
+        ),
+        (
+            Bearing {
+                mass_kg: f64::INFINITY,
+                ..good
+            },
+            "mass_kg",
+        ),
+        (
+            Bearing {
+                viscosity_pa_s: 0.0,
+                ..good
+            },
+            "viscosity_pa_s",
+        ),
+        (Bearing { count: 0, ..good }, "count"),
+        // Finite each, but together beyond the numbers.
+        (
+            Bearing {
+                length_m: 1e-200,
+                ..good
+            },
+            "load_number",
+        ),
+    ] {
+        let error = build(bearing, 104.0, Parameters::TABLE_4_2).expect_err(name);
+        assert_eq!(error.name, name, "{error}");
+    }
+}
+
+#[test]
+fn parameters_of_the_law_are_named() {
+    let good = Parameters::TABLE_4_2;
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        for (load_n, p, name) in [
+            (bad, good, "load_n"),
+            (104.0, Parameters { f_m: bad, ..good }, "f_m"),
+            (
+                104.0,
+                Parameters {
+                    u_tr_m_s: bad,
+                    ..good
+                },
+                "U_tr_m_s",
+            ),
+            (104.0, Parameters { k0: bad, ..good }, "K0"),
+            (104.0, Parameters { gamma: bad, ..good }, "gamma"),
+        ] {
+            let error = build(Bearing::THESIS, load_n, p).expect_err(name);
+            assert_eq!(error.name, name, "{error}");
+            assert!(error.to_string().contains("must be"), "{error}");
+        }
+    }
+    // A bearing without asperity friction or without viscous friction is a bearing.
+    assert!(build(
+        Bearing::THESIS,
+        104.0,
+        Parameters {
+            f_m: 0.0,
+            gamma: 0.0,
+            ..good
+        }
+    )
+    .is_ok());
+}
+
+#[test]
+fn parameters_of_every_effect_are_named() {
+    for info in CATALOGUE {
+        let good: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        assert!(
+            Effects::NONE.clone().set(info.name, &good).is_ok(),
+            "{}",
+            info.name
+        );
+        for (i, p) in info.parameters.iter().enumerate() {
+            for bad in [p.lower - 1.0, p.upper * 2.0 + 1.0, f64::NAN] {
+                let mut values = good.clone();
+                values[i] = bad;
+                let error = Effects::NONE
+                    .clone()
+                    .set(info.name, &values)
+                    .expect_err(info.name);
+                assert_eq!(error.name, p.name);
+            }
+            let error = Effects::NONE
+                .clone()
+                .set(info.name, &good[..i])
+                .expect_err("too few");
+            assert_eq!(error.name, p.name, "the first missing one");
+        }
+    }
+    let error = Effects::<f64>::NONE
+        .clone()
+        .set("gremlins", &[])
+        .expect_err("unknown");
+    assert_eq!(error.rule, "is not in the catalogue");
+}
+
+#[test]
+fn eps_tr_must_lie_inside() {
+    for bad in [0.0, 1.0, -0.5, f64::NAN] {
+        let error = common::law::<f64>(Clock::Journal)
+            .with_eps_tr(bad)
+            .expect_err("outside");
+        assert_eq!(error.name, "eps_tr");
+    }
+}

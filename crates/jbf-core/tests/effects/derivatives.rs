@@ -1,0 +1,153 @@
+//! Derivatives carried by dual numbers against central differences, for every parameter of
+//! the law and of every effect.
+//!
+//! A central difference of step h errs by h^2 F'''/6 and by rounding over h. With h = 1e-4 of the
+//! parameter the first is 1e-8 of the slope times a factor of curvature, for which 1e2 is
+//! left; the second is the rounding of a thousand steps, 1e-12 of the force, over h.
+
+use crate::common::motion::Sines;
+use crate::common::{readings, table_4_2, LOAD_N};
+use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
+
+const DT_S: f64 = 0.01;
+
+/// Readings with the law's four parameters first, then the effect's.
+fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<T> {
+    let parameters = Parameters {
+        f_m: p[0],
+        u_tr_m_s: p[1],
+        k0: p[2],
+        gamma: p[3],
+    };
+    let law = Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("valid");
+    let mut effects = Effects::NONE;
+    effects.set(info.name, &p[4..]).expect("valid");
+    let rig = Rig {
+        radius_m: T::of(Bearing::THESIS.radius_m),
+        count: T::of(4.0),
+    };
+    readings(&Chain { law, effects, rig }, DT_S, 1000, motion)
+}
+
+fn start_values(info: &Info, which: usize) -> Vec<f64> {
+    let p = table_4_2::<f64>();
+    let own = info
+        .parameters
+        .iter()
+        .map(|p| p.starts[which.min(p.starts.len() - 1)]);
+    [p.f_m, p.u_tr_m_s, p.k0, p.gamma]
+        .into_iter()
+        .chain(own)
+        .collect()
+}
+
+/// Slopes of the readings by parameter `i`, carried.
+fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
+    let lifted: Vec<Dual<1>> = p
+        .iter()
+        .enumerate()
+        .map(|(k, &v)| {
+            if k == i {
+                Dual::parameter(v, 0)
+            } else {
+                Dual::of(v)
+            }
+        })
+        .collect();
+    run(info, &lifted, |t| sines.at(t))
+        .iter()
+        .map(|f| f.slope[0])
+        .collect()
+}
+
+/// Readings with parameter `i` moved.
+fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
+    let mut q = p.to_vec();
+    q[i] += by;
+    run(info, &q, |t| sines.at(t))
+}
+
+/// A difference quotient, the step that made it and the force that it was made from.
+struct Difference {
+    slopes: Vec<f64>,
+    step: f64,
+    peak_n: f64,
+}
+
+impl Difference {
+    fn check(&self, label: &str, carried: &[f64]) {
+        let largest = carried.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        assert!(largest > 0.0, "{label}: the parameter does nothing");
+        let bound = 1e-6 * largest + 1e-12 * self.peak_n / self.step;
+        // Rounding may not be what makes the test pass.
+        assert!(
+            bound < 1e-3 * largest,
+            "{label}: {bound:e} against slopes of {largest:e}"
+        );
+        for (i, (a, b)) in carried.iter().zip(&self.slopes).enumerate() {
+            let error = (a - b).abs();
+            assert!(
+                error < bound,
+                "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}"
+            );
+        }
+    }
+}
+
+fn peak(signal: &[f64]) -> f64 {
+    signal.iter().fold(0.0, |m: f64, f| m.max(f.abs()))
+}
+
+#[test]
+fn slopes_match_central_differences() {
+    for info in CATALOGUE {
+        for which in 0..2 {
+            let p = start_values(info, which);
+            for sines in [Sines::one_way(1.0), Sines::two_way(1.0)] {
+                for i in 0..p.len() {
+                    let h = 1e-4 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
+                    let above = moved(info, &p, i, h, &sines);
+                    let below = moved(info, &p, i, -h, &sines);
+                    let pairs = above.iter().zip(&below);
+                    let difference = Difference {
+                        slopes: pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect(),
+                        step: h,
+                        peak_n: peak(&above),
+                    };
+                    let label = format!("{} parameter {i} of {p:?}", info.name);
+                    difference.check(&label, &carried(info, &p, i, &sines));
+                }
+            }
+        }
+    }
+}
+
+/// At a finite null a fit looks one way only, and it must see the slope there: that is how
+/// it finds that an effect is missing. The one-sided difference is of second order, too.
+#[test]
+fn slopes_at_a_null_match_one_sided_differences() {
+    let mut seen = 0;
+    for info in CATALOGUE {
+        for (k, parameter) in info.parameters.iter().enumerate() {
+            let Some(null) = parameter.null.filter(|n| n.is_finite()) else {
+                continue;
+            };
+            let mut p = start_values(info, 0);
+            p[4 + k] = null;
+            let sines = Sines::two_way(1.0);
+            let h = 1e-4 * parameter.starts[0];
+            let [at, one, two] = [0.0, h, 2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
+            let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * h);
+            let difference = Difference {
+                slopes: (0..at.len()).map(slope).collect(),
+                step: h,
+                peak_n: peak(&at),
+            };
+            difference.check(info.name, &carried(info, &p, 4 + k, &sines));
+            seen += 1;
+        }
+    }
+    assert!(seen >= 4, "effects with a finite null: {seen}");
+}

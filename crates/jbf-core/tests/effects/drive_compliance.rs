@@ -1,0 +1,116 @@
+//! A soft drive: twist, free and dry-damped oscillation, stick without drift.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::{constant, held};
+use crate::common::{chain_round, readings, LOAD_N};
+use jbf_core::Motion;
+use std::f64::consts::TAU;
+
+const K: f64 = 60.0;
+const J: f64 = 2e-3;
+/// n R, m.
+const ARM_M: f64 = 4.0 * 0.0127;
+
+/// Journal angles along a motion.
+fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<f64>) -> Vec<f64> {
+    let chain = chain_round(ConstantLaw(f), &[("drive_compliance", &[K, c, J])]);
+    let mut state = chain.start(&motion(0.0));
+    (1..=steps)
+        .map(|i| {
+            chain.step(&mut state, &motion(dt_s * f64::from(i)), dt_s);
+            state.journal().angle_rad
+        })
+        .collect()
+}
+
+/// Let go at an angle of one hundredth of a radian from the encoder's.
+fn let_go(t: f64) -> Motion<f64> {
+    held(if t == 0.0 { 0.0 } else { 0.01 }, t)
+}
+
+/// Extremes of a signal: value and index where it turns.
+fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
+    (1..signal.len() - 1)
+        .filter(|&i| (signal[i] - signal[i - 1]) * (signal[i + 1] - signal[i]) < 0.0)
+        .map(|i| (i, signal[i]))
+        .collect()
+}
+
+/// Turning steadily, the journal trails by n R F / k, and the damper does nothing.
+#[test]
+fn trails_by_the_static_twist() {
+    let f = 0.1;
+    let speed = 0.05;
+    let got = angles(f, 0.1, 1e-3, 20_000, |t| constant(speed, t));
+    let encoder = constant::<f64>(speed, 20.0).angle_rad;
+    let twist = ARM_M * f * LOAD_N / K;
+    assert!(
+        (encoder - got[got.len() - 1] - twist).abs() < 1e-9,
+        "{twist}"
+    );
+}
+
+/// Without friction the journal swings with 2 pi sqrt(J/k); the midpoint rule stretches that
+/// by (w dt)^2/24 and keeps the amplitude.
+#[test]
+fn swings_freely_with_its_own_period() {
+    let period = TAU * (J / K).sqrt();
+    let dt = period / 200.0;
+    let got = angles(0.0, 1e-5, dt, 4100, let_go);
+    let turns = extremes(&got);
+    assert!(turns.len() >= 39, "{}", turns.len());
+    let (first, last) = (turns[0], turns[38]);
+    let measured = (last.0 - first.0) as f64 * dt / 19.0;
+    assert!(
+        (measured / period - 1.0).abs() < 1e-3,
+        "{measured} {period}"
+    );
+    let decay = (-1e-5 / (2.0 * J) * 19.0 * period).exp();
+    assert!(((last.1 - 0.01) / (first.1 - 0.01) / decay - 1.0).abs() < 1e-3);
+}
+
+/// Under dry friction the swing loses 2 n R F / k each half period, and then sticks.
+#[test]
+fn dry_friction_eats_a_fixed_bite_each_half_swing() {
+    let f = 0.005;
+    let bite = 2.0 * ARM_M * f * LOAD_N / K;
+    let dt = TAU * (J / K).sqrt() / 2000.0;
+    let got = angles(f, 1e-5, dt, 20_000, let_go);
+    let mut reach = 0.01;
+    let turns = extremes(&got);
+    for (n, (_, angle)) in turns.iter().enumerate() {
+        reach -= bite;
+        assert!(
+            ((angle - 0.01).abs() - reach).abs() < 2e-5,
+            "half swing {n}"
+        );
+    }
+    // It stops where the next swing could not begin: inside the dead zone bite / 2.
+    let rest = got[got.len() - 1];
+    assert!((rest - 0.01).abs() <= bite / 2.0);
+    assert!(got[got.len() - 5000..].iter().all(|a| *a == rest));
+}
+
+/// A torque below the sliding friction moves nothing, however long, and the load cell sees it.
+#[test]
+fn sticks_without_drift_and_shows_the_twist_torque() {
+    let f = 0.2;
+    let slip = ARM_M * f * LOAD_N;
+    for share in [0.1, 0.5, 0.999] {
+        let angle = share * slip / K;
+        let motion = |t: f64| held(if t == 0.0 { 0.0 } else { angle }, t);
+        let got = angles(f, 0.1, 1e-3, 100_000, motion);
+        assert!(got.iter().all(|a| *a == 0.0), "{share}");
+        let chain = chain_round(ConstantLaw(f), &[("drive_compliance", &[K, 0.1, J])]);
+        let cell = readings(&chain, 1e-3, 100, motion);
+        assert!(
+            (cell[100] - K * angle / ARM_M).abs() < 1e-9,
+            "{share}: {}",
+            cell[100]
+        );
+    }
+    let over = angles(f, 0.1, 1e-3, 1000, |t| {
+        held(if t == 0.0 { 0.0 } else { 1.01 * slip / K }, t)
+    });
+    assert!(over[999] > 0.0, "just above, it slips");
+}

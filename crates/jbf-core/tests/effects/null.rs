@@ -1,0 +1,72 @@
+//! At its null an effect is not there: the run equals the bare law's to the bit.
+
+use crate::common::motion::Sines;
+use crate::common::random::Random;
+use crate::common::{chain, readings};
+use jbf_core::effect::{Info, CATALOGUE};
+use jbf_core::Real;
+
+/// Parameters of an effect with its null in place, the others anywhere in their bounds.
+fn at_null(info: &Info, random: &mut Random) -> Vec<f64> {
+    info.parameters
+        .iter()
+        .map(|p| p.null.unwrap_or_else(|| random.parameter(p)))
+        .collect()
+}
+
+fn check<T: Real>() {
+    let mut random = Random::new(1);
+    for info in CATALOGUE {
+        assert!(
+            info.parameters.iter().any(|p| p.null.is_some()),
+            "{} has no null",
+            info.name
+        );
+        for _ in 0..20 {
+            let motion = Sines::random(&mut random);
+            let values = at_null(info, &mut random);
+            let bare = readings(&chain::<T>(&[]), 0.01, 500, |t| motion.at(t));
+            let with = readings(&chain::<T>(&[(info.name, &values)]), 0.01, 500, |t| {
+                motion.at(t)
+            });
+            assert!(bare.iter().any(|&r| r != T::ZERO));
+            for (a, b) in bare.iter().zip(&with) {
+                assert_eq!(
+                    a.value().to_bits(),
+                    b.value().to_bits(),
+                    "{} {values:?}",
+                    info.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn null_is_absent_to_the_bit_in_double_precision() {
+    check::<f64>();
+}
+
+#[test]
+fn null_is_absent_to_the_bit_in_single_precision() {
+    check::<f32>();
+}
+
+/// Away from its null every effect does something, so that the test above can fail.
+#[test]
+fn away_from_its_null_every_effect_shows() {
+    for info in CATALOGUE {
+        let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        let motion = Sines::two_way(1.0);
+        let bare = readings(&chain::<f64>(&[]), 0.01, 700, |t| motion.at(t));
+        let with = readings(&chain::<f64>(&[(info.name, &values)]), 0.01, 700, |t| {
+            motion.at(t)
+        });
+        let difference = bare
+            .iter()
+            .zip(&with)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        assert!(difference > 0.05, "{}: {difference} N", info.name);
+    }
+}

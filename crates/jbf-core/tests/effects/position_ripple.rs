@@ -1,0 +1,33 @@
+//! A ripple rises and falls once a turn, largest at theta_0.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::constant;
+use crate::common::{chain_round, readings, LOAD_N};
+use std::f64::consts::TAU;
+
+#[test]
+fn once_a_turn_and_largest_at_theta_0() {
+    let (depth, theta_0, f) = (0.3, 0.8, 0.1);
+    let chain = chain_round(ConstantLaw(f), &[("position_ripple", &[depth, theta_0])]);
+    // 1000 steps a turn, two turns.
+    let speed = 0.05;
+    let dt = TAU * 0.0127 / speed / 1000.0;
+    let readings = readings(&chain, dt, 2000, |t| constant::<f64>(speed, t));
+    let turn = &readings[..1000];
+    let (at, largest) = turn
+        .iter()
+        .enumerate()
+        .fold((0, 0.0), |m, (i, &r)| if r > m.1 { (i, r) } else { m });
+    let smallest = turn.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((TAU * at as f64 / 1000.0 - theta_0).abs() < TAU / 1000.0);
+    assert!((largest / (f * LOAD_N) - (1.0 + depth)).abs() < 1e-5);
+    assert!((smallest / (f * LOAD_N) - (1.0 - depth)).abs() < 1e-5);
+    // The mean over a turn is the friction without ripple, and the next turn is the same.
+    assert!((turn.iter().sum::<f64>() / 1000.0 - f * LOAD_N).abs() < 1e-9);
+    for (a, b) in turn.iter().zip(&readings[1000..]) {
+        assert!((a - b).abs() < 1e-9);
+    }
+    // One maximum a turn: the signal crosses its mean twice.
+    let above: Vec<bool> = turn.iter().map(|r| *r > f * LOAD_N).collect();
+    assert_eq!(above.windows(2).filter(|w| w[0] != w[1]).count(), 2);
+}

@@ -1,0 +1,86 @@
+//! A reversal at constant friction is an exponential in the distance slid, at any step.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::constant;
+use crate::common::{chain_round, readings, LOAD_N};
+
+const F: f64 = 0.2;
+const SIGMA_1_M: f64 = 3e3;
+const SPEED_M_S: f64 = 1e-3;
+
+/// From rest forward until the bristles slide, then back: readings over friction.
+fn reversal(dt_s: f64, forward: u32, back: u32) -> Vec<f64> {
+    let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
+    let turn = dt_s * (f64::from(forward) + 0.5);
+    let speed = |t: f64| match t {
+        0.0 => 0.0,
+        t if t < turn => SPEED_M_S,
+        _ => -SPEED_M_S,
+    };
+    readings(&chain, dt_s, forward + back, |t| {
+        constant::<f64>(speed(t), t)
+    })
+    .iter()
+    .map(|r| r / (F * LOAD_N))
+    .collect()
+}
+
+#[test]
+fn start_and_reversal_are_exponentials_in_distance() {
+    let length = F / SIGMA_1_M;
+    for dt_s in [1e-3, 0.01, 0.07] {
+        let forward = (40.0 * length / (SPEED_M_S * dt_s)).ceil() as u32;
+        let got = reversal(dt_s, forward, forward);
+        for (i, r) in got.iter().enumerate().take(forward as usize) {
+            // The first step starts from rest and slides half as far.
+            let s = SPEED_M_S * dt_s * (i as f64 - 0.5).max(0.0);
+            assert!(
+                (r - (1.0 - (-s / length).exp())).abs() < 1e-12,
+                "rise, {dt_s} s, {i}"
+            );
+        }
+        for (i, r) in got.iter().enumerate().skip(forward as usize + 1) {
+            // The speed crosses zero in the middle of a step: a quarter of it is slid back.
+            let steps = i as f64 - f64::from(forward) - 1.0;
+            let s = SPEED_M_S * dt_s * (steps + 0.25);
+            assert!(
+                (r - (2.0 * (-s / length).exp() - 1.0)).abs() < 1e-12,
+                "{dt_s} s, {i}"
+            );
+        }
+    }
+}
+
+/// A contact at rest keeps its deflection: no slow creep back.
+#[test]
+fn rest_keeps_the_deflection() {
+    let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
+    let got = readings(&chain, 0.01, 1000, |t| {
+        constant::<f64>(
+            if t > 0.0 && t < 0.0505 {
+                SPEED_M_S
+            } else {
+                0.0
+            },
+            t,
+        )
+    });
+    assert!(
+        got[6] > 0.3 * F * LOAD_N && got[6] < F * LOAD_N,
+        "{}",
+        got[6]
+    );
+    assert!(got[6..].iter().all(|r| *r == got[6]));
+}
+
+/// A run that begins in motion begins with the bristles bent to the full.
+#[test]
+fn a_run_that_begins_in_motion_begins_sliding() {
+    let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
+    for speed in [SPEED_M_S, -SPEED_M_S] {
+        let got = readings(&chain, 0.01, 10, |t| constant::<f64>(speed, t));
+        assert!(got
+            .iter()
+            .all(|r| (r - F * LOAD_N * speed.signum()).abs() < 1e-12));
+    }
+}

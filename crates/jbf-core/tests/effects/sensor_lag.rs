@@ -1,0 +1,57 @@
+//! A low pass of the first order, against its answer to a step and to a sine.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::{constant, Sines};
+use crate::common::{chain, chain_round, readings, LOAD_N};
+
+/// The force jumps between two samples; the filter takes it as a ramp over that step, whose
+/// middle is where the ideal jump is. The two answers differ by (dt/tau)^2/24.
+#[test]
+fn answers_a_step_with_an_exponential() {
+    let (f, tau, dt) = (0.1, 0.3, 0.005);
+    let chain = chain_round(ConstantLaw(f), &[("sensor_lag", &[tau])]);
+    let got = readings(&chain, dt, 400, |t| {
+        constant::<f64>(if t < 0.4975 { 0.1 } else { -0.1 }, t)
+    });
+    for (i, r) in got.iter().enumerate() {
+        let since = dt * i as f64 - 0.4975;
+        let expected = if since < 0.0 {
+            1.0
+        } else {
+            2.0 * (-since / tau).exp() - 1.0
+        };
+        let bound = 2.0 * (dt / tau) * (dt / tau) / 24.0 * 1.01 + 1e-12;
+        assert!(
+            (r / (f * LOAD_N) - expected).abs() < bound,
+            "sample {i}: {r}"
+        );
+    }
+}
+
+/// A lag shorter than any step is a shift by tau, not noise: r = F - tau F'.
+#[test]
+fn a_short_lag_shifts() {
+    let (tau, dt) = (1e-7, 0.01);
+    let sines = Sines::one_way(1.0);
+    let bare = readings(&chain::<f64>(&[]), dt, 300, |t| sines.at(t));
+    let with = readings(&chain::<f64>(&[("sensor_lag", &[tau])]), dt, 300, |t| {
+        sines.at(t)
+    });
+    for i in 1..bare.len() {
+        let slope = (bare[i] - bare[i - 1]) / dt;
+        assert!((with[i] - (bare[i] - tau * slope)).abs() < 1e-12);
+    }
+}
+
+/// Longer than the run, it hardly moves from its first reading.
+#[test]
+fn a_long_lag_holds_the_first_reading() {
+    let sines = Sines::one_way(1.0);
+    let with = readings(&chain::<f64>(&[("sensor_lag", &[100.0])]), 0.01, 100, |t| {
+        sines.at(t)
+    });
+    let bare = readings(&chain::<f64>(&[]), 0.01, 100, |t| sines.at(t));
+    assert_eq!(with[0], bare[0]);
+    let swing = bare.iter().map(|b| (b - bare[0]).abs()).fold(0.0, f64::max);
+    assert!(with.iter().all(|w| (w - with[0]).abs() <= 0.01 * swing));
+}

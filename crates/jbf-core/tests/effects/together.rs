@@ -1,0 +1,85 @@
+//! Effects in company: two that can be composed by hand, every pair, all at once.
+
+use crate::common::motion::Sines;
+use crate::common::{chain, readings};
+use jbf_core::effect::{Info, CATALOGUE};
+use jbf_core::Real;
+
+fn starts(info: &Info) -> Vec<f64> {
+    info.parameters.iter().map(|p| p.starts[0]).collect()
+}
+
+fn run<T: Real>(which: &[&Info]) -> Vec<T> {
+    let values: Vec<Vec<f64>> = which.iter().map(|info| starts(info)).collect();
+    let effects: Vec<(&str, &[f64])> = which
+        .iter()
+        .zip(&values)
+        .map(|(info, v)| (info.name, v.as_slice()))
+        .collect();
+    let sines = Sines::two_way(1.0);
+    readings(&chain::<T>(&effects), 0.01, 700, |t| sines.at(t))
+}
+
+/// The instrument comes after the drag: a low pass, written here anew, over the force of a
+/// chain with drag alone gives what the chain with both gives.
+#[test]
+fn the_instrument_sees_the_drag() {
+    let (tau, dt) = (0.1_f64, 0.01_f64);
+    let sines = Sines::two_way(1.0);
+    let drag: (&str, &[f64]) = ("coulomb_drag", &[2.0]);
+    let force = readings(&chain::<f64>(&[drag]), dt, 700, |t| sines.at(t));
+    let both = readings(
+        &chain::<f64>(&[drag, ("sensor_lag", &[tau])]),
+        dt,
+        700,
+        |t| sines.at(t),
+    );
+    // Substeps of the ramp between samples, by the trapezoidal rule.
+    let n = 200;
+    let h = dt / f64::from(n);
+    let mut r = force[0];
+    for i in 1..force.len() {
+        for k in 0..n {
+            let at =
+                |k: i32| force[i - 1] + (force[i] - force[i - 1]) * f64::from(k) / f64::from(n);
+            let gain = h / (2.0 * tau);
+            r = (r * (1.0 - gain) + gain * (at(k) + at(k + 1))) / (1.0 + gain);
+        }
+        assert!((both[i] - r).abs() < 1e-6, "sample {i}: {} {r}", both[i]);
+    }
+}
+
+/// The chain has one order; the order of naming does not matter, and neither effect of a
+/// pair is lost.
+#[test]
+fn pairs_run_in_the_order_of_the_chain() {
+    for (i, a) in CATALOGUE.iter().enumerate() {
+        for b in &CATALOGUE[i + 1..] {
+            let one = run::<f64>(&[a, b]);
+            let other = run::<f64>(&[b, a]);
+            assert_eq!(one, other, "{} {}", a.name, b.name);
+            assert!(one.iter().all(|r| r.is_finite()));
+            for single in [a, b] {
+                let alone = run::<f64>(&[single]);
+                let apart = one
+                    .iter()
+                    .zip(&alone)
+                    .map(|(x, y)| (x - y).abs())
+                    .fold(0.0, f64::max);
+                assert!(apart > 1e-3, "{} with {}: {apart}", a.name, b.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn all_at_once_stay_finite_and_agree_in_both_precisions() {
+    let all: Vec<&Info> = CATALOGUE.iter().collect();
+    let double = run::<f64>(&all);
+    let single = run::<f32>(&all);
+    let peak = double.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+    assert!(peak > 1.0 && peak < 1e3, "{peak}");
+    for (a, b) in double.iter().zip(&single) {
+        assert!((a - f64::from(*b)).abs() < 1e-3 * peak, "{a} {b}");
+    }
+}

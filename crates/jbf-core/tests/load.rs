@@ -1,0 +1,62 @@
+//! The load of a run may change: the law then is the one that the new load would have built.
+
+mod common;
+
+use common::table_4_2;
+use jbf_core::law::journal::{Journal, State};
+use jbf_core::law::Law;
+use jbf_core::stepper::Rk4;
+use jbf_core::{Bearing, Clock};
+
+#[test]
+fn after_a_change_of_load_the_law_is_the_other_loads() {
+    let heavy = common::law::<f64>(Clock::Journal);
+    let light = Journal::new(&Bearing::THESIS, 83.5, &table_4_2(), Clock::Journal).expect("valid");
+    let mut state = heavy.start(104.0);
+    let speed = |i: u32| 0.05 + 0.04 * (0.01 * f64::from(i)).sin();
+    for i in 0..500 {
+        heavy.advance_with(&Rk4, &mut state, [speed(i); 3], 1.0, 0.002);
+    }
+    heavy.set_load(&mut state, 83.5);
+    assert_eq!(state.eps_tr(), light.nominal().eps_tr);
+    let [x, y] = state.xy();
+    let mut own = State::at(x.hypot(y), y.atan2(x), light.nominal());
+    for i in 500..1500 {
+        heavy.advance_with(&Rk4, &mut state, [speed(i); 3], 1.0, 0.002);
+        light.advance_with(&Rk4, &mut own, [speed(i); 3], 1.0, 0.002);
+        let f = [
+            heavy.friction(&state, speed(i)),
+            light.friction(&own, speed(i)),
+        ];
+        assert!(
+            (f[0].coefficient(1.0) - f[1].coefficient(1.0)).abs() < 1e-12,
+            "step {i}"
+        );
+    }
+}
+
+/// A lifted bearing: the film carries nothing and no number is lost.
+#[test]
+fn a_lifted_bearing_has_a_finite_small_friction() {
+    let law = common::law::<f64>(Clock::Journal);
+    let chain = common::chain_round(law, &[]);
+    let mut motion = common::motion::constant::<f64>(0.05, 0.0);
+    let mut state = chain.start(&motion);
+    for load_n in [104.0, 0.0, -50.0, 104.0] {
+        motion.load_n = load_n;
+        for _ in 0..5000 {
+            assert!(chain.step(&mut state, &motion, 0.002).is_finite());
+        }
+        if load_n <= 0.0 {
+            // What is left is the drag of the oil in a centred bearing, Petroff's.
+            let centred = law
+                .friction(&State::at(0.0, 0.0, law.under(1.0)), 0.05)
+                .viscous;
+            assert!(
+                (state.reading_n / centred - 1.0).abs() < 0.2,
+                "{}",
+                state.reading_n
+            );
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! The reduced model against trajectories of an independent implementation (order 8, rtol
+//! 1e-13), at the step of a control loop, 2 ms, and the orders of its steppers.
+
+mod common;
+
+use common::drive::drive;
+use common::law;
+use common::table::rows;
+use jbf_core::law::journal::State;
+use jbf_core::law::Law;
+use jbf_core::stepper::{Euler, Rk4, Stepper};
+use jbf_core::{Clock, Real};
+
+const AMPLITUDE_M_S: f64 = 0.127;
+const LOOP_STEP_S: f64 = 0.002;
+
+/// One reference run; its rows are time, speed, eps, phi, f.
+struct Run {
+    omega_rad_s: f64,
+    clock: Clock,
+    rows: Vec<[f64; 5]>,
+}
+
+impl Run {
+    fn speed_m_s(&self, time_s: f64) -> f64 {
+        AMPLITUDE_M_S * (self.omega_rad_s * time_s).sin()
+    }
+
+    /// Friction coefficients at the rows, in steps of `step_s`.
+    fn friction<T: Real>(&self, stepper: &impl Stepper, step_s: f64) -> Vec<f64> {
+        let law = law::<T>(self.clock);
+        let mut state = law.start(T::of(common::LOAD_N));
+        let mut from = 0.0;
+        let mut out = Vec::new();
+        for &[time, speed, ..] in &self.rows {
+            drive(&law, stepper, &mut state, [from, time], step_s, |t| {
+                self.speed_m_s(t)
+            });
+            from = time;
+            let speed = T::of(speed);
+            out.push(
+                law.friction(&state, speed)
+                    .coefficient(speed.sign())
+                    .value(),
+            );
+        }
+        out
+    }
+
+    /// Fastest change of the unsigned coefficient between loop steps, 1/s.
+    fn fastest_change_1_s(&self) -> f64 {
+        let law = law::<f64>(self.clock);
+        let mut state = law.start(common::LOAD_N);
+        let end = self.rows[self.rows.len() - 1][0];
+        let mut before = None;
+        let mut fastest = 0.0_f64;
+        for i in 0..(end / LOOP_STEP_S) as u32 {
+            let t = LOOP_STEP_S * f64::from(i);
+            drive(
+                &law,
+                &Rk4,
+                &mut state,
+                [t, t + LOOP_STEP_S],
+                LOOP_STEP_S,
+                |t| self.speed_m_s(t),
+            );
+            let f = law
+                .friction(&state, self.speed_m_s(t + LOOP_STEP_S).abs())
+                .coefficient(1.0);
+            if let Some(before) = before.replace(f) {
+                fastest = fastest.max((f - before).abs() / LOOP_STEP_S);
+            }
+        }
+        fastest
+    }
+}
+
+fn runs() -> Vec<Run> {
+    let run = |omega_rad_s, clock, text| Run {
+        omega_rad_s,
+        clock,
+        rows: rows(text),
+    };
+    vec![
+        run(
+            0.1,
+            Clock::Journal,
+            include_str!("data/reduced_journal_w0.1.csv"),
+        ),
+        run(
+            1.0,
+            Clock::Journal,
+            include_str!("data/reduced_journal_w1.csv"),
+        ),
+        run(
+            2.0,
+            Clock::Journal,
+            include_str!("data/reduced_journal_w2.csv"),
+        ),
+        run(
+            0.1,
+            Clock::Thesis,
+            include_str!("data/reduced_thesis_w0.1.csv"),
+        ),
+        run(
+            1.0,
+            Clock::Thesis,
+            include_str!("data/reduced_thesis_w1.csv"),
+        ),
+        run(
+            2.0,
+            Clock::Thesis,
+            include_str!("data/reduced_thesis_w2.csv"),
+        ),
+    ]
+}
+
+#[test]
+fn runge_kutta_at_2_ms_matches_every_row() {
+    for run in runs() {
+        let got = run.friction::<f64>(&Rk4, LOOP_STEP_S);
+        for (row, f) in run.rows.iter().zip(got) {
+            let error = (f - row[4]).abs();
+            assert!(
+                error < 1e-6,
+                "{:?} w = {}: {row:?} {error:e}",
+                run.clock,
+                run.omega_rad_s
+            );
+        }
+    }
+}
+
+/// What is left of the error at 2 ms comes from steps that straddle the kink of |U| at a
+/// reversal. Steps that are short against the film's memory leave only the ten digits that
+/// the rows carry.
+#[test]
+fn runge_kutta_converges_on_the_reference() {
+    for run in runs() {
+        let got = run.friction::<f64>(&Rk4, LOOP_STEP_S / 64.0);
+        for (row, f) in run.rows.iter().zip(got) {
+            assert!(
+                (f - row[4]).abs() < 1e-9,
+                "{:?} {}: {row:?}",
+                run.clock,
+                run.omega_rad_s
+            );
+        }
+    }
+}
+
+/// Along a stable film with response K, Euler's error obeys `e' = -lambda e - (h/2) x''`, so
+/// `e = -(h/2) int K x''`. By parts, with K falling from one to zero, that is at most
+/// `(h/2) max|x'| (1 + 1 + 1)`: the end, the start and the integral. And it halves with h.
+#[test]
+fn euler_stays_within_its_theory() {
+    for run in runs() {
+        let bound = 1.5 * LOOP_STEP_S * run.fastest_change_1_s();
+        let worst = |step_s| {
+            let got = run.friction::<f64>(&Euler, step_s);
+            let errors = run.rows.iter().zip(got).map(|(row, f)| (f - row[4]).abs());
+            errors.fold(0.0, f64::max)
+        };
+        let (whole, half) = (worst(LOOP_STEP_S), worst(LOOP_STEP_S / 2.0));
+        assert!(
+            whole < bound,
+            "{:?} {}: {whole:e} {bound:e}",
+            run.clock,
+            run.omega_rad_s
+        );
+        assert!((1.9..2.1).contains(&(whole / half)), "{}", whole / half);
+    }
+}
+
+/// Errors at three steps on a smooth motion (one way, always in mixed lubrication, so that
+/// neither |U| nor the asperity load has a kink) fall with the order of the method.
+#[test]
+fn steppers_have_their_order() {
+    fn ends(stepper: &impl Stepper, step_s: f64) -> [f64; 2] {
+        let law = law::<f64>(Clock::Journal);
+        let steady = law.steady(0.03).expect("a speed");
+        let mut state = State::at(steady.eps, steady.phi_rad, law.nominal());
+        drive(&law, stepper, &mut state, [0.0, 1.2], step_s, |t| {
+            0.03 + 0.01 * (4.0 * t).sin()
+        });
+        state.xy()
+    }
+    fn order(stepper: &impl Stepper, step_s: f64) -> f64 {
+        let exact = ends(&Rk4, 1e-4);
+        let error = |h| {
+            let [x, y] = ends(stepper, h);
+            (x - exact[0]).hypot(y - exact[1])
+        };
+        (error(step_s) / error(step_s / 2.0)).log2()
+    }
+    for step_s in [4e-3, 2e-3] {
+        let p = order(&Euler, step_s);
+        assert!((p - 1.0).abs() < 0.05, "Euler {p}");
+    }
+    for step_s in [4e-2, 2e-2] {
+        let p = order(&Rk4, step_s);
+        assert!((p - 4.0).abs() < 0.3, "Runge-Kutta {p}");
+    }
+}
+
+/// Single precision on the loop step: within 1e-4 of the loop's peak.
+#[test]
+fn single_precision_follows_double() {
+    for run in runs() {
+        let double = run.friction::<f64>(&Rk4, LOOP_STEP_S);
+        let single = run.friction::<f32>(&Rk4, LOOP_STEP_S);
+        let peak = double.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        for (a, b) in double.iter().zip(single) {
+            let error = (a - b).abs() / peak;
+            assert!(
+                error < 1e-4,
+                "{:?} {}: {error:e}",
+                run.clock,
+                run.omega_rad_s
+            );
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Steady states: the Stribeck curve against an independent solution, its limits, and the
+//! printed transition eccentricities.
+
+mod common;
+
+use common::drive::drive;
+use common::table::rows;
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::Law;
+use jbf_core::stepper::Rk4;
+use jbf_core::transition::transition_eccentricity;
+use jbf_core::{Bearing, Clock};
+
+/// Tables 4.2 to 4.5: number, load in N, parameters, eps_tr as printed.
+const TABLES: [(f64, f64, Parameters<f64>, f64); 4] = [
+    (4.2, 104.0, Parameters::TABLE_4_2, 0.9727),
+    (4.3, 83.5, Parameters::TABLE_4_3, 0.9718),
+    (4.4, 104.0, Parameters::TABLE_4_4, 0.9747),
+    (4.5, 83.5, Parameters::TABLE_4_5, 0.9718),
+];
+
+fn law(table: f64) -> Journal<f64> {
+    let (_, load_n, p, _) = TABLES.into_iter().find(|t| t.0 == table).expect("a table");
+    Journal::new(&Bearing::THESIS, load_n, &p, Clock::Journal).expect("a printed table")
+}
+
+#[test]
+fn stribeck_curves_of_the_four_tables() {
+    let points = rows::<5>(include_str!("data/steady.csv"));
+    assert_eq!(points.len(), 44);
+    for [table, speed, eps, phi, f] in points {
+        let got = law(table).steady(speed).expect("a speed");
+        assert!(
+            (got.eps - eps).abs() < 1e-9,
+            "table {table}, {speed} m/s: {got:?}"
+        );
+        assert!(
+            (got.phi_rad - phi).abs() < 1e-9,
+            "table {table}, {speed} m/s: {got:?}"
+        );
+        assert!(
+            (got.coefficient - f).abs() < 1e-9,
+            "table {table}, {speed} m/s: {got:?}"
+        );
+        let back = law(table).steady(-speed).expect("a speed");
+        assert_eq!(back.coefficient, -got.coefficient);
+        assert_eq!(back.eps, got.eps);
+    }
+}
+
+/// As the speed goes to zero the asperities carry the whole load: f -> f_m, whatever K0. What
+/// the film still carries is of the order of U, so f_m - f falls with U.
+#[test]
+fn friction_at_a_creep_is_f_m() {
+    for (table, ..) in TABLES {
+        let left = |speed| 0.26 - law(table).steady(speed).expect("a speed").coefficient;
+        assert!(left(1e-12).abs() < 1e-7, "table {table}: {}", left(1e-12));
+        assert!(
+            left(1e-8) < left(1e-6) && left(1e-6) < left(1e-4),
+            "table {table}"
+        );
+    }
+}
+
+#[test]
+fn a_long_run_settles_on_the_steady_state() {
+    for (table, load_n, ..) in TABLES {
+        for speed in [0.005, 0.02, 0.0601, 0.127] {
+            let law = law(table);
+            let mut state = law.start(load_n);
+            drive(&law, &Rk4, &mut state, [0.0, 60.0], 0.01, |_| speed);
+            let steady = law.steady(speed).expect("a speed");
+            let f = law.friction(&state, speed).coefficient(1.0);
+            assert!(
+                (state.eps() - steady.eps).abs() < 1e-10,
+                "table {table}, {speed} m/s"
+            );
+            assert!(
+                (f - steady.coefficient).abs() < 1e-9,
+                "table {table}, {speed} m/s: {f}"
+            );
+        }
+    }
+}
+
+/// Three of the four printed values are (3.20) cut after the fourth digit; Table 4.2 prints
+/// 0.9727 where (3.20) gives 0.97235 - a slip of the thesis, which
+/// [`Journal::with_eps_tr`] reproduces.
+#[test]
+fn transition_eccentricities_as_printed() {
+    for (table, load_n, p, printed) in TABLES {
+        let load_number: f64 = Bearing::THESIS.load_number(load_n, p.u_tr_m_s);
+        let eps_tr: f64 = transition_eccentricity(load_number);
+        assert_eq!(law(table).nominal().eps_tr, eps_tr);
+        if table == 4.2 {
+            assert!((eps_tr - 0.97235).abs() < 1e-5, "{eps_tr}");
+            let as_printed = law(table).with_eps_tr(printed).expect("inside the bearing");
+            assert_eq!(as_printed.start(load_n).eps_tr(), printed);
+        } else {
+            assert_eq!((eps_tr * 1e4).floor() / 1e4, printed, "table {table}");
+        }
+    }
+}
+
+/// A given eps_tr belongs to the constructor's load, and comes back with it.
+#[test]
+fn a_given_eps_tr_survives_a_change_of_load() {
+    let law = law(4.2).with_eps_tr(0.9727).expect("inside the bearing");
+    let mut state = law.start(104.0);
+    law.set_load(&mut state, 50.0);
+    assert_ne!(state.eps_tr(), 0.9727);
+    law.set_load(&mut state, 104.0);
+    assert_eq!(state.eps_tr(), 0.9727);
+}
+
+#[test]
+fn rest_has_no_single_friction() {
+    let error = law(4.2).steady(0.0).expect_err("set-valued");
+    assert_eq!(
+        error.to_string(),
+        "velocity_m_s = 0 must be finite and not zero"
+    );
+}

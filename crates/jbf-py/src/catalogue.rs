@@ -1,0 +1,55 @@
+//! The catalogue of laws and effects, as dictionaries.
+
+use jbf_core::effect::{Parameter, CATALOGUE};
+use jbf_core::law::journal;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, PyList>> {
+    let out = PyList::empty(py);
+    for p in list {
+        let d = PyDict::new(py);
+        d.set_item("name", p.name)?;
+        d.set_item("unit", p.unit)?;
+        d.set_item("meaning", p.meaning)?;
+        d.set_item("lower", p.lower)?;
+        d.set_item("upper", p.upper)?;
+        d.set_item("null", p.null)?;
+        d.set_item("starts", p.starts.to_vec())?;
+        d.set_item("log", p.log)?;
+        d.set_item("period", p.period)?;
+        out.append(d)?;
+    }
+    Ok(out)
+}
+
+/// Every effect of the catalogue, in the order of the signal chain.
+#[pyfunction]
+pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let out = PyList::empty(py);
+    for info in CATALOGUE {
+        let d = PyDict::new(py);
+        d.set_item("name", info.name)?;
+        d.set_item("stage", info.stage.to_string())?;
+        d.set_item("summary", info.summary)?;
+        d.set_item("equation", info.equation)?;
+        d.set_item("source", info.source)?;
+        d.set_item("limits", info.limits)?;
+        d.set_item("needs_angle", info.needs_angle)?;
+        d.set_item("parameters", parameters(py, info.parameters)?)?;
+        out.append(d)?;
+    }
+    Ok(out)
+}
+
+/// Every base law with its parameters.
+#[pyfunction]
+pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let out = PyList::empty(py);
+    let d = PyDict::new(py);
+    d.set_item("name", "journal")?;
+    d.set_item("summary", journal::SUMMARY)?;
+    d.set_item("parameters", parameters(py, journal::PARAMETERS)?)?;
+    out.append(d)?;
+    Ok(out)
+}

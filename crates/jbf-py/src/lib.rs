@@ -1,0 +1,24 @@
+//! Python's door to `jbf-core`: arrays in, arrays out, the interpreter lock released.
+//!
+//! One file per Python type; no physics here.
+
+mod catalogue;
+mod chain;
+mod curves;
+mod motion;
+
+use pyo3::prelude::*;
+
+/// The extension module `jbf._core`.
+#[pymodule]
+fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add_class::<motion::Motion>()?;
+    m.add_class::<chain::Chain>()?;
+    m.add_function(wrap_pyfunction!(catalogue::effects, m)?)?;
+    m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::steady_state, m)?)?;
+    Ok(())
+}

@@ -1,0 +1,83 @@
+//! The imposed motion of one run, checked once and kept on the Rust side.
+
+use jbf_core::run::Record;
+use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The imposed motion of one run: five arrays of one length.
+#[pyclass(frozen, module = "jbf._core")]
+pub struct Motion {
+    time_s: Vec<f64>,
+    velocity_m_s: Vec<f64>,
+    acceleration_m_s2: Vec<f64>,
+    angle_rad: Vec<f64>,
+    load_n: Vec<f64>,
+}
+
+impl Motion {
+    pub fn record(&self) -> Record<'_> {
+        Record {
+            time_s: &self.time_s,
+            velocity_m_s: &self.velocity_m_s,
+            acceleration_m_s2: &self.acceleration_m_s2,
+            angle_rad: &self.angle_rad,
+            load_n: &self.load_n,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+}
+
+#[pymethods]
+impl Motion {
+    #[new]
+    #[pyo3(signature = (time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n))]
+    fn new(
+        time_s: PyReadonlyArray1<'_, f64>,
+        velocity_m_s: PyReadonlyArray1<'_, f64>,
+        acceleration_m_s2: PyReadonlyArray1<'_, f64>,
+        angle_rad: PyReadonlyArray1<'_, f64>,
+        load_n: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let n = time_s.len();
+        let column = |name: &str, a: &PyReadonlyArray1<'_, f64>| -> PyResult<Vec<f64>> {
+            if a.len() != n {
+                return Err(PyValueError::new_err(format!(
+                    "{name} has {} values, time_s has {n}",
+                    a.len()
+                )));
+            }
+            let values: Vec<f64> = a.as_array().iter().copied().collect();
+            if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+                return Err(PyValueError::new_err(format!("{name}[{i}] is not finite")));
+            }
+            Ok(values)
+        };
+        let motion = Self {
+            time_s: column("time_s", &time_s)?,
+            velocity_m_s: column("velocity_m_s", &velocity_m_s)?,
+            acceleration_m_s2: column("acceleration_m_s2", &acceleration_m_s2)?,
+            angle_rad: column("angle_rad", &angle_rad)?,
+            load_n: column("load_n", &load_n)?,
+        };
+        if let Some(i) = motion.time_s.windows(2).position(|w| w[1] <= w[0]) {
+            return Err(PyValueError::new_err(format!(
+                "time_s[{}] does not rise",
+                i + 1
+            )));
+        }
+        if let Some(i) = motion.load_n.iter().position(|&l| l <= 0.0) {
+            return Err(PyValueError::new_err(format!(
+                "load_n[{i}] is not positive"
+            )));
+        }
+        Ok(motion)
+    }
+
+    fn __len__(&self) -> usize {
+        self.len()
+    }
+}

@@ -1,0 +1,90 @@
+"""Types of the extension module."""
+
+from collections.abc import Sequence
+from typing import TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+__version__: str
+
+class ParameterPage(TypedDict):
+    name: str
+    unit: str
+    meaning: str
+    lower: float
+    upper: float
+    null: float | None
+    starts: list[float]
+    log: bool
+    period: float | None
+
+class EffectPage(TypedDict):
+    name: str
+    stage: str
+    summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_angle: bool
+    parameters: list[ParameterPage]
+
+class LawPage(TypedDict):
+    name: str
+    summary: str
+    parameters: list[ParameterPage]
+
+class Motion:
+    def __init__(
+        self,
+        time_s: Array,
+        velocity_m_s: Array,
+        acceleration_m_s2: Array,
+        angle_rad: Array,
+        load_n: Array,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+
+class Chain:
+    def __init__(
+        self,
+        *,
+        radius_m: float,
+        length_m: float,
+        clearance_m: float,
+        mass_kg: float,
+        count: int,
+        viscosity_pa_s: float,
+        load_n: float,
+        clock: str,
+        effects: Sequence[str],
+        max_step_s: float,
+    ) -> None: ...
+    @property
+    def parameter_names(self) -> list[str]: ...
+    def predict(self, parameters: Array, motions: Sequence[Motion]) -> list[Array]: ...
+    def jacobian(
+        self, parameters: Array, motions: Sequence[Motion], which: Sequence[int]
+    ) -> list[tuple[Array, Array]]: ...
+
+def effects() -> list[EffectPage]: ...
+def laws() -> list[LawPage]: ...
+def film_integrals(eps: float) -> tuple[float, float, float]: ...
+def transition_eccentricity(load_number: float) -> float: ...
+def steady_state(
+    velocity_m_s: Array,
+    *,
+    f_m: float,
+    u_tr_m_s: float,
+    k0: float,
+    gamma: float,
+    radius_m: float,
+    length_m: float,
+    clearance_m: float,
+    mass_kg: float,
+    count: int,
+    viscosity_pa_s: float,
+    load_n: float,
+) -> tuple[Array, Array, Array]: ...

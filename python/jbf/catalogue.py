@@ -1,0 +1,149 @@
+"""Laws and effects as the core lists them: names, forms, bounds, starting values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from jbf import _core
+from jbf.errors import InputError, did_you_mean
+from jbf.model_file import Vocabulary
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a law or an effect; `name` carries the unit."""
+
+    name: str
+    unit: str
+    meaning: str
+    lower: float
+    upper: float
+    null: float | None
+    starts: tuple[float, ...]
+    log: bool
+    period: float | None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """The page of one effect."""
+
+    name: str
+    stage: str
+    summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_angle: bool
+    parameters: tuple[Parameter, ...]
+
+
+@dataclass(frozen=True)
+class Law:
+    """A base law and its parameters."""
+
+    name: str
+    summary: str
+    parameters: tuple[Parameter, ...]
+
+
+def _parameter(page: _core.ParameterPage) -> Parameter:
+    fields = dict(page)
+    fields["starts"] = tuple(page["starts"])
+    return Parameter(**fields)  # type: ignore[arg-type]
+
+
+@cache
+def effects() -> dict[str, Effect]:
+    """Every effect by name, in the order of the signal chain."""
+    pages = {}
+    for page in _core.effects():
+        fields = dict(page)
+        fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
+        pages[page["name"]] = Effect(**fields)  # type: ignore[arg-type]
+    return pages
+
+
+@cache
+def laws() -> dict[str, Law]:
+    """Every base law by name."""
+    return {
+        page["name"]: Law(
+            page["name"], page["summary"], tuple(_parameter(p) for p in page["parameters"])
+        )
+        for page in _core.laws()
+    }
+
+
+def find_effect(name: str) -> Effect:
+    """The effect of that name.
+
+    Raises
+    ------
+    InputError
+        Names the unknown effect and the nearest known one.
+    """
+    known = effects()
+    if name not in known:
+        raise InputError(
+            problem=f'there is no effect "{name}"',
+            mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
+        )
+    return known[name]
+
+
+def find_law(name: str) -> Law:
+    """The law of that name; an InputError names an unknown one."""
+    known = laws()
+    if name not in known:
+        raise InputError(problem=f'there is no law "{name}"', mend=did_you_mean(name, known))
+    return known[name]
+
+
+def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
+    """The effects in the order of the signal chain, each once."""
+    chosen = {find_effect(name).name for name in names}
+    return tuple(name for name in effects() if name in chosen)
+
+
+def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
+    """Dotted name to parameter: the law's first, then each effect's."""
+    found = {p.name: p for p in find_law(law).parameters}
+    for name in chosen:
+        found |= {f"{name}.{p.name}": p for p in find_effect(name).parameters}
+    return found
+
+
+def find_parameter(name: str, known: Mapping[str, Parameter]) -> str:
+    """The full dotted name of a parameter given with or without its unit.
+
+    `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.
+    """
+    if name in known:
+        return name
+    longer = [full for full in known if full.startswith(f"{name}_")]
+    if len(longer) == 1:
+        return longer[0]
+    raise InputError(problem=f'there is no parameter "{name}"', mend=did_you_mean(name, known))
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """What a model file may say."""
+
+    def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
+        return {
+            p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters
+        }
+
+    return Vocabulary(
+        laws=tuple(laws()),
+        effects={e.name: bounds(e.parameters) for e in effects().values()},
+        law_parameters={x.name: bounds(x.parameters) for x in laws().values()},
+    )
+
+
+def _null(parameter: Parameter) -> float:
+    return parameter.lower if parameter.null is None else parameter.null

@@ -1,0 +1,85 @@
+"""Prediction of runs that had no part in the fit: each run is left out once."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.catalogue import parameters_of
+from jbf.fitting import Problem, Solution
+
+Array = npt.NDArray[np.float64]
+
+EVALUATIONS = 8
+"""A refit that starts at the whole campaign's solution is close."""
+
+
+def holdout_rms(problem: Problem, solution: Solution) -> float:
+    """RMS over trusted samples of runs left out of the fit one at a time, N.
+
+    A parameter that the remaining runs say nothing of goes back to its null (or its starting
+    value): what only the left-out run could know must not leak into its prediction. With one run
+    there is nothing to leave out, and the halves of the run take turns.
+    """
+    campaign = problem.campaign
+    count = len(campaign.prepared)
+    if count == 1:
+        return _halves_rms(problem, solution)
+    total, samples = 0.0, 0
+    for i in range(count):
+        rest = campaign.only([k for k in range(count) if k != i])
+        part = Problem(rest, problem.law, problem.clock, problem.effects)
+        start = _without_leak(part, solution, i)
+        values, _, _ = part.search(start, solution.noise, EVALUATIONS)
+        own = Problem(campaign.only([i]), problem.law, problem.clock, problem.effects)
+        residual, p = own.residuals(values)[0], campaign.prepared[i]
+        total += float(np.sum(residual[p.trusted] ** 2))
+        samples += int(p.trusted.sum())
+    return float(np.sqrt(total / max(samples, 1)))
+
+
+def _without_leak(part: Problem, solution: Solution, left_out: int) -> Array:
+    """The whole solution, less what only the left-out run knows."""
+    values = solution.values.copy()
+    size = np.zeros(len(values))
+    for k, (jacobian, p) in enumerate(
+        zip(solution.jacobian, _others(solution, part, left_out), strict=True)
+    ):
+        if p is not None and k != left_out:
+            size += np.sum(jacobian[p] ** 2, axis=0)
+    whole = sum(np.sum(j**2, axis=0) for j in solution.jacobian)
+    pages = parameters_of(part.law, part.effects)
+    for i, page in enumerate(pages.values()):
+        if size[i] < 1e-4 * whole[i]:
+            null = page.null if page.null is not None and np.isfinite(page.null) else None
+            values[i] = page.starts[0] if null is None else null
+    return values
+
+
+def _others(
+    solution: Solution, part: Problem, left_out: int
+) -> list[npt.NDArray[np.bool_] | None]:
+    masks: list[npt.NDArray[np.bool_] | None] = [p.trusted for p in part.campaign.prepared]
+    masks.insert(left_out, None)
+    return masks
+
+
+def _halves_rms(problem: Problem, solution: Solution) -> float:
+    """Each half of a single run predicted from a fit to the other."""
+    from dataclasses import replace
+
+    from jbf.campaign import Campaign
+
+    only = problem.campaign.prepared[0]
+    first = np.arange(len(only.run)) < len(only.run) // 2
+    total, samples = 0.0, 0
+    for half in (first, ~first):
+        masked = replace(only, trusted=only.trusted & half)
+        part = Problem(
+            Campaign(problem.campaign.rig, (masked,)), problem.law, problem.clock, problem.effects
+        )
+        values, _, _ = part.search(solution.values, solution.noise, EVALUATIONS)
+        seen = only.trusted & ~half
+        total += float(np.sum(problem.residuals(values)[0][seen] ** 2))
+        samples += int(seen.sum())
+    return float(np.sqrt(total / max(samples, 1)))

@@ -1,0 +1,163 @@
+"""What a diagnosis says: verdict, ledger of steps, what remains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from jbf.comparison import Comparison, Failure
+from jbf.fitting import Fit
+from jbf.model import Model
+from jbf.record import PathLike
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One candidate at one step of the ledger.
+
+    Attributes
+    ----------
+    effect
+        Name of the candidate.
+    rms_n
+        Fit RMS with it, N.
+    evidence
+        Twice the gain in log likelihood, less what chance and the candidate's parameters would
+        gain; above zero it is better than nothing.
+    outcome
+        `added`, `ties`, `rejected`, or `useless` (no better than chance).
+    reason
+        Why, in words.
+    """
+
+    effect: str
+    rms_n: float
+    evidence: float
+    outcome: str
+    reason: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class Step:
+    """The model after one addition (the first: the bare law).
+
+    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs that each had no part
+    in the fit that predicts them; `noise_n` the noise floor; all N. `trials` are the candidates
+    that competed for the next place.
+    """
+
+    effects: tuple[str, ...]
+    rms_n: float
+    holdout_rms_n: float
+    noise_n: float
+    trials: tuple[Trial, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effects": list(self.effects),
+            "rms_n": self.rms_n,
+            "holdout_rms_n": self.holdout_rms_n,
+            "noise_n": self.noise_n,
+            "tried": [t.to_dict() for t in self.trials],
+        }
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """Structure that nothing in the catalogue explains."""
+
+    axis: str
+    where: str
+    share: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer to "which effect is missing?".
+
+    Attributes
+    ----------
+    verdict
+        `adequate`, `missing`, `ambiguous` or `unexplained`.
+    effects
+        What was added, in the order found.
+    alternatives
+        For each added effect, those that would fit as well in its place.
+    steps
+        The ledger, from the bare law on.
+    failures
+        Where the bare law failed, strongest first.
+    unexplained
+        Structure that remains.
+    next_experiment
+        A sentence, where another run would decide.
+    fit
+        The final fit; `model` is its model.
+    before, after
+        Comparison of the bare law and of the final model with the runs.
+    """
+
+    verdict: str
+    effects: tuple[str, ...]
+    alternatives: dict[str, tuple[str, ...]]
+    steps: tuple[Step, ...]
+    failures: tuple[Failure, ...]
+    unexplained: tuple[Remainder, ...]
+    next_experiment: str | None
+    fit: Fit
+    before: Comparison
+    after: Comparison
+    elapsed_s: float
+
+    @property
+    def model(self) -> Model:
+        """The final model."""
+        return self.fit.model
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON, as the file contract has it."""
+        return {
+            "verdict": self.verdict,
+            "effects": list(self.effects),
+            "alternatives": {k: list(v) for k, v in self.alternatives.items()},
+            "steps": [s.to_dict() for s in self.steps],
+            "failures": [f.to_dict() for f in self.failures],
+            "unexplained": [r.to_dict() for r in self.unexplained],
+            "next_experiment": self.next_experiment,
+            "parameters": {
+                name: {"value": p.value, "stderr": p.stderr, "note": p.note}
+                for name, p in self.fit.parameters.items()
+            },
+            "elapsed_s": self.elapsed_s,
+        }
+
+    def summary(self) -> str:
+        """The story on a page of text."""
+        from jbf.text import diagnosis_report
+
+        return diagnosis_report(self)
+
+    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+        """The error falling step by step, and friction against speed; matplotlib axes."""
+        from jbf.plots import plot_diagnosis
+
+        return plot_diagnosis(self, axes)
+
+    def report(self, path: PathLike) -> None:
+        """Write a self-contained HTML page with pictures."""
+        from jbf.report import write_diagnosis
+
+        write_diagnosis(self, path)

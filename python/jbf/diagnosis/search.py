@@ -1,0 +1,292 @@
+"""The search for what is missing: try every effect, add what the data ask for, repeat, stop.
+
+At each step every candidate is fitted beside what the model already holds. Its evidence is
+twice the gain in log likelihood (of innovations, so that coloured noise buys nothing) less what
+its parameters and the number of candidates tried would gain by chance. The leader is added if
+runs that it was not fitted to agree. Then the other effects are questioned again: one that
+is no longer needed goes, one that another would replace better is exchanged.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.campaign import Campaign
+from jbf.catalogue import effects as catalogue
+from jbf.comparison import compare_prepared
+from jbf.diagnosis.experiment import propose
+from jbf.diagnosis.holdout import holdout_rms
+from jbf.diagnosis.remainder import find_remainder
+from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
+from jbf.fitting import Problem, Solution, finish, root_mean_square
+from jbf.record import Run
+from jbf.rig import Rig
+
+Array = npt.NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+MARGIN = 20.0
+"""Evidence that even a free candidate must bring: the prior odds against any one effect, and
+room for noise that is not quite as described."""
+TIE = 8.0
+"""Candidates closer in evidence than this fit equally well; less than one parameter costs."""
+MOST_EFFECTS = 5
+"""A record that asks for more effects than this is telling something else."""
+LEAST_EXPLAINED = 0.8
+"""Where structure remains, effects that explain less of the excess than this are stand-ins for
+what is really there, and are not named."""
+
+
+@dataclass
+class Search:
+    """A campaign under a law, and every fit made so far."""
+
+    campaign: Campaign
+    law: str
+    clock: str
+    progress: Progress | None = None
+    solved: dict[frozenset[str], Solution] = field(default_factory=dict)
+    held_out: dict[frozenset[str], float] = field(default_factory=dict)
+
+    @property
+    def candidates(self) -> list[str]:
+        """Effects that these records could show."""
+        return [
+            e.name for e in catalogue().values() if self.campaign.has_angle or not e.needs_angle
+        ]
+
+    def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
+        """The fitting problem of some effects."""
+        return Problem(self.campaign, self.law, self.clock, tuple(effects))
+
+    def solve(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
+        """Fit these effects, starting near a smaller model's solution where there is one."""
+        if effects not in self.solved:
+            problem = self.problem(effects)
+            seeds: list[Mapping[str, float]] = [{}]
+            if near is not None:
+                names = self.problem(near.effects).names
+                law = {n: v for n, v in zip(names, near.values, strict=True)}
+                seeds = [law, {n: v for n, v in law.items() if "." in n}]
+            self.solved[effects] = problem.solve(seeds)
+        return self.solved[effects]
+
+    def price(self, parameters: int) -> float:
+        """What so many parameters of the best of all candidates gain by chance."""
+        tried = 2.0 * np.log(max(len(self.candidates), 1))
+        return MARGIN + float(parameters * np.log(self.campaign.samples) + tried)
+
+    def evidence(self, richer: Solution, simpler: Solution) -> float:
+        """Evidence for the richer of two models."""
+        return simpler.cost - richer.cost - self.price(richer.free - simpler.free)
+
+    def hold_out(self, effects: frozenset[str]) -> float:
+        """RMS over runs left out of the fit one at a time, N."""
+        if effects not in self.held_out:
+            self.held_out[effects] = holdout_rms(self.problem(effects), self.solve(effects))
+        return self.held_out[effects]
+
+    def say(self, message: str, done: int, total: int) -> None:
+        """Report progress."""
+        if self.progress is not None:
+            self.progress(message, done, total)
+
+
+@dataclass
+class Round:
+    """One round of trials beside a model."""
+
+    trials: list[Trial]
+    leader: str | None
+    ties: tuple[str, ...]
+
+
+def try_all(search: Search, present: tuple[str, ...]) -> Round:
+    """Fit every candidate beside the effects present, and say which should be added."""
+    base = search.solve(frozenset(present))
+    rivals = [c for c in search.candidates if c not in present]
+    found: list[tuple[float, str, Solution]] = []
+    for i, name in enumerate(rivals):
+        search.say(f"trying {name}", i, len(rivals))
+        solution = search.solve(frozenset((*present, name)), base)
+        found.append((search.evidence(solution, base), name, solution))
+    found.sort(key=lambda t: -t[0])
+    leader, ties, trials = None, [], []
+    before = search.hold_out(frozenset(present)) if found and found[0][0] > 0 else np.nan
+    for evidence, name, solution in found:
+        rms = root_mean_square(solution.residuals, search.campaign)
+        outcome, reason = "useless", "gains no more than chance would"
+        if evidence > 0:
+            after = search.hold_out(frozenset((*present, name)))
+            if leader is None and after >= before:
+                outcome = "rejected"
+                reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+            elif leader is None:
+                leader, best = name, evidence
+                outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
+            elif evidence > best - TIE:
+                ties.append(name)
+                outcome, reason = "ties", f"fits as well as {leader}"
+            else:
+                outcome = "rejected"
+                reason = f"{leader} leads by {best - evidence:.0f} in evidence"
+        trials.append(Trial(name, rms, float(evidence), outcome, reason))
+    return Round(trials, leader, tuple(ties))
+
+
+def question(search: Search, present: tuple[str, ...]) -> tuple[str, ...]:
+    """Take out effects that are no longer needed; exchange those that another replaces better."""
+    current = present
+    for name in present:
+        if len(current) < 2 or name not in current:
+            continue
+        rest = tuple(e for e in current if e != name)
+        simpler = search.solve(frozenset(rest))
+        if search.evidence(search.solve(frozenset(current)), simpler) < 0:
+            current = rest
+            continue
+        whole = search.solve(frozenset(current))
+        best, gain = name, TIE
+        for other in search.candidates:
+            if other in current:
+                continue
+            swapped = search.solve(frozenset((*rest, other)), simpler)
+            better = (whole.cost + search.price(whole.free)) - (
+                swapped.cost + search.price(swapped.free)
+            )
+            if better > gain:
+                best, gain = other, better
+        if best != name:
+            current = tuple(best if e == name else e for e in current)
+    return current
+
+
+def alternatives(search: Search, present: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    """For each effect, the candidates that would fit as well in its place."""
+    whole = search.solve(frozenset(present))
+    found: dict[str, tuple[str, ...]] = {}
+    for name in present:
+        rest = tuple(e for e in present if e != name)
+        simpler = search.solve(frozenset(rest))
+        equal = []
+        for other in search.candidates:
+            if other in present:
+                continue
+            swapped = search.solve(frozenset((*rest, other)), simpler)
+            loss = (swapped.cost + search.price(swapped.free)) - (
+                whole.cost + search.price(whole.free)
+            )
+            if loss < TIE:
+                equal.append(other)
+        found[name] = tuple(equal)
+    return found
+
+
+def diagnose(
+    rig: Rig,
+    runs: Sequence[Run],
+    *,
+    law: str = "journal",
+    clock: str = "journal",
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find which effect of the catalogue a law lacks to explain the runs; add it; repeat.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load.
+    runs
+        Recorded runs with friction; several different motions tell effects apart.
+    law, clock
+        Base law and its clock.
+    progress
+        Called with a message, and how many of how many trials of the round are done.
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, effects, ledger, alternatives, what remains, and the final model.
+
+    Raises
+    ------
+    InputError
+        A run lacks friction, or nothing moves in it.
+    """
+    begun = time.monotonic()
+    search = Search(Campaign.prepare(rig, runs), law, clock, progress)
+    campaign = search.campaign
+    bare = finish(search.problem(()), search.solve(frozenset()))
+    before = compare_prepared(bare.model, campaign)
+    noise = before.noise_n
+
+    present: tuple[str, ...] = ()
+    steps: list[Step] = []
+
+    def step(effects: tuple[str, ...], trials: Sequence[Trial]) -> Step:
+        solution = search.solve(frozenset(effects))
+        return Step(
+            effects,
+            root_mean_square(solution.residuals, campaign),
+            search.hold_out(frozenset(effects)),
+            noise,
+            tuple(trials),
+        )
+
+    visited = {frozenset[str]()}
+    while True:
+        round_ = try_all(search, present)
+        steps.append(step(present, round_.trials))
+        if round_.leader is None or len(present) >= MOST_EFFECTS:
+            break
+        grown = question(search, (*present, round_.leader))
+        if frozenset(grown) in visited:
+            break
+        visited.add(frozenset(grown))
+        present = grown
+
+    remains = _remainder(search, present)
+    if remains and present and _explained(search, present, noise) < LEAST_EXPLAINED:
+        present, steps = (), steps[:1]
+        remains = _remainder(search, present)
+    equal = alternatives(search, present)
+    fit = finish(search.problem(present), search.solve(frozenset(present)))
+    after = compare_prepared(fit.model, campaign)
+    tied = {name: others for name, others in equal.items() if others}
+    if remains:
+        verdict = "unexplained"
+    elif tied:
+        verdict = "ambiguous"
+    else:
+        verdict = "missing" if present else "adequate"
+    proposal = propose(search, present, tied, noise) if tied else None
+    return Diagnosis(
+        verdict=verdict,
+        effects=present,
+        alternatives=equal,
+        steps=tuple(steps),
+        failures=before.failures,
+        unexplained=remains,
+        next_experiment=proposal,
+        fit=fit,
+        before=before,
+        after=after,
+        elapsed_s=time.monotonic() - begun,
+    )
+
+
+def _remainder(search: Search, present: tuple[str, ...]) -> tuple[Remainder, ...]:
+    problem = search.problem(present)
+    return find_remainder(problem, search.solve(frozenset(present)))
+
+
+def _explained(search: Search, present: tuple[str, ...], noise_n: float) -> float:
+    """Share of the bare law's excess over the noise that the effects took away."""
+    bare = root_mean_square(search.solve(frozenset()).residuals, search.campaign) ** 2
+    now = root_mean_square(search.solve(frozenset(present)).residuals, search.campaign) ** 2
+    return (bare - now) / max(bare - noise_n**2, 1e-300)

@@ -1,0 +1,209 @@
+"""Errors a user can act on, and the two file accesses that raise them.
+
+Every bad input ends as one line that names the file, the place in it, and the mend. Reading and
+writing text live here because each way they fail is such a line.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterable
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+_LONGEST_QUOTE = 40
+
+
+class JbfError(Exception):
+    """Base of every error that jbf raises on purpose."""
+
+
+class InputError(JbfError, ValueError):
+    """Bad input; ``str(error)`` is one line.
+
+    Parameters
+    ----------
+    problem : str
+        What is wrong, as a clause that follows the place: ``"abc" is not a number``.
+    mend : str, optional
+        What to do about it, in the imperative.
+    file : path, optional
+        The file, or the name of the object when there is no file.
+    row : int, optional
+        Line in the file as an editor counts, the header being line 1.
+    column, key : str, optional
+        The CSV column, or the dotted TOML key.
+
+    Examples
+    --------
+    >>> print(InputError(file="a.csv", row=17, column="friction_n",
+    ...                  problem='"abc" is not a number', mend="correct the cell"))
+    a.csv, row 17, column friction_n: "abc" is not a number; correct the cell
+    """
+
+    def __init__(
+        self,
+        *,
+        problem: str,
+        mend: str | None = None,
+        file: str | os.PathLike[str] | None = None,
+        row: int | None = None,
+        column: str | None = None,
+        key: str | None = None,
+    ) -> None:
+        self.file = None if file is None else os.fspath(file)
+        self.row = row
+        self.column = column
+        self.key = key
+        self.problem = problem
+        self.mend = mend
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        place = [
+            self.file,
+            None if self.row is None else f"row {self.row}",
+            None if self.column is None else f"column {self.column}",
+            None if self.key is None else f"key {self.key}",
+        ]
+        head = ", ".join(part for part in place if part is not None)
+        line = f"{head}: {self.problem}" if head else self.problem
+        if self.mend:
+            line = f"{line}; {self.mend}"
+        # A file name or a quoted cell may hold a line break; the promise is one line.
+        return " ".join(line.split())
+
+    def within(
+        self, *, file: str | os.PathLike[str] | None = None, key_prefix: str = ""
+    ) -> InputError:
+        """The same error with the place told by a caller who knows more of it.
+
+        Parameters
+        ----------
+        file : path, optional
+            Used when this error names no file yet.
+        key_prefix : str
+            Put before the key, for example ``"bearing."``.
+        """
+        fields = self._fields()
+        fields["file"] = self.file if self.file is not None else file
+        fields["key"] = key_prefix + self.key if self.key is not None else None
+        return InputError(**fields)
+
+    def _fields(self) -> dict[str, Any]:
+        names = ("problem", "mend", "file", "row", "column", "key")
+        return {name: getattr(self, name) for name in names}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The default would call the class with a positional argument, so an error raised in a
+        # worker process could not travel back.
+        return partial(type(self), **self._fields()), ()
+
+
+def quoted(text: object) -> str:
+    """Foreign text in double quotes: unprintable characters escaped, long text cut."""
+    shown = str(text)
+    if not shown.isprintable():
+        shown = shown.encode("unicode_escape").decode("ascii")
+    if len(shown) > _LONGEST_QUOTE:
+        shown = shown[: _LONGEST_QUOTE - 3] + "..."
+    return f'"{shown}"'
+
+
+def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The known word most like `word` whatever its case, or None when none is like it."""
+    by_lower = {name.lower(): name for name in known}
+    found = get_close_matches(word.lower(), list(by_lower), n=1, cutoff=cutoff)
+    return by_lower[found[0]] if found else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """A mend for an unknown word: the nearest known one, else the list of them all."""
+    names = list(known)
+    guess = closest(word, names)
+    if guess is not None:
+        return f"did you mean {quoted(guess)}?"
+    return f"known: {', '.join(names)}" if names else "remove it"
+
+
+def _os_error(path: Path, error: OSError, doing: str) -> InputError:
+    if isinstance(error, FileNotFoundError):
+        try:
+            guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)
+        except OSError:
+            return InputError(
+                file=path, problem="its folder does not exist", mend="correct the path"
+            )
+        mend = f"did you mean {quoted(guess)}?" if guess else "correct the path"
+        return InputError(file=path, problem="the file does not exist", mend=mend)
+    if isinstance(error, IsADirectoryError):
+        return InputError(file=path, problem="is a folder", mend="name a file in it")
+    reason = (error.strerror or type(error).__name__).lower()
+    return InputError(
+        file=path,
+        problem=f"cannot be {doing} ({reason})",
+        mend="check the path and its permissions",
+    )
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """The text of a UTF-8 file, without a byte order mark.
+
+    Raises
+    ------
+    InputError
+        The file is missing, a folder, unreadable, binary, or not UTF-8.
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise _os_error(path, error, "read") from None
+    except ValueError:  # a null character in the name itself
+        raise InputError(
+            file=quoted(path), problem="is not a file name", mend="correct it"
+        ) from None
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(file=path, problem="is UTF-16 text", mend="save it as UTF-8")
+    if b"\0" in data:
+        raise InputError(file=path, problem="is binary, not text", mend="name a text file")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            file=path,
+            row=error.object[: error.start].count(b"\n") + 1,
+            problem="is not UTF-8 text",
+            mend="save the file as UTF-8",
+        ) from None
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a UTF-8 file whole or not at all.
+
+    A reader sees the old file or the new one, never a part: the text goes to a temporary file
+    in the same folder, which then takes the name. A pipe or device is written to directly.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written; nothing is left behind.
+    """
+    path = Path(path)
+    data = text.encode("utf-8", errors="replace")
+    temporary: Path | None = None
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)
+            return
+        target = path.resolve()  # a link keeps pointing to its file
+        temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.tmp")
+        temporary.write_bytes(data)
+        os.replace(temporary, target)
+    except OSError as error:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        raise _os_error(path, error, "written") from None

@@ -1,0 +1,427 @@
+"""Fit a law and named effects to runs, with exact derivatives from the core."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize
+
+from jbf.campaign import Campaign
+from jbf.catalogue import Parameter, find_effect, find_parameter, in_chain_order, parameters_of
+from jbf.errors import InputError
+from jbf.model import Model, chain
+from jbf.model_file import ParameterValue
+from jbf.noise import WHITE, Noise, estimate_noise, innovation_cost
+from jbf.record import Run, require
+from jbf.rig import Rig
+
+Array = npt.NDArray[np.float64]
+
+MAX_EVALUATIONS = 60
+TRIAL_EVALUATIONS = 6
+"""Steps given to each starting point before the best goes on alone."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where a search ended: what the diagnosis works with.
+
+    Attributes
+    ----------
+    values
+        Parameter values, shape (k,).
+    residuals
+        Prediction minus record, N, one array a run.
+    jacobian
+        Derivative of the prediction with respect to each search variable, one (n, k) a run.
+    cost
+        `n log(mean square innovation)` over trusted samples.
+    """
+
+    effects: tuple[str, ...]
+    values: Array
+    residuals: list[Array]
+    jacobian: list[Array]
+    noise: Noise
+    cost: float
+    converged: bool
+    message: str
+
+    @property
+    def free(self) -> int:
+        """Number of parameters."""
+        return len(self.values)
+
+
+class Problem:
+    """A campaign, a law and effects: predictions and derivatives in the search's variables.
+
+    The search walks in the logarithm of parameters that are scales, so that a step is a
+    proportion and no step can change a sign.
+    """
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        law: str,
+        clock: str,
+        effects: Sequence[str],
+        fixed: Mapping[str, float] | None = None,
+    ) -> None:
+        self.campaign = campaign
+        self.law, self.clock = law, clock
+        self.effects = in_chain_order(effects)
+        self.chain = chain(campaign.rig, clock, self.effects)
+        self.parameters: dict[str, Parameter] = parameters_of(law, self.effects)
+        self.names = list(self.parameters)
+        self.fixed = dict(fixed or {})
+        self.open = [i for i, name in enumerate(self.names) if name not in self.fixed]
+        pages = list(self.parameters.values())
+        self.log = np.array([p.log for p in pages])
+        self.lower = np.array([p.lower for p in pages])
+        self.upper = np.array([p.upper for p in pages])
+
+    def encode(self, values: Array) -> Array:
+        """Parameter values to search variables."""
+        inside = np.clip(values, self.lower, self.upper)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.log, np.log(inside), inside)[self.open]
+
+    def decode(self, x: Array, base: Array) -> Array:
+        """Search variables to parameter values; fixed ones from `base`."""
+        values = base.copy()
+        log = self.log[self.open]
+        values[self.open] = np.where(log, np.exp(np.where(log, x, 0.0)), x)
+        return values
+
+    def predict(self, values: Array) -> list[Array]:
+        """Predictions, N, one array a run."""
+        return self.chain.predict(values, self.campaign.motions)
+
+    def residuals(self, values: Array) -> list[Array]:
+        """Prediction minus record, N."""
+        return [
+            f - p.friction_n
+            for f, p in zip(self.predict(values), self.campaign.prepared, strict=True)
+        ]
+
+    def square(self, values: Array) -> float:
+        """Sum of squares over trusted samples, N^2."""
+        return sum(
+            float(np.sum(r[p.trusted] ** 2))
+            for r, p in zip(self.residuals(values), self.campaign.prepared, strict=True)
+        )
+
+    def linearise(self, values: Array) -> tuple[list[Array], list[Array]]:
+        """Residuals and their derivatives with respect to the search variables."""
+        scale = np.where(self.log, values, 1.0)[self.open]
+        rows = self.chain.jacobian(values, self.campaign.motions, self.open)
+        residuals = [
+            f - p.friction_n for (f, _), p in zip(rows, self.campaign.prepared, strict=True)
+        ]
+        return residuals, [j * scale for _, j in rows]
+
+    def stacked(
+        self, residuals: list[Array], jacobian: list[Array], noise: Noise
+    ) -> tuple[Array, Array]:
+        """One residual vector and matrix of innovations over trusted samples."""
+        r, j = [], []
+        for res, jac, p in zip(residuals, jacobian, self.campaign.prepared, strict=True):
+            # An untrusted sample is a gap: a zero there drives nothing.
+            keep = p.trusted.astype(float)
+            r.append(noise.innovations(res * keep, p.step_s)[p.trusted])
+            j.append(noise.innovations(jac * keep[:, None], p.step_s)[p.trusted])
+        return np.concatenate(r), np.concatenate(j)
+
+    def innovation_cost(self, residuals: list[Array], noise: Noise) -> float:
+        """`n log(mean square innovation)` of residuals over trusted samples."""
+        prepared = self.campaign.prepared
+        masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
+        return innovation_cost(
+            noise, masked, [p.step_s for p in prepared], [p.trusted for p in prepared]
+        )
+
+    def estimate_noise(self, residuals: list[Array]) -> Noise:
+        """The noise description that fits these residuals."""
+        prepared = self.campaign.prepared
+        masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
+        return estimate_noise(
+            masked, [p.step_s for p in prepared], [p.trusted for p in prepared]
+        )
+
+    def search(self, start: Array, noise: Noise, evaluations: int) -> tuple[Array, bool, str]:
+        """Least squares on innovations from one start."""
+        memory: dict[bytes, tuple[Array, Array]] = {}
+
+        def evaluate(x: Array) -> tuple[Array, Array]:
+            key = x.tobytes()
+            if key not in memory:
+                memory.clear()
+                memory[key] = self.stacked(*self.linearise(self.decode(x, start)), noise)
+            return memory[key]
+
+        low, high = self.encode(self.lower), self.encode(self.upper)
+        x0 = self.encode(start)
+        margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
+        margin = np.minimum(margin, 0.25 * (high - low))
+        found = optimize.least_squares(
+            lambda x: evaluate(x)[0],
+            np.clip(x0, low + margin, high - margin),
+            jac=lambda x: evaluate(x)[1],
+            bounds=(low, high),
+            x_scale="jac",
+            xtol=1e-7,
+            ftol=1e-9,
+            gtol=1e-12,
+            max_nfev=evaluations,
+        )
+        return self.decode(found.x, start), bool(found.status > 0), str(found.message)
+
+    def starts(self, seed: Mapping[str, float]) -> list[Array]:
+        """Every combination of the catalogue's starting values for what `seed` lacks."""
+        choices = [
+            (seed[name],) if name in seed else page.starts
+            for name, page in self.parameters.items()
+        ]
+        return [np.array(values, dtype=float) for values in itertools.product(*choices)]
+
+    def solve(self, seeds: Sequence[Mapping[str, float]], keep: int = 2) -> Solution:
+        """Search from the best of all starting points.
+
+        Parameters
+        ----------
+        seeds
+            Known values by name; the catalogue's starting values fill each one up.
+        keep
+            How many of the starting points are followed.
+        """
+        starts = [s for seed in seeds for s in self.starts({**seed, **self.fixed})]
+        starts.sort(key=self.square)
+        tried = starts[:keep]
+        if len(tried) > 1:
+            short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in tried]
+            tried = [min(short, key=self.square)]
+        values, converged, message = self.search(tried[0], WHITE, MAX_EVALUATIONS)
+        noise = self.estimate_noise(self.residuals(values))
+        if noise.colour > 0.0:
+            values, converged, message = self.search(values, noise, MAX_EVALUATIONS)
+            noise = self.estimate_noise(self.residuals(values))
+        return self.solution(self._wrapped(values), noise, converged, message)
+
+    def solution(
+        self, values: Array, noise: Noise, converged: bool = True, message: str = ""
+    ) -> Solution:
+        """The solution at given values."""
+        residuals, jacobian = self.linearise(values)
+        cost = self.innovation_cost(residuals, noise)
+        return Solution(
+            self.effects, values, residuals, jacobian, noise, cost, converged, message
+        )
+
+    def _wrapped(self, values: Array) -> Array:
+        """Angles brought back into (-period/2, period/2]."""
+        values = values.copy()
+        for i, page in enumerate(self.parameters.values()):
+            if page.period is not None:
+                values[i] -= page.period * np.round(values[i] / page.period)
+        return values
+
+    def errors(self, solution: Solution) -> tuple[list[ParameterValue], Array]:
+        """Values with standard errors, and the correlations, shape (k, k).
+
+        Where an error cannot be had, the note says why.
+        """
+        r, j = self.stacked(solution.residuals, solution.jacobian, solution.noise)
+        free = j.shape[1]
+        variance = float(r @ r) / max(len(r) - free, 1)
+        size = np.linalg.norm(j, axis=0)
+        felt = size > 1e-9 * max(float(size.max(initial=0.0)), 1e-300)
+        covariance = np.full((free, free), np.nan)
+        if felt.any():
+            unit = j[:, felt] / size[felt]
+            inverse = np.linalg.pinv(unit.T @ unit, rcond=1e-13, hermitian=True)
+            index = np.flatnonzero(felt)
+            covariance[np.ix_(index, index)] = (
+                variance * inverse / np.outer(size[felt], size[felt])
+            )
+            singular = np.linalg.cond(unit.T @ unit) > 1e12
+        else:
+            singular = True
+        sd = np.sqrt(np.diag(covariance))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            correlation = covariance / np.outer(sd, sd)
+        pages = list(self.parameters.values())
+        results = []
+        for i, (value, page) in enumerate(zip(solution.values, pages, strict=True)):
+            if i not in self.open:
+                results.append(ParameterValue(float(value), None, "held fixed"))
+                continue
+            k = self.open.index(i)
+            note = self._doubt(page, float(value), bool(felt[k]), bool(singular))
+            error = None if note else float(sd[k] * (abs(value) if page.log else 1.0))
+            results.append(ParameterValue(float(value), error, note))
+        return results, correlation
+
+    @staticmethod
+    def _doubt(page: Parameter, value: float, felt: bool, singular: bool) -> str | None:
+        """Why a standard error means nothing, if so."""
+        at = np.log if page.log else float
+        width = at(page.upper) - at(page.lower)
+        for name, bound in (("lower", page.lower), ("upper", page.upper)):
+            if abs(at(max(value, 1e-300) if page.log else value) - at(bound)) < 1e-6 * width:
+                return f"at its {name} bound {bound:g}: the runs ask for less" if (
+                    name == "lower"
+                ) else f"at its {name} bound {bound:g}: the runs ask for more"
+        if not felt:
+            return "never moved: these runs do not depend on it"
+        if singular:
+            return "not separately known: another parameter does the same in these runs"
+        return None
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model and what the fit says of itself.
+
+    Attributes
+    ----------
+    model
+        The fitted model.
+    parameters
+        Dotted name to value with standard error, or the reason why there is none.
+    correlations
+        Shape (k, k), in the order of `parameters`.
+    rms_n
+        Root mean square of the residual over trusted samples, N.
+    residuals
+        Prediction minus record, N, one array a run.
+    """
+
+    model: Model
+    parameters: dict[str, ParameterValue]
+    correlations: Array
+    rms_n: float
+    noise: Noise
+    samples: int
+    residuals: list[Array]
+    converged: bool
+    message: str
+
+    def report(self) -> str:
+        """Statistics, parameters with errors, and the strongest correlations, as text."""
+        from jbf.text import fit_report
+
+        return fit_report(self)
+
+
+def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
+    """An InputError where a run lacks a column that one of the effects needs."""
+    for name in effects:
+        if find_effect(name).needs_angle:
+            for p in campaign.prepared:
+                require(p.run, "angle_rad", f"the effect {name}")
+
+
+def root_mean_square(residuals: Sequence[Array], campaign: Campaign) -> float:
+    """RMS over the trusted samples of a campaign, N."""
+    total = sum(
+        float(np.sum(r[p.trusted] ** 2))
+        for r, p in zip(residuals, campaign.prepared, strict=True)
+    )
+    return float(np.sqrt(total / max(campaign.samples, 1)))
+
+
+def finish(problem: Problem, solution: Solution) -> Fit:
+    """A solution with its errors, as a model."""
+    values, correlation = problem.errors(solution)
+    named = dict(zip(problem.names, values, strict=True))
+    campaign = problem.campaign
+    rms = root_mean_square(solution.residuals, campaign)
+    model = Model(
+        campaign.rig,
+        problem.law,
+        problem.effects,
+        named,
+        problem.clock,
+        {
+            "runs": ", ".join(p.run.name for p in campaign.prepared),
+            "samples": campaign.samples,
+            "rms_n": rms,
+        },
+    )
+    return Fit(
+        model=model,
+        parameters=named,
+        correlations=correlation,
+        rms_n=rms,
+        noise=solution.noise,
+        samples=campaign.samples,
+        residuals=solution.residuals,
+        converged=solution.converged,
+        message=solution.message,
+    )
+
+
+def fit(
+    rig: Rig,
+    runs: Sequence[Run],
+    effects: Sequence[str] = (),
+    *,
+    law: str = "journal",
+    clock: str = "journal",
+    start: Mapping[str, float] | None = None,
+    fixed: Mapping[str, float] | None = None,
+) -> Fit:
+    """Fit the base law, with named effects, to runs.
+
+    Least squares over all samples at which the sign of the motion is known, with exact
+    derivatives, bounds and starting values from the catalogue; weighted by the colour of the
+    noise where the residual shows one.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load.
+    runs
+        Recorded runs with friction.
+    effects
+        Names of effects to fit beside the law.
+    law, clock
+        Base law and its clock.
+    start, fixed
+        Values by parameter name to start from, or to hold.
+
+    Raises
+    ------
+    InputError
+        An unknown name, a missing column, or runs in which nothing moves.
+    """
+    campaign = Campaign.prepare(rig, runs)
+    chosen = in_chain_order(effects)
+    check_effects(campaign, chosen)
+    known = parameters_of(law, chosen)
+    held = _named_values(fixed, known)
+    problem = Problem(campaign, law, clock, chosen, held)
+    solution = problem.solve([_named_values(start, known)])
+    return finish(problem, solution)
+
+
+def _named_values(
+    values: Mapping[str, float] | None, known: Mapping[str, Parameter]
+) -> dict[str, float]:
+    """Full names and checked bounds."""
+    found = {}
+    for name, value in (values or {}).items():
+        full = find_parameter(name, known)
+        page = known[full]
+        if not (page.lower <= value <= page.upper or value == page.null):
+            raise InputError(
+                problem=f"{full} = {value} is out of range",
+                mend=f"choose from {page.lower:g} to {page.upper:g}",
+            )
+        found[full] = float(value)
+    return found

@@ -1,0 +1,210 @@
+"""A model: a rig, a law, effects and their parameters. It predicts; it does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.catalogue import find_law, find_parameter, in_chain_order, parameters_of, vocabulary
+from jbf.conditioning import ImposedMotion, impose
+from jbf.errors import InputError
+from jbf.model_file import ModelFile, ParameterValue, read_model_file, write_model_file
+from jbf.record import PathLike, Run, require
+from jbf.rig import Rig
+
+Array = npt.NDArray[np.float64]
+
+MAX_STEP_S = 0.005
+"""Longest inner step of a prediction. The film's fastest rate is some 40 1/s and the step is of
+fourth order, so a shorter one changes nothing that an instrument could see."""
+
+
+def chain(rig: Rig, clock: str, effects: Sequence[str]) -> _core.Chain:
+    """The core's chain for a rig.
+
+    Raises
+    ------
+    InputError
+        The rig has no bearing, lubricant or load, which the journal law needs.
+    """
+    for section, there in (
+        ("bearing", rig.bearing),
+        ("lubricant", rig.lubricant),
+        ("load", rig.load),
+    ):
+        if there is None:
+            raise InputError(
+                problem=f"the rig has no [{section}]",
+                mend=f"the law journal needs one: add a [{section}] section",
+            )
+    assert rig.bearing is not None
+    assert rig.lubricant is not None
+    assert rig.load is not None
+    b = rig.bearing
+    return _core.Chain(
+        radius_m=b.radius_m,
+        length_m=b.length_m,
+        clearance_m=b.clearance_m,
+        mass_kg=b.mass_kg,
+        count=b.count,
+        viscosity_pa_s=rig.lubricant.viscosity_pa_s,
+        load_n=rig.load.normal_n,
+        clock=clock,
+        effects=list(effects),
+        max_step_s=MAX_STEP_S,
+    )
+
+
+def imposed(rig: Rig, run: Run) -> ImposedMotion:
+    """The motion that a run imposed on the rig's journal."""
+    assert rig.bearing is not None
+    return impose(run, rig.bearing.radius_m)
+
+
+def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
+    """A run's motion and load, handed to the core."""
+    assert rig.load is not None
+    load = run.load_n if run.load_n is not None else np.full(len(run), rig.load.normal_n)
+    return _core.Motion(
+        np.ascontiguousarray(run.time_s),
+        motion.velocity_m_s,
+        motion.acceleration_m_s2,
+        motion.angle_rad,
+        np.ascontiguousarray(load),
+    )
+
+
+@dataclass(frozen=True)
+class Model:
+    """A law with effects, ready to predict.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load.
+    law
+        Name of the base law.
+    effects
+        Names of effects, in any order; they act in the order of the signal chain.
+    parameters
+        Dotted name (`f_m`, `presliding.sigma_1_m`; the unit may be left off) to a value, or to a
+        value with its error. The law's missing ones take the catalogue's starting value; those
+        of effects their null, or the starting value where they have none.
+    clock
+        `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s).
+
+    Raises
+    ------
+    InputError
+        An unknown name, a value out of bounds, or a rig without what the law needs.
+    """
+
+    rig: Rig
+    law: str = "journal"
+    effects: Sequence[str] = ()
+    parameters: Mapping[str, float | ParameterValue] = field(default_factory=dict)
+    clock: str = "journal"
+    fit: Mapping[str, float | int | str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        find_law(self.law)
+        chosen = in_chain_order(self.effects)
+        known = parameters_of(self.law, chosen)
+        given = {
+            find_parameter(name, known): v if isinstance(v, ParameterValue) else ParameterValue(v)
+            for name, v in self.parameters.items()
+        }
+        values = {
+            name: given.get(
+                name, ParameterValue(p.starts[0] if p.null is None else p.null)
+            )
+            for name, p in known.items()
+        }
+        object.__setattr__(self, "effects", chosen)
+        object.__setattr__(self, "parameters", values)
+        vocabulary().check(self._file())
+        chain(self.rig, self.clock, chosen)
+
+    @property
+    def values(self) -> Array:
+        """Parameter values in the core's order, shape (k,)."""
+        return np.array([p.value for p in self.parameters.values()])  # type: ignore[union-attr]
+
+    def predict(self, run: Run) -> Array:
+        """Friction reading of one bearing under the run's motion, N, shape (n,)."""
+        return self.predict_many([run])[0]
+
+    def predict_many(self, runs: Iterable[Run]) -> list[Array]:
+        """`predict` for several runs, on all cores."""
+        runs = list(runs)
+        for run in runs:
+            self.require_columns(run)
+        motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
+        return chain(self.rig, self.clock, self.effects).predict(self.values, motions)
+
+    def require_columns(self, run: Run) -> None:
+        """An InputError where a run lacks a column that an effect of this model needs."""
+        from jbf.catalogue import find_effect
+
+        for name in self.effects:
+            if find_effect(name).needs_angle:
+                require(run, "angle_rad", f"the effect {name}")
+
+    def steady_friction(self, velocity_m_s: npt.ArrayLike) -> Array:
+        """Steady friction force of the bare law (the Stribeck curve), N.
+
+        Speeds (m/s) of shape (n,), none of them zero; the rig's nominal load.
+        """
+        assert self.rig.bearing is not None
+        assert self.rig.lubricant is not None
+        assert self.rig.load is not None
+        f_m, u_tr, k0, gamma = self.values[:4]
+        b = self.rig.bearing
+        _, _, f = _core.steady_state(
+            np.ascontiguousarray(velocity_m_s, dtype=float),
+            f_m=f_m,
+            u_tr_m_s=u_tr,
+            k0=k0,
+            gamma=gamma,
+            radius_m=b.radius_m,
+            length_m=b.length_m,
+            clearance_m=b.clearance_m,
+            mass_kg=b.mass_kg,
+            count=b.count,
+            viscosity_pa_s=self.rig.lubricant.viscosity_pa_s,
+            load_n=self.rig.load.normal_n,
+        )
+        return f * self.rig.load.normal_n
+
+    def _file(self) -> ModelFile:
+        return ModelFile(
+            law=self.law,
+            clock=self.clock,
+            effects=tuple(self.effects),
+            parameters=dict(self.parameters),  # type: ignore[arg-type]
+            rig=self.rig,
+            fit=dict(self.fit),
+        )
+
+    def save(self, path: PathLike) -> None:
+        """Write the model as TOML; `Model.load` reads it back exactly."""
+        write_model_file(path, self._file())
+
+    @classmethod
+    def load(cls, path: PathLike) -> Model:
+        """Read a model file.
+
+        Raises
+        ------
+        InputError
+            Names the file, the key and the mend.
+        """
+        file = read_model_file(path, vocabulary())
+        try:
+            return cls(file.rig, file.law, file.effects, file.parameters, file.clock, file.fit)
+        except InputError as error:
+            raise error.within(file=path) from None

@@ -1,0 +1,169 @@
+"""What the instrument adds: white noise, and a coloured part with a memory of its own.
+
+The residual of a right model is noise. It is described as white noise plus a first-order
+coloured part (correlation time tau), which at even steps is an ARMA(1,1) process; its one-step
+innovations are white, so likelihoods and standard errors are taken from them. The memory is
+held below `LONGEST_MEMORY_S`, so that slow structure cannot pass for noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize, signal
+
+from jbf.campaign import Campaign, Prepared
+from jbf.conditioning import noise_of
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+LONGEST_MEMORY_S = 0.6
+"""Longest correlation time that still counts as noise."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """White plus first-order coloured noise.
+
+    Attributes
+    ----------
+    memory_s
+        Correlation time of the coloured part.
+    colour
+        From 0 (white) to 1 (all coloured): the share by which innovations remember.
+    """
+
+    memory_s: float = 0.0
+    colour: float = 0.0
+
+    def innovations(self, values: Array, step_s: float) -> Array:
+        """Whiten values of shape (n,) or (n, k) along the first axis."""
+        if self.colour <= 0.0 or self.memory_s <= 0.0:
+            return values
+        phi = np.exp(-step_s / self.memory_s)
+        theta = -phi * (1.0 - self.colour)
+        out: Array = signal.lfilter([1.0, -phi], [1.0, theta], values, axis=0)
+        return out
+
+
+WHITE = Noise()
+
+
+def innovation_cost(
+    noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
+) -> float:
+    """`n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
+    total, count = 0.0, 0
+    for residual, step, mask in zip(residuals, steps, masks, strict=True):
+        e = noise.innovations(residual, step)[mask]
+        total += float(e @ e)
+        count += len(e)
+    return count * float(np.log(max(total, 1e-300) / max(count, 1)))
+
+
+def estimate_noise(
+    residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
+) -> Noise:
+    """The noise that makes the innovations of these residuals smallest.
+
+    White unless colour earns its two parameters clearly.
+    """
+    shortest = 2.0 * min(steps)
+    longest = max(LONGEST_MEMORY_S, 2.0 * shortest)
+    low, high = np.log(shortest), np.log(longest)
+
+    def unpack(x: Array) -> Noise:
+        memory = np.exp(low + (high - low) / (1.0 + np.exp(-x[0])))
+        return Noise(float(memory), float(1.0 / (1.0 + np.exp(-x[1]))))
+
+    def cost(x: Array) -> float:
+        return innovation_cost(unpack(x), residuals, steps, masks)
+
+    starts = [np.array([m, c]) for m in (-1.0, 1.5) for c in (-4.0, -1.5, 0.5)]
+    best = min(starts, key=cost)
+    found = optimize.minimize(
+        cost, best, method="Nelder-Mead", options={"maxiter": 80, "xatol": 0.02, "fatol": 0.1}
+    )
+    white = innovation_cost(WHITE, residuals, steps, masks)
+    return unpack(found.x) if found.fun < white - 20.0 else WHITE
+
+
+def noise_floor(campaign: Campaign, residuals: Sequence[Array] | None = None) -> float:
+    """Standard deviation of the noise on the friction record, N, from the data alone.
+
+    The white part comes from third differences of the record. A coloured part hides from
+    differences; it shows where the same motion comes again a period later and where the shaft
+    rests, so the larger of the estimates stands where it is clearly larger.
+    `residuals` (of any model) stand in for the record where given: what a model explains need
+    not be told from noise by smoothness.
+    """
+    signals = residuals or [p.friction_n for p in campaign.prepared]
+    white, whole, weight = [], 0.0, 0
+    for p, s in zip(campaign.prepared, signals, strict=True):
+        white.append((noise_of(s[p.trusted]), int(p.trusted.sum())))
+        for square, count in (*_rest_squares(p.motion.resting, s), _repeat_square(p, s)):
+            whole += square * count
+            weight += count
+    floor = float(np.sqrt(np.average([w**2 for w, _ in white], weights=[n for _, n in white])))
+    if weight < 300:
+        return floor
+    seen = float(np.sqrt(whole / weight))
+    # Coloured noise leaves few independent samples: ask for a clear excess.
+    return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
+
+
+def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
+    """Variance about its line in every long rest, with its length."""
+    edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
+    found = []
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        # The first moments of a rest may still settle.
+        begin = first + (end - first) // 4
+        if end - begin >= 60:
+            part = signal.detrend(values[begin:end])
+            found.append((float(part @ part) / (len(part) - 2), len(part)))
+    return found
+
+
+def _repeat_square(prepared: Prepared, values: Array) -> tuple[float, int]:
+    """Variance of the noise from the same motion a period later, and the samples it used."""
+    shift = period_samples(prepared.motion.velocity_m_s)
+    if shift is None:
+        return 0.0, 0
+    # The first period still carries the start of the film.
+    begin = shift // 2
+    gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
+    ok = prepared.trusted[begin + shift :] & prepared.trusted[begin:-shift]
+    gap = gap[ok]
+    if len(gap) < 100:
+        return 0.0, 0
+    # Slow drifts between periods are not noise: take them out. Half of the rest may do
+    # anything (reversals that do not line up).
+    size = max(len(gap) // 12, 25)
+    blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
+    spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
+    return float(np.median(spread) ** 2), len(gap)
+
+
+def period_samples(velocity: Array) -> int | None:
+    """The period of a repeated motion in samples, or None."""
+    n = len(velocity)
+    if n < 100 or np.ptp(velocity) == 0.0:
+        return None
+    centred = velocity - velocity.mean()
+    power = np.fft.irfft(np.abs(np.fft.rfft(centred, 2 * n)) ** 2)[: n // 2 + n // 4]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rho = power / power[0] * n / (n - np.arange(len(power)))
+    falls = np.flatnonzero(rho < 0.0)
+    if not len(falls):
+        return None
+    start = int(falls[0])
+    peak = start + int(np.argmax(rho[start:]))
+    if peak >= len(rho) - 1 or rho[peak] < 0.98:
+        return None
+    gap = velocity[peak:] - velocity[:-peak]
+    return peak if float(np.std(gap)) < 0.02 * float(np.std(velocity)) else None

@@ -1,0 +1,132 @@
+"""A short made-up campaign: the project's own model, a known effect, seeded noise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jbf import Fit, Model, Rig, Run, compare, fit
+from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
+
+LAW = {"f_m": 0.26, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+DRAG_N = 2.0
+NOISE_N = 0.3
+RATE_HZ = 50.0
+ENCODER_RAD = 1.0 / 2387.3
+
+
+def _motion(kind: str, duration_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Time and shaft rate (rad/s): a two-way sine, or starts, stops and reversals."""
+    time_s = np.arange(0.0, duration_s, 1.0 / RATE_HZ)
+    if kind == "stopgo":
+        levels = np.array([0.0, 1.5, 0.0, -3.0, 0.0, 6.0, -1.5])
+        corners = np.arange(len(levels)) * duration_s / len(levels)
+        held = levels[np.searchsorted(corners, time_s, side="right") - 1]
+        ramp = np.ones(15) / 15
+        return time_s, np.round(np.convolve(np.pad(held, 7, "edge"), ramp, "valid"), 9)
+    return time_s, 8.0 * np.sin(float(kind.removeprefix("sine_w")) * time_s + 0.3)
+
+
+def make_run(model: Model, kind: str, *, seed: int, duration_s: float = 24.0) -> Run:
+    """One run of the model under a motion, as an instrument would record it."""
+    bearing = model.rig.bearing
+    assert bearing is not None
+    random = np.random.default_rng(seed)
+    time_s, rate = _motion(kind, duration_s)
+    speed = rate * bearing.radius_m
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) / RATE_HZ)))
+    clean = Run.from_arrays(time_s, speed, angle_rad=angle, name=kind)
+    return Run.from_arrays(
+        time_s,
+        np.where(speed == 0.0, 0.0, speed + random.normal(0.0, 1e-4, len(speed))),
+        model.predict(clean) + random.normal(0.0, NOISE_N, len(speed)),
+        angle_rad=np.round(angle / ENCODER_RAD) * ENCODER_RAD,
+        load_n=np.full(len(speed), 104.0),
+        name=kind,
+    )
+
+
+def make_runs(
+    effects: dict[str, dict[str, float]] | None = None,
+    kinds: Sequence[str] = ("sine_w0.5", "sine_w2.0", "stopgo"),
+) -> list[Run]:
+    """A campaign of the base law and the given effects' parameters."""
+    effects = effects or {}
+    own = {f"{e}.{p}": v for e, values in effects.items() for p, v in values.items()}
+    model = Model(Rig.thesis(), effects=list(effects), parameters=LAW | own)
+    return [make_run(model, kind, seed=i) for i, kind in enumerate(kinds)]
+
+
+@pytest.fixture(scope="session")
+def rig() -> Rig:
+    """The thesis's rig."""
+    return Rig.thesis()
+
+
+@pytest.fixture(scope="session")
+def runs() -> list[Run]:
+    """Three short runs with a hidden load-independent drag."""
+    return make_runs({"coulomb_drag": {"F_d_n": DRAG_N}})
+
+
+@pytest.fixture(scope="session")
+def bare_fit(rig: Rig, runs: list[Run]) -> Fit:
+    """The base law alone."""
+    return fit(rig, runs)
+
+
+@pytest.fixture(scope="session")
+def full_fit(rig: Rig, runs: list[Run]) -> Fit:
+    """The base law with the hidden effect."""
+    return fit(rig, runs, effects=["coulomb_drag"])
+
+
+@pytest.fixture(scope="session")
+def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[str], Diagnosis]:
+    """A diagnosis of each verdict, put together by hand from real fits."""
+    before, after = compare(bare_fit.model, runs), compare(full_fit.model, runs)
+    noise = before.noise_n
+    trials = (
+        Trial("coulomb_drag", after.rms_n, 812.4, "added", "best evidence, and it holds out"),
+        Trial("presliding", 0.93 * before.rms_n, 55.0, "rejected", "leaves a pattern in velocity"),
+        Trial("sensor_lag", before.rms_n, -6.1, "useless", "no better than chance"),
+    )
+    bare = Step((), before.rms_n, 1.04 * before.rms_n, noise, trials)
+    full = Step(("coulomb_drag",), after.rms_n, 1.01 * after.rms_n, noise)
+
+    def make(verdict: str) -> Diagnosis:
+        added = verdict in ("missing", "ambiguous")
+        ties = ("presliding",) if verdict == "ambiguous" else ()
+        last = after if added or verdict == "adequate" else before
+        first = after if verdict == "adequate" else before
+        steps = (bare, full) if added else (bare if verdict == "unexplained" else full,)
+        if verdict == "adequate":
+            steps = (Step((), after.rms_n, 1.01 * after.rms_n, noise, trials[2:]),)
+        left = tuple(Remainder(f.axis, f.where, f.share) for f in before.failures[:2])
+        return Diagnosis(
+            verdict=verdict,
+            effects=("coulomb_drag",) if added else (),
+            alternatives={"coulomb_drag": ties} if added else {},
+            steps=steps,
+            failures=first.failures,
+            unexplained=left if verdict == "unexplained" else (),
+            next_experiment="record a run at twice the load" if ties else None,
+            fit=full_fit if last is after else bare_fit,
+            before=first,
+            after=last,
+            elapsed_s=12.5,
+        )
+
+    return make
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, rig: Rig, runs: list[Run]) -> Path:
+    """A folder with rig.toml and runs/*.csv."""
+    rig.write(tmp_path / "rig.toml")
+    (tmp_path / "runs").mkdir()
+    for run in runs:
+        run.write_csv(tmp_path / "runs" / f"{run.name}.csv")
+    return tmp_path

@@ -1,0 +1,35 @@
+"""rigsim: an independent simulator of a friction rig with hidden effects."""
+
+from .bearing import Base, Bearing
+from .campaign import Campaign, draw_base, simulate_campaign, standard, write_campaign
+from .catalogue import CATALOGUE, draw
+from .foreign import FOREIGN, draw_foreign
+from .motions import Motion, multisine, polyline, sine, steps, stop_and_go, sweep, triangle
+from .noise import Noise
+from .record import Record
+from .simulate import simulate_run
+
+__all__ = [
+    "CATALOGUE",
+    "FOREIGN",
+    "Base",
+    "Bearing",
+    "Campaign",
+    "Motion",
+    "Noise",
+    "Record",
+    "draw",
+    "draw_base",
+    "draw_foreign",
+    "multisine",
+    "polyline",
+    "simulate_campaign",
+    "simulate_run",
+    "sine",
+    "standard",
+    "steps",
+    "stop_and_go",
+    "sweep",
+    "triangle",
+    "write_campaign",
+]

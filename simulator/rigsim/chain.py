@@ -1,0 +1,120 @@
+"""The signal chain of one run: state layout, rates and friction, for either kind of drive."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .bearing import Base
+from .contact import Contact, Path
+from .film import Film
+from .lubricant import Lubricant, Parameters
+from .other import OtherFriction
+
+
+class Chain:
+    """Lubricant, film, contact, other friction and sensor lag of one rig.
+
+    The state holds eps, phi and, where their effects are on, heat beta T (-), bristle
+    deflection (m) and lagged friction (N), in that order.
+    """
+
+    def __init__(self, base: Base, effects: Parameters) -> None:
+        self.load_n = base.load_n
+        memory = effects.get("film_memory", {}).get("factor", 1.0)
+        self.film = Film.of(base, memory)
+        self.lubricant = Lubricant(effects, base.U_tr)
+        self.contact = Contact(effects, self.film, base.f_m)
+        self.other = OtherFriction(effects)
+        self.lag_s = effects.get("sensor_lag", {}).get("tau", 0.0)
+        self.size = 2
+        self.heat_at = self._slot(self.lubricant.heats)
+        self.bristle_at = self._slot(self.contact.sigma > 0.0)
+        self.lag_at = self._slot(self.lag_s > 0.0)
+
+    def _slot(self, wanted: bool) -> int:
+        if not wanted:
+            return -1
+        self.size += 1
+        return self.size - 1
+
+    @property
+    def bristled(self) -> bool:
+        """Whether the contact is a bristle, so that friction at rest is a state."""
+        return self.bristle_at >= 0
+
+    def start(self, v: float, acceleration: float, path: Path) -> list[float]:
+        """State at the start of a run that begins at surface speed `v` (m/s).
+
+        The film is at the transition and cold. A run that begins at rest has its bristle
+        slack; one that begins in motion has it fully bent. The lagged cell has settled.
+        """
+        y = [*self.film.start(), *([0.0] * (self.size - 2))]
+        sign = (v > 0.0) - (v < 0.0)
+        if self.bristle_at >= 0 and sign:
+            y[self.bristle_at] = sign * self.unsigned(y, v, sign, path) / self.contact.sigma
+        if self.lag_at >= 0:
+            force = self.bearing(y, v, sign, path)
+            y[self.lag_at] = force + self.other.force(v, sign, acceleration)
+        return y
+
+    def _film_speed(self, y: Sequence[float], speed: float) -> float:
+        heat = y[self.heat_at] if self.heat_at >= 0 else 0.0
+        return self.lubricant.film_speed(speed, heat)
+
+    def unsigned(self, y: Sequence[float], v: float, sign: int, path: Path) -> float:
+        """Sliding friction coefficient of the contact (-), without its sign."""
+        speed = abs(v)
+        return self.contact.coefficient(y[0], self._film_speed(y, speed), speed, sign, path)
+
+    def bearing(
+        self, y: Sequence[float], v: float, sign: int, path: Path, held_n: float | None = None
+    ) -> float:
+        """Bearing friction (N): bristle, else the `held_n` of a stuck journal, else sliding."""
+        if self.bristle_at >= 0:
+            return self.load_n * self.contact.sigma * y[self.bristle_at]
+        if held_n is not None:
+            return held_n
+        if sign == 0:
+            return 0.0
+        return sign * self.load_n * self.unsigned(y, v, sign, path)
+
+    def cell(
+        self,
+        y: Sequence[float],
+        v: float,
+        sign: int,
+        acceleration: float,
+        path: Path,
+        held_n: float | None = None,
+    ) -> float:
+        """Force (N) the load cell reports, lag included, offset and drift not."""
+        if self.lag_at >= 0:
+            return y[self.lag_at]
+        return self.bearing(y, v, sign, path, held_n) + self.other.force(v, sign, acceleration)
+
+    def rates(
+        self,
+        y: Sequence[float],
+        v: float,
+        sign: int,
+        acceleration: float,
+        path: Path,
+        held_n: float | None = None,
+    ) -> list[float]:
+        """Time derivatives (per s) of the state at surface speed `v` (m/s)."""
+        speed = abs(v)
+        ub = self._film_speed(y, speed)
+        out = list(self.film.rates(y[0], y[1], ub))
+        if self.size == 2:
+            return out
+        if self.heat_at >= 0:
+            power = abs(self.bearing(y, v, sign, path, held_n) * v)
+            out.append(self.lubricant.heat_rate(power, y[self.heat_at]))
+        if self.bristle_at >= 0:
+            unsigned = self.contact.coefficient(y[0], ub, speed, sign, path)
+            out.append(self.contact.bristle_rate(y[self.bristle_at], v, unsigned))
+        if self.lag_at >= 0:
+            force = self.bearing(y, v, sign, path, held_n)
+            force += self.other.force(v, sign, acceleration)
+            out.append((force - y[self.lag_at]) / self.lag_s)
+        return out

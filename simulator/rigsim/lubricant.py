@@ -1,0 +1,39 @@
+"""Effects on the lubricant: how fast the film believes the journal turns."""
+
+from __future__ import annotations
+
+import math
+
+Parameters = dict[str, dict[str, float]]
+
+
+class Lubricant:
+    """Speed seen by the film under `thermal_thinning` and `shear_thinning`.
+
+    The heat is kept as h = beta T (-), so that only beta q (1/J) and tau (s) matter.
+    """
+
+    def __init__(self, effects: Parameters, transition_speed: float) -> None:
+        thermal = effects.get("thermal_thinning")
+        self.heats = thermal is not None
+        self.heating = thermal["beta_q"] if thermal else 0.0
+        self.cooling = 1.0 / thermal["tau"] if thermal else 0.0
+        shear = effects.get("shear_thinning")
+        self.shear_speed = shear["U_c"] if shear else 0.0
+        self.shear_power = shear["n"] if shear else 1.0
+        self._scale = 1.0 / transition_speed
+
+    def film_speed(self, speed: float, heat: float) -> float:
+        """|Ub| (-) for the surface speed |U| (m/s) and heat beta T (-)."""
+        if speed <= 0.0:
+            return 0.0
+        ub = speed * self._scale
+        if self.shear_speed > 0.0:
+            ub /= 1.0 + (speed / self.shear_speed) ** self.shear_power
+        if self.heats:
+            ub *= math.exp(-heat)
+        return ub
+
+    def heat_rate(self, power_w: float, heat: float) -> float:
+        """d(beta T)/dt (1/s) at friction power `power_w` (W) of one bearing."""
+        return self.heating * power_w - self.cooling * heat

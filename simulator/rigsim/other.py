@@ -1,0 +1,18 @@
+"""Friction that is not the bearing's but reaches the load cell all the same."""
+
+from __future__ import annotations
+
+from .lubricant import Parameters
+
+
+class OtherFriction:
+    """`coulomb_drag`, `quadratic_drag` and `inertia_leak`, added to the bearing friction."""
+
+    def __init__(self, effects: Parameters) -> None:
+        self.coulomb = effects.get("coulomb_drag", {}).get("F_d", 0.0)
+        self.quadratic = effects.get("quadratic_drag", {}).get("c", 0.0)
+        self.leak = effects.get("inertia_leak", {}).get("m_e", 0.0)
+
+    def force(self, v: float, sign: int, acceleration: float) -> float:
+        """Extra force (N) at surface speed `v` (m/s) and acceleration (m/s^2)."""
+        return self.coulomb * sign + self.quadratic * v * abs(v) + self.leak * acceleration

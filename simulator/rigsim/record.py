@@ -1,0 +1,37 @@
+"""One recorded run, and its CSV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Samples of one run: s, rad, m/s, N, N; `clean_friction_n` is free of noise."""
+
+    time_s: Vector
+    angle_rad: Vector
+    velocity_m_s: Vector
+    friction_n: Vector
+    load_n: Vector
+    clean_friction_n: Vector
+
+    def write(self, path: Path) -> None:
+        """Write the run as CSV in the contract's columns (without the clean friction)."""
+        columns = (
+            self.time_s,
+            self.angle_rad,
+            self.velocity_m_s + 0.0,
+            self.friction_n,
+            self.load_n,
+        )
+        rows = ["time_s,angle_rad,velocity_m_s,friction_n,load_n"]
+        for t, angle, v, force, load in zip(*(c.tolist() for c in columns), strict=True):
+            rows.append(f"{t:.3f},{angle:.5f},{v:.6f},{force:.4f},{load:.1f}")
+        path.write_text("\n".join(rows) + "\n", encoding="utf-8")

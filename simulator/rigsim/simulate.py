@@ -1,0 +1,71 @@
+"""One run: from the commanded motion to the recorded samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .bearing import Base
+from .catalogue import check
+from .chain import Chain
+from .drive import CompliantDrive
+from .foreign import Foreign
+from .instrument import read_out
+from .lubricant import Parameters
+from .motions import Motion
+from .noise import Noise
+from .record import Record, Vector
+from .rigid import run_rigid
+
+
+def _commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
+    speed, position = np.empty(len(times)), np.empty(len(times))
+    ends = np.array([p.t1 for p in motion.pieces[:-1]])
+    for i, k in enumerate(np.searchsorted(ends, times, side="right").tolist()):
+        piece, t = motion.pieces[k], float(times[i])
+        speed[i], position[i] = piece.speed(t), piece.position(t)
+    speed[np.abs(speed) < 1e-12] = 0.0
+    return speed, position
+
+
+def simulate_run(
+    base: Base,
+    effects: Parameters,
+    motion: Motion,
+    *,
+    start_angle_rad: float = 0.0,
+    rate_hz: float = 50.0,
+    foreign: Sequence[Foreign] = (),
+    noise: Noise | None = None,
+    rng: np.random.Generator | None = None,
+) -> Record:
+    """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` ones.
+
+    Without `noise` the record is exact; `rng` is needed by noise and some foreign effects.
+    """
+    effects = check(effects)
+    rng = rng if rng is not None else np.random.default_rng(0)
+    times = np.arange(round(motion.duration_s * rate_hz) + 1) / rate_hz
+    times = times[times <= motion.duration_s + 1e-9]
+    radius = base.bearing.radius_m
+    chain = Chain(base, effects)
+    if "drive_compliance" in effects:
+        drive = CompliantDrive(
+            chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
+        )
+        force = drive.run(motion, times)
+    else:
+        force = run_rigid(chain, motion, times, radius, start_angle_rad)
+    clean = read_out(force, times, effects)
+    speed, position = _commanded(motion, times)
+    angle = start_angle_rad + position / radius
+    for strange in foreign:
+        clean = strange.apply(times, angle, speed, clean, rng)
+    friction, velocity = clean, speed
+    if noise is not None:
+        friction = noise.friction(clean, 1.0 / rate_hz, rng)
+        velocity = noise.velocity(speed, rng)
+        angle = noise.angle(angle)
+    load = np.full(len(times), base.load_n)
+    return Record(times, angle, velocity, friction, load, clean)

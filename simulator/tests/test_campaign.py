@@ -1,0 +1,127 @@
+"""Motions, noise, foreign effects, seeds, files and the command line."""
+
+import json
+
+import numpy as np
+import pytest
+from rigsim import (
+    FOREIGN,
+    Base,
+    Campaign,
+    Noise,
+    draw_base,
+    draw_foreign,
+    multisine,
+    simulate_campaign,
+    simulate_run,
+    sine,
+    standard,
+    triangle,
+    write_campaign,
+)
+from rigsim.__main__ import main
+
+SHORT = Campaign("short", (sine("bi", 7.0, 0.127, 1.0), triangle("tri", 5.0, 0.1, 1.5)))
+
+
+@pytest.mark.parametrize("name", ["full", "heldout", "slow", "steady"])
+def test_motions_are_consistent(name):
+    for motion in standard(name).motions:
+        edges = [motion.pieces[0].t0, *(p.t1 for p in motion.pieces)]
+        assert edges[0] == 0.0
+        assert edges[-1] == pytest.approx(motion.duration_s)
+        for piece in motion.pieces:
+            t = np.linspace(piece.t0, piece.t1, 40)
+            v = np.array([piece.speed(x) for x in t])
+            x = np.array([piece.position(s) for s in t])
+            assert np.all(v * piece.sign >= -1e-9)
+            fine = 0.5 * (v[1:] + v[:-1]) * np.diff(t)
+            assert x[-1] - x[0] == pytest.approx(fine.sum(), abs=2e-3 * (1e-3 + abs(x[-1] - x[0])))
+        for a, b in zip(motion.pieces[:-1], motion.pieces[1:], strict=True):
+            assert a.speed(a.t1) == pytest.approx(b.speed(b.t0), abs=1e-12)
+            assert a.position(a.t1) == pytest.approx(b.position(b.t0), abs=1e-12)
+
+
+def test_multisine_starts_at_zero_position():
+    motion = multisine("m", 5.0, [(0.05, 0.3, 0.4), (0.02, 1.7, 2.0)])
+    assert motion.pieces[0].position(0.0) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_seed_reproduces_and_matters():
+    one, truth = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
+    two, again = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
+    other, _ = simulate_campaign(4, ["coulomb_drag"], campaign=SHORT)
+    assert truth == again
+    np.testing.assert_array_equal(one["bi"].friction_n, two["bi"].friction_n)
+    assert not np.array_equal(one["bi"].friction_n, other["bi"].friction_n)
+
+
+def test_one_seed_is_one_rig():
+    _, alone = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
+    _, both = simulate_campaign(3, ["sensor_lag", "coulomb_drag"], campaign=SHORT)
+    assert alone["base"] == both["base"]
+    assert alone["noise_n"] == both["noise_n"]
+    assert alone["effects"]["coulomb_drag"] == both["effects"]["coulomb_drag"]
+
+
+def test_truth_reports_the_noise_that_is_there():
+    records, truth = simulate_campaign(6, campaign=SHORT)
+    gap = np.concatenate([r.friction_n - r.clean_friction_n for r in records.values()])
+    assert np.std(gap) == pytest.approx(truth["noise_n"], rel=0.1)
+    assert 0.01 <= truth["noise_n"] / (truth["base"]["f_m"] * truth["base"]["load_n"]) <= 0.025
+    assert all(w == 0.0 for w in truth["effect_to_noise"].values())
+
+
+def test_coloured_noise_is_correlated():
+    rng = np.random.default_rng(1)
+    noisy = Noise(1.0, coloured_share=0.5).friction(np.zeros(50_000), 0.02, rng)
+    assert np.std(noisy) == pytest.approx(np.sqrt(1.25), rel=0.03)
+    lag_one = np.mean(noisy[1:] * noisy[:-1]) / np.mean(noisy**2)
+    assert lag_one == pytest.approx(0.2 * np.exp(-0.1), abs=0.03)
+
+
+def test_speed_has_no_noise_at_rest_and_angle_is_counted():
+    rng = np.random.default_rng(1)
+    record = simulate_run(Base(), {}, SHORT.motions[0], noise=Noise(0.1), rng=rng)
+    assert record.velocity_m_s[0] == 0.0
+    counts = record.angle_rad * 2387.3
+    np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_foreign_effects_show_and_repeat(name):
+    strange = [draw_foreign(name, np.random.default_rng(2))]
+    motion = SHORT.motions[0]
+    base = draw_base(1)
+    runs = [
+        simulate_run(base, {}, motion, foreign=strange, rng=np.random.default_rng(7)).friction_n
+        for _ in range(2)
+    ]
+    np.testing.assert_array_equal(runs[0], runs[1])
+    gap = runs[0] - simulate_run(base, {}, motion).friction_n
+    assert np.sqrt(np.mean(gap**2)) > 0.02
+
+
+def test_files_have_the_contract_columns(tmp_path):
+    truth = write_campaign(tmp_path, 2, ["sensor_offset"], campaign=SHORT)
+    lines = (tmp_path / "bi.csv").read_text().splitlines()
+    assert lines[0] == "time_s,angle_rad,velocity_m_s,friction_n,load_n"
+    assert len(lines) == 352
+    assert [len(x.split(".")[1]) for x in lines[5].split(",")] == [3, 5, 6, 4, 1]
+    assert "-0.000000" not in (tmp_path / "bi.csv").read_text()
+    rig = (tmp_path / "rig.toml").read_text()
+    assert f"normal_n = {truth['base']['load_n']}" in rig
+
+
+def test_command_line(tmp_path, capsys):
+    truth_file = tmp_path / "truth.json"
+    hidden = ["--effects", "coulomb_drag", "--foreign", "hum", "--seed", "3"]
+    places = ["--heldout", str(tmp_path / "b"), "--truth", str(truth_file)]
+    code = main([str(tmp_path / "a"), "--campaign", "steady", *hidden, *places])
+    assert code == 0
+    truth = json.loads(truth_file.read_text())
+    assert list(truth["effects"]) == ["coulomb_drag"]
+    assert list(truth["foreign"]) == ["hum"]
+    assert (tmp_path / "b" / "multi.csv").exists()
+    assert main([str(tmp_path / "c"), "--effects", "magic"]) == 2
+    assert "magic" in capsys.readouterr().err

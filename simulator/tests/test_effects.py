@@ -1,0 +1,128 @@
+"""Each effect's form: null, order of magnitude, and what defines it."""
+
+import math
+
+import numpy as np
+import pytest
+from rigsim import CATALOGUE, Base, draw, polyline, simulate_run, sine, stop_and_go
+from rigsim.catalogue import NULLS
+
+BASE = Base()
+SWING = sine("swing", 13.0, 0.127, 1.0)
+STOP = stop_and_go("stop", [(0.5, 1), (8.0, -1)], 0.05, 1.0, 2.0, 14.0)
+
+
+def force(effects, motion=SWING, **options):
+    return simulate_run(BASE, effects, motion, **options).friction_n
+
+
+def hold(speed, seconds=40.0):
+    return polyline("hold", [(0.0, speed), (seconds, speed)])
+
+
+def drawn(name):
+    return draw(name, np.random.default_rng(5))
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_null_parameters_leave_the_base(name):
+    np.testing.assert_array_equal(force({name: drawn(name) | NULLS[name]}), force({}))
+
+
+SMALL = {
+    "thermal_thinning": {"beta_q": 1e-9},
+    "shear_thinning": {"U_c": 1e9},
+    "film_memory": {"factor": 1.0 + 1e-9},
+    "presliding": {"sigma": 1e7},
+    "sensor_lag": {"tau": 1e-7},
+}
+
+
+@pytest.mark.parametrize("name", [name for name in CATALOGUE if name != "drive_compliance"])
+def test_fades_towards_its_null(name):
+    small = SMALL.get(name) or dict.fromkeys(NULLS[name], 1e-9)
+    plain = simulate_run(BASE, {}, STOP)
+    moving = plain.velocity_m_s != 0.0  # at rest a bristle holds its force however stiff
+    gap = force({name: drawn(name) | small}, STOP) - plain.friction_n
+    assert np.max(np.abs(gap[moving])) < 1e-3
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_standard_strength_shows(name):
+    motion = STOP if name == "dwell_stiction" else SWING
+    gap = force({name: drawn(name)}, motion) - force({}, motion)
+    assert np.sqrt(np.mean(gap**2)) > 0.05
+
+
+def test_drags_and_leak_add_their_force():
+    extra = {
+        "coulomb_drag": {"F_d": 0.7},
+        "quadratic_drag": {"c": 50.0},
+        "inertia_leak": {"m_e": 4.0},
+    }
+    record = simulate_run(BASE, extra, SWING)
+    v, t = record.velocity_m_s, record.time_s
+    expected = 0.7 * np.sign(v) + 50.0 * v * abs(v) + 4.0 * 0.127 * np.cos(t)
+    np.testing.assert_allclose(record.friction_n - force({}), expected, atol=1e-9)
+
+
+def test_lag_is_a_first_order_filter():
+    lagged = force({"sensor_lag": {"tau": 0.1}}, rate_hz=2000.0)
+    plain = simulate_run(BASE, {}, SWING, rate_hz=2000.0)
+    rate = np.gradient(lagged, 1.0 / 2000.0)
+    inner = np.abs(plain.velocity_m_s) > 0.005
+    np.testing.assert_allclose((lagged + 0.1 * rate)[inner], plain.friction_n[inner], atol=2e-3)
+
+
+def test_bristle_settles_on_the_model_friction():
+    motion = polyline("start", [(0.0, 0.0), (1.0, 0.03), (30.0, 0.03)])
+    bristled = force({"presliding": {"sigma": 2000.0}}, motion)
+    assert bristled[-1] == pytest.approx(force({}, motion)[-1], rel=1e-6)
+
+
+def test_bristle_holds_its_force_at_rest():
+    motion = polyline("stop", [(0.0, 0.03), (3.0, 0.03), (4.0, 0.0), (9.0, 0.0)])
+    record = simulate_run(BASE, {"presliding": {"sigma": 2000.0}}, motion)
+    rest = record.friction_n[record.time_s >= 4.0]
+    assert rest[0] > 1.0
+    np.testing.assert_allclose(rest, rest[0], rtol=1e-9)
+
+
+def test_dwell_waits_for_a_rest_and_ages():
+    p = {"a": 0.06, "t_0": 4.0, "m": 0.65, "s_0": 0.002}
+    np.testing.assert_array_equal(force({"dwell_stiction": p}), force({}))
+    gap = force({"dwell_stiction": p}, STOP) - force({}, STOP)
+    t = simulate_run(BASE, {}, STOP).time_s
+    for start, dwell, sign in ((0.5, 0.5, 1.0), (8.0, 3.5, -1.0)):
+        i = int(np.argmin(np.abs(t - start - 0.1)))
+        slid = 0.5 * 0.05 * (t[i] - start) ** 2
+        aged = p["a"] * (1.0 - math.exp(-((dwell / 4.0) ** 0.65))) * math.exp(-slid / 0.002)
+        assert gap[i] == pytest.approx(sign * BASE.load_n * aged, rel=1e-6)
+
+
+def test_heat_balances_at_a_steady_speed():
+    p = {"beta_q": 0.1, "tau": 2.0}
+    final = force({"thermal_thinning": p}, hold(0.1, 60.0))[-1]
+    heat = 0.1 * 2.0 * final * 0.1
+    thinner = force({}, hold(0.1 * math.exp(-heat), 60.0))[-1]
+    assert final == pytest.approx(thinner, rel=1e-6)
+
+
+def test_ripple_and_asymmetry_multiply_the_bearing_friction_only():
+    effects = {
+        "position_ripple": {"a": 0.2, "theta_0": 1.0},
+        "direction_asymmetry": {"a": 0.1},
+        "coulomb_drag": {"F_d": 0.5},
+    }
+    record = simulate_run(BASE, effects, SWING, start_angle_rad=2.0)
+    factor = 1.0 + 0.2 * np.cos(record.angle_rad - 1.0)
+    factor *= 1.0 + 0.1 * np.sign(record.velocity_m_s)
+    expected = force({}) * factor + 0.5 * np.sign(record.velocity_m_s)
+    np.testing.assert_allclose(record.friction_n, expected, atol=1e-9)
+
+
+def test_wrong_names_are_refused():
+    with pytest.raises(ValueError, match="no effect named"):
+        force({"magic": {}})
+    with pytest.raises(ValueError, match="takes F_d"):
+        force({"coulomb_drag": {"force": 1.0}})

@@ -7,16 +7,32 @@ effect they lack, and cancelled in the loop.
 'missing'
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from jbf._core import __version__
 from jbf.catalogue import effects, laws
-from jbf.comparison import Comparison, compare
-from jbf.diagnosis import Diagnosis, diagnose
 from jbf.errors import InputError, JbfError
-from jbf.fitting import Fit, fit
 from jbf.model import Model
 from jbf.model_file import ParameterValue
 from jbf.record import Run, read_run, read_runs
 from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
+
+if TYPE_CHECKING:
+    from jbf.comparison import Comparison, compare
+    from jbf.diagnosis import Diagnosis, diagnose
+    from jbf.fitting import Fit, fit
+
+# These need scipy, which takes most of a second to import: they come at first use, so that a
+# prediction or `jbf effects` does not wait for them.
+_LATER = {
+    "Comparison": "jbf.comparison",
+    "compare": "jbf.comparison",
+    "Diagnosis": "jbf.diagnosis",
+    "diagnose": "jbf.diagnosis",
+    "Fit": "jbf.fitting",
+    "fit": "jbf.fitting",
+}
 
 __all__ = [
     "Bearing",
@@ -41,3 +57,15 @@ __all__ = [
     "read_run",
     "read_runs",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'jbf' has no attribute {name!r}")
+    value = getattr(import_module(_LATER[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -29,6 +29,7 @@ class EffectPage(TypedDict):
     source: str
     limits: str
     needs_angle: bool
+    longest_step_s: float
     parameters: list[ParameterPage]
 
 class LawPage(TypedDict):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -48,9 +49,7 @@ def _velocity(campaign: Campaign, u_tr: float) -> Binned:
     edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
     count = len(edges) + 1
     middle = [float(np.median(moving[np.digitize(moving, edges) == i])) for i in range(count)]
-    labels = tuple(f"v = -{m:.3g} m/s" for m in middle) + tuple(
-        f"v = +{m:.3g} m/s" for m in middle
-    )
+    labels = tuple(f"v = -{m:.3g} m/s" for m in middle) + tuple(f"v = +{m:.3g} m/s" for m in middle)
     bins = []
     for p in campaign.prepared:
         v = p.motion.velocity_m_s
@@ -115,7 +114,7 @@ def _since(campaign: Campaign, axis: str, measure: Callable[[Prepared], Array]) 
         return Binned(axis, (), [np.full(len(v), -1, dtype=np.intp) for v in values])
     edges = np.unique(np.quantile(known, [0.05, 0.1, 0.2, 0.4, 0.7]))
     names = [f"up to {edges[0]:.2g} {unit}"]
-    names += [f"{a:.2g} to {b:.2g} {unit}" for a, b in zip(edges, edges[1:], strict=False)]
+    names += [f"{a:.2g} to {b:.2g} {unit}" for a, b in pairwise(edges)]
     names += [f"over {edges[-1]:.2g} {unit}"]
     what = axis.removeprefix("time since ").removeprefix("distance since ")
     labels = tuple(f"{n} after {what}, v < 0" for n in names) + tuple(

@@ -85,4 +85,7 @@ def _value(place: str) -> float | None:
 def _shortened(words: str) -> str:
     """What the axis's name already says, left out; a second line where it helps."""
     short = re.sub(r" after (a )?(rest|reversal)$", "", words).removeprefix("run ")
-    return short.replace(" to ", "\nto ").replace("up to\n", "up to ")
+    for lead in ("up to ", "over "):
+        if short.startswith(lead):
+            return f"{lead.strip()}\n{short.removeprefix(lead)}"
+    return short.replace(" to ", "\nto ")

@@ -37,6 +37,7 @@ class Effect:
     source: str
     limits: str
     needs_angle: bool
+    longest_step_s: float
     parameters: tuple[Parameter, ...]
 
 
@@ -134,9 +135,7 @@ def vocabulary() -> Vocabulary:
     """What a model file may say."""
 
     def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
-        return {
-            p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters
-        }
+        return {p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters}
 
     return Vocabulary(
         laws=tuple(laws()),

@@ -95,9 +95,7 @@ class Comparison:
         return {
             "rms_n": self.rms_n,
             "noise_n": self.noise_n,
-            "runs": [
-                {"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs
-            ],
+            "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],
             "failures": [f.to_dict() for f in self.failures],
         }
 
@@ -173,7 +171,7 @@ def _words(axis: Binned, means: Array, counts: npt.NDArray[np.intp]) -> str:
     else:
         lead = ""
     worst = np.argsort(-weight)[:2]
-    spots = ", ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
+    spots = "; ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
     share = strong.sum() / max(np.count_nonzero(counts), 1)
     scope = {
         True: f"all of {axis.axis}, ",
@@ -188,9 +186,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
 
     motions = campaign.motions
     predictions = chain(model.rig, model.clock, model.effects).predict(model.values, motions)
-    residuals = [
-        p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)
-    ]
+    residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign)
     runs = tuple(
         RunComparison(

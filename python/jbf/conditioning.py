@@ -97,7 +97,8 @@ def _local_fit(
     t = time[index] - time[:, None]
     scale = max(float(np.max(np.abs(t))), 1e-30)
     u = t / scale
-    order = 3 if width >= 5 else 2
+    # A long window sees more of a bend: give it more terms than a short one can carry.
+    order = 3 if half < 4 else 5
     powers = np.stack([u**k for k in range(order + 1)], axis=-1)
     slopes = np.stack([k * u ** max(k - 1, 0) for k in range(order + 1)], axis=-1) / scale
     origin = path[:, None]

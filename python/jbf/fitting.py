@@ -89,13 +89,16 @@ class Problem:
         """Parameter values to search variables."""
         inside = np.clip(values, self.lower, self.upper)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.log, np.log(inside), inside)[self.open]
+            search: Array = np.where(self.log, np.log(inside), inside)[self.open]
+        return search
 
     def decode(self, x: Array, base: Array) -> Array:
         """Search variables to parameter values; fixed ones from `base`."""
         values = base.copy()
         log = self.log[self.open]
-        values[self.open] = np.where(log, np.exp(np.where(log, x, 0.0)), x)
+        there = np.where(log, np.exp(np.where(log, x, 0.0)), x)
+        # A logarithm and back may land a rounding error outside.
+        values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
         return values
 
     def predict(self, values: Array) -> list[Array]:
@@ -149,9 +152,7 @@ class Problem:
         """The noise description that fits these residuals."""
         prepared = self.campaign.prepared
         masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
-        return estimate_noise(
-            masked, [p.step_s for p in prepared], [p.trusted for p in prepared]
-        )
+        return estimate_noise(masked, [p.step_s for p in prepared], [p.trusted for p in prepared])
 
     def search(self, start: Array, noise: Noise, evaluations: int) -> tuple[Array, bool, str]:
         """Least squares on innovations from one start."""
@@ -164,18 +165,26 @@ class Problem:
                 memory[key] = self.stacked(*self.linearise(self.decode(x, start)), noise)
             return memory[key]
 
+        def residual(x: Array) -> Array:
+            return evaluate(x)[0]
+
+        def slopes(x: Array) -> Array:
+            return evaluate(x)[1]
+
         low, high = self.encode(self.lower), self.encode(self.upper)
         x0 = self.encode(start)
         margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
         margin = np.minimum(margin, 0.25 * (high - low))
         found = optimize.least_squares(
-            lambda x: evaluate(x)[0],
+            residual,
             np.clip(x0, low + margin, high - margin),
-            jac=lambda x: evaluate(x)[1],
+            jac=slopes,
             bounds=(low, high),
+            method="dogbox",
             x_scale="jac",
+            # A thousandth of a unit of chi-square is far below what any verdict turns on.
             xtol=1e-7,
-            ftol=1e-9,
+            ftol=1e-7,
             gtol=1e-12,
             max_nfev=evaluations,
         )
@@ -184,12 +193,16 @@ class Problem:
     def starts(self, seed: Mapping[str, float]) -> list[Array]:
         """Every combination of the catalogue's starting values for what `seed` lacks."""
         choices = [
-            (seed[name],) if name in seed else page.starts
-            for name, page in self.parameters.items()
+            (seed[name],) if name in seed else page.starts for name, page in self.parameters.items()
         ]
         return [np.array(values, dtype=float) for values in itertools.product(*choices)]
 
-    def solve(self, seeds: Sequence[Mapping[str, float]], keep: int = 2) -> Solution:
+    def solve(
+        self,
+        seeds: Sequence[Mapping[str, float]],
+        keep: int = 2,
+        give_up_above: float = np.inf,
+    ) -> Solution:
         """Search from the best of all starting points.
 
         Parameters
@@ -198,6 +211,9 @@ class Problem:
             Known values by name; the catalogue's starting values fill each one up.
         keep
             How many of the starting points are followed.
+        give_up_above
+            Sum of squares (N^2) above which a trial is not followed to its end: a richer model
+            that is still worse than a simpler one has lost its way.
         """
         starts = [s for seed in seeds for s in self.starts({**seed, **self.fixed})]
         starts.sort(key=self.square)
@@ -205,6 +221,8 @@ class Problem:
         if len(tried) > 1:
             short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in tried]
             tried = [min(short, key=self.square)]
+            if self.square(tried[0]) > give_up_above:
+                return self.solution(tried[0], WHITE, False, "worse than the simpler model")
         values, converged, message = self.search(tried[0], WHITE, MAX_EVALUATIONS)
         noise = self.estimate_noise(self.residuals(values))
         if noise.colour > 0.0:
@@ -218,9 +236,7 @@ class Problem:
         """The solution at given values."""
         residuals, jacobian = self.linearise(values)
         cost = self.innovation_cost(residuals, noise)
-        return Solution(
-            self.effects, values, residuals, jacobian, noise, cost, converged, message
-        )
+        return Solution(self.effects, values, residuals, jacobian, noise, cost, converged, message)
 
     def _wrapped(self, values: Array) -> Array:
         """Angles brought back into (-period/2, period/2]."""
@@ -245,9 +261,7 @@ class Problem:
             unit = j[:, felt] / size[felt]
             inverse = np.linalg.pinv(unit.T @ unit, rcond=1e-13, hermitian=True)
             index = np.flatnonzero(felt)
-            covariance[np.ix_(index, index)] = (
-                variance * inverse / np.outer(size[felt], size[felt])
-            )
+            covariance[np.ix_(index, index)] = variance * inverse / np.outer(size[felt], size[felt])
             singular = np.linalg.cond(unit.T @ unit) > 1e12
         else:
             singular = True
@@ -269,15 +283,13 @@ class Problem:
     @staticmethod
     def _doubt(page: Parameter, value: float, felt: bool, singular: bool) -> str | None:
         """Why a standard error means nothing, if so."""
-        at = np.log if page.log else float
-        width = at(page.upper) - at(page.lower)
-        for name, bound in (("lower", page.lower), ("upper", page.upper)):
-            if abs(at(max(value, 1e-300) if page.log else value) - at(bound)) < 1e-6 * width:
-                return f"at its {name} bound {bound:g}: the runs ask for less" if (
-                    name == "lower"
-                ) else f"at its {name} bound {bound:g}: the runs ask for more"
         if not felt:
             return "never moved: these runs do not depend on it"
+        scale = np.log if page.log else float
+        width = scale(page.upper) - scale(page.lower)
+        for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
+            if abs(scale(value) - scale(bound)) < 1e-6 * width:
+                return f"at its {side} bound {bound:g}: the runs ask for {wish}"
         if singular:
             return "not separately known: another parameter does the same in these runs"
         return None
@@ -294,7 +306,7 @@ class Fit:
     parameters
         Dotted name to value with standard error, or the reason why there is none.
     correlations
-        Shape (k, k), in the order of `parameters`.
+        Shape (k, k), in the order of the `parameters` that were not held fixed.
     rms_n
         Root mean square of the residual over trusted samples, N.
     residuals
@@ -329,8 +341,7 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
 def root_mean_square(residuals: Sequence[Array], campaign: Campaign) -> float:
     """RMS over the trusted samples of a campaign, N."""
     total = sum(
-        float(np.sum(r[p.trusted] ** 2))
-        for r, p in zip(residuals, campaign.prepared, strict=True)
+        float(np.sum(r[p.trusted] ** 2)) for r, p in zip(residuals, campaign.prepared, strict=True)
     )
     return float(np.sqrt(total / max(campaign.samples, 1)))
 

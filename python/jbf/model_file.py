@@ -225,14 +225,8 @@ def _parameters_table(model: ModelFile) -> Table:
     return parameters
 
 
-def write_model_file(path: PathLike, model: ModelFile) -> None:
-    """Write a model file, whole or not at all; reading it gives an equal model.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written.
-    """
+def model_file_text(model: ModelFile) -> str:
+    """A model as the text of its file; reading it gives an equal model."""
     document = tomlkit.document()
     for line in _HEADER.splitlines():
         document.add(tomlkit.comment(line))
@@ -246,4 +240,15 @@ def write_model_file(path: PathLike, model: ModelFile) -> None:
         document["rig"] = model.rig.to_mapping()
     if model.fit:
         document["fit"] = dict(model.fit)
-    write_text(path, tomlkit.dumps(document))
+    return tomlkit.dumps(document)
+
+
+def write_model_file(path: PathLike, model: ModelFile) -> None:
+    """Write a model file, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    write_text(path, model_file_text(model))

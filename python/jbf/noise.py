@@ -162,8 +162,19 @@ def period_samples(velocity: Array) -> int | None:
     if not len(falls):
         return None
     start = int(falls[0])
-    peak = start + int(np.argmax(rho[start:]))
-    if peak >= len(rho) - 1 or rho[peak] < 0.98:
+    inner = rho[start:-1]
+    tops = start + np.flatnonzero(
+        (inner > rho[start - 1 : -2]) & (inner >= rho[start + 1 :]) & (inner > 0.9)
+    )
+    if not len(tops):
         return None
-    gap = velocity[peak:] - velocity[:-peak]
-    return peak if float(np.std(gap)) < 0.02 * float(np.std(velocity)) else None
+    # The first repetition that is about as good as any, not a multiple of it.
+    peak = int(tops[np.flatnonzero(rho[tops] > 0.98 * np.max(rho[tops]))[0]])
+    # The correlation of a record with a ragged end peaks a little beside the period.
+    reach = max(peak // 30, 2)
+    gaps = {
+        shift: float(np.std(velocity[shift:] - velocity[:-shift]))
+        for shift in range(max(peak - reach, 1), min(peak + reach + 1, n - 1))
+    }
+    best = min(gaps, key=gaps.__getitem__)
+    return best if gaps[best] < 0.02 * float(np.std(velocity)) else None

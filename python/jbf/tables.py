@@ -12,7 +12,7 @@ from jbf.words import measured, number, percent, step_name
 
 if TYPE_CHECKING:
     from jbf.comparison import Comparison
-    from jbf.diagnosis.result import Diagnosis
+    from jbf.diagnosis.result import Diagnosis, Step, Trial
     from jbf.fitting import Fit
     from jbf.model import Model
     from jbf.model_file import ParameterValue
@@ -66,6 +66,21 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
         )
         for i, s in enumerate(diagnosis.steps)
     ]
+
+
+def trial_rows(diagnosis: Diagnosis, step: Step) -> list[tuple[str, str, str, str, str]]:
+    """Each candidate's effect, RMS (N), evidence, outcome and reason."""
+    return [
+        (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", _outcome(diagnosis, t), t.reason)
+        for t in step.trials
+    ]
+
+
+def _outcome(diagnosis: Diagnosis, trial: Trial) -> str:
+    # The search questions what it added again; the ledger should not claim what the verdict
+    # took back.
+    kept = trial.outcome != "added" or trial.effect in diagnosis.effects
+    return trial.outcome if kept else "withdrawn"
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:

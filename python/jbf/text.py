@@ -14,6 +14,7 @@ from jbf.tables import (
     ledger_rows,
     parameter_rows,
     run_rows,
+    trial_rows,
 )
 from jbf.words import BARE, comparison_sentence, number, times, verdict_sentence
 
@@ -140,13 +141,14 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         if not step.trials:
             continue
         lines += ["", f"Candidates tried beside the {' + '.join([BARE, *step.effects])}"]
-        rows = [("effect", "RMS (N)", "evidence", "outcome")]
-        rows += [(t.effect, number(t.rms_n), f"{t.evidence:+.0f}", t.outcome) for t in step.trials]
-        head, *table = columns(rows, "<>><", 4)
+        rows = trial_rows(diagnosis, step)
+        head, *table = columns(
+            [("effect", "RMS (N)", "evidence", "outcome"), *(row[:4] for row in rows)], "<>><", 4
+        )
         lead = max(map(len, [head, *table])) + 2
         lines.append(f"{head:<{lead}}why")
-        for line, trial in zip(table, step.trials, strict=True):
-            lines += _hanging(f"{line:<{lead}}", trial.reason, 0)
+        for line, row in zip(table, rows, strict=True):
+            lines += _hanging(f"{line:<{lead}}", row[4], 0)
     return lines
 
 

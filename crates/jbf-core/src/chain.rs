@@ -8,8 +8,8 @@
 //! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
 //! load on a soft drive) does so from the step before.
 
-use crate::effect::{Effects, Resistance, Rig, States};
-use crate::law::{pressed_n, Law};
+use crate::effect::{Effects, Resistance, Rig, Signal, States};
+use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -36,6 +36,8 @@ pub struct State<T: Real, S> {
     magnitude: T,
     resistance: Resistance<T>,
     power_w: T,
+    /// The part of the force that jumps when a rigid journal turns round, N, unsigned.
+    jump_n: T,
     /// Friction force of one bearing before the instrument, N.
     pub force_n: T,
     /// What the instrument shows, N.
@@ -65,6 +67,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
                 slope_n_s_m: T::ZERO,
             },
             power_w: T::ZERO,
+            jump_n: T::ZERO,
             force_n: T::ZERO,
             reading_n: T::ZERO,
         };
@@ -106,17 +109,24 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         );
         state.film_speed_m_s = end;
         state.motion = *to;
+        let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
         self.act(state, journal, factor, dt_s);
+        let mean = from.velocity_m_s + journal.velocity_m_s;
+        let signal = Signal {
+            begin_n: begin_n + jump_n * turn(from.direction, mean),
+            end_n: state.force_n + state.jump_n * turn(journal.direction, mean),
+            now_n: state.force_n,
+        };
         state.reading_n = self
             .effects
-            .reading(&mut state.effects, state.force_n, to.time_s, dt_s);
+            .reading(&mut state.effects, signal, to.time_s, dt_s);
         state.reading_n
     }
 
     /// From the film's state to the force: contact, other friction, and what feeds back.
     #[inline]
     fn act(&self, state: &mut State<T, L::State>, journal: JournalMotion<T>, factor: T, dt_s: T) {
-        let load_n = pressed_n(state.motion.load_n);
+        let load_n = self.law.pressed_n(state.motion.load_n);
         let mut sliding = self.law.friction(&state.law, journal.velocity_m_s * factor);
         self.effects.contact(
             &mut state.effects,
@@ -131,17 +141,22 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         } else {
             magnitude
         };
-        let coefficient = self
-            .effects
-            .bristle(
-                &mut state.effects,
-                &state.journal,
-                &journal,
-                [before, magnitude],
-                dt_s,
-            )
-            .unwrap_or_else(|| sliding.coefficient(journal.direction));
+        let bent = self.effects.bristle(
+            &mut state.effects,
+            &state.journal,
+            &journal,
+            [before, magnitude],
+            dt_s,
+        );
+        let coefficient = bent.unwrap_or_else(|| sliding.coefficient(journal.direction));
         let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
+        // A bristle turns the contact's jump into a slope.
+        let contact_n = if bent.is_some() {
+            T::ZERO
+        } else {
+            sliding.level * load_n
+        };
+        state.jump_n = contact_n + level_n;
         state.force_n = coefficient * load_n + level_n * journal.direction + smooth_n;
         state.magnitude = magnitude;
         let speed = journal.velocity_m_s;
@@ -160,5 +175,18 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
             .warm(&mut state.effects, [state.power_w, power_w], dt_s);
         state.power_w = power_w;
         state.journal = journal;
+    }
+}
+
+/// How the direction of motion inside a step (the sign of its mean speed) differs from the
+/// `direction` at one of its ends: a rigid journal that starts, stops or turns there jumps.
+/// A journal held by a soft drive goes through every direction in between and never jumps.
+#[inline]
+fn turn<T: Real>(direction: T, mean_speed_m_s: T) -> T {
+    let inside = mean_speed_m_s.sign();
+    if inside == T::ZERO || (direction != T::ZERO && direction != -inside) {
+        T::ZERO
+    } else {
+        inside - direction
     }
 }

@@ -20,6 +20,11 @@
 #[cfg(test)]
 extern crate std;
 
+/// The README's example is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
+
 pub mod bearing;
 pub mod chain;
 pub mod clock;

@@ -221,3 +221,16 @@ fn single_precision_follows_double() {
         }
     }
 }
+#[test]
+fn explore() {
+    for run in runs() {
+        for parts in [1.0, 4.0, 20.0, 100.0] {
+            let h = LOOP_STEP_S / parts;
+            let double = run.friction::<f64>(&Rk4, h);
+            let single = run.friction::<f32>(&Rk4, h);
+            let peak = double.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+            let e = double.iter().zip(single).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            println!("{:?} {} {parts}: {:e}", run.clock, run.omega_rad_s, e / peak);
+        }
+    }
+}

@@ -126,3 +126,28 @@ fn lost_numbers_leave_the_film_alone() {
         assert_eq!((state.xy(), state.clamped), (before, 2));
     }
 }
+
+/// The same with asperities too soft to carry the load, where a step could be held at the wall
+/// itself: there the film would not flow and the journal would stay.
+#[test]
+fn soft_asperities_do_not_trap_the_journal() {
+    for k0 in [1.0, 1e3, 1e5] {
+        let p = Parameters {
+            k0,
+            ..Parameters::TABLE_4_2
+        };
+        let law = Journal::new(&Bearing::THESIS, 104.0, &p, Clock::Journal).expect("valid");
+        let mut state = law.start(104.0);
+        law.advance_with(&Euler, &mut state, [1e3; 3], 1.0, 10.0);
+        assert_eq!(state.clamped, 1);
+        for _ in 0..60_000 {
+            law.advance(&mut state, [0.05; 3], 1.0, 0.002);
+        }
+        let steady = law.steady(0.05).expect("a speed");
+        assert!(
+            (state.eps() - steady.eps).abs() < 1e-6,
+            "{k0}: {}",
+            state.eps()
+        );
+    }
+}

@@ -36,6 +36,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("source", info.source)?;
         d.set_item("limits", info.limits)?;
         d.set_item("needs_angle", info.needs_angle)?;
+        d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;
     }

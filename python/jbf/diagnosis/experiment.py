@@ -54,9 +54,7 @@ def propose(
     best, separation = "", 0.0
     for words, velocity in _motions(top).items():
         time = np.arange(len(velocity)) * STEP_S
-        path = np.concatenate(
-            ([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * STEP_S))
-        )
+        path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * STEP_S)))
         run = Run.from_arrays(time, velocity, angle_rad=path / rig.bearing.radius_m)
         curves = [_predict(search, effects, run) for effects in rivals]
         # The least separated pair decides whether the run would settle it.

@@ -40,7 +40,7 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
 
 def _without_leak(part: Problem, solution: Solution, left_out: int) -> Array:
     """The whole solution, less what only the left-out run knows."""
-    values = solution.values.copy()
+    values: Array = solution.values.copy()
     size = np.zeros(len(values))
     for k, (jacobian, p) in enumerate(
         zip(solution.jacobian, _others(solution, part, left_out), strict=True)
@@ -56,9 +56,7 @@ def _without_leak(part: Problem, solution: Solution, left_out: int) -> Array:
     return values
 
 
-def _others(
-    solution: Solution, part: Problem, left_out: int
-) -> list[npt.NDArray[np.bool_] | None]:
+def _others(solution: Solution, part: Problem, left_out: int) -> list[npt.NDArray[np.bool_] | None]:
     masks: list[npt.NDArray[np.bool_] | None] = [p.trusted for p in part.campaign.prepared]
     masks.insert(left_out, None)
     return masks

@@ -31,9 +31,7 @@ def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...
         problem_innovations(r, p.trusted, p.step_s, solution)
         for r, p in zip(solution.residuals, campaign.prepared, strict=True)
     ]
-    found = [
-        Remainder(f.axis, f.where, f.share) for f in _patterns(problem, solution, innovations)
-    ]
+    found = [Remainder(f.axis, f.where, f.share) for f in _patterns(problem, solution, innovations)]
     found += _tones(problem, innovations, [-r for r in solution.residuals])
     return tuple(sorted(found, key=lambda r: -r.share))
 

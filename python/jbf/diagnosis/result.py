@@ -29,7 +29,8 @@ class Trial:
         Twice the gain in log likelihood, less what chance and the candidate's parameters would
         gain; above zero it is better than nothing.
     outcome
-        `added`, `ties`, `rejected`, or `useless` (no better than chance).
+        `added`, `ties`, `rejected`, `useless` (no better than chance), or `withdrawn` (added,
+        until what remained showed it to be a stand-in).
     reason
         Why, in words.
     """

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -69,11 +69,13 @@ class Search:
         if effects not in self.solved:
             problem = self.problem(effects)
             seeds: list[Mapping[str, float]] = [{}]
+            worst = np.inf
             if near is not None:
+                worst = 1.05 * self.problem(near.effects).square(near.values)
                 names = self.problem(near.effects).names
-                law = {n: v for n, v in zip(names, near.values, strict=True)}
+                law = dict(zip(names, near.values, strict=True))
                 seeds = [law, {n: v for n, v in law.items() if "." in n}]
-            self.solved[effects] = problem.solve(seeds)
+            self.solved[effects] = problem.solve(seeds, give_up_above=worst)
         return self.solved[effects]
 
     def price(self, parameters: int) -> float:
@@ -114,12 +116,15 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
     for i, name in enumerate(rivals):
         search.say(f"trying {name}", i, len(rivals))
         solution = search.solve(frozenset((*present, name)), base)
-        found.append((search.evidence(solution, base), name, solution))
+        # At its null an effect leaves the model as it was: no candidate is worse than that.
+        least = -search.price(solution.free - base.free)
+        found.append((max(search.evidence(solution, base), least), name, solution))
     found.sort(key=lambda t: -t[0])
     leader, ties, trials = None, [], []
+    bare = root_mean_square(base.residuals, search.campaign)
     before = search.hold_out(frozenset(present)) if found and found[0][0] > 0 else np.nan
     for evidence, name, solution in found:
-        rms = root_mean_square(solution.residuals, search.campaign)
+        rms = min(root_mean_square(solution.residuals, search.campaign), bare)
         outcome, reason = "useless", "gains no more than chance would"
         if evidence > 0:
             after = search.hold_out(frozenset((*present, name)))
@@ -252,7 +257,7 @@ def diagnose(
 
     remains = _remainder(search, present)
     if remains and present and _explained(search, present, noise) < LEAST_EXPLAINED:
-        present, steps = (), steps[:1]
+        present, steps = (), [_withdrawn(steps[0])]
         remains = _remainder(search, present)
     equal = alternatives(search, present)
     fit = finish(search.problem(present), search.solve(frozenset(present)))
@@ -290,3 +295,13 @@ def _explained(search: Search, present: tuple[str, ...], noise_n: float) -> floa
     bare = root_mean_square(search.solve(frozenset()).residuals, search.campaign) ** 2
     now = root_mean_square(search.solve(frozenset(present)).residuals, search.campaign) ** 2
     return (bare - now) / max(bare - noise_n**2, 1e-300)
+
+
+def _withdrawn(step: Step) -> Step:
+    """The first step, when what was added in it turned out to be a stand-in."""
+    reason = "explains part of the error, but structure remains that it does not touch"
+    trials = tuple(
+        replace(t, outcome="withdrawn", reason=reason) if t.outcome in ("added", "ties") else t
+        for t in step.trials
+    )
+    return replace(step, trials=trials)

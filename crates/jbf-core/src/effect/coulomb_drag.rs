@@ -34,6 +34,7 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
             period: None,
         }],
         needs_angle: false,
+        longest_step_s: 0.02,
     };
     type State = ();
 

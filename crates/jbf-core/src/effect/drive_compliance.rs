@@ -78,6 +78,7 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
             },
         ],
         needs_angle: true,
+        longest_step_s: 0.005,
     };
     type State = State<T>;
 

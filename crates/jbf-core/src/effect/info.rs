@@ -77,6 +77,8 @@ pub struct Info {
     pub parameters: &'static [Parameter],
     /// True where the shaft's angle must be on record.
     pub needs_angle: bool,
+    /// Longest inner step at which the effect is still exact to a hundredth of a usual noise, s.
+    pub longest_step_s: f64,
 }
 
 impl Info {

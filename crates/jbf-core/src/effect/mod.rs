@@ -114,12 +114,27 @@ pub trait OtherFriction<T: Real>: Effect<T> {
     fn smooth_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
 }
 
+/// The force during a step, as an instrument meets it.
+///
+/// Friction jumps where a rigid journal starts, stops or turns; what it is on the inside of the
+/// step differs there from what it is at the sample, and an instrument with a memory must follow
+/// the inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Signal<T> {
+    /// Just after the beginning of the step, N.
+    pub begin_n: T,
+    /// Just before its end, N.
+    pub end_n: T,
+    /// At its end, N.
+    pub now_n: T,
+}
+
 /// Between the force and its record.
 pub trait Instrument<T: Real>: Effect<T> {
     /// The first reading of a run that begins with `force_n`.
     fn first(&self, state: &mut Self::State, force_n: T) -> T;
-    /// The reading `dt_s` later, at `time_s`, when the force has become `force_n`.
-    fn step(&self, state: &mut Self::State, force_n: T, time_s: T, dt_s: T) -> T;
+    /// What the instrument makes of the signal of a step of `dt_s` that ends at `time_s`.
+    fn step(&self, state: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T>;
 }
 
 // The fixed order of the chain, in one place; inside a stage effects act from left to right.

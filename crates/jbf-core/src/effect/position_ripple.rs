@@ -52,6 +52,7 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
             },
         ],
         needs_angle: true,
+        longest_step_s: 0.02,
     };
     type State = ();
 

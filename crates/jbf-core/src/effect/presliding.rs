@@ -49,11 +49,12 @@ impl<T: Real> Effect<T> for Presliding<T> {
             lower: 1.0,
             upper: 1e8,
             null: Some(f64::INFINITY),
-            starts: &[3e3, 3e2, 3e4],
+            starts: &[3e3, 3e2, 3e4, 3e5],
             log: true,
             period: None,
         }],
         needs_angle: false,
+        longest_step_s: 0.01,
     };
     type State = T;
 

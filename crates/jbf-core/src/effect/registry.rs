@@ -117,15 +117,15 @@ macro_rules! signal_chain {
             pub(crate) fn reading(
                 &self,
                 states: &mut States<T>,
-                force_n: T,
+                force: Signal<T>,
                 time_s: T,
                 dt_s: T,
             ) -> T {
-                let mut reading = force_n;
+                let mut signal = force;
                 $(if let (Some(e), Some(s)) = (&self.$instrument, &mut states.$instrument) {
-                    reading = e.step(s, reading, time_s, dt_s);
+                    signal = e.step(s, signal, time_s, dt_s);
                 })*
-                reading
+                signal.now_n
             }
         }
     };
@@ -175,6 +175,15 @@ macro_rules! signal_chain {
                         rule: "is not in the catalogue",
                     }),
                 }
+            }
+
+            /// The longest inner step that suits every effect here, s.
+            pub fn longest_step_s(&self) -> f64 {
+                let mut longest = f64::INFINITY;
+                $(if self.$module.is_some() {
+                    longest = longest.min(<$module::$Type<T> as Effect<T>>::INFO.longest_step_s);
+                })*
+                longest
             }
 
             /// States at the start of a run.

@@ -3,7 +3,7 @@
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
 use super::relaxation::relax;
-use super::{Effect, Info, Instrument, Parameter, Rig, Stage};
+use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -12,13 +12,6 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct SensorLag<T> {
     tau_s: T,
-}
-
-/// The reading, and the force that it follows.
-#[derive(Clone, Copy, Debug)]
-pub struct State<T> {
-    reading_n: T,
-    force_n: T,
 }
 
 impl<T: Real> Effect<T> for SensorLag<T> {
@@ -42,8 +35,10 @@ impl<T: Real> Effect<T> for SensorLag<T> {
             period: None,
         }],
         needs_angle: false,
+        longest_step_s: 0.02,
     };
-    type State = State<T>;
+    /// The reading, N.
+    type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
         Self::INFO.check(parameters)?;
@@ -52,33 +47,33 @@ impl<T: Real> Effect<T> for SensorLag<T> {
         })
     }
 
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
-        State {
-            reading_n: T::ZERO,
-            force_n: T::ZERO,
-        }
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
+        T::ZERO
     }
 }
 
 impl<T: Real> Instrument<T> for SensorLag<T> {
-    fn first(&self, state: &mut State<T>, force_n: T) -> T {
-        *state = State {
-            reading_n: force_n,
-            force_n,
-        };
+    fn first(&self, state: &mut T, force_n: T) -> T {
+        *state = force_n;
         force_n
     }
 
     #[inline]
-    fn step(&self, state: &mut State<T>, force_n: T, _time_s: T, dt_s: T) -> T {
-        let from = state.force_n;
-        state.force_n = force_n;
-        state.reading_n = if self.tau_s.value() * 700.0 > dt_s.value() {
-            relax(state.reading_n, [from, force_n], dt_s / self.tau_s)
+    fn step(&self, state: &mut T, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
+        let begin_n = *state;
+        // Below the resolution of a step the lag is its limit: no lag, or a shift by tau.
+        let ratio = dt_s / self.tau_s;
+        *state = if self.tau_s.value() <= 0.0 {
+            signal.now_n - (signal.end_n - signal.begin_n) * (self.tau_s / dt_s)
+        } else if ratio.value() > 700.0 {
+            signal.end_n - (signal.end_n - signal.begin_n) / ratio
         } else {
-            // The limit of a short time constant, with its slope: F - tau F'.
-            force_n - (force_n - from) * (self.tau_s / dt_s)
+            relax(begin_n, [signal.begin_n, signal.end_n], ratio)
         };
-        state.reading_n
+        Signal {
+            begin_n,
+            end_n: *state,
+            now_n: *state,
+        }
     }
 }

@@ -51,6 +51,7 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
             },
         ],
         needs_angle: false,
+        longest_step_s: 0.02,
     };
     type State = T;
 

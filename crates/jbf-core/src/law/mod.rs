@@ -26,16 +26,6 @@ impl<T: Real> Sliding<T> {
     }
 }
 
-/// Lightest load that a law computes with, N: a bearing that is lifted or not pressed has no
-/// friction coefficient, and a step must not divide by its load.
-pub const LIGHTEST_LOAD_N: f64 = 1e-6;
-
-/// The load that presses, N: `load_n`, or [`LIGHTEST_LOAD_N`] where that is larger.
-#[inline]
-pub fn pressed_n<T: Real>(load_n: T) -> T {
-    load_n.max(T::of(LIGHTEST_LOAD_N))
-}
-
 /// A friction law: configuration here, what changes in `State`.
 pub trait Law<T: Real> {
     /// What the law remembers.
@@ -44,11 +34,20 @@ pub trait Law<T: Real> {
     /// The state at which every run starts.
     fn start(&self, load_n: T) -> Self::State;
 
+    /// The load (N) that the law computes with, and that its coefficient refers to: a law
+    /// may have a lightest one.
+    fn pressed_n(&self, load_n: T) -> T {
+        load_n.max(T::ZERO)
+    }
+
     /// Take a new load; cheap when it did not change.
     fn set_load(&self, state: &mut Self::State, load_n: T);
 
     /// Friction now, at the film speed `velocity_m_s` (signed).
     fn friction(&self, state: &Self::State, velocity_m_s: T) -> Sliding<T>;
+
+    /// Longest step, s, that the law's own stepper takes without loss up to a speed.
+    fn longest_step_s(&self, top_speed_m_s: f64) -> f64;
 
     /// Advance by `dt_s`; `speed_m_s` is |U| at the start, middle and end of the step, and
     /// `rate` a factor on the law's own clock.

@@ -18,7 +18,7 @@ pub struct Steady {
 ///
 /// The left side grows with eps from 0 to infinity, so halving the bracket cannot miss. The
 /// unknown is `log(1 - eps)`, which resolves light and near-contact films alike.
-pub(super) fn solve(fb: f64, ub: f64, asperity_load: impl Fn(f64) -> f64) -> (f64, f64) {
+pub(crate) fn solve(fb: f64, ub: f64, asperity_load: impl Fn(f64) -> f64) -> (f64, f64) {
     let parts = |eps: f64| {
         let j = FilmIntegrals::at(eps);
         let radial = asperity_load(eps) - j.j12 * eps * ub / 2.0;

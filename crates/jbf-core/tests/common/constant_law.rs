@@ -16,6 +16,10 @@ impl<T: Real> Law<T> for ConstantLaw {
         T::ZERO
     }
 
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
     fn set_load(&self, _state: &mut T, _load_n: T) {}
 
     fn friction(&self, _state: &T, _velocity_m_s: T) -> Sliding<T> {

@@ -28,6 +28,28 @@ fn answers_a_step_with_an_exponential() {
     }
 }
 
+/// Where a sample falls on the reversal itself, the jump of the force is there, not spread
+/// over a step: the ideal answer, to rounding. The same where the motion starts or stops.
+#[test]
+fn answers_a_jump_at_a_sample_exactly() {
+    let (f, tau, dt) = (0.1, 0.3, 0.05);
+    let chain = chain_round(ConstantLaw(f), &[("sensor_lag", &[tau])]);
+    let speed = |t: f64| match (t / dt).round() as i32 {
+        0 => 0.0,
+        1..=39 => 0.1,
+        40 => 0.0,
+        41..=79 => -0.1,
+        _ => 0.0,
+    };
+    let got = readings(&chain, dt, 120, |t| constant::<f64>(speed(t), t));
+    let mut level = 0.0;
+    for (i, r) in got.iter().enumerate().skip(1) {
+        let target = [1.0, -1.0, 0.0][(i - 1) / 40];
+        level = target + (level - target) * (-dt / tau).exp();
+        assert!((r / (f * LOAD_N) - level).abs() < 1e-12, "sample {i}: {r}");
+    }
+}
+
 /// A lag shorter than any step is a shift by tau, not noise: r = F - tau F'.
 #[test]
 fn a_short_lag_shifts() {

@@ -25,7 +25,7 @@ fn run<T: Real>(which: &[&Info]) -> Vec<T> {
 #[test]
 fn the_instrument_sees_the_drag() {
     let (tau, dt) = (0.1_f64, 0.01_f64);
-    let sines = Sines::two_way(1.0);
+    let sines = Sines::one_way(1.0);
     let drag: (&str, &[f64]) = ("coulomb_drag", &[2.0]);
     let force = readings(&chain::<f64>(&[drag]), dt, 700, |t| sines.at(t));
     let both = readings(

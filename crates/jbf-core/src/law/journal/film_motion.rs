@@ -12,16 +12,19 @@ use crate::real::Real;
 use crate::stepper::System;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// The film as a system of two states driven by `|Ub|`.
+/// The film as a system of two states driven by `|Ub|`: its way from where a step began,
+/// which single precision resolves far better than the place itself.
 pub(super) struct Film<'a, T> {
     pub(super) law: &'a Journal<T>,
     pub(super) loaded: &'a Loaded<T>,
+    /// `x` and `y` where the step began.
+    pub(super) from: [T; 2],
 }
 
 impl<T: Real> System<T, 2> for Film<'_, T> {
     #[inline]
-    fn slope(&self, xy: &[T; 2], ub: T) -> [T; 2] {
-        let [x, y] = *xy;
+    fn slope(&self, way: &[T; 2], ub: T) -> [T; 2] {
+        let (x, y) = (self.from[0] + way[0], self.from[1] + way[1]);
         let distance = (x * x + y * y).sqrt();
         // Stages of a coarse step may look outside the bearing: show them the limit, in
         // their own direction.

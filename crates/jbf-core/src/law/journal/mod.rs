@@ -10,27 +10,33 @@
 //! The state is held as `x = eps cos(phi)`, `y = eps sin(phi)`: no sine, no cosine, and no
 //! singularity at the centre of the bearing.
 //!
-//! Source: Harnoy & Friedland, ASLE Trans. 37 (1994); Cohn, MS thesis, NJIT (1998), chapter 3.
+//! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
+//! chapter 3.
 
+mod build;
 mod film_motion;
 mod parameters;
 mod state;
+mod stribeck;
 
 pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
 pub use state::{Loaded, State};
 
-use super::{pressed_n, Law, Sliding, Steady};
-use crate::bearing::Bearing;
-use crate::clock::Clock;
-use crate::error::{check, positive, ParameterError};
+use super::{Law, Sliding};
+use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper};
 use crate::transition::transition_eccentricity;
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::Film;
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
+
+/// Lightest load that the law computes with, as a share of the constructor's. (3.20) lets
+/// eps_tr fall with the load, to zero for a lifted bearing: asperities would touch at the
+/// centre, with a stiffness beyond explicit steps. The model has no meaning there.
+pub const LIGHTEST_SHARE: f64 = 0.01;
 
 /// The law, ready to step.
 #[derive(Clone, Copy, Debug)]
@@ -49,88 +55,13 @@ pub struct Journal<T> {
 }
 
 impl<T: Real> Journal<T> {
-    /// Check the numbers once and fold the constants together.
-    ///
-    /// # Errors
-    /// Names the first number that is not positive and finite.
-    pub fn new(
-        bearing: &Bearing,
-        load_n: f64,
-        parameters: &Parameters<T>,
-        clock: Clock,
-    ) -> Result<Self, ParameterError> {
-        let bearing = bearing.checked()?;
-        positive("load_n", load_n)?;
-        let p = parameters;
-        check(
-            p.f_m.is_finite() && p.f_m >= T::ZERO,
-            "f_m",
-            p.f_m.value(),
-            "must be zero or positive, and finite",
-        )?;
-        positive("U_tr_m_s", p.u_tr_m_s.value())?;
-        positive("K0", p.k0.value())?;
-        check(
-            p.gamma.is_finite() && p.gamma >= T::ZERO,
-            "gamma",
-            p.gamma.value(),
-            "must be zero or positive, and finite",
-        )?;
-        let fb_per_n = bearing.load_number(T::ONE, p.u_tr_m_s);
-        let mut law = Self {
-            fb_per_n,
-            f_m: p.f_m,
-            k0: p.k0,
-            viscous_s_m: p.gamma * T::of(bearing.viscous_ratio() * 2.0 * PI) / p.u_tr_m_s,
-            inverse_u_tr: T::ONE / p.u_tr_m_s,
-            rate: match clock {
-                Clock::Journal => p.u_tr_m_s * T::of(1.0 / bearing.radius_m),
-                Clock::Thesis => T::ONE,
-            },
-            nominal: Loaded {
-                load_n: T::ZERO,
-                load_number: T::ZERO,
-                eps_tr: T::ZERO,
-            },
-        };
-        law.nominal = law.under(T::of(load_n));
-        // Sizes in the wrong unit overflow here, and would step as infinities.
-        let folded = [law.viscous_s_m, law.inverse_u_tr, law.rate]
-            .iter()
-            .all(|x| x.is_finite());
-        let load_number = law.nominal.load_number;
-        check(
-            folded && load_number > T::ZERO && load_number.is_finite(),
-            "load_number",
-            load_number.value(),
-            "or another group of the sizes overflows: check their units",
-        )?;
-        Ok(law)
-    }
-
-    /// The same law with a transition eccentricity given instead of solved from (3.20), for
-    /// reproducing the printed tables.
-    ///
-    /// # Errors
-    /// `eps_tr` must lie between 0 and 1.
-    pub fn with_eps_tr(mut self, eps_tr: f64) -> Result<Self, ParameterError> {
-        check(
-            eps_tr > 0.0 && eps_tr < 1.0,
-            "eps_tr",
-            eps_tr,
-            "must lie between 0 and 1",
-        )?;
-        self.nominal.eps_tr = T::of(eps_tr);
-        Ok(self)
-    }
-
-    /// Load number and transition eccentricity under a load; a load that does not press is
-    /// taken as [`super::LIGHTEST_LOAD_N`].
+    /// Load number and transition eccentricity under a load; see [`LIGHTEST_SHARE`]
+    /// for a lifted bearing.
     pub fn under(&self, load_n: T) -> Loaded<T> {
         if load_n.value() == self.nominal.load_n.value() {
             return self.nominal;
         }
-        let load_number = self.fb_per_n * pressed_n(load_n);
+        let load_number = self.fb_per_n * self.pressed_n(load_n);
         // A heavy load in single precision rounds eps_tr to one: outside the bearing.
         let eps_tr = transition_eccentricity(load_number).min(T::EPS_LIMIT);
         Loaded {
@@ -176,23 +107,41 @@ impl<T: Real> Journal<T> {
         let film = Film {
             law: self,
             loaded: &state.loaded,
+            from: state.xy,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        let mut xy = state.xy;
-        stepper.step(&film, &mut xy, ub, dt_s * rate * self.rate);
+        let mut way = state.kept;
+        stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
         let limit = T::EPS_LIMIT;
         if e2.value() <= (limit * limit).value() {
+            // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+            state.kept = [
+                way[0] - (xy[0] - state.xy[0]),
+                way[1] - (xy[1] - state.xy[1]),
+            ];
             state.xy = xy;
             return;
         }
+        // Too coarse a step. A step that lost its numbers altogether leaves the film as it
+        // was; any other is held in its direction.
         state.clamped = state.clamped.saturating_add(1);
-        // Too coarse a step: hold the journal just inside the bearing, on the same side.
-        // A step that lost its numbers altogether leaves the film as it was.
         if e2.is_finite() {
-            let shrink = limit / e2.sqrt();
+            let shrink = self.deepest(&state.loaded) / e2.sqrt();
             state.xy = [xy[0] * shrink, xy[1] * shrink];
+            state.kept = [T::ZERO; 2];
         }
+    }
+
+    /// Where a step too coarse is held: at the eccentricity of a journal at rest, whose
+    /// asperities carry the load alone, or where that is too deep (soft asperities) nine
+    /// tenths of the way from eps_tr to the wall. Closer to the wall the film hardly flows,
+    /// and the journal would stay there for hours.
+    fn deepest(&self, loaded: &Loaded<T>) -> T {
+        let at_rest = loaded.eps_tr + (loaded.load_number / self.k0).sqrt();
+        let near_wall = loaded.eps_tr + (T::ONE - loaded.eps_tr) * T::of(0.9);
+        at_rest.min(near_wall).min(T::EPS_LIMIT)
     }
 }
 
@@ -202,6 +151,27 @@ impl<T: Real> Law<T> for Journal<T> {
     fn start(&self, load_n: T) -> State<T> {
         let loaded = self.under(load_n);
         State::at(loaded.eps_tr, T::of(START_PHI_RAD), loaded)
+    }
+
+    fn longest_step_s(&self, top_speed_m_s: f64) -> f64 {
+        // The fastest rates of the film, 1/s, at eps_tr: the oil carried round with the shaft,
+        // some four times U/R, the load that squeezes the film, and the asperities' push.
+        let loaded = self.nominal;
+        let (rate, fb) = (self.rate.value(), loaded.load_number.value());
+        let ub = libm::fabs(top_speed_m_s * self.inverse_u_tr.value());
+        let e = loaded.eps_tr.value();
+        let d = (1.0 - e) * (1.0 + e);
+        let d32 = d * libm::sqrt(d);
+        let squeezing = FRAC_2_PI * fb * d32;
+        let stiffness = 2.0 * libm::sqrt(fb * self.k0.value());
+        let pushing = stiffness * d32 * d / (FRAC_PI_2 + PI_LESS_8_OVER_PI);
+        // Runge-Kutta is stable to 2.8 times the inverse of a rate, exact well below it.
+        1.0 / (rate * (4.0 * ub + squeezing + pushing))
+    }
+
+    #[inline]
+    fn pressed_n(&self, load_n: T) -> T {
+        load_n.max(self.nominal.load_n * T::of(LIGHTEST_SHARE))
     }
 
     #[inline]
@@ -219,33 +189,5 @@ impl<T: Real> Law<T> for Journal<T> {
     #[inline]
     fn advance(&self, state: &mut State<T>, speed_m_s: [T; 3], rate: T, dt_s: T) {
         self.advance_with(&Rk4, state, speed_m_s, rate, dt_s);
-    }
-}
-
-impl Journal<f64> {
-    /// Steady eccentricity, attitude and friction at a speed (m/s, signed), (3.5), (3.6).
-    ///
-    /// # Errors
-    /// The speed must be finite and not zero: at rest the friction is set-valued.
-    pub fn steady(&self, velocity_m_s: f64) -> Result<Steady, ParameterError> {
-        check(
-            velocity_m_s.is_finite() && velocity_m_s != 0.0,
-            "velocity_m_s",
-            velocity_m_s,
-            "must be finite and not zero",
-        )?;
-        let ub = libm::fabs(velocity_m_s) * self.inverse_u_tr;
-        let loaded = &self.nominal;
-        let (eps, phi_rad) = super::steady::solve(loaded.load_number, ub, |eps| {
-            self.asperity_load(eps, loaded.eps_tr)
-        });
-        let coefficient = self
-            .sliding(loaded, eps, velocity_m_s)
-            .coefficient(velocity_m_s.sign());
-        Ok(Steady {
-            eps,
-            phi_rad,
-            coefficient,
-        })
     }
 }

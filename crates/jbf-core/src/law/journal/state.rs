@@ -16,6 +16,9 @@ pub struct Loaded<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     pub(super) xy: [T; 2],
+    /// What rounding kept out of `xy` so far: without it a single-precision film that creeps,
+    /// or takes short steps, stands still.
+    pub(super) kept: [T; 2],
     pub(super) loaded: Loaded<T>,
     /// How often a step had to be held inside the bearing, because `dt_s` was too coarse
     /// or the input not finite.
@@ -28,6 +31,7 @@ impl<T: Real> State<T> {
         let xy = [eps * phi_rad.cos(), eps * phi_rad.sin()];
         Self {
             xy,
+            kept: [T::ZERO; 2],
             loaded,
             clamped: 0,
         }

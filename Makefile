@@ -1,0 +1,74 @@
+# Needs stable Rust, Python 3.10 or later with its venv module, and make. Everything else goes
+# into .venv and target.
+
+VENV := .venv
+PYTHON ?= python3
+RUST := $(shell find crates -name '*.rs' -path '*/src/*') \
+	$(shell find crates -name Cargo.toml) Cargo.toml Cargo.lock
+RUSTFMT := rustfmt --edition 2021
+RUST_FILES = find $(wildcard crates benches examples firmware) -name '*.rs' -not -path '*/target/*'
+
+MADE := $(VENV)/.made
+BUILT := $(VENV)/.built
+
+# A stamp without its extension or its command is stale.
+ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
+$(shell rm -f $(BUILT))
+endif
+
+.PHONY: help venv demo test lint format bench clean
+
+help:
+	@echo "make demo    the whole story on shipped data, in under a minute"
+	@echo "make test    Rust and Python tests"
+	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
+	@echo "make format  formats Rust and Python"
+	@echo "make bench   criterion benchmarks"
+	@echo "make venv    builds the extension and the jbf command into $(VENV)"
+	@echo "make clean   removes $(VENV), target and the built extension"
+
+venv: $(BUILT)
+
+demo: $(BUILT)
+	$(VENV)/bin/jbf demo
+
+test: $(BUILT)
+	cargo test -p jbf-core
+	$(VENV)/bin/python -m pytest
+
+# rustfmt does not follow the macro that declares the effects, so it is given every file.
+lint: $(BUILT)
+	$(RUSTFMT) --check $$($(RUST_FILES))
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
+	$(VENV)/bin/ruff check python simulator
+	$(VENV)/bin/ruff format --check python simulator
+	$(VENV)/bin/mypy
+
+format: $(BUILT)
+	$(RUSTFMT) $$($(RUST_FILES))
+	$(VENV)/bin/ruff check --fix python simulator
+	$(VENV)/bin/ruff format python simulator
+
+bench:
+	cargo bench -p jbf-benches
+
+clean:
+	rm -rf $(VENV) target python/jbf/_core*.so
+
+$(MADE):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "$(PYTHON) is missing or older than 3.10; say make PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+		{ echo "$(PYTHON) cannot make environments: apt-get install python3-venv" >&2; exit 1; }
+	@command -v cargo >/dev/null || \
+		{ echo "cargo is missing: install stable Rust from https://rustup.rs" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
+	@touch $@
+
+# The build runs inside .venv (no isolation), so that a rebuild is cargo's alone: seconds.
+$(BUILT): $(MADE) pyproject.toml $(RUST)
+	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" pip install --quiet --disable-pip-version-check \
+		--no-build-isolation --editable '.[dev]'
+	@touch $@

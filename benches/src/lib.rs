@@ -1,0 +1,62 @@
+//! What the benchmarks share: Table 4.2 over any scalar, chains, and a sampled motion.
+
+use jbf_core::effect::{Effects, Rig, CATALOGUE};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::{Bearing, Chain, Clock, Motion, Real};
+
+/// Load of Table 4.2, N.
+pub const LOAD_N: f64 = 104.0;
+
+/// Step of the thesis's control loop, s.
+pub const LOOP_STEP_S: f64 = 0.002;
+
+/// Table 4.2 on the journal clock; `lift` may make derivatives of the four parameters.
+pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
+    let p = Parameters::TABLE_4_2;
+    let parameters = Parameters {
+        f_m: lift(0, p.f_m),
+        u_tr_m_s: lift(1, p.u_tr_m_s),
+        k0: lift(2, p.k0),
+        gamma: lift(3, p.gamma),
+    };
+    Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("Table 4.2 is valid")
+}
+
+/// The same law with the named effects at their starting values.
+pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain<T, Journal<T>> {
+    let mut all = Effects::NONE;
+    for info in CATALOGUE.iter().filter(|info| effects.contains(&info.name)) {
+        let values: Vec<T> = info.parameters.iter().map(|p| T::of(p.starts[0])).collect();
+        all.set(info.name, &values)
+            .expect("starting values are valid");
+    }
+    let rig = Rig {
+        radius_m: T::of(Bearing::THESIS.radius_m),
+        count: T::of(f64::from(Bearing::THESIS.count)),
+    };
+    Chain {
+        law: law(lift),
+        effects: all,
+        rig,
+    }
+}
+
+/// Two-way motion of chapter 4, U = 0.127 sin(t), at a time.
+pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
+    let (sin, cos) = time_s.sin_cos();
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(0.127 * sin),
+        acceleration_m_s2: T::of(0.127 * cos),
+        angle_rad: T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m),
+        load_n: T::of(LOAD_N),
+    }
+}
+
+/// A period of it at the loop's step, so that a benchmark meets reversals and full film in
+/// their due shares.
+pub fn period<T: Real>() -> Vec<Motion<T>> {
+    (0..3142)
+        .map(|i| two_way(LOOP_STEP_S * f64::from(i)))
+        .collect()
+}

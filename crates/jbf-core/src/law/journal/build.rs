@@ -1,0 +1,85 @@
+//! Building the law: every number checked once, constants folded together.
+
+use super::{Journal, Loaded, Parameters};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+use core::f64::consts::PI;
+
+impl<T: Real> Journal<T> {
+    /// Check the numbers once and fold the constants together.
+    ///
+    /// # Errors
+    /// Names the first number that is not positive and finite.
+    pub fn new(
+        bearing: &Bearing,
+        load_n: f64,
+        parameters: &Parameters<T>,
+        clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        let bearing = bearing.checked()?;
+        positive("load_n", load_n)?;
+        let p = parameters;
+        check(
+            p.f_m.is_finite() && p.f_m >= T::ZERO,
+            "f_m",
+            p.f_m.value(),
+            "must be zero or positive, and finite",
+        )?;
+        positive("U_tr_m_s", p.u_tr_m_s.value())?;
+        positive("K0", p.k0.value())?;
+        check(
+            p.gamma.is_finite() && p.gamma >= T::ZERO,
+            "gamma",
+            p.gamma.value(),
+            "must be zero or positive, and finite",
+        )?;
+        let fb_per_n = bearing.load_number(T::ONE, p.u_tr_m_s);
+        let mut law = Self {
+            fb_per_n,
+            f_m: p.f_m,
+            k0: p.k0,
+            viscous_s_m: p.gamma * T::of(bearing.viscous_ratio() * 2.0 * PI) / p.u_tr_m_s,
+            inverse_u_tr: T::ONE / p.u_tr_m_s,
+            rate: match clock {
+                Clock::Journal => p.u_tr_m_s * T::of(1.0 / bearing.radius_m),
+                Clock::Thesis => T::ONE,
+            },
+            nominal: Loaded {
+                load_n: T::ZERO,
+                load_number: T::ZERO,
+                eps_tr: T::ZERO,
+            },
+        };
+        law.nominal = law.under(T::of(load_n));
+        // Sizes in the wrong unit overflow here, and would step as infinities.
+        let folded = [law.viscous_s_m, law.inverse_u_tr, law.rate]
+            .iter()
+            .all(|x| x.is_finite());
+        let load_number = law.nominal.load_number;
+        check(
+            folded && load_number > T::ZERO && load_number.is_finite(),
+            "load_number",
+            load_number.value(),
+            "or another group of the sizes overflows: check their units",
+        )?;
+        Ok(law)
+    }
+
+    /// The same law with a transition eccentricity given instead of solved from (3.20), for
+    /// reproducing the printed tables.
+    ///
+    /// # Errors
+    /// `eps_tr` must lie between 0 and 1.
+    pub fn with_eps_tr(mut self, eps_tr: f64) -> Result<Self, ParameterError> {
+        check(
+            eps_tr > 0.0 && eps_tr < 1.0,
+            "eps_tr",
+            eps_tr,
+            "must lie between 0 and 1",
+        )?;
+        self.nominal.eps_tr = T::of(eps_tr);
+        Ok(self)
+    }
+}

@@ -1,0 +1,95 @@
+//! Whole recorded runs: inner steps between samples, reversals between samples.
+
+mod common;
+
+use common::motion::Sines;
+use common::{chain, readings};
+use jbf_core::run::{predict, Record};
+use jbf_core::Motion;
+
+/// Samples of a motion as columns.
+struct Columns([Vec<f64>; 5]);
+
+impl Columns {
+    fn of(sines: &Sines, dt_s: f64, count: u32) -> Self {
+        let motions: Vec<Motion<f64>> = (0..count).map(|i| sines.at(dt_s * f64::from(i))).collect();
+        let column = |f: fn(&Motion<f64>) -> f64| motions.iter().map(f).collect();
+        Self([
+            column(|m| m.time_s),
+            column(|m| m.velocity_m_s),
+            column(|m| m.acceleration_m_s2),
+            column(|m| m.angle_rad),
+            column(|m| m.load_n),
+        ])
+    }
+
+    fn record(&self) -> Record<'_> {
+        let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] = &self.0;
+        Record {
+            time_s,
+            velocity_m_s,
+            acceleration_m_s2,
+            angle_rad,
+            load_n,
+        }
+    }
+}
+
+fn run(effects: &[(&str, &[f64])], columns: &Columns, max_step_s: f64) -> Vec<f64> {
+    let mut out = Vec::new();
+    predict(
+        &chain::<f64>(effects),
+        &columns.record(),
+        max_step_s,
+        |i, reading| {
+            assert_eq!(i, out.len(), "samples come in order");
+            out.push(reading);
+        },
+    );
+    out
+}
+
+/// Without inner steps and without reversals a run is the chain, sample by sample.
+#[test]
+fn a_run_is_the_chain() {
+    let sines = Sines::one_way(1.0);
+    let columns = Columns::of(&sines, 0.005, 500);
+    let stepped = readings(&chain::<f64>(&[]), 0.005, 499, |t| sines.at(t));
+    // Times as differences of columns round differently from the exact 0.005.
+    for (a, b) in run(&[], &columns, 0.01).iter().zip(&stepped) {
+        assert!((a - b).abs() < 1e-10, "{a} {b}");
+    }
+}
+
+/// Inner steps refine a coarse record: halving them changes little, and what is left falls
+/// with them. Reversals lie between samples here, and the lag would show a jump put in the
+/// wrong place: 0.02 s of 2 F_d over tau is far more than is asked for.
+#[test]
+fn inner_steps_converge_across_reversals() {
+    let sines = Sines {
+        offset_m_s: 0.013,
+        ..Sines::two_way(1.3)
+    };
+    let columns = Columns::of(&sines, 0.02, 600);
+    let effects: [(&str, &[f64]); 2] = [("coulomb_drag", &[2.0]), ("sensor_lag", &[0.1])];
+    let apart = |a: f64, b: f64| {
+        let (a, b) = (run(&effects, &columns, a), run(&effects, &columns, b));
+        a.iter()
+            .zip(&b)
+            .map(|(x, y)| (x - y).abs())
+            .fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (apart(0.01, 1e-3), apart(2e-3, 1e-4));
+    assert!(coarse < 0.02, "{coarse} N");
+    assert!(fine < coarse / 10.0, "{coarse} N, {fine} N");
+}
+
+/// Columns of different lengths end the run with the shortest; an empty one gives nothing.
+#[test]
+fn the_shortest_column_ends_the_run() {
+    let mut columns = Columns::of(&Sines::one_way(1.0), 0.01, 50);
+    columns.0[3].truncate(20);
+    assert_eq!(run(&[], &columns, 0.01).len(), 20);
+    columns.0[1].clear();
+    assert!(run(&[], &columns, 0.01).is_empty());
+}

@@ -1,0 +1,8 @@
+"""`python -m jbf`."""
+
+import sys
+
+from jbf.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

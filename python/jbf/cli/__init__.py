@@ -1,0 +1,99 @@
+"""The command line: one file a command, each with `add(commands)` and `run(arguments) -> int`.
+
+Exit 0: done; 2: the input is wrong, told in one line on stderr with nothing written; 130:
+interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
+
+from jbf.errors import InputError, did_you_mean
+
+COMMANDS = ("demo", "compare", "fit", "diagnose", "predict", "effects")
+"""Modules of this package, in the order in which help lists them."""
+
+_PIPE_CLOSED = 141
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse whose errors are one line, like every other."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
+
+
+def parser() -> Parser:
+    """The whole command line."""
+    from jbf._core import __version__
+
+    top = Parser(
+        prog="jbf",
+        description="Dynamic friction of journal bearings: compare models with measured runs, "
+        "find the physical effect that is missing, predict.",
+        allow_abbrev=False,
+    )
+    top.add_argument("--version", action="version", version=f"jbf {__version__}")
+    commands = top.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, parser_class=Parser
+    )
+    for name in COMMANDS:
+        import_module(f"jbf.cli.{name}").add(commands)
+    return top
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code.
+
+    Parameters
+    ----------
+    argv
+        Arguments without the program's name; those of the process by default.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        code = _dispatch(arguments)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # Whoever read the output has had enough (`jbf effects | head`); that is no failure of
+        # ours, but Python would complain again when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return _PIPE_CLOSED
+    except KeyboardInterrupt:
+        return 130
+    return code
+
+
+def _dispatch(arguments: list[str]) -> int:
+    try:
+        _check_command(arguments)
+        chosen = parser().parse_args(arguments)
+        run = chosen.run
+    except SystemExit as stop:  # argparse has said why
+        return stop.code if isinstance(stop.code, int) else 2
+    except InputError as error:
+        return _refuse(error)
+    try:
+        code: int = run(chosen)
+    except InputError as error:
+        return _refuse(error)
+    return code
+
+
+def _refuse(error: InputError) -> int:
+    print(f"jbf: {error}", file=sys.stderr)
+    return 2
+
+
+def _check_command(arguments: list[str]) -> None:
+    """A misspelt command, with the one that was meant."""
+    first = arguments[0] if arguments else "-"
+    if not first.startswith("-") and first not in COMMANDS:
+        raise InputError(
+            problem=f'there is no command "{first}"', mend=did_you_mean(first, COMMANDS)
+        )

@@ -1,0 +1,54 @@
+"""Arguments that several commands share."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from jbf.cli import Parser
+
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
+
+
+def command(
+    commands: Commands, name: str, does: str, run: Callable[[argparse.Namespace], int]
+) -> Parser:
+    """A subcommand with its one line of help."""
+    added = commands.add_parser(
+        name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
+    )
+    added.set_defaults(run=run)
+    return added
+
+
+def add_runs(parser: Parser) -> None:
+    """RUN..."""
+    parser.add_argument(
+        "runs", metavar="RUN", nargs="+", help="a CSV file, a folder of them, or a pattern"
+    )
+
+
+def add_law(parser: Parser) -> None:
+    """--law and --clock."""
+    parser.add_argument("--law", metavar="NAME", default="journal", help="base law (journal)")
+    parser.add_argument(
+        "--clock",
+        metavar="NAME",
+        choices=("journal", "thesis"),
+        default="journal",
+        help="the film's clock: journal (default) or thesis",
+    )
+
+
+def add_json(parser: Parser) -> None:
+    """--json."""
+    parser.add_argument(
+        "--json", metavar="FILE", help="write the result as JSON; - is standard output"
+    )
+
+
+def add_report(parser: Parser) -> None:
+    """--report."""
+    parser.add_argument("--report", metavar="FILE.html", help="write a page with pictures")

@@ -1,0 +1,44 @@
+"""`jbf compare MODEL RUN...`: how far a model is from measurement, and where it fails."""
+
+from __future__ import annotations
+
+import argparse
+
+from jbf.cli import inputs, outputs
+from jbf.cli.arguments import Commands, add_json, add_report, add_runs, command
+from jbf.cli.progress import shown
+
+
+def add(commands: Commands) -> None:
+    """Put the command on the command line."""
+    does = "model against measurement: how far, and where it fails"
+    parser = command(commands, "compare", does, run)
+    parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
+    add_runs(parser)
+    add_json(parser)
+    add_report(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    wanted = {"--json": arguments.json, "--report": arguments.report}
+    outputs.check(wanted, [arguments.model, *arguments.runs])
+    model = inputs.model(arguments.model)
+    runs = inputs.runs(arguments.runs, first="MODEL")
+    outputs.check(wanted, [run.path for run in runs if run.path])
+
+    from jbf.comparison import compare
+
+    texts = {}
+    with shown("comparing"):
+        comparison = compare(model, runs)
+        if arguments.report:
+            from jbf.report import comparison_page
+
+            texts[arguments.report] = comparison_page(comparison)
+    if arguments.json:
+        texts[arguments.json] = outputs.json_text(comparison.to_dict())
+    summary = comparison.summary()
+    outputs.write(texts)
+    outputs.say(summary, wanted)
+    return 0

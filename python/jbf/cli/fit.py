@@ -1,0 +1,86 @@
+"""`jbf fit RIG RUN... --out MODEL`: fit the base law, with named effects."""
+
+from __future__ import annotations
+
+import argparse
+
+from jbf.catalogue import find_parameter, in_chain_order, parameters_of
+from jbf.cli import inputs, outputs
+from jbf.cli.arguments import Commands, add_law, add_runs, command
+from jbf.cli.progress import shown
+from jbf.errors import InputError, quoted
+
+
+def add(commands: Commands) -> None:
+    """Put the command on the command line."""
+    does = "fit the base law, with named effects, to runs"
+    parser = command(commands, "fit", does, run)
+    parser.add_argument("rig", metavar="RIG", help="rig file (TOML)")
+    add_runs(parser)
+    parser.add_argument(
+        "--effects",
+        metavar="A,B",
+        default="",
+        help="effects to fit beside the law (jbf effects lists them)",
+    )
+    add_law(parser)
+    parser.add_argument(
+        "--fix",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="hold a parameter at a value, SI units; may be repeated",
+    )
+    parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    wanted = {"--out": arguments.out}
+    outputs.check(wanted, [arguments.rig, *arguments.runs])
+    effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
+    fixed = _fixed(arguments.fix, arguments.law, effects)
+    rig = inputs.rig(arguments.rig, arguments.clock)
+    runs = inputs.runs(arguments.runs, first="RIG")
+    outputs.check(wanted, [run.path for run in runs if run.path])
+
+    from jbf.fitting import fit
+
+    with shown("fitting"):
+        fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
+    report = fitted.report()
+    outputs.write({arguments.out: fitted.model.to_toml()})
+    outputs.say(report, wanted)
+    return 0
+
+
+def _fixed(items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:
+    """`NAME=VALUE` items as full names and numbers."""
+    known = parameters_of(law, effects)
+    found: dict[str, float] = {}
+    for item in items:
+        name, equals, text = item.partition("=")
+        place = f"--fix {item}"
+        if not equals:
+            raise InputError(file=place, problem="has no value", mend="write NAME=VALUE")
+        try:
+            full = find_parameter(name.strip(), known)
+        except InputError as error:
+            raise error.within(file=place) from None
+        try:
+            value = float(text)
+        except ValueError:
+            raise InputError(
+                file=place, problem=f"{quoted(text)} is not a number", mend="write NAME=VALUE"
+            ) from None
+        if full in found:
+            raise InputError(file=place, problem=f"{full} is fixed twice", mend="fix it once")
+        page = known[full]
+        if not (page.lower <= value <= page.upper or value == page.null):
+            raise InputError(
+                file=place,
+                problem="is out of range",
+                mend=f"choose from {page.lower:g} to {page.upper:g}",
+            )
+        found[full] = value
+    return found

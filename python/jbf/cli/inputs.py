@@ -1,0 +1,84 @@
+"""Reading what the command line names, with a hint where the wrong kind of file is given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.model import Model, chain
+from jbf.record import Run, read_run, read_runs
+from jbf.rig import Rig, read_rig, read_toml
+
+_RIG_SECTIONS = {"bearing", "lubricant", "load"}
+
+
+def rig(path: str, clock: str) -> Rig:
+    """The rig of a file, complete enough for the journal law."""
+    _refuse_csv(path, "RIG")
+    try:
+        found = read_rig(path)
+        chain(found, clock, ())
+    except InputError as error:
+        if {"law", "format", "effects"} & _keys(path):
+            raise InputError(
+                file=path,
+                problem="is a model file, not a rig",
+                mend="name the rig's TOML with [bearing], [lubricant] and [load]",
+            ) from None
+        raise error.within(file=path) from None
+    return found
+
+
+def model(path: str) -> Model:
+    """The model of a file."""
+    _refuse_csv(path, "MODEL")
+    try:
+        return Model.load(path)
+    except InputError:
+        keys = _keys(path)
+        if keys & _RIG_SECTIONS and "law" not in keys:
+            raise InputError(
+                file=path,
+                problem="is a rig, not a model file",
+                mend=f"make a model first: jbf fit {path} RUN... --out model.toml",
+            ) from None
+        raise
+
+
+def runs(items: Sequence[str], *, first: str) -> list[Run]:
+    """The runs of files, folders and patterns; `first` is the argument before them."""
+    for item in items:
+        _refuse_toml(item, first)
+    return read_runs(items)
+
+
+def motion(item: str) -> Run:
+    """One run that need not hold friction."""
+    _refuse_toml(item, "MODEL")
+    return read_run(item, need_friction=False)
+
+
+def _keys(path: str) -> set[str]:
+    try:
+        return set(read_toml(path))
+    except InputError:
+        return set()
+
+
+def _refuse_csv(path: str, argument: str) -> None:
+    if Path(path).suffix.lower() == ".csv":
+        raise InputError(
+            file=path,
+            problem=f"is a CSV file where {argument} should be",
+            mend=f"name the TOML file first, then the runs: {argument} RUN...",
+        )
+
+
+def _refuse_toml(path: str, first: str) -> None:
+    if Path(path).suffix.lower() == ".toml":
+        raise InputError(
+            file=path,
+            problem="is a TOML file where a run should be",
+            mend=f"name one {first} and then CSV files",
+        )

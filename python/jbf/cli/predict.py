@@ -1,0 +1,36 @@
+"""`jbf predict MODEL RUN --out CSV`: the model's friction under a run's motion."""
+
+from __future__ import annotations
+
+import argparse
+
+from jbf.cli import inputs, outputs
+from jbf.cli.arguments import Commands, command
+from jbf.errors import InputError
+
+
+def add(commands: Commands) -> None:
+    """Put the command on the command line."""
+    does = "friction of the model under a run's motion, as time_s, friction_n"
+    parser = command(commands, "predict", does, run)
+    parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
+    parser.add_argument("motion", metavar="RUN", help="a CSV file; it need not hold friction_n")
+    parser.add_argument("--out", metavar="CSV", required=True, help="file to write; - is stdout")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    wanted = {"--out": arguments.out}
+    outputs.check(wanted, [arguments.model, arguments.motion])
+    model = inputs.model(arguments.model)
+    motion = inputs.motion(arguments.motion)
+    try:
+        friction = model.predict(motion)
+    except InputError as error:
+        raise error.within(file=arguments.motion) from None
+    rows = zip(motion.time_s.tolist(), friction.tolist(), strict=True)
+    # repr of a float is the shortest text that reads back to the same bits.
+    lines = ["time_s,friction_n", *(f"{t!r},{f!r}" for t, f in rows)]
+    outputs.write({arguments.out: "\n".join(lines) + "\n"})
+    outputs.say(f"{len(motion)} samples of friction written to {arguments.out}", wanted)
+    return 0

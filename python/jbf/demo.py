@@ -1,0 +1,97 @@
+"""The whole story on shipped data: a measurement, a model that misses it, the name of what is
+missing, and the error falling once it is added.
+
+The data come from a simulator that shares no code with the models (`simulator/` in the source
+tree). What it hid lies in `truth.json`, which is opened only after the diagnosis has spoken.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from importlib.resources import as_file, files
+from pathlib import Path
+
+import numpy as np
+
+from jbf.comparison import compare
+from jbf.diagnosis import Diagnosis, diagnose
+from jbf.record import PathLike, read_runs
+from jbf.rig import read_rig
+
+Say = Callable[[str], None]
+Progress = Callable[[str, int, int], None]
+
+
+def run(
+    directory: PathLike = "jbf-demo", say: Say = print, progress: Progress | None = None
+) -> Diagnosis:
+    """Copy the shipped data into `directory`, diagnose them, and tell the story.
+
+    Writes `report.html` and `model.toml` there, beside the data, and gives the diagnosis of the
+    campaign with hidden effects.
+    """
+    out = Path(directory)
+    with as_file(files("jbf") / "data" / "demo") as shipped:
+        shutil.copytree(shipped, out, dirs_exist_ok=True)
+
+    say("== 1. A rig with something hidden in it ==\n")
+    hidden = _diagnosed(out / "hidden", progress)
+    say(hidden.summary())
+    hidden.model.save(out / "model.toml")
+    hidden.report(out / "report.html")
+    say("\n== 2. A motion that took no part ==\n")
+    say(_unseen(hidden, out / "hidden"))
+    say("\n== 3. The same rig with nothing hidden ==\n")
+    plain = _diagnosed(out / "plain", progress)
+    step = plain.steps[-1]
+    say(
+        f"{len(plain.before.runs)} runs, every effect tried: {plain.verdict}"
+        f" ({', '.join(plain.effects) or 'nothing added'})."
+        f" Held-out RMS {step.holdout_rms_n:.3g} N, noise {step.noise_n:.3g} N."
+    )
+    say("\n== What had been hidden ==\n")
+    say(_truth(hidden, out / "hidden"))
+    say(
+        f"\nWritten: {out / 'report.html'} (pictures), {out / 'model.toml'} (the fitted model).\n"
+        "The same by hand:\n"
+        f"  jbf diagnose {out}/hidden/rig.toml {out}/hidden --out model.toml --report report.html\n"
+        f"  jbf compare model.toml {out}/hidden/unseen"
+    )
+    return hidden
+
+
+def _diagnosed(folder: Path, progress: Progress | None) -> Diagnosis:
+    return diagnose(read_rig(folder / "rig.toml"), read_runs(folder), progress=progress)
+
+
+def _unseen(diagnosis: Diagnosis, folder: Path) -> str:
+    """The bare law and the completed one on a motion of another kind."""
+    runs = read_runs(folder / "unseen")
+    bare = compare(diagnosis.before.model, runs)
+    full = compare(diagnosis.model, runs)
+    name = runs[0].name
+    return (
+        f"{name}: the law alone misses it by {bare.rms_n:.3g} N RMS, with"
+        f" {' and '.join(diagnosis.effects) or 'nothing'} added {full.rms_n:.3g} N;"
+        f" the noise on it is {full.noise_n:.3g} N."
+    )
+
+
+def _truth(diagnosis: Diagnosis, folder: Path) -> str:
+    """What the simulator hid, beside what was found."""
+    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    lines = []
+    for effect, values in truth["effects"].items():
+        found = {n: p for n, p in diagnosis.fit.parameters.items() if n.startswith(f"{effect}.")}
+        for symbol, value in values.items():
+            match = [p for n, p in found.items() if n.split(".")[1].startswith(symbol)]
+            if not match:
+                lines.append(f"{effect}: {symbol} = {value:.4g}; not found")
+                continue
+            error = match[0].stderr if match[0].stderr is not None else np.nan
+            lines.append(
+                f"{effect}: {symbol} = {value:.4g}; found {match[0].value:.4g} +/- {error:.2g}"
+            )
+    return "\n".join(lines)

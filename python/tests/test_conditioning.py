@@ -1,0 +1,83 @@
+"""The estimate of the imposed motion, against motions that are known exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from jbf import Run
+from jbf.conditioning import impose, noise_of
+
+RADIUS_M = 0.0127
+STEP_RAD = 1.0 / 2387.3
+Array = npt.NDArray[np.float64]
+
+
+def recorded(
+    time: Array, speed: Array, path: Array, *, sd: float = 1e-4, angle: bool = True, seed: int = 0
+) -> Run:
+    """What an encoder and a noisy tachometer make of a motion."""
+    random = np.random.default_rng(seed)
+    noisy = np.where(speed == 0.0, 0.0, speed + random.normal(0.0, sd, len(time)))
+    counts = np.round(path / RADIUS_M / STEP_RAD) * STEP_RAD
+    return Run.from_arrays(time, noisy, angle_rad=counts if angle else None)
+
+
+@pytest.mark.parametrize("omega", [0.1, 1.0, 2.0])
+def test_a_sine_is_smoothed(omega: float) -> None:
+    t = np.arange(0.0, 40.0, 0.02)
+    v = 0.127 * np.sin(omega * t)
+    m = impose(recorded(t, v, 0.127 / omega * (1.0 - np.cos(omega * t))), RADIUS_M)
+    assert np.std(m.velocity_m_s - v) < 0.35e-4
+    gap = m.acceleration_m_s2 - 0.127 * omega * np.cos(omega * t)
+    assert np.std(gap) < 2e-3 + 0.02 * 0.127 * omega
+    # The stated errors are honest: most speeds lie within three of them.
+    off = np.abs(m.velocity_m_s - v) / m.velocity_error_m_s
+    assert np.mean(off < 3.0) > 0.95
+    # Where the sign is trusted it is right.
+    sure = m.trusted & ~m.resting
+    np.testing.assert_array_equal(np.sign(m.velocity_m_s[sure]), np.sign(v[sure]))
+    assert np.mean(m.trusted) > 0.98
+
+
+def test_without_an_angle_the_speed_alone_is_smoothed() -> None:
+    t = np.arange(0.0, 40.0, 0.02)
+    v = 0.127 * np.sin(t)
+    m = impose(recorded(t, v, -0.127 * np.cos(t), angle=False), RADIUS_M)
+    assert np.std(m.velocity_m_s - v) < 0.6e-4
+
+
+def test_corners_and_rests_of_a_trapezoid_survive() -> None:
+    t = np.arange(0.0, 12.0, 0.02)
+    v = 0.05 * np.clip(np.minimum(t - 2.0, 8.0 - t), 0.0, 1.0)
+    path = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * 0.02)))
+    m = impose(recorded(t, v, path), RADIUS_M)
+    assert np.max(np.abs(m.velocity_m_s - v)) < 4e-4
+    np.testing.assert_array_equal(m.resting, v == 0.0)
+    assert np.all(m.velocity_m_s[m.resting] == 0.0)
+    # The second rest is placed better than the encoder's step shows it.
+    last = m.angle_rad[-1] * RADIUS_M
+    assert abs(last - path[-1]) < 0.3 * STEP_RAD * RADIUS_M
+
+
+def test_a_clean_record_is_left_alone() -> None:
+    t = np.arange(0.0, 10.0, 0.01)
+    v = 0.1 * np.sin(3.0 * t) + 0.02 * np.sin(11.0 * t)
+    m = impose(Run.from_arrays(t, v), RADIUS_M)
+    np.testing.assert_allclose(m.velocity_m_s, v, atol=2e-5)
+
+
+def test_uneven_samples_are_fine() -> None:
+    random = np.random.default_rng(3)
+    t = np.cumsum(random.uniform(0.01, 0.03, 1500))
+    v = 0.127 * np.sin(t)
+    m = impose(recorded(t, v, -0.127 * np.cos(t)), RADIUS_M)
+    assert np.std(m.velocity_m_s - v) < 0.4e-4
+
+
+@pytest.mark.parametrize("sd", [1e-4, 0.3])
+def test_noise_of_a_smooth_signal(sd: float) -> None:
+    random = np.random.default_rng(1)
+    t = np.arange(0.0, 60.0, 0.02)
+    signal = 10.0 * np.tanh(20.0 * np.sin(t)) + random.normal(0.0, sd, len(t))
+    assert noise_of(signal) == pytest.approx(sd, rel=0.15 if sd > 0.01 else 5.0)

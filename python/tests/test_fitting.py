@@ -1,0 +1,123 @@
+"""Fits to data of the independent simulator, and the derivatives they rest on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from campaigns import SHORT, campaign
+from jbf import InputError, Model, compare, fit
+from jbf.campaign import Campaign
+from jbf.catalogue import effects as catalogue
+from jbf.fitting import Problem
+
+BASE = {"f_m": "f_m", "U_tr_m_s": "U_tr", "K0": "K0", "gamma": "gamma"}
+OWN = {
+    "drive_compliance": {"k_n_m_rad": "k"},
+    "thermal_thinning": {"beta_q_1_j": "beta_q", "tau_s": "tau"},
+    "position_ripple": {"a": "a"},
+    "presliding": {"sigma_1_m": "sigma"},
+    "coulomb_drag": {"F_d_n": "F_d"},
+    "sensor_lag": {"tau_s": "tau"},
+}
+
+
+@pytest.mark.parametrize("name", list(OWN))
+def test_the_right_structure_recovers_the_truth(name: str) -> None:
+    rig, runs, truth = campaign(50 + list(OWN).index(name), (name,))
+    found = fit(rig, runs, [name])
+    assert found.converged
+    assert found.rms_n == pytest.approx(truth["noise_n"], rel=0.06)
+    wanted = {k: truth["base"][v] for k, v in BASE.items()}
+    wanted |= {f"{name}.{k}": truth["effects"][name][v] for k, v in OWN[name].items()}
+    for parameter, value in wanted.items():
+        p = found.parameters[parameter]
+        assert p.stderr is not None, parameter
+        # The drive's stick and slip amplify the encoder's steps, which no error bar knows.
+        allowance = 0.05 if name == "drive_compliance" else 0.01
+        assert abs(p.value - value) < 4.5 * p.stderr + allowance * abs(value), parameter
+
+
+def test_a_fit_keeps_what_is_fixed_and_takes_names_without_units() -> None:
+    rig, runs, _ = campaign(34, ("coulomb_drag",))
+    found = fit(rig, runs, ["coulomb_drag"], fixed={"gamma": 33.0, "coulomb_drag.F_d": 0.5})
+    assert found.model.parameters["gamma"].value == 33.0
+    assert found.parameters["coulomb_drag.F_d_n"].value == 0.5
+    assert found.parameters["gamma"].stderr is None
+    assert found.parameters["gamma"].note == "held fixed"
+
+
+def test_a_parameter_at_its_bound_says_so() -> None:
+    rig, runs, _ = campaign(7)
+    found = fit(rig, runs, ["coulomb_drag"])
+    drag = found.parameters["coulomb_drag.F_d_n"]
+    if drag.value == 0.0:
+        assert "lower bound" in (drag.note or "")
+    else:
+        assert drag.stderr is not None
+        assert drag.value < 4.0 * drag.stderr
+
+
+def test_a_parameter_that_the_runs_cannot_show_says_so() -> None:
+    # Without any warming there is no time in which it cools.
+    rig, runs, _ = campaign(7)
+    found = fit(rig, runs, ["thermal_thinning"], fixed={"thermal_thinning.beta_q": 0.0})
+    tau = found.parameters["thermal_thinning.tau_s"]
+    assert tau.stderr is None
+    assert "never moved" in (tau.note or "")
+    assert found.parameters["gamma"].stderr is not None
+
+
+@pytest.mark.parametrize("name", list(OWN))
+def test_derivatives_match_differences(name: str) -> None:
+    rig, runs, _ = campaign(34, ("coulomb_drag",))
+    problem = Problem(Campaign.prepare(rig, runs[1:2]), "journal", "journal", (name,))
+    values = problem.starts({})[0]
+    _, jacobian = problem.linearise(values)
+    for i, page in enumerate(problem.parameters.values()):
+        h = 1e-5 * (values[i] if page.log else max(abs(values[i]), 1e-2))
+        up, down = values.copy(), values.copy()
+        up[i] += h
+        down[i] -= h
+        slope = (problem.predict(up)[0] - problem.predict(down)[0]) / (2.0 * h)
+        slope *= values[i] if page.log else 1.0
+        gap = jacobian[0][:, i] - slope
+        # Kinks (stick, reversal) move between the two sides of a difference: judge the bulk.
+        assert np.median(np.abs(gap)) < 1e-6 * np.max(np.abs(slope)), problem.names[i]
+        assert np.quantile(np.abs(gap), 0.95) < 1e-3 * np.max(np.abs(slope)), problem.names[i]
+
+
+def test_unknown_names_are_refused_in_one_line() -> None:
+    rig, runs, _ = campaign(7)
+    with pytest.raises(InputError, match="presliding"):
+        fit(rig, runs, ["presliding_"])
+    with pytest.raises(InputError, match="gama"):
+        fit(rig, runs, fixed={"gama": 3.0})
+    with pytest.raises(InputError, match="out of range"):
+        fit(rig, runs, fixed={"gamma": -3.0})
+    with pytest.raises(InputError, match="no run"):
+        fit(rig, [])
+
+
+def test_every_effect_of_the_catalogue_vanishes_at_its_null() -> None:
+    rig, runs, _ = campaign(7)
+    bare = Model(rig).predict(runs[1])
+    for effect in catalogue().values():
+        with_null = Model(rig, effects=[effect.name]).predict(runs[1])
+        np.testing.assert_array_equal(bare, with_null, err_msg=effect.name)
+
+
+def test_comparison_points_at_the_right_axis() -> None:
+    for effects, axis in (
+        (("coulomb_drag",), "velocity"),
+        (("position_ripple",), "angle"),
+        (("sensor_lag",), "acceleration"),
+    ):
+        rig, runs, truth = campaign(61, effects)
+        names = [f.axis for f in compare(fit(rig, runs).model, runs).failures]
+        assert axis in names[:6], (effects, names)
+    rig, runs, truth = campaign(7)
+    clean = compare(fit(rig, runs).model, runs)
+    assert clean.failures == ()
+    assert clean.rms_n == pytest.approx(truth["noise_n"], rel=0.04)
+    assert clean.noise_n == pytest.approx(truth["noise_n"], rel=0.05)
+    assert len(clean.runs) == len(SHORT.motions)

@@ -1,0 +1,66 @@
+"""The noise floor and the description of coloured noise, on noise that is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from campaigns import campaign
+from jbf.campaign import Campaign
+from jbf.noise import WHITE, Noise, estimate_noise, noise_floor, period_samples
+
+Array = npt.NDArray[np.float64]
+STEP_S = 0.02
+
+
+def coloured(seed: int, white: float, colour: float, memory_s: float, n: int = 8000) -> Array:
+    """White noise plus a first-order process of correlation time `memory_s`."""
+    random = np.random.default_rng(seed)
+    phi = np.exp(-STEP_S / memory_s)
+    kicks = random.normal(0.0, colour * np.sqrt(1.0 - phi**2), n)
+    slow = np.zeros(n)
+    for i in range(1, n):
+        slow[i] = phi * slow[i - 1] + kicks[i]
+    return slow + random.normal(0.0, white, n)
+
+
+def _correlation(e: Array, lag: int) -> float:
+    return float(np.corrcoef(e[lag:], e[:-lag])[0, 1])
+
+
+def test_white_noise_stays_white() -> None:
+    for seed in range(20):
+        r = coloured(seed, 0.4, 0.0, 0.2, 4000)
+        assert estimate_noise([r], [STEP_S], [np.ones(len(r), bool)]) == WHITE
+
+
+def test_innovations_of_coloured_noise_are_white() -> None:
+    r = coloured(1, 0.4, 0.3, 0.2)
+    assert _correlation(r, 3) > 0.15
+    noise = estimate_noise([r], [STEP_S], [np.ones(len(r), bool)])
+    assert 0.08 < noise.memory_s < 0.5
+    e = noise.innovations(r, STEP_S)
+    for lag in (1, 2, 3, 5, 10):
+        assert abs(_correlation(e, lag)) < 0.04
+
+
+def test_white_innovations_are_the_values() -> None:
+    r = np.arange(5.0)
+    assert Noise().innovations(r, STEP_S) is r
+
+
+@pytest.mark.parametrize(("is_coloured", "whole"), [(False, 1.0), (True, np.sqrt(1.25))])
+def test_the_floor_of_a_record(is_coloured: bool, whole: float) -> None:
+    ratios = []
+    for seed in (3, 4, 5):
+        rig, runs, truth = campaign(seed, coloured=is_coloured)
+        ratios.append(noise_floor(Campaign.prepare(rig, runs)) / truth["noise_n"])
+    assert np.mean(ratios) == pytest.approx(whole, rel=0.06)
+
+
+def test_the_period_of_a_repeated_motion() -> None:
+    t = np.arange(0.0, 32.0, STEP_S)
+    v = 0.127 * np.sin(t) + np.random.default_rng(0).normal(0.0, 1e-4, len(t))
+    assert period_samples(v) == pytest.approx(2.0 * np.pi / STEP_S, abs=2)
+    assert period_samples(np.linspace(0.0, 1.0, 500)) is None
+    assert period_samples(np.full(500, 0.1)) is None

@@ -94,7 +94,7 @@ class Problem:
 
     def decode(self, x: Array, base: Array) -> Array:
         """Search variables to parameter values; fixed ones from `base`."""
-        values = base.copy()
+        values: Array = base.copy()
         log = self.log[self.open]
         there = np.where(log, np.exp(np.where(log, x, 0.0)), x)
         # A logarithm and back may land a rounding error outside.

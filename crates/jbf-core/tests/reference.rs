@@ -203,34 +203,25 @@ fn steppers_have_their_order() {
     }
 }
 
-/// Single precision on the loop step: within 1e-4 of the loop's peak.
+/// Single precision is within 1e-4 of the loop's peak, on the loop step and on steps so short
+/// that the film moves by less than a unit in the last place in each (a plain sum would then
+/// stand still: at 0.1 ms it is off by 4e-3).
 #[test]
-fn single_precision_follows_double() {
+fn single_precision_follows_double_at_any_step() {
     for run in runs() {
-        let double = run.friction::<f64>(&Rk4, LOOP_STEP_S);
-        let single = run.friction::<f32>(&Rk4, LOOP_STEP_S);
-        let peak = double.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-        for (a, b) in double.iter().zip(single) {
-            let error = (a - b).abs() / peak;
-            assert!(
-                error < 1e-4,
-                "{:?} {}: {error:e}",
-                run.clock,
-                run.omega_rad_s
-            );
-        }
-    }
-}
-#[test]
-fn explore() {
-    for run in runs() {
-        for parts in [1.0, 4.0, 20.0, 100.0] {
-            let h = LOOP_STEP_S / parts;
-            let double = run.friction::<f64>(&Rk4, h);
-            let single = run.friction::<f32>(&Rk4, h);
+        for step_s in [LOOP_STEP_S, LOOP_STEP_S / 20.0, LOOP_STEP_S / 100.0] {
+            let double = run.friction::<f64>(&Rk4, step_s);
+            let single = run.friction::<f32>(&Rk4, step_s);
             let peak = double.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-            let e = double.iter().zip(single).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            println!("{:?} {} {parts}: {:e}", run.clock, run.omega_rad_s, e / peak);
+            for (a, b) in double.iter().zip(single) {
+                let error = (a - b).abs() / peak;
+                assert!(
+                    error < 1e-4,
+                    "{:?} {} {step_s} s: {error:e}",
+                    run.clock,
+                    run.omega_rad_s
+                );
+            }
         }
     }
 }

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
-from jbf.catalogue import parameters_of
+from jbf.campaign import Campaign
 from jbf.fitting import Problem, Solution
 
 Array = npt.NDArray[np.float64]
@@ -29,7 +31,7 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
     for i in range(count):
         rest = campaign.only([k for k in range(count) if k != i])
         part = Problem(rest, problem.law, problem.clock, problem.effects)
-        start = _without_leak(part, solution, i)
+        start = _without_leak(problem, solution, i)
         values, _, _ = part.search(start, solution.noise, EVALUATIONS)
         own = Problem(campaign.only([i]), problem.law, problem.clock, problem.effects)
         residual, p = own.residuals(values)[0], campaign.prepared[i]
@@ -38,36 +40,25 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
     return float(np.sqrt(total / max(samples, 1)))
 
 
-def _without_leak(part: Problem, solution: Solution, left_out: int) -> Array:
+def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
     """The whole solution, less what only the left-out run knows."""
     values: Array = solution.values.copy()
-    size = np.zeros(len(values))
-    for k, (jacobian, p) in enumerate(
-        zip(solution.jacobian, _others(solution, part, left_out), strict=True)
-    ):
-        if p is not None and k != left_out:
-            size += np.sum(jacobian[p] ** 2, axis=0)
-    whole = sum(np.sum(j**2, axis=0) for j in solution.jacobian)
-    pages = parameters_of(part.law, part.effects)
-    for i, page in enumerate(pages.values()):
-        if size[i] < 1e-4 * whole[i]:
+    felt = np.array(
+        [
+            np.sum(jacobian[p.trusted] ** 2, axis=0)
+            for jacobian, p in zip(solution.jacobian, problem.campaign.prepared, strict=True)
+        ]
+    )
+    whole = felt.sum(axis=0)
+    for i, page in enumerate(problem.parameters.values()):
+        if whole[i] - felt[left_out, i] < 1e-4 * whole[i]:
             null = page.null if page.null is not None and np.isfinite(page.null) else None
             values[i] = page.starts[0] if null is None else null
     return values
 
 
-def _others(solution: Solution, part: Problem, left_out: int) -> list[npt.NDArray[np.bool_] | None]:
-    masks: list[npt.NDArray[np.bool_] | None] = [p.trusted for p in part.campaign.prepared]
-    masks.insert(left_out, None)
-    return masks
-
-
 def _halves_rms(problem: Problem, solution: Solution) -> float:
     """Each half of a single run predicted from a fit to the other."""
-    from dataclasses import replace
-
-    from jbf.campaign import Campaign
-
     only = problem.campaign.prepared[0]
     first = np.arange(len(only.run)) < len(only.run) // 2
     total, samples = 0.0, 0

@@ -41,14 +41,14 @@ lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-	$(VENV)/bin/ruff check python simulator
-	$(VENV)/bin/ruff format --check python simulator
+	$(VENV)/bin/ruff check python simulator benches docs
+	$(VENV)/bin/ruff format --check python simulator benches docs
 	$(VENV)/bin/mypy
 
 format: $(BUILT)
 	$(RUSTFMT) $$($(RUST_FILES))
-	$(VENV)/bin/ruff check --fix python simulator
-	$(VENV)/bin/ruff format python simulator
+	$(VENV)/bin/ruff check --fix python simulator benches docs
+	$(VENV)/bin/ruff format python simulator benches docs
 
 bench:
 	cargo bench -p jbf-benches

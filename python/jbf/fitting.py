@@ -24,6 +24,8 @@ Array = npt.NDArray[np.float64]
 MAX_EVALUATIONS = 60
 TRIAL_EVALUATIONS = 6
 """Steps given to each starting point before the best goes on alone."""
+FOLLOWED = 2
+"""How many of the starting points are given them."""
 
 
 @dataclass(frozen=True)
@@ -129,11 +131,16 @@ class Problem:
         return residuals, [j * scale for _, j in rows]
 
     def stacked(
-        self, residuals: list[Array], jacobian: list[Array], noise: Noise
+        self,
+        residuals: list[Array],
+        jacobian: list[Array],
+        noise: Noise,
+        which: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
-        """One residual vector and matrix of innovations over trusted samples."""
+        """One residual vector and matrix of innovations over trusted samples (of some runs)."""
         r, j = [], []
-        for res, jac, p in zip(residuals, jacobian, self.campaign.prepared, strict=True):
+        for i in range(len(residuals)) if which is None else which:
+            res, jac, p = residuals[i], jacobian[i], self.campaign.prepared[i]
             # An untrusted sample is a gap: a zero there drives nothing.
             keep = p.trusted.astype(float)
             r.append(noise.innovations(res * keep, p.step_s)[p.trusted])
@@ -197,38 +204,41 @@ class Problem:
         ]
         return [np.array(values, dtype=float) for values in itertools.product(*choices)]
 
-    def solve(
-        self,
-        seeds: Sequence[Mapping[str, float]],
-        keep: int = 2,
-        give_up_above: float = np.inf,
-    ) -> Solution:
-        """Search from the best of all starting points.
+    def approach(self, seeds: Sequence[Mapping[str, float]], evaluations: int) -> Solution:
+        """Search from the best of all starting points, as if the noise were white.
 
         Parameters
         ----------
         seeds
             Known values by name; the catalogue's starting values fill each one up.
-        keep
-            How many of the starting points are followed.
-        give_up_above
-            Sum of squares (N^2) above which a trial is not followed to its end: a richer model
-            that is still worse than a simpler one has lost its way.
+        evaluations
+            Where to stop; enough to rank candidates, or to converge.
         """
         starts = [s for seed in seeds for s in self.starts({**seed, **self.fixed})]
         starts.sort(key=self.square)
-        tried = starts[:keep]
-        if len(tried) > 1:
-            short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in tried]
-            tried = [min(short, key=self.square)]
-            if self.square(tried[0]) > give_up_above:
-                return self.solution(tried[0], WHITE, False, "worse than the simpler model")
-        values, converged, message = self.search(tried[0], WHITE, MAX_EVALUATIONS)
+        best = starts[0]
+        if len(starts) > 1:
+            short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in starts[:FOLLOWED]]
+            best = min(short, key=self.square)
+        values, converged, message = self.search(best, WHITE, evaluations)
         noise = self.estimate_noise(self.residuals(values))
-        if noise.colour > 0.0:
+        return self.solution(self._wrapped(values), noise, converged, message)
+
+    def settle(self, near: Solution) -> Solution:
+        """Converge from a solution, with the colour of its noise."""
+        values, noise = near.values, near.noise
+        if not near.converged:
+            values, _, _ = self.search(values, WHITE, MAX_EVALUATIONS)
+            noise = self.estimate_noise(self.residuals(values))
+        converged, message = near.converged, near.message
+        if noise.colour > 0.0 or not near.converged:
             values, converged, message = self.search(values, noise, MAX_EVALUATIONS)
             noise = self.estimate_noise(self.residuals(values))
         return self.solution(self._wrapped(values), noise, converged, message)
+
+    def solve(self, seeds: Sequence[Mapping[str, float]]) -> Solution:
+        """Approach and settle."""
+        return self.settle(self.approach(seeds, MAX_EVALUATIONS))
 
     def solution(
         self, values: Array, noise: Noise, converged: bool = True, message: str = ""

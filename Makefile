@@ -34,7 +34,7 @@ demo: $(BUILT)
 
 test: $(BUILT)
 	cargo test -p jbf-core
-	$(VENV)/bin/python -m pytest
+	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 # rustfmt does not follow the macro that declares the effects, so it is given every file.
 lint: $(BUILT)

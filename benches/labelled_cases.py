@@ -3,8 +3,8 @@
     .venv/bin/python benches/labelled_cases.py CASES HELDOUT [--only case01,case02]
 
 `CASES/truth.json` has, for each campaign, `effects` (name to parameters), `foreign`, `noise_n`;
-`CASES/NAME` and `HELDOUT/NAME` have `rig.toml` and runs. Held-out RMS leaves out samples slower than
-5e-4 m/s. Everything goes through the command line, as a user's would.
+`CASES/NAME` and `HELDOUT/NAME` have `rig.toml` and runs. Held-out RMS leaves out samples slower
+than 5e-4 m/s. Everything goes through the command line, as a user's would.
 """
 
 from __future__ import annotations

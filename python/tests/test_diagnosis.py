@@ -6,16 +6,10 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import Diagnosis, Rig, Run, diagnose
+from jbf import effects as catalogue
 from jbf.diagnosis.search import TIE
 
-EFFECTS = (
-    "drive_compliance",
-    "thermal_thinning",
-    "position_ripple",
-    "presliding",
-    "coulomb_drag",
-    "sensor_lag",
-)
+EFFECTS = tuple(catalogue())
 
 
 @pytest.mark.parametrize("name", EFFECTS)

@@ -104,7 +104,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         self.law.advance(
             &mut state.law,
             [state.film_speed_m_s, middle, end],
-            T::ONE,
+            self.effects.film_rate(&state.effects),
             dt_s,
         );
         state.film_speed_m_s = end;

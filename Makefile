@@ -16,11 +16,12 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv demo test lint format bench clean
+.PHONY: help venv demo test test-slow lint format bench clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
 	@echo "make test    Rust and Python tests"
+	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
@@ -35,6 +36,9 @@ demo: $(BUILT)
 test: $(BUILT)
 	cargo test -p jbf-core
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
+
+test-slow: $(BUILT)
+	$(VENV)/bin/python -m pytest -n auto -m slow
 
 # rustfmt does not follow the macro that declares the effects, so it is given every file.
 lint: $(BUILT)

@@ -22,7 +22,7 @@ from jbf.rig import Rig
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
-TRIAL_EVALUATIONS = 6
+TRIAL_EVALUATIONS = 4
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
 """How many of the starting points are given them."""
@@ -303,6 +303,16 @@ class Problem:
         if singular:
             return "not separately known: another parameter does the same in these runs"
         return None
+
+
+def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:
+    """Gain in twice the log likelihood that one full Gauss-Newton step from `values` promises."""
+    r, j = problem.stacked(*problem.linearise(values), noise)
+    size = np.linalg.norm(j, axis=0)
+    unit = j[:, size > 0.0] / size[size > 0.0]
+    step, *_ = np.linalg.lstsq(unit, r, rcond=1e-10)
+    left = r - unit @ step
+    return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(float(left @ left), 1e-300)))
 
 
 @dataclass(frozen=True)

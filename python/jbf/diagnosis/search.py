@@ -23,7 +23,7 @@ from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, root_mean_square
+from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
 from jbf.record import Run
 from jbf.rig import Rig
 
@@ -35,10 +35,15 @@ MARGIN = 20.0
 room for noise that is not quite as described."""
 TIE = 8.0
 """Candidates closer in evidence than this fit equally well; less than one parameter costs."""
-SCREEN_EVALUATIONS = 12
+TRACE = 10.0
+"""Gain in twice the log likelihood, of a first step, below which an effect leaves no trace;
+half of what the cheapest effect must bring in the end."""
+SCREEN_EVALUATIONS = 8
 """Steps after which candidates are ranked; only those that could win go on."""
 CONTENDER = 60.0
-"""How far behind in evidence a candidate may be after screening and still go on."""
+"""How far behind in evidence a candidate may be after screening and still go on,"""
+CLOSE = 0.6
+"""beyond this share of the leader's: what is far from converged may still be the truth."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
 LEAST_EXPLAINED = 0.8
@@ -55,6 +60,7 @@ class Search:
     clock: str
     progress: Progress | None = None
     solved: dict[frozenset[str], Solution] = field(default_factory=dict)
+    glanced: dict[frozenset[str], bool] = field(default_factory=dict)
     settled: set[frozenset[str]] = field(default_factory=set)
     held_out: dict[frozenset[str], float] = field(default_factory=dict)
 
@@ -82,6 +88,30 @@ class Search:
             self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS)
         return self.solved[effects]
 
+    def blind(self, effects: frozenset[str], near: Solution) -> bool:
+        """True where the records show no trace of an effect beside a smaller model.
+
+        The score test: one Gauss-Newton step from the effect's null, the law free to move with
+        it. An effect whose first step gains next to nothing from any start is not tried further.
+        """
+        if effects not in self.glanced:
+            added = effects - set(near.effects)
+            problem = self.problem(effects)
+            pages = {
+                name: page
+                for name, page in problem.parameters.items()
+                if name.split(".")[0] in added
+            }
+            nulls = {n: p.null for n, p in pages.items() if p.null is not None}
+            if not nulls or not all(np.isfinite(null) for null in nulls.values()):
+                self.glanced[effects] = False
+            else:
+                known = dict(zip(self.problem(near.effects).names, near.values, strict=True))
+                starts = problem.starts({**known, **nulls})
+                gains = (first_step_gain(problem, start, near.noise) for start in starts)
+                self.glanced[effects] = not any(gain > TRACE for gain in gains)
+        return self.glanced[effects]
+
     def solve(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
         """Fit these effects to convergence."""
         if effects not in self.settled:
@@ -104,6 +134,8 @@ class Search:
         def of(solution: Solution) -> float:
             return solution.cost + self.price(solution.free) - whole.cost - self.price(whole.free)
 
+        if self.blind(effects, near):
+            return of(near)
         first = of(self.screen(effects, near))
         return of(self.solve(effects, near)) if first < CONTENDER else first
 
@@ -135,15 +167,21 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
     first: dict[str, float] = {}
     for i, name in enumerate(rivals):
         search.say(f"trying {name}", i, len(rivals))
-        screened = search.screen(frozenset((*present, name)), base)
-        first[name] = search.evidence(screened, base)
-    line = max(max(first.values(), default=0.0), 0.0) - CONTENDER
+        effects = frozenset((*present, name))
+        if search.blind(effects, base):
+            first[name] = -np.inf
+        else:
+            first[name] = search.evidence(search.screen(effects, base), base)
+    line = CLOSE * max(max(first.values(), default=0.0), 0.0) - CONTENDER
     found: list[tuple[float, str, Solution]] = []
     for name in rivals:
         effects = frozenset((*present, name))
-        solution = search.solve(effects, base) if first[name] > line else search.screen(effects)
+        if first[name] == -np.inf:
+            solution = base
+        else:
+            solution = search.solve(effects, base) if first[name] > line else search.screen(effects)
         # At its null an effect leaves the model as it was: no candidate is worse than that.
-        least = -search.price(solution.free - base.free)
+        least = -search.price(len(search.problem(effects).names) - base.free)
         found.append((max(search.evidence(solution, base), least), name, solution))
     found.sort(key=lambda t: -t[0])
     leader, best, ties, trials = None, 0.0, [], []

@@ -2,6 +2,7 @@
 //! adds to it belongs to [`crate::effect`].
 
 pub mod journal;
+pub mod journal_full;
 mod steady;
 
 pub use steady::Steady;

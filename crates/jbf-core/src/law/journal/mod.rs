@@ -14,6 +14,7 @@
 //! chapter 3.
 
 mod build;
+pub(crate) mod film_linear;
 mod film_motion;
 mod parameters;
 mod state;
@@ -43,13 +44,13 @@ pub const LIGHTEST_SHARE: f64 = 0.01;
 pub struct Journal<T> {
     /// `Fb` of one newton.
     fb_per_n: T,
-    f_m: T,
-    k0: T,
+    pub(crate) f_m: T,
+    pub(crate) k0: T,
     /// `gamma (C R/L^2) 2 pi / U_tr`.
     viscous_s_m: T,
-    inverse_u_tr: T,
+    pub(crate) inverse_u_tr: T,
     /// Dimensionless time per second.
-    rate: T,
+    pub(crate) rate: T,
     /// The load of the constructor and its eps_tr, so that a start costs nothing.
     nominal: Loaded<T>,
 }
@@ -78,14 +79,14 @@ impl<T: Real> Journal<T> {
 
     /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
     #[inline]
-    fn asperity_load(&self, eps: T, eps_tr: T) -> T {
+    pub(crate) fn asperity_load(&self, eps: T, eps_tr: T) -> T {
         let touch = (eps - eps_tr).max(T::ZERO);
         self.k0 * touch * touch
     }
 
     /// Friction coefficient at an eccentricity ratio and a speed, (3.14).
     #[inline]
-    fn sliding(&self, loaded: &Loaded<T>, eps: T, velocity_m_s: T) -> Sliding<T> {
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, velocity_m_s: T) -> Sliding<T> {
         let d = (T::ONE - eps) * (T::ONE + eps);
         let inverse_load = T::ONE / loaded.load_number;
         Sliding {
@@ -138,7 +139,7 @@ impl<T: Real> Journal<T> {
     /// asperities carry the load alone, or where that is too deep (soft asperities) nine
     /// tenths of the way from eps_tr to the wall. Closer to the wall the film hardly flows,
     /// and the journal would stay there for hours.
-    fn deepest(&self, loaded: &Loaded<T>) -> T {
+    pub(crate) fn deepest(&self, loaded: &Loaded<T>) -> T {
         let at_rest = loaded.eps_tr + (loaded.load_number / self.k0).sqrt();
         let near_wall = loaded.eps_tr + (T::ONE - loaded.eps_tr) * T::of(0.9);
         at_rest.min(near_wall).min(T::EPS_LIMIT)

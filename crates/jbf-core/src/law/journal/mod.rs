@@ -15,6 +15,7 @@
 
 mod build;
 mod film_motion;
+mod named;
 mod parameters;
 mod state;
 mod stribeck;

@@ -28,14 +28,29 @@ class EffectPage(TypedDict):
     equation: str
     source: str
     limits: str
-    needs_angle: bool
+    needs: list[str]
+    refused: dict[str, str]
     longest_step_s: float
     parameters: list[ParameterPage]
 
 class LawPage(TypedDict):
     name: str
     summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_bearing: bool
+    has_film: bool
+    has_bristle: bool
     parameters: list[ParameterPage]
+
+class BearingSizes(TypedDict):
+    radius_m: float
+    length_m: float
+    clearance_m: float
+    mass_kg: float
+    count: int
+    viscosity_pa_s: float
 
 class Motion:
     def __init__(
@@ -52,13 +67,9 @@ class Chain:
     def __init__(
         self,
         *,
-        radius_m: float,
-        length_m: float,
-        clearance_m: float,
-        mass_kg: float,
-        count: int,
-        viscosity_pa_s: float,
-        load_n: float,
+        law: str,
+        bearing: BearingSizes | None,
+        load_n: float | None,
         clock: str,
         effects: Sequence[str],
         max_step_s: float,
@@ -74,18 +85,11 @@ def effects() -> list[EffectPage]: ...
 def laws() -> list[LawPage]: ...
 def film_integrals(eps: float) -> tuple[float, float, float]: ...
 def transition_eccentricity(load_number: float) -> float: ...
-def steady_state(
+def steady_friction(
     velocity_m_s: Array,
     *,
-    f_m: float,
-    u_tr_m_s: float,
-    k0: float,
-    gamma: float,
-    radius_m: float,
-    length_m: float,
-    clearance_m: float,
-    mass_kg: float,
-    count: int,
-    viscosity_pa_s: float,
-    load_n: float,
-) -> tuple[Array, Array, Array]: ...
+    law: str,
+    parameters: Sequence[float],
+    bearing: BearingSizes | None,
+    load_n: float | None,
+) -> Array: ...

@@ -11,13 +11,20 @@ import numpy.typing as npt
 from scipy import optimize
 
 from jbf.campaign import Campaign
-from jbf.catalogue import Parameter, find_effect, find_parameter, in_chain_order, parameters_of
+from jbf.catalogue import (
+    Parameter,
+    check_applies,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+)
 from jbf.errors import InputError
-from jbf.model import Model, chain
+from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
 from jbf.noise import WHITE, Noise, estimate_noise, innovation_cost
-from jbf.record import Run, require
+from jbf.record import Run
 from jbf.rig import Rig
+from jbf.starts import with_starts
 
 Array = npt.NDArray[np.float64]
 
@@ -77,8 +84,10 @@ class Problem:
         self.campaign = campaign
         self.law, self.clock = law, clock
         self.effects = in_chain_order(effects)
-        self.chain = chain(campaign.rig, clock, self.effects)
-        self.parameters: dict[str, Parameter] = parameters_of(law, self.effects)
+        self.chain = chain(campaign.rig, law, clock, self.effects)
+        self.parameters: dict[str, Parameter] = with_starts(
+            parameters_of(law, self.effects), campaign
+        )
         self.names = list(self.parameters)
         self.fixed = dict(fixed or {})
         self.open = [i for i, name in enumerate(self.names) if name not in self.fixed]
@@ -198,7 +207,7 @@ class Problem:
         return self.decode(found.x, start), bool(found.status > 0), str(found.message)
 
     def starts(self, seed: Mapping[str, float]) -> list[Array]:
-        """Every combination of the catalogue's starting values for what `seed` lacks."""
+        """Every combination of starting values for what `seed` lacks."""
         choices = [
             (seed[name],) if name in seed else page.starts for name, page in self.parameters.items()
         ]
@@ -210,7 +219,7 @@ class Problem:
         Parameters
         ----------
         seeds
-            Known values by name; the catalogue's starting values fill each one up.
+            Known values by name; starting values fill each one up.
         evaluations
             Where to stop; enough to rank candidates, or to converge.
         """
@@ -352,10 +361,9 @@ class Fit:
 
 def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
     """An InputError where a run lacks a column that one of the effects needs."""
-    for name in effects:
-        if find_effect(name).needs_angle:
-            for p in campaign.prepared:
-                require(p.run, "angle_rad", f"the effect {name}")
+    effects = list(effects)
+    for p in campaign.prepared:
+        require_record(campaign.rig, p.run, effects)
 
 
 def root_mean_square(residuals: Sequence[Array], campaign: Campaign) -> float:
@@ -410,13 +418,14 @@ def fit(
     """Fit the base law, with named effects, to runs.
 
     Least squares over all samples at which the sign of the motion is known, with exact
-    derivatives, bounds and starting values from the catalogue; weighted by the colour of the
+    derivatives, bounds from the catalogue, starting values from the catalogue or, for a law in
+    newtons, from the data; weighted by the colour of the
     noise where the residual shows one.
 
     Parameters
     ----------
     rig
-        Bearing, lubricant and load.
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
     runs
         Recorded runs with friction.
     effects
@@ -431,8 +440,10 @@ def fit(
     InputError
         An unknown name, a missing column, or runs in which nothing moves.
     """
-    campaign = Campaign.prepare(rig, runs)
     chosen = in_chain_order(effects)
+    check_rig(rig, law)
+    check_applies(law, chosen)
+    campaign = Campaign.prepare(rig, runs)
     check_effects(campaign, chosen)
     known = parameters_of(law, chosen)
     held = _named_values(fixed, known)

@@ -2,6 +2,7 @@
 //!
 //! One file per Python type; no physics here.
 
+mod bearing;
 mod catalogue;
 mod chain;
 mod curves;
@@ -19,6 +20,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
-    m.add_function(wrap_pyfunction!(curves::steady_state, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
     Ok(())
 }

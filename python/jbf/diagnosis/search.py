@@ -24,6 +24,7 @@ from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
 from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
+from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
 
@@ -66,9 +67,11 @@ class Search:
 
     @property
     def candidates(self) -> list[str]:
-        """Effects that these records could show."""
+        """Effects that go with the law and that these records could show."""
         return [
-            e.name for e in catalogue().values() if self.campaign.has_angle or not e.needs_angle
+            e.name
+            for e in catalogue().values()
+            if self.law not in e.refused and self.campaign.shows(e.needs)
         ]
 
     def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
@@ -262,7 +265,7 @@ def diagnose(
     Parameters
     ----------
     rig
-        Bearing, lubricant and load.
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
     runs
         Recorded runs with friction; several different motions tell effects apart.
     law, clock
@@ -281,6 +284,7 @@ def diagnose(
         A run lacks friction, or nothing moves in it.
     """
     begun = time.monotonic()
+    check_rig(rig, law)
     search = Search(Campaign.prepare(rig, runs), law, clock, progress)
     campaign = search.campaign
     bare = finish(search.problem(()), search.solve(frozenset()))

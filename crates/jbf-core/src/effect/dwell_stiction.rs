@@ -80,7 +80,7 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
                 period: None,
             },
         ],
-        needs_angle: false,
+        needs: &[],
         longest_step_s: 0.02,
     };
     type State = State<T>;

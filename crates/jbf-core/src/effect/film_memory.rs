@@ -4,7 +4,7 @@
 //! Source: Cohn (1998): the bearing is of medium length (section 3.2), and the thesis's own
 //! programs run the film on another clock (appendices D and E).
 
-use super::{Effect, Film, Info, Parameter, Rig, Stage};
+use super::{Effect, Film, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -34,7 +34,7 @@ impl<T: Real> Effect<T> for FilmMemory<T> {
             log: true,
             period: None,
         }],
-        needs_angle: false,
+        needs: &[Need::Film],
         longest_step_s: 0.02,
     };
     type State = ();

@@ -9,10 +9,12 @@
 //! and name it in its stage's line of `signal_chain!` below.
 
 pub mod info;
+mod need;
 mod registry;
 pub mod relaxation;
 
 pub use info::{Info, Parameter, Stage};
+pub use need::Need;
 
 use crate::error::ParameterError;
 use crate::law::Sliding;

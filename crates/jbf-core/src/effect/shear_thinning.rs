@@ -3,7 +3,7 @@
 //! Source: Cross (1965), for multigrade oils such as the thesis's 10W-40. Viscosity and
 //! transition speed go together (mu U_tr = const), so Fb and eps_tr stay.
 
-use super::{Effect, Info, Lubricant, Parameter, Rig, Stage};
+use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -47,7 +47,7 @@ impl<T: Real> Effect<T> for ShearThinning<T> {
                 period: None,
             },
         ],
-        needs_angle: false,
+        needs: &[Need::Film],
         longest_step_s: 0.02,
     };
     type State = ();

@@ -60,7 +60,7 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
                 period: None,
             },
         ],
-        needs_angle: false,
+        needs: &[],
         longest_step_s: 0.02,
     };
     type State = ();

@@ -47,7 +47,7 @@ impl<T: Real> Effect<T> for WearIn<T> {
                 period: None,
             },
         ],
-        needs_angle: false,
+        needs: &[],
         longest_step_s: 0.02,
     };
     /// Distance slid, m.

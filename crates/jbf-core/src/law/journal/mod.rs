@@ -16,10 +16,12 @@
 mod build;
 pub(crate) mod film_linear;
 mod film_motion;
+mod named;
 mod parameters;
 mod state;
 mod stribeck;
 
+pub(in crate::law) use named::parts;
 pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
 pub use state::{Loaded, State};
 

@@ -30,6 +30,7 @@
 
 mod build;
 pub mod motion;
+mod named;
 mod state;
 
 pub use state::State;

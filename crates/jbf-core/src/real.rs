@@ -32,6 +32,10 @@ pub trait Real:
     /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above
     /// the rounding error of one.
     const EPS_LIMIT: Self;
+    /// True for a number that is one lane of a vector: a step that leaves the bearing then
+    /// changes nothing but its count, so that the lanes need not part, and is for the caller
+    /// to take again, alone.
+    const SIDE_BY_SIDE: bool = false;
 
     /// The nearest number of this kind; derivatives are zero.
     fn of(value: f64) -> Self;

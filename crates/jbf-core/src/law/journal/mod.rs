@@ -67,6 +67,7 @@ impl<T: Real> Journal<T> {
         Loaded {
             load_n,
             load_number,
+            inverse_load_number: T::ONE / load_number,
             eps_tr,
         }
     }
@@ -77,20 +78,24 @@ impl<T: Real> Journal<T> {
     }
 
     /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
-    #[inline]
+    #[inline(always)]
     fn asperity_load(&self, eps: T, eps_tr: T) -> T {
-        let touch = (eps - eps_tr).max(T::ZERO);
-        self.k0 * touch * touch
+        let touch = eps - eps_tr;
+        let load = self.k0 * touch * touch;
+        if touch > T::ZERO {
+            load
+        } else {
+            T::ZERO
+        }
     }
 
-    /// Friction coefficient at an eccentricity ratio and a speed, (3.14).
-    #[inline]
-    fn sliding(&self, loaded: &Loaded<T>, eps: T, velocity_m_s: T) -> Sliding<T> {
-        let d = (T::ONE - eps) * (T::ONE + eps);
-        let inverse_load = T::ONE / loaded.load_number;
+    /// Friction at an eccentricity ratio, `d = 1 - eps^2` and a speed, (3.14).
+    #[inline(always)]
+    fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
+        let load = self.asperity_load(eps, loaded.eps_tr);
         Sliding {
-            level: self.f_m * self.asperity_load(eps, loaded.eps_tr) * inverse_load,
-            viscous: self.viscous_s_m * velocity_m_s * inverse_load / d.sqrt(),
+            level: self.f_m * load * loaded.inverse_load_number,
+            viscous: self.viscous_s_m * velocity_m_s * loaded.inverse_load_number / d.sqrt(),
         }
     }
 
@@ -110,8 +115,10 @@ impl<T: Real> Journal<T> {
             from: state.xy,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        let mut way = state.kept;
+        // Minus zero is the neutral start of a sum: `x + -0.0` is `x`, and costs nothing.
+        let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
         let limit = T::EPS_LIMIT;
@@ -127,7 +134,7 @@ impl<T: Real> Journal<T> {
         // Too coarse a step. A step that lost its numbers altogether leaves the film as it
         // was; any other is held in its direction.
         state.clamped = state.clamped.saturating_add(1);
-        if e2.is_finite() {
+        if !T::SIDE_BY_SIDE && e2.is_finite() {
             let shrink = self.deepest(&state.loaded) / e2.sqrt();
             state.xy = [xy[0] * shrink, xy[1] * shrink];
             state.kept = [T::ZERO; 2];
@@ -181,9 +188,11 @@ impl<T: Real> Law<T> for Journal<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        self.sliding(&state.loaded, state.eps(), velocity_m_s)
+        // As the slope forms them, so that a step and its friction share both roots.
+        let e2 = state.eps_squared();
+        self.sliding(&state.loaded, e2.sqrt(), T::ONE - e2, velocity_m_s)
     }
 
     #[inline]

@@ -8,6 +8,7 @@ pub struct Loaded<T> {
     pub(super) load_n: T,
     /// Load number Fb.
     pub load_number: T,
+    pub(super) inverse_load_number: T,
     /// Transition eccentricity.
     pub eps_tr: T,
 }
@@ -40,7 +41,12 @@ impl<T: Real> State<T> {
     /// Eccentricity ratio.
     #[inline]
     pub fn eps(&self) -> T {
-        (self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]).sqrt()
+        self.eps_squared().sqrt()
+    }
+
+    #[inline(always)]
+    pub(super) fn eps_squared(&self) -> T {
+        self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]
     }
 
     /// `eps cos(phi)` and `eps sin(phi)`.

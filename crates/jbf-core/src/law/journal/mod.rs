@@ -16,10 +16,12 @@
 mod build;
 mod film_motion;
 mod parameters;
+mod side_by_side;
 mod state;
 mod stribeck;
 
 pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
+pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
 use super::{Law, Sliding};

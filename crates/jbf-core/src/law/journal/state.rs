@@ -13,6 +13,13 @@ pub struct Loaded<T> {
     pub eps_tr: T,
 }
 
+impl<T: Real> Loaded<T> {
+    /// The load, N.
+    pub fn load_n(&self) -> T {
+        self.load_n
+    }
+}
+
 /// The film now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {

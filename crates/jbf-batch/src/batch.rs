@@ -3,6 +3,7 @@
 use crate::lane::Float;
 use crate::part::{self, Block, Out, LANES};
 use crate::simd::Simd;
+use crate::speeds::Speeds;
 use jbf_core::law::journal::{Journal, State};
 use jbf_core::law::Law;
 use rayon::prelude::*;
@@ -15,50 +16,6 @@ pub enum Method {
     Euler,
     /// The classical Runge-Kutta method of order four.
     Rk4,
-}
-
-/// Surface speed, m/s, at samples one step apart.
-#[derive(Clone, Copy, Debug)]
-pub enum Speeds<'a, F> {
-    /// One motion for every set.
-    Common(&'a [F]),
-    /// One motion a set: row by row, a row for each sample, `sets` values wide.
-    Each {
-        /// The rows.
-        rows: &'a [F],
-        /// Values in a row.
-        sets: usize,
-    },
-}
-
-impl<F: Float> Speeds<'_, F> {
-    /// Samples.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Common(speeds) => speeds.len(),
-            Self::Each { rows, sets } => rows.len() / (*sets).max(1),
-        }
-    }
-
-    /// True for no sample at all.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The speeds of `LANES` neighbouring sets; lanes without a set rest.
-    #[inline(always)]
-    pub(crate) fn at(&self, sample: usize, set: usize) -> [F; LANES] {
-        match self {
-            Self::Common(speeds) => [speeds[sample]; LANES],
-            Self::Each { rows, sets } => {
-                let row = &rows[sample * sets..(sample + 1) * sets];
-                match row.get(set..set + LANES) {
-                    Some(all) => core::array::from_fn(|i| all[i]),
-                    None => core::array::from_fn(|i| row.get(set + i).copied().unwrap_or(F::ZERO)),
-                }
-            }
-        }
-    }
 }
 
 /// Many laws to be stepped together.

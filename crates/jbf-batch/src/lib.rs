@@ -30,7 +30,9 @@ mod batch;
 mod lane;
 mod part;
 mod simd;
+mod speeds;
 
-pub use batch::{Batch, Films, Method, Speeds};
+pub use batch::{Batch, Films, Method};
 pub use lane::{Float, Lane};
 pub use simd::Simd;
+pub use speeds::Speeds;

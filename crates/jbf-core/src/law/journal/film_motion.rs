@@ -15,7 +15,7 @@ use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
 use crate::stepper::System;
-use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+use core::f64::consts::FRAC_PI_2;
 
 /// Closer to the centre than this the journal has no direction of its own.
 const CENTRE: f64 = 1e-12;
@@ -34,15 +34,19 @@ impl<T: Real> System<T, 2> for Film<'_, T> {
     fn slope(&self, way: &[T; 2], ub: T) -> [T; 2] {
         let (x, y) = (self.from[0] + way[0], self.from[1] + way[1]);
         let e2 = x * x + y * y;
-        let limit = T::EPS_LIMIT * T::EPS_LIMIT;
-        if e2 <= limit && e2 >= T::of(CENTRE * CENTRE) {
-            self.inside(x, y, e2, ub)
-        } else if T::SIDE_BY_SIDE {
-            [T::of(f64::NAN); 2]
-        } else {
-            self.edge(x, y, e2, ub)
+        let outside = !within(e2);
+        if outside && !T::SIDE_BY_SIDE {
+            return self.edge(x, y, e2, ub);
         }
+        let one = if outside { T::of(f64::NAN) } else { T::ONE };
+        self.inside(x, y, e2, ub, one)
     }
+}
+
+/// True where the equations hold as they stand: off the centre and inside the bearing.
+#[inline(always)]
+pub(super) fn within<T: Real>(e2: T) -> bool {
+    e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
 }
 
 impl<T: Real> Film<'_, T> {
@@ -54,36 +58,34 @@ impl<T: Real> Film<'_, T> {
         let limit = T::EPS_LIMIT * T::EPS_LIMIT;
         if e2 > limit {
             let shrink = T::EPS_LIMIT / e2.sqrt();
-            self.inside(x * shrink, y * shrink, limit, ub)
+            self.inside(x * shrink, y * shrink, limit, ub, T::ONE)
         } else {
             let near = T::of(CENTRE);
-            self.inside(near, T::ZERO, near * near, ub)
+            self.inside(near, T::ZERO, near * near, ub, T::ONE)
         }
     }
 
-    /// The slope at `e2 = x^2 + y^2`, well between 0 and 1.
+    /// The slope at `e2 = x^2 + y^2`, well between 0 and 1; `one` is one, or no number where the
+    /// slope shall be none.
     #[inline(always)]
-    fn inside(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
+    fn inside(&self, x: T, y: T, e2: T, ub: T, one: T) -> [T; 2] {
         let fb = self.loaded.load_number;
         let d = T::ONE - e2;
         let (e, root) = (e2.sqrt(), d.sqrt());
         let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
         let d_determinant = d * determinant;
-        let inverse = T::ONE / (e2 * d_determinant);
-        let d3 = d * d * d;
-        let (fx, fy) = (fb * x, fb * y);
+        let inverse = one / (e2 * d_determinant);
+        let stiff = d * d * d * inverse;
+        let across = (fb * T::of(FOUR_OVER_PI)) * y * inverse;
         // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
-        let along = (fx * d_determinant * inverse) * e;
-        let across = (fy * T::of(FOUR_OVER_PI) * (e2 * determinant) * inverse) * root;
-        let push = along - self.law.asperity_load(e, self.loaded.eps_tr) - across;
+        let push = (fb * x * d_determinant * inverse) * e
+            - self.law.asperity_load(e, self.loaded.eps_tr)
+            - (across * (e2 * determinant)) * root;
         // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
-        let radial = push * ((d3 * inverse) * (e * root));
-        let swing = push * ((d3 * e2 * T::of(FOUR_OVER_PI)) * inverse);
-        let lag =
-            ((fy * T::of(FRAC_2_PI) * (d_determinant * d)) * inverse) * root - T::of(0.5) * ub;
-        [
-            radial * x + (lag - swing) * y,
-            radial * y + (swing - lag) * x,
-        ]
+        let radial = push * (stiff * (e * root));
+        let swing = push * (stiff * (e2 * T::of(FOUR_OVER_PI)));
+        let lag = T::of(0.5) * ((across * (d_determinant * d)) * root - ub);
+        let turn = swing - lag;
+        [radial * x - turn * y, radial * y + turn * x]
     }
 }

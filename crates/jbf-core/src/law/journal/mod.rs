@@ -30,7 +30,7 @@ use crate::real::Real;
 use crate::stepper::{Rk4, Stepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use film_motion::Film;
+use film_motion::{within, Film};
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -96,8 +96,8 @@ impl<T: Real> Journal<T> {
     fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
         let load = self.asperity_load(eps, loaded.eps_tr);
         Sliding {
-            level: self.f_m * load * loaded.inverse_load_number,
-            viscous: self.viscous_s_m * velocity_m_s * loaded.inverse_load_number / d.sqrt(),
+            level: self.f_m * loaded.inverse_load_number * load,
+            viscous: self.viscous_s_m * loaded.inverse_load_number * velocity_m_s / d.sqrt(),
         }
     }
 
@@ -123,20 +123,25 @@ impl<T: Real> Journal<T> {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
-        let limit = T::EPS_LIMIT;
-        if e2.value() <= (limit * limit).value() {
-            // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
-            state.kept = [
-                way[0] - (xy[0] - state.xy[0]),
-                way[1] - (xy[1] - state.xy[1]),
-            ];
-            state.xy = xy;
+        let limit = T::EPS_LIMIT * T::EPS_LIMIT;
+        // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+        let kept = [
+            way[0] - (xy[0] - state.xy[0]),
+            way[1] - (xy[1] - state.xy[1]),
+        ];
+        if T::SIDE_BY_SIDE {
+            state.clamped |= u32::from(!within(e2));
+            (state.xy, state.kept) = (xy, kept);
+            return;
+        }
+        if e2 <= limit {
+            (state.xy, state.kept) = (xy, kept);
             return;
         }
         // Too coarse a step. A step that lost its numbers altogether leaves the film as it
         // was; any other is held in its direction.
         state.clamped = state.clamped.saturating_add(1);
-        if !T::SIDE_BY_SIDE && e2.is_finite() {
+        if e2.is_finite() {
             let shrink = self.deepest(&state.loaded) / e2.sqrt();
             state.xy = [xy[0] * shrink, xy[1] * shrink];
             state.kept = [T::ZERO; 2];

@@ -34,7 +34,7 @@ demo: $(BUILT)
 	$(VENV)/bin/jbf demo
 
 test: $(BUILT)
-	cargo test -p jbf-core
+	cargo test --workspace --exclude jbf-py
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 test-slow: $(BUILT)

@@ -34,6 +34,10 @@ pub trait Real:
     /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above
     /// the rounding error of one.
     const EPS_LIMIT: Self;
+    /// True for a number that is one lane of a vector. Lanes must not part: a step that leaves
+    /// the bearing is then only marked, its state means nothing any more, and it is for the
+    /// caller to take it again with a number that stands alone.
+    const SIDE_BY_SIDE: bool = false;
 
     /// The nearest number of this kind; derivatives are zero.
     fn of(value: f64) -> Self;

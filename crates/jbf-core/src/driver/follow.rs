@@ -323,10 +323,12 @@ where
     fn hand_over(&mut self, xy: [T; 2], time_s: f64) {
         let eps = (xy[0] * xy[0] + xy[1] * xy[1]).sqrt();
         let velocity_m_s = self.excitation.velocity_m_s(time_s);
-        let sliding = self
-            .film
-            .journal()
-            .sliding(&self.loaded, eps, T::of(velocity_m_s));
+        let sliding = self.film.journal().sliding(
+            &self.loaded,
+            eps,
+            (T::ONE - eps) * (T::ONE + eps),
+            T::of(velocity_m_s),
+        );
         let sample = Sample {
             xy,
             eps,

@@ -10,7 +10,7 @@ use crate::real::Real;
 pub struct Euler;
 
 impl Stepper for Euler {
-    #[inline]
+    #[inline(always)]
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,

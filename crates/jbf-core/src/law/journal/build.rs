@@ -49,6 +49,7 @@ impl<T: Real> Journal<T> {
             nominal: Loaded {
                 load_n: T::ZERO,
                 load_number: T::ZERO,
+                inverse_load_number: T::ZERO,
                 eps_tr: T::ZERO,
             },
         };

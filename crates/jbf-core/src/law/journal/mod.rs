@@ -18,11 +18,13 @@ pub(crate) mod film_linear;
 mod film_motion;
 mod named;
 mod parameters;
+mod side_by_side;
 mod state;
 mod stribeck;
 
 pub(in crate::law) use named::parts;
 pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
+pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
 use super::{Law, Sliding};
@@ -31,7 +33,7 @@ use crate::real::Real;
 use crate::stepper::{Rk4, Stepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use film_motion::Film;
+use film_motion::{within, Film};
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -70,6 +72,7 @@ impl<T: Real> Journal<T> {
         Loaded {
             load_n,
             load_number,
+            inverse_load_number: T::ONE / load_number,
             eps_tr,
         }
     }
@@ -80,20 +83,24 @@ impl<T: Real> Journal<T> {
     }
 
     /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn asperity_load(&self, eps: T, eps_tr: T) -> T {
-        let touch = (eps - eps_tr).max(T::ZERO);
-        self.k0 * touch * touch
+        let touch = eps - eps_tr;
+        let load = self.k0 * touch * touch;
+        if touch > T::ZERO {
+            load
+        } else {
+            T::ZERO
+        }
     }
 
-    /// Friction coefficient at an eccentricity ratio and a speed, (3.14).
-    #[inline]
-    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, velocity_m_s: T) -> Sliding<T> {
-        let d = (T::ONE - eps) * (T::ONE + eps);
-        let inverse_load = T::ONE / loaded.load_number;
+    /// Friction at an eccentricity ratio, `d = 1 - eps^2` and a speed, (3.14).
+    #[inline(always)]
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
+        let load = self.asperity_load(eps, loaded.eps_tr);
         Sliding {
-            level: self.f_m * self.asperity_load(eps, loaded.eps_tr) * inverse_load,
-            viscous: self.viscous_s_m * velocity_m_s * inverse_load / d.sqrt(),
+            level: self.f_m * loaded.inverse_load_number * load,
+            viscous: self.viscous_s_m * loaded.inverse_load_number * velocity_m_s / d.sqrt(),
         }
     }
 
@@ -113,18 +120,25 @@ impl<T: Real> Journal<T> {
             from: state.xy,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        let mut way = state.kept;
+        // Minus zero is the neutral start of a sum: `x + -0.0` is `x`, and costs nothing.
+        let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
-        let limit = T::EPS_LIMIT;
-        if e2.value() <= (limit * limit).value() {
-            // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
-            state.kept = [
-                way[0] - (xy[0] - state.xy[0]),
-                way[1] - (xy[1] - state.xy[1]),
-            ];
-            state.xy = xy;
+        let limit = T::EPS_LIMIT * T::EPS_LIMIT;
+        // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+        let kept = [
+            way[0] - (xy[0] - state.xy[0]),
+            way[1] - (xy[1] - state.xy[1]),
+        ];
+        if T::SIDE_BY_SIDE {
+            state.clamped |= u32::from(!within(e2));
+            (state.xy, state.kept) = (xy, kept);
+            return;
+        }
+        if e2 <= limit {
+            (state.xy, state.kept) = (xy, kept);
             return;
         }
         // Too coarse a step. A step that lost its numbers altogether leaves the film as it
@@ -184,9 +198,11 @@ impl<T: Real> Law<T> for Journal<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        self.sliding(&state.loaded, state.eps(), velocity_m_s)
+        // As the slope forms them, so that a step and its friction share both roots.
+        let e2 = state.eps_squared();
+        self.sliding(&state.loaded, e2.sqrt(), T::ONE - e2, velocity_m_s)
     }
 
     #[inline]

@@ -8,8 +8,16 @@ pub struct Loaded<T> {
     pub(crate) load_n: T,
     /// Load number Fb.
     pub load_number: T,
+    pub(super) inverse_load_number: T,
     /// Transition eccentricity.
     pub eps_tr: T,
+}
+
+impl<T: Real> Loaded<T> {
+    /// The load, N.
+    pub fn load_n(&self) -> T {
+        self.load_n
+    }
 }
 
 /// The film now.
@@ -40,7 +48,12 @@ impl<T: Real> State<T> {
     /// Eccentricity ratio.
     #[inline]
     pub fn eps(&self) -> T {
-        (self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]).sqrt()
+        self.eps_squared().sqrt()
+    }
+
+    #[inline(always)]
+    pub(super) fn eps_squared(&self) -> T {
+        self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]
     }
 
     /// `eps cos(phi)` and `eps sin(phi)`.

@@ -1,0 +1,38 @@
+//! Many parameter sets of the journal law side by side: a fit's many starts, a sweep, a cloud of
+//! samples.
+//!
+//! Neighbouring sets share a register, the instruction set (SSE2, AVX2, AVX-512) is chosen at run
+//! time, and blocks of sets go to all cores. The answer has the same bits on any number of
+//! threads and any instruction set, and those of [`jbf_core`] stepping one set after the other:
+//! the physics is the same code, over a [`Lane`].
+//!
+//! ```
+//! use jbf_batch::{Batch, Method, Speeds};
+//! use jbf_core::{law::journal::{Journal, Parameters}, Bearing, Clock, ParameterError};
+//!
+//! let laws = (0..100)
+//!     .map(|i| {
+//!         let parameters = Parameters { f_m: 0.2 + 0.001 * f64::from(i), ..Parameters::TABLE_4_2 };
+//!         Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal)
+//!     })
+//!     .collect::<Result<Vec<_>, ParameterError>>()?;
+//! let batch = Batch::new(laws, Method::Euler);
+//! let speeds: Vec<f64> = (0..500).map(|i| 0.127 * (0.002 * f64::from(i)).sin()).collect();
+//! let mut friction = vec![0.0; 500 * 100];
+//! batch.friction(&mut batch.start(), &Speeds::Common(&speeds), 0.002, &mut friction);
+//! assert!(friction.iter().all(|f| f.is_finite()));
+//! # Ok::<(), ParameterError>(())
+//! ```
+
+#![deny(missing_docs)]
+
+mod batch;
+mod lane;
+mod part;
+mod simd;
+mod speeds;
+
+pub use batch::{Batch, Films, Method};
+pub use lane::{Float, Lane};
+pub use simd::Simd;
+pub use speeds::Speeds;

@@ -1,0 +1,59 @@
+//! The instruction set, chosen at run time.
+//!
+//! Lanes never meet and nothing is contracted (no fused multiply-add), so every choice gives the
+//! same bits.
+
+/// Which instructions the lanes run on.
+#[derive(Clone, Copy, Debug)]
+pub enum Simd {
+    /// What every machine of the target has (SSE2 on x86-64).
+    Baseline,
+    /// AVX2: four numbers of double precision.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+    /// AVX-512: eight numbers of double precision.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(pulp::x86::V4),
+}
+
+impl Simd {
+    /// Every choice that this machine has, best first.
+    pub fn available() -> Vec<Self> {
+        let mut all = Vec::new();
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(pulp::x86::V4::try_new().map(Self::Avx512));
+            all.extend(pulp::x86::V3::try_new().map(Self::Avx2));
+        }
+        all.push(Self::Baseline);
+        all
+    }
+
+    /// The best that this machine has.
+    pub fn best() -> Self {
+        Self::available()[0]
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "avx512",
+        }
+    }
+
+    /// Run `work`, everything inlined into it compiled for this instruction set.
+    #[inline(always)]
+    pub fn dispatch<R>(self, work: impl FnOnce() -> R) -> R {
+        match self {
+            Self::Baseline => work(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(v3) => pulp::Simd::vectorize(v3, work),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(v4) => pulp::Simd::vectorize(v4, work),
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Several laws side by side, each with its film: one array a number, so that a compiler can put
+//! neighbours into the lanes of one register.
+//!
+//! The physics stays in [`Journal`]; this only sorts the numbers. `T` is meant to be a lane
+//! ([`Real::SIDE_BY_SIDE`]).
+
+use super::{Journal, Loaded, State};
+use crate::real::Real;
+
+/// `N` laws and films.
+#[derive(Clone, Copy, Debug)]
+pub struct SideBySide<T, const N: usize> {
+    fb_per_n: [T; N],
+    f_m: [T; N],
+    k0: [T; N],
+    viscous_s_m: [T; N],
+    inverse_u_tr: [T; N],
+    rate: [T; N],
+    load_n: [T; N],
+    load_number: [T; N],
+    inverse_load_number: [T; N],
+    eps_tr: [T; N],
+    x: [T; N],
+    y: [T; N],
+    kept_x: [T; N],
+    kept_y: [T; N],
+    clamped: [u32; N],
+}
+
+/// The same number of another kind.
+#[inline(always)]
+fn as_kind<S: Real, T: Real>(value: S) -> T {
+    T::of(value.value())
+}
+
+impl<T: Real, const N: usize> SideBySide<T, N> {
+    /// From laws and films of a kind of the same precision.
+    pub fn new<S: Real>(laws: &[Journal<S>; N], films: &[State<S>; N]) -> Self {
+        let law = |pick: fn(&Journal<S>) -> S| core::array::from_fn(|i| as_kind(pick(&laws[i])));
+        let film = |pick: fn(&State<S>) -> S| core::array::from_fn(|i| as_kind(pick(&films[i])));
+        Self {
+            fb_per_n: law(|l| l.fb_per_n),
+            f_m: law(|l| l.f_m),
+            k0: law(|l| l.k0),
+            viscous_s_m: law(|l| l.viscous_s_m),
+            inverse_u_tr: law(|l| l.inverse_u_tr),
+            rate: law(|l| l.rate),
+            load_n: film(|f| f.loaded.load_n),
+            load_number: film(|f| f.loaded.load_number),
+            inverse_load_number: film(|f| f.loaded.inverse_load_number),
+            eps_tr: film(|f| f.loaded.eps_tr),
+            x: film(|f| f.xy[0]),
+            y: film(|f| f.xy[1]),
+            kept_x: film(|f| f.kept[0]),
+            kept_y: film(|f| f.kept[1]),
+            clamped: core::array::from_fn(|i| films[i].clamped),
+        }
+    }
+
+    /// Law number `i`; for stepping only, its nominal load is that of the film.
+    #[inline(always)]
+    pub fn law(&self, i: usize) -> Journal<T> {
+        Journal {
+            fb_per_n: self.fb_per_n[i],
+            f_m: self.f_m[i],
+            k0: self.k0[i],
+            viscous_s_m: self.viscous_s_m[i],
+            inverse_u_tr: self.inverse_u_tr[i],
+            rate: self.rate[i],
+            nominal: self.loaded(i),
+        }
+    }
+
+    #[inline(always)]
+    fn loaded(&self, i: usize) -> Loaded<T> {
+        Loaded {
+            load_n: self.load_n[i],
+            load_number: self.load_number[i],
+            inverse_load_number: self.inverse_load_number[i],
+            eps_tr: self.eps_tr[i],
+        }
+    }
+
+    /// Film number `i`.
+    #[inline(always)]
+    pub fn film(&self, i: usize) -> State<T> {
+        State {
+            xy: [self.x[i], self.y[i]],
+            kept: [self.kept_x[i], self.kept_y[i]],
+            loaded: self.loaded(i),
+            clamped: self.clamped[i],
+        }
+    }
+
+    /// Film number `i` as a number that stands alone.
+    pub fn film_alone<S: Real>(&self, i: usize) -> State<S> {
+        let film = self.film(i);
+        State {
+            xy: film.xy.map(as_kind),
+            kept: film.kept.map(as_kind),
+            loaded: Loaded {
+                load_n: as_kind(film.loaded.load_n),
+                load_number: as_kind(film.loaded.load_number),
+                inverse_load_number: as_kind(film.loaded.inverse_load_number),
+                eps_tr: as_kind(film.loaded.eps_tr),
+            },
+            clamped: film.clamped,
+        }
+    }
+
+    /// Take back film number `i`, under the load that it had.
+    #[inline(always)]
+    pub fn put<S: Real>(&mut self, i: usize, film: &State<S>) {
+        self.x[i] = as_kind(film.xy[0]);
+        self.y[i] = as_kind(film.xy[1]);
+        self.kept_x[i] = as_kind(film.kept[0]);
+        self.kept_y[i] = as_kind(film.kept[1]);
+        self.clamped[i] = film.clamped;
+    }
+
+    /// How often the films were held inside the bearing, or have to be.
+    #[inline(always)]
+    pub fn clamped(&self) -> [u32; N] {
+        self.clamped
+    }
+}

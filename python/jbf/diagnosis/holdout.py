@@ -12,7 +12,7 @@ from jbf.fitting import Problem, Solution
 
 Array = npt.NDArray[np.float64]
 
-EVALUATIONS = 3
+EVALUATIONS = 12
 """A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
 
 
@@ -33,10 +33,9 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
         part = Problem(rest, problem.law, problem.clock, problem.effects)
         start = _without_leak(problem, solution, i)
         if np.array_equal(start, solution.values):
-            start = _one_step(problem, solution, i)
-            values, _, _ = part.search(start, solution.noise, EVALUATIONS)
-        else:
-            values, _, _ = part.search(start, solution.noise, 3 * EVALUATIONS)
+            # A law that misses the data badly is no place to extrapolate from.
+            start = min((_one_step(problem, solution, i), start), key=part.square)
+        values, _, _ = part.search(start, solution.noise, EVALUATIONS)
         own = Problem(campaign.only([i]), problem.law, problem.clock, problem.effects)
         residual, p = own.residuals(values)[0], campaign.prepared[i]
         total += float(np.sum(residual[p.trusted] ** 2))

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// An imposed speed: `(amplitude, omega, bias)` of a sine, or the times and speeds of a record.
 #[derive(FromPyObject)]
-enum Imposed {
+pub enum Imposed {
     Sine((f64, f64, f64)),
     Record((Vec<f64>, Vec<f64>)),
 }

@@ -17,6 +17,7 @@ from jbf.model import Model
 from jbf.model_file import ParameterValue
 from jbf.record import Run, read_run, read_runs
 from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
+from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
     from jbf.comparison import Comparison, compare
@@ -47,6 +48,7 @@ __all__ = [
     "ParameterValue",
     "Rig",
     "Run",
+    "Trajectory",
     "__version__",
     "compare",
     "diagnose",
@@ -56,6 +58,8 @@ __all__ = [
     "read_rig",
     "read_run",
     "read_runs",
+    "trajectories",
+    "trajectory",
 ]
 
 

@@ -7,6 +7,7 @@ mod catalogue;
 mod chain;
 mod curves;
 mod motion;
+mod trajectory;
 
 use pyo3::prelude::*;
 
@@ -21,5 +22,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     Ok(())
 }

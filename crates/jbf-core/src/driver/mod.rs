@@ -20,6 +20,7 @@
 mod excitation;
 mod film;
 mod follow;
+mod goal;
 mod kinks;
 mod sampled;
 

@@ -5,6 +5,7 @@ mod euler;
 mod rk4;
 mod rodas3;
 pub(crate) mod rodas5p;
+pub(crate) mod rodas5p_tableau;
 mod stiff;
 
 pub use euler::Euler;

@@ -9,147 +9,9 @@
 //! (1/(gamma h) - J) u_i = f(t + c_i h, y + sum_j a_ij u_j) + sum_j (C_ij / h) u_j + d_i h f_t
 //! ```
 
+use super::rodas5p_tableau::{A, C, D, GAMMA, H, NODES};
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
-
-const GAMMA: f64 = 0.21193756319429014;
-
-/// `a_ij` of stages two to six; stages seven and eight and the end each add the unknown before.
-const A: [[f64; 5]; 5] = [
-    [3.0, 0.0, 0.0, 0.0, 0.0],
-    [2.849394379747939, 0.45842242204463923, 0.0, 0.0, 0.0],
-    [
-        -6.954028509809101,
-        2.489845061869568,
-        -10.358996098473584,
-        0.0,
-        0.0,
-    ],
-    [
-        2.8029986275628964,
-        0.5072464736228206,
-        -0.3988312541770524,
-        -0.04721187230404641,
-        0.0,
-    ],
-    [
-        -7.502846399306121,
-        2.561846144803919,
-        -11.627539656261098,
-        -0.18268767659942256,
-        0.030198172008377946,
-    ],
-];
-
-/// `C_ij` of stages two to eight.
-const C: [[f64; 7]; 7] = [
-    [-14.155112264123755, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [
-        -17.97296035885952,
-        -2.859693295451294,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    ],
-    [
-        147.12150275711716,
-        -1.41221402718213,
-        71.68940251302358,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    ],
-    [
-        165.43517024871676,
-        -0.4592823456491126,
-        42.90938336958603,
-        -5.961986721573306,
-        0.0,
-        0.0,
-        0.0,
-    ],
-    [
-        24.854864614690072,
-        -3.0009227002832186,
-        47.4931110020768,
-        5.5814197821558125,
-        -0.6610691825249471,
-        0.0,
-        0.0,
-    ],
-    [
-        30.91273214028599,
-        -3.1208243349937974,
-        77.79954646070892,
-        34.28646028294783,
-        -19.097331116725623,
-        -28.087943162872662,
-        0.0,
-    ],
-    [
-        37.80277123390563,
-        -3.2571969029072276,
-        112.26918849496327,
-        66.9347231244047,
-        -40.06618937091002,
-        -54.66780262877968,
-        -9.48861652309627,
-    ],
-];
-
-/// Where stages two to five look at the input; the others look at the end of the step.
-pub(crate) const NODES: [f64; 4] = [
-    0.6358126895828704,
-    0.4095798393397535,
-    0.9769306725060716,
-    0.4288403609558664,
-];
-
-/// `d_i` of stages one to five.
-const D: [f64; 5] = [
-    GAMMA,
-    -0.42387512638858027,
-    -0.3384627126235924,
-    1.8046452872882734,
-    2.325825639765069,
-];
-
-/// Continuous output of order four.
-const H: [[f64; 8]; 3] = [
-    [
-        25.948786856663858,
-        -2.5579724845846235,
-        10.433815404888879,
-        -2.3679251022685204,
-        0.524948541321073,
-        1.1241088310450404,
-        0.4272876194431874,
-        -0.17202221070155493,
-    ],
-    [
-        -9.91568850695171,
-        -0.9689944594115154,
-        3.0438037242978453,
-        -24.495224566215796,
-        20.176138334709044,
-        15.98066361424651,
-        -6.789040303419874,
-        -6.710236069923372,
-    ],
-    [
-        11.419903575922262,
-        2.8879645146136994,
-        72.92137995996029,
-        80.12511834622643,
-        -52.072871366152654,
-        -59.78993625266729,
-        -0.15582684282751913,
-        4.883087185713722,
-    ],
-];
 
 /// The input along a step, as the stages need it.
 #[derive(Clone, Copy, Debug)]
@@ -194,6 +56,20 @@ impl<T: Real, const N: usize> Stages<T, N> {
     }
 }
 
+/// `sum_j row_j u_j` of the first `K` unknowns; `K` is a constant so that the sum has no loop.
+#[inline(always)]
+fn combined<T: Real, const N: usize, const K: usize>(
+    row: &[f64],
+    unknowns: &[[T; N]; 8],
+    i: usize,
+) -> T {
+    let mut sum = unknowns[0][i] * T::of(row[0]);
+    for j in 1..K {
+        sum += unknowns[j][i] * T::of(row[j]);
+    }
+    sum
+}
+
 /// One step from a system already linearised at `state`.
 #[inline]
 pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
@@ -203,47 +79,61 @@ pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     input: &Input<T>,
     dt: T,
 ) -> Stages<T, N> {
+    use core::array::from_fn;
     let inverse_dt = T::ONE / dt;
     let solver = S::Solver::new(&linear.jacobian, inverse_dt * T::of(1.0 / GAMMA));
+    // f_t h, which each stage takes a share of.
+    let drift: [T; N] = from_fn(|i| linear.by_input[i] * input.change);
     let mut u = [[T::ZERO; N]; 8];
-    u[0] = solver.solve(&core::array::from_fn(|i| {
-        linear.slope[i] + T::of(D[0]) * input.change * linear.by_input[i]
-    }));
-    let mut at = *state;
-    for stage in 1..8 {
-        if stage < 6 {
-            at = *state;
-            for j in 0..stage {
-                for i in 0..N {
-                    at[i] += T::of(A[stage - 1][j]) * u[j][i];
-                }
-            }
-        } else {
-            for i in 0..N {
-                at[i] += u[stage - 1][i];
-            }
-        }
-        let seen = if stage < 5 {
-            input.at_nodes[stage - 1]
-        } else {
-            input.at_end
+    u[0] = solver.solve(&from_fn(|i| linear.slope[i] + drift[i] * T::of(D[0])));
+    let mut at: [T; N];
+    // Written out stage by stage: as a loop it takes a third longer.
+    macro_rules! stage {
+        ($k:literal, $input:expr, $at:expr, $share:expr) => {
+            at = $at;
+            let slope = system.slope(&at, $input);
+            u[$k] = solver.solve(&from_fn(|i| {
+                slope[i]
+                    + combined::<T, N, $k>(&C[$k - 1], &u, i) * inverse_dt
+                    + $share.map_or(T::ZERO, |d: f64| drift[i] * T::of(d))
+            }));
         };
-        let mut right = system.slope(&at, seen);
-        for i in 0..N {
-            let mut sum = T::ZERO;
-            for j in 0..stage {
-                sum += T::of(C[stage - 1][j]) * u[j][i];
-            }
-            right[i] += sum * inverse_dt;
-            if stage < 5 {
-                right[i] += T::of(D[stage]) * input.change * linear.by_input[i];
-            }
-        }
-        u[stage] = solver.solve(&right);
     }
+    macro_rules! early {
+        ($k:literal) => {
+            stage!(
+                $k,
+                input.at_nodes[$k - 1],
+                from_fn(|i| state[i] + combined::<T, N, $k>(&A[$k - 1], &u, i)),
+                Some(D[$k])
+            )
+        };
+    }
+    macro_rules! late {
+        ($k:literal) => {
+            stage!(
+                $k,
+                input.at_end,
+                from_fn(|i| at[i] + u[$k - 1][i]),
+                None::<f64>
+            )
+        };
+    }
+    early!(1);
+    early!(2);
+    early!(3);
+    early!(4);
+    stage!(
+        5,
+        input.at_end,
+        from_fn(|i| state[i] + combined::<T, N, 5>(&A[4], &u, i)),
+        None::<f64>
+    );
+    late!(6);
+    late!(7);
     Stages {
         unknowns: u,
-        end: core::array::from_fn(|i| at[i] + u[7][i]),
+        end: from_fn(|i| at[i] + u[7][i]),
     }
 }
 

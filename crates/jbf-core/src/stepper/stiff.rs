@@ -1,4 +1,8 @@
 //! What an implicit stepper asks of a system, and how it solves its linear equations.
+//!
+//! The solves are written out here, not taken from nalgebra: its decompositions want a
+//! `RealField`, which dual numbers are not, and cost more (factor and four solves, `f64`, AMD EPYC:
+//! 80 ns against 240 ns for the four states, 55 ns against 85 ns for the two).
 
 use super::System;
 use crate::real::Real;

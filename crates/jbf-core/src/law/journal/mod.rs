@@ -30,7 +30,7 @@ pub use state::{Loaded, State};
 use super::{Law, Sliding};
 use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
-use crate::stepper::{Rk4, Stepper};
+use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::{within, Film};
@@ -123,6 +123,33 @@ impl<T: Real> Journal<T> {
         // Minus zero is the neutral start of a sum: `x + -0.0` is `x`, and costs nothing.
         let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        self.moved(state, way);
+    }
+
+    /// One step with any implicit stepper.
+    #[inline]
+    pub fn advance_stiff_with<S: StiffStepper>(
+        &self,
+        stepper: &S,
+        state: &mut State<T>,
+        speed_m_s: [T; 3],
+        rate: T,
+        dt_s: T,
+    ) {
+        let film = Film {
+            law: self,
+            loaded: &state.loaded,
+            from: state.xy,
+        };
+        let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
+        let mut way = [-T::ZERO; 2];
+        stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        self.moved(state, way);
+    }
+
+    /// The end of a step, held inside the bearing.
+    #[inline]
+    fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];

@@ -29,6 +29,8 @@ from jbf.starts import with_starts
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
+MOST_FORGIVEN = 1.02
+"""A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
 TRIAL_EVALUATIONS = 4
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
@@ -236,13 +238,17 @@ class Problem:
     def settle(self, near: Solution) -> Solution:
         """Converge from a solution, with the colour of its noise."""
         values, noise = near.values, near.noise
-        if not near.converged:
-            values, _, _ = self.search(values, WHITE, MAX_EVALUATIONS)
-            noise = self.estimate_noise(self.residuals(values))
         converged, message = near.converged, near.message
-        if noise.colour > 0.0 or not near.converged:
-            values, converged, message = self.search(values, noise, MAX_EVALUATIONS)
+        if not near.converged:
+            values, converged, message = self.search(values, WHITE, MAX_EVALUATIONS)
             noise = self.estimate_noise(self.residuals(values))
+        if noise.colour > 0.0:
+            again = self.search(values, noise, MAX_EVALUATIONS)
+            # A wrong law leaves a residual that no noise is. Taken for its colour, nearly all of
+            # it is forgiven, and the parameters may go anywhere.
+            if self.square(again[0]) <= MOST_FORGIVEN**2 * self.square(values):
+                values, converged, message = again
+                noise = self.estimate_noise(self.residuals(values))
         return self.solution(self._wrapped(values), noise, converged, message)
 
     def solve(self, seeds: Sequence[Mapping[str, float]]) -> Solution:

@@ -18,7 +18,11 @@ from jbf.campaign import Campaign, Prepared
 from jbf.catalogue import Parameter
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 Starts = tuple[float, ...]
+
+HUM = 0.02
+"""Speeds below this share of the top are no motion to take a scale from."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,8 @@ class Scales:
 
     Attributes
     ----------
+    whole_n
+        Median friction.
     kinetic_n, viscous_n_s_m
         Friction in the direction of motion on a line through the slow and the fast half.
     breakaway_n
@@ -37,6 +43,7 @@ class Scales:
         Typical way between reversals, and the shortest that the samples resolve near one, m.
     """
 
+    whole_n: float
     kinetic_n: float
     viscous_n_s_m: float
     breakaway_n: float
@@ -48,7 +55,7 @@ class Scales:
 
 def scales(campaign: Campaign) -> Scales:
     """The sizes of a campaign's runs, from samples that move."""
-    moving = [p.trusted & ~p.motion.resting for p in campaign.prepared]
+    moving = [_moving(p) for p in campaign.prepared]
     v = np.concatenate(
         [p.motion.velocity_m_s[m] for p, m in zip(campaign.prepared, moving, strict=True)]
     )
@@ -60,13 +67,22 @@ def scales(campaign: Campaign) -> Scales:
     f_low, f_high = float(np.median(along[low])), float(np.median(along[high]))
     v_low, v_high = float(np.median(speed[low])), float(np.median(speed[high]))
     slope = max((f_high - f_low) / (v_high - v_low), 0.0) if v_high > 1.2 * v_low else 0.0
-    kinetic = max(f_low - slope * v_low, 0.2 * whole)
+    kinetic = max(f_low - slope * v_low, 0.5 * whole)
     breakaway = max(float(np.quantile(along[low], 0.9)), 1.1 * kinetic)
     ways = np.concatenate([_strokes(p) for p in campaign.prepared])
-    stroke = max(float(np.median(ways)), 1e-9)
+    # A drive that settles overshoots by a little: those ways are no strokes.
+    stroke = max(float(np.median(ways[ways >= 0.1 * np.max(ways)])), 1e-9)
     step = float(np.median([p.step_s for p in campaign.prepared]))
     resolved = min(max(0.1 * slow_m_s * step, 1e-7 * stroke), 1e-2 * stroke)
-    return Scales(kinetic, slope, breakaway, slow_m_s, usual_m_s, stroke, resolved)
+    return Scales(whole, kinetic, slope, breakaway, slow_m_s, usual_m_s, stroke, resolved)
+
+
+def _moving(p: Prepared) -> Mask:
+    """Samples in motion: a hum near zero speed has neither a direction nor a way."""
+    speed = np.abs(p.motion.velocity_m_s)
+    top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
+    found: Mask = p.trusted & ~p.motion.resting & (speed > HUM * top)
+    return found
 
 
 def _strokes(p: Prepared) -> Array:
@@ -75,7 +91,7 @@ def _strokes(p: Prepared) -> Array:
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))
     sign = np.sign(v)
-    known = np.flatnonzero(p.trusted & (sign != 0.0))
+    known = np.flatnonzero(_moving(p))
     turned = known[1:][sign[known[1:]] != sign[known[:-1]]]
     ways = np.abs(np.diff(path[turned]))
     return ways if len(ways) else np.array([float(np.ptp(path))])
@@ -89,10 +105,10 @@ def _stiffness(s: Scales) -> Starts:
 
 
 _RULES: dict[str, Callable[[Scales], Starts]] = {
-    "F_c_n": lambda s: (s.kinetic_n,),
+    "F_c_n": lambda s: (s.kinetic_n, s.whole_n),
     "F_s_n": lambda s: (s.breakaway_n,),
     "F_s_inf_n": lambda s: (s.breakaway_n - s.kinetic_n,),
-    "F_v_n_s_m": lambda s: (s.viscous_n_s_m,),
+    "F_v_n_s_m": lambda s: (s.viscous_n_s_m, 0.0),
     "v_s_m_s": lambda s: (s.slow_m_s, 0.3 * s.usual_m_s),
     "v_d_m_s": lambda s: (s.usual_m_s,),
     "sigma_0_n_m": _stiffness,

@@ -85,7 +85,7 @@ impl<T: Real> Named<T> for Dahl<T> {
             number(
                 "exponent",
                 "shape of the bend: below 1 ductile, above 1 brittle",
-                [0.1, 5.0],
+                [0.01, 5.0],
                 &[1.0],
             ),
             F_V,

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Source: Canudas de Wit, Olsson, Astrom & Lischinsky (1995); Olsson (1996); Cohn (1998),
-//! section 2.3.1. The fall of sigma_1 with speed keeps the law passive.
+//! section 2.3.1. The fall of sigma_1 with speed keeps the law passive where
+//! `sigma_1(v) |v| < 4 sigma_0 g(v)`, that is, surely, where `sigma_1 v_d < 9 min(F_c, F_s)`.
 //!
 //! With `y = sigma_0 z` this is a relaxation of y towards `sigma_0 g sgn(v)` over the way slid
 //! at the rate `1/g`: it is solved exactly in the way, with the level on a straight line, so any
@@ -28,7 +29,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct LuGre<T> {
     coulomb_n: T,
-    excess_n: T,
+    static_n: T,
     stribeck_m_s: T,
     stiffness_n_m: T,
     damping_n_s_m: T,
@@ -41,7 +42,9 @@ impl<T: Real> LuGre<T> {
     #[inline]
     fn level(&self, velocity_m_s: T) -> T {
         let share = velocity_m_s / self.stribeck_m_s;
-        self.coulomb_n + self.excess_n * (-share * share).exp()
+        // Two positive parts: a difference could round to zero in single precision.
+        let still = (-share * share).exp();
+        self.coulomb_n * (T::ONE - still) + self.static_n * still
     }
 
     /// The bristle's force at the end of a leg.
@@ -96,7 +99,7 @@ impl<T: Real> Named<T> for LuGre<T> {
         Self::INFO.check(values)?;
         Ok(Self {
             coulomb_n: values[0],
-            excess_n: values[1] - values[0],
+            static_n: values[1],
             stribeck_m_s: values[2],
             stiffness_n_m: values[3],
             damping_n_s_m: values[4],

@@ -15,7 +15,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct Stribeck<T> {
     coulomb_n: T,
-    excess_n: T,
+    static_n: T,
     stribeck_m_s: T,
     delta: T,
     viscous_n_s_m: T,
@@ -56,7 +56,7 @@ impl<T: Real> Named<T> for Stribeck<T> {
         Self::INFO.check(values)?;
         Ok(Self {
             coulomb_n: values[0],
-            excess_n: values[1] - values[0],
+            static_n: values[1],
             stribeck_m_s: values[2],
             delta: values[3],
             viscous_n_s_m: values[4],
@@ -74,8 +74,9 @@ impl<T: Real> Law<T> for Stribeck<T> {
     #[inline]
     fn friction(&self, _state: &(), velocity_m_s: T) -> Sliding<T> {
         let share = (velocity_m_s.abs() / self.stribeck_m_s).powf(self.delta);
+        let still = (-share).exp();
         Sliding {
-            level: self.coulomb_n + self.excess_n * (-share).exp(),
+            level: self.coulomb_n * (T::ONE - still) + self.static_n * still,
             viscous: self.viscous_n_s_m * velocity_m_s,
         }
     }

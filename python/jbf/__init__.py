@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from jbf._core import __version__
+from jbf.batching import batch
 from jbf.catalogue import effects, laws
 from jbf.errors import InputError, JbfError
 from jbf.model import Model
@@ -50,6 +51,7 @@ __all__ = [
     "Run",
     "Trajectory",
     "__version__",
+    "batch",
     "compare",
     "diagnose",
     "effects",

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Array32 = npt.NDArray[np.float32]
 
 __version__: str
 
@@ -80,6 +81,32 @@ class Chain:
     def jacobian(
         self, parameters: Array, motions: Sequence[Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]: ...
+
+class BatchRig:
+    def __init__(
+        self,
+        *,
+        radius_m: float,
+        length_m: float,
+        clearance_m: float,
+        mass_kg: float,
+        count: int,
+        viscosity_pa_s: float,
+        clock: str,
+        method: str,
+    ) -> None: ...
+    def friction_f64(
+        self, sets: Array, speeds: Array, each: bool, dt_s: float, out: Array
+    ) -> None: ...
+    def friction_f32(
+        self, sets: Array, speeds: Array32, each: bool, dt_s: float, out: Array32
+    ) -> None: ...
+    def squares_f64(
+        self, sets: Array, speeds: Array, each: bool, dt_s: float, data: Array
+    ) -> Array: ...
+    def squares_f32(
+        self, sets: Array, speeds: Array32, each: bool, dt_s: float, data: Array32
+    ) -> Array32: ...
 
 def effects() -> list[EffectPage]: ...
 def laws() -> list[LawPage]: ...

@@ -2,6 +2,7 @@
 //!
 //! One file per Python type; no physics here.
 
+mod batch;
 mod bearing;
 mod catalogue;
 mod chain;
@@ -17,6 +18,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;
+    m.add_class::<batch::BatchRig>()?;
     m.add_function(wrap_pyfunction!(catalogue::effects, m)?)?;
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 HERE = Path(__file__).resolve().parent
-COMMAND = "cargo run --quiet --release -p jbf-core --example reduction_map".split()
+COMMAND = ["cargo", "run", "--quiet", "--release", "-p", "jbf-core", "--example", "reduction_map"]
 TITLES = {"journal": "journal clock, $U_{tr}/R$", "thesis": "thesis clock, 1 s$^{-1}$"}
 
 

@@ -49,7 +49,9 @@ pub fn predict<T: Real, L: Law<T>>(
         .velocity_m_s
         .iter()
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
-    let max_step_s = max_step_s.min(chain.law.longest_step_s(top)).min(chain.effects.longest_step_s());
+    let max_step_s = max_step_s
+        .min(chain.law.longest_step_s(top))
+        .min(chain.effects.longest_step_s());
     let mut state = chain.start(&from);
     sink(0, state.reading_n);
     let mut i = 1;

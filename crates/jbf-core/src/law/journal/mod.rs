@@ -26,7 +26,7 @@ pub use state::{Loaded, State};
 use super::{Law, Sliding};
 use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
-use crate::stepper::{Rk4, StiffStepper, Stepper};
+use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::Film;

@@ -16,11 +16,12 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv demo test lint format bench clean
+.PHONY: help venv demo test test-slow lint format bench clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
 	@echo "make test    Rust and Python tests"
+	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
@@ -33,22 +34,25 @@ demo: $(BUILT)
 	$(VENV)/bin/jbf demo
 
 test: $(BUILT)
-	cargo test -p jbf-core
-	$(VENV)/bin/python -m pytest
+	cargo test --workspace --exclude jbf-py
+	$(VENV)/bin/python -m pytest -n auto --dist worksteal
+
+test-slow: $(BUILT)
+	$(VENV)/bin/python -m pytest -n auto -m slow
 
 # rustfmt does not follow the macro that declares the effects, so it is given every file.
 lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-	$(VENV)/bin/ruff check python simulator
-	$(VENV)/bin/ruff format --check python simulator
+	$(VENV)/bin/ruff check python simulator benches docs
+	$(VENV)/bin/ruff format --check python simulator benches docs
 	$(VENV)/bin/mypy
 
 format: $(BUILT)
 	$(RUSTFMT) $$($(RUST_FILES))
-	$(VENV)/bin/ruff check --fix python simulator
-	$(VENV)/bin/ruff format python simulator
+	$(VENV)/bin/ruff check --fix python simulator benches docs
+	$(VENV)/bin/ruff format python simulator benches docs
 
 bench:
 	cargo bench -p jbf-benches

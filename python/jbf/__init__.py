@@ -18,6 +18,7 @@ from jbf.model import Model
 from jbf.model_file import ParameterValue
 from jbf.record import Run, read_run, read_runs
 from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
+from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
     from jbf.comparison import Comparison, compare
@@ -48,6 +49,7 @@ __all__ = [
     "ParameterValue",
     "Rig",
     "Run",
+    "Trajectory",
     "__version__",
     "batch",
     "compare",
@@ -58,6 +60,8 @@ __all__ = [
     "read_rig",
     "read_run",
     "read_runs",
+    "trajectories",
+    "trajectory",
 ]
 
 

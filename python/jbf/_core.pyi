@@ -29,14 +29,29 @@ class EffectPage(TypedDict):
     equation: str
     source: str
     limits: str
-    needs_angle: bool
+    needs: list[str]
+    refused: dict[str, str]
     longest_step_s: float
     parameters: list[ParameterPage]
 
 class LawPage(TypedDict):
     name: str
     summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_bearing: bool
+    has_film: bool
+    has_bristle: bool
     parameters: list[ParameterPage]
+
+class BearingSizes(TypedDict):
+    radius_m: float
+    length_m: float
+    clearance_m: float
+    mass_kg: float
+    count: int
+    viscosity_pa_s: float
 
 class Motion:
     def __init__(
@@ -53,13 +68,9 @@ class Chain:
     def __init__(
         self,
         *,
-        radius_m: float,
-        length_m: float,
-        clearance_m: float,
-        mass_kg: float,
-        count: int,
-        viscosity_pa_s: float,
-        load_n: float,
+        law: str,
+        bearing: BearingSizes | None,
+        load_n: float | None,
         clock: str,
         effects: Sequence[str],
         max_step_s: float,
@@ -101,9 +112,23 @@ def effects() -> list[EffectPage]: ...
 def laws() -> list[LawPage]: ...
 def film_integrals(eps: float) -> tuple[float, float, float]: ...
 def transition_eccentricity(load_number: float) -> float: ...
-def steady_state(
+def steady_friction(
     velocity_m_s: Array,
     *,
+    law: str,
+    parameters: Sequence[float],
+    bearing: BearingSizes | None,
+    load_n: float | None,
+) -> Array: ...
+def trajectories(
+    runs: Sequence[tuple[Array, tuple[float, float, float] | tuple[Array, Array]]],
+    *,
+    model: str,
+    clock: str,
+    tolerance: float,
+    start_time_s: float | None,
+    start_eps: float | None,
+    start_phi_rad: float | None,
     f_m: float,
     u_tr_m_s: float,
     k0: float,
@@ -115,4 +140,4 @@ def steady_state(
     count: int,
     viscosity_pa_s: float,
     load_n: float,
-) -> tuple[Array, Array, Array]: ...
+) -> list[tuple[Array, Array, Array, int]]: ...

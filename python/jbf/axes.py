@@ -38,12 +38,12 @@ def _sign_words(v: Array) -> Bins:
     return np.where(v > 0, 1, np.where(v < 0, 0, -1)).astype(np.intp)
 
 
-def _direction(campaign: Campaign, u_tr: float) -> Binned:
+def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
     bins = [_sign_words(p.motion.velocity_m_s) for p in campaign.prepared]
     return Binned("direction", ("v < 0", "v > 0"), bins)
 
 
-def _velocity(campaign: Campaign, u_tr: float) -> Binned:
+def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     speeds = np.concatenate([np.abs(p.motion.velocity_m_s) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
     edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
@@ -58,17 +58,29 @@ def _velocity(campaign: Campaign, u_tr: float) -> Binned:
     return Binned("velocity", labels, bins)
 
 
-def _regime(campaign: Campaign, u_tr: float) -> Binned:
-    labels = ("at rest", "boundary", "mixed", "full film")
-    bins = []
-    for p in campaign.prepared:
-        speed = np.abs(p.motion.velocity_m_s) / u_tr
-        kind = 1 + np.digitize(speed, [BOUNDARY_SHARE, 1.0])
-        bins.append(np.where(p.motion.resting, 0, kind).astype(np.intp))
-    return Binned("regime", labels, bins)
+def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Lubrication regimes of a law with a film; of any other, thirds of the speeds on record."""
+    speeds = [np.abs(p.motion.velocity_m_s) for p in campaign.prepared]
+    if u_tr is not None:
+        axis, names = "regime", ("boundary", "mixed", "full film")
+        edges = np.array([BOUNDARY_SHARE, 1.0]) * u_tr
+    else:
+        axis = "speed range"
+        whole = np.concatenate(speeds)
+        edges = np.quantile(whole[whole > 0.0], [1 / 3, 2 / 3])
+        names = (
+            f"slow (to {edges[0]:.2g} m/s)",
+            "medium",
+            f"fast (over {edges[1]:.2g} m/s)",
+        )
+    bins = [
+        np.where(p.motion.resting, 0, 1 + np.digitize(speed, edges)).astype(np.intp)
+        for p, speed in zip(campaign.prepared, speeds, strict=True)
+    ]
+    return Binned(axis, ("at rest", *names), bins)
 
 
-def _acceleration(campaign: Campaign, u_tr: float) -> Binned:
+def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
     labels = ("slowing, v < 0", "speeding up, v < 0", "slowing, v > 0", "speeding up, v > 0")
     bins = []
     for p in campaign.prepared:
@@ -79,7 +91,7 @@ def _acceleration(campaign: Campaign, u_tr: float) -> Binned:
     return Binned("acceleration", labels, bins)
 
 
-def _angle(campaign: Campaign, u_tr: float) -> Binned:
+def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
     width = 2.0 * np.pi / ANGLE_BINS
     labels = tuple(f"angle {np.degrees((i + 0.5) * width):.0f} deg" for i in range(ANGLE_BINS))
     bins = []
@@ -94,7 +106,7 @@ def _angle(campaign: Campaign, u_tr: float) -> Binned:
     return Binned("angle", both, bins)
 
 
-def _time(campaign: Campaign, u_tr: float) -> Binned:
+def _time(campaign: Campaign, u_tr: float | None) -> Binned:
     longest = max(p.run.duration_s for p in campaign.prepared)
     edges = longest * np.linspace(0, 1, TIME_BINS + 1)
     labels = tuple(f"{edges[i]:.0f} to {edges[i + 1]:.0f} s" for i in range(TIME_BINS))
@@ -151,19 +163,19 @@ def _distance_since_reversal(p: Prepared) -> Array:
     return _after_events(p, turned, travelled)
 
 
-def _run(campaign: Campaign, u_tr: float) -> Binned:
+def _run(campaign: Campaign, u_tr: float | None) -> Binned:
     labels = tuple(f"run {p.run.name}" for p in campaign.prepared)
     bins = [np.full(len(p.run), i, dtype=np.intp) for i, p in enumerate(campaign.prepared)]
     return Binned("run", labels, bins)
 
 
-def all_axes(campaign: Campaign, u_tr: float) -> list[Binned]:
+def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
     """Every axis that the campaign's records allow.
 
     Parameters
     ----------
     u_tr
-        Transition speed of the model, m/s: parts the regimes.
+        Transition speed of the model, m/s: parts the regimes. None of a law without a film.
     """
     axes = [
         make(campaign, u_tr)

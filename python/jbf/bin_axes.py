@@ -24,6 +24,7 @@ _NAMES = {
     "distance since a reversal": "Distance since the motion reversed",
     "direction": "Direction of motion",
     "regime": "Lubrication regime",
+    "speed range": "Speed range",
     "acceleration": "Phase of the motion",
     "run": "Run",
 }

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from jbf import _core
 from jbf.conditioning import ImposedMotion
 from jbf.errors import InputError
-from jbf.model import core_motion, imposed
+from jbf.model import core_motion, has_angle, has_path, imposed
 from jbf.record import Run, require
 from jbf.rig import Rig
 
@@ -87,7 +87,12 @@ class Campaign:
     @property
     def has_angle(self) -> bool:
         """True where every run has the shaft's angle."""
-        return all(p.run.angle_rad is not None for p in self.prepared)
+        return all(has_angle(self.rig, p.run) for p in self.prepared)
+
+    def shows(self, needs: Sequence[str]) -> bool:
+        """True where every run holds what an effect needs of the record."""
+        paths = all(has_path(self.rig, p.run) for p in self.prepared)
+        return (self.has_angle or "angle" not in needs) and (paths or "path" not in needs)
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""

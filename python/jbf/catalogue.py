@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -28,7 +28,11 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Effect:
-    """The page of one effect."""
+    """The page of one effect.
+
+    `needs` names what it needs of the law and of the record; `refused` tells for each law that
+    it does not go with why: "the law ...".
+    """
 
     name: str
     stage: str
@@ -36,17 +40,27 @@ class Effect:
     equation: str
     source: str
     limits: str
-    needs_angle: bool
+    needs: tuple[str, ...]
+    refused: Mapping[str, str]
     longest_step_s: float
     parameters: tuple[Parameter, ...]
 
 
 @dataclass(frozen=True)
 class Law:
-    """A base law and its parameters."""
+    """The page of one base law.
+
+    A law that does not need a bearing gives newtons and needs no load either.
+    """
 
     name: str
     summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_bearing: bool
+    has_film: bool
+    has_bristle: bool
     parameters: tuple[Parameter, ...]
 
 
@@ -63,6 +77,7 @@ def effects() -> dict[str, Effect]:
     for page in _core.effects():
         fields = dict(page)
         fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
+        fields["needs"] = tuple(page["needs"])
         pages[page["name"]] = Effect(**fields)  # type: ignore[arg-type]
     return pages
 
@@ -70,12 +85,12 @@ def effects() -> dict[str, Effect]:
 @cache
 def laws() -> dict[str, Law]:
     """Every base law by name."""
-    return {
-        page["name"]: Law(
-            page["name"], page["summary"], tuple(_parameter(p) for p in page["parameters"])
-        )
-        for page in _core.laws()
-    }
+    pages = {}
+    for page in _core.laws():
+        fields = dict(page)
+        fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
+        pages[page["name"]] = Law(**fields)  # type: ignore[arg-type]
+    return pages
 
 
 def find_effect(name: str) -> Effect:
@@ -101,6 +116,24 @@ def find_law(name: str) -> Law:
     if name not in known:
         raise InputError(problem=f'there is no law "{name}"', mend=did_you_mean(name, known))
     return known[name]
+
+
+def check_applies(law: str, names: Iterable[str]) -> None:
+    """An InputError where one of the effects does not go with a law."""
+    page = find_law(law)
+    for name in names:
+        reason = find_effect(name).refused.get(page.name)
+        if reason is not None:
+            raise InputError(
+                problem=f"the effect {name} does not apply: the law {page.name} {reason}",
+                mend=f"leave it out (`jbf effects --law {page.name}` lists what applies)",
+            )
+
+
+def transition_speed(law: str, values: Sequence[float]) -> float | None:
+    """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
+    names = [p.name for p in find_law(law).parameters]
+    return float(values[names.index("U_tr_m_s")]) if "U_tr_m_s" in names else None
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:

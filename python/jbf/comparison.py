@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from jbf.axes import Binned, all_axes
 from jbf.campaign import Campaign
+from jbf.catalogue import transition_speed
 from jbf.model import Model
 from jbf.noise import noise_floor
 from jbf.record import PathLike, Run
@@ -33,8 +34,9 @@ class Failure:
     Attributes
     ----------
     axis
-        `velocity`, `direction`, `regime`, `acceleration`, `angle`, `time`, `run`,
-        `time since a rest` or `distance since a reversal`.
+        `velocity`, `direction`, `regime` (of a law without a film: `speed range`),
+        `acceleration`, `angle`, `time`, `run`, `time since a rest` or
+        `distance since a reversal`.
     where
         The pattern in words.
     share
@@ -119,7 +121,7 @@ class Comparison:
 
 
 def find_failures(
-    campaign: Campaign, residuals: Sequence[Array], u_tr: float, noise_n: float
+    campaign: Campaign, residuals: Sequence[Array], u_tr: float | None, noise_n: float
 ) -> tuple[Failure, ...]:
     """Axes along which record minus prediction has a pattern, strongest first."""
     trusted = np.concatenate([p.trusted for p in campaign.prepared])
@@ -185,7 +187,8 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     from jbf.model import chain
 
     motions = campaign.motions
-    predictions = chain(model.rig, model.clock, model.effects).predict(model.values, motions)
+    core = chain(model.rig, model.law, model.clock, model.effects)
+    predictions = core.predict(model.values, motions)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign)
     runs = tuple(
@@ -197,7 +200,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
         for p, r in zip(campaign.prepared, residuals, strict=True)
     )
     square = sum(r.rms_n**2 * r.samples for r in runs) / max(campaign.samples, 1)
-    u_tr = float(model.values[1])
+    u_tr = transition_speed(model.law, model.values.tolist())
     return Comparison(
         model=model,
         campaign=campaign,

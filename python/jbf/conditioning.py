@@ -6,6 +6,10 @@ short polynomial is fitted to both at once round each sample, over the longest w
 the data allow: windows grow while the speeds they give agree within their errors (the
 intersection of confidence intervals, Goldenshluger & Nemirovski 1997). So a sine is smoothed
 over many samples and the corner of a trapezoid over few.
+
+Records of real machines are less tidy than an encoder and a noise: positions finer than any step,
+speeds that a filter made from positions and that disagree with them, noise that comes and goes,
+rests in which the speed is a hum instead of zero. Each is looked for in the record itself.
 """
 
 from __future__ import annotations
@@ -26,6 +30,14 @@ AGREEMENT = 2.0
 """How many standard errors the intervals of two windows may span and still agree."""
 REST_SAMPLES = 3
 """So many zero speeds in a row are a rest, not a crossing."""
+STILL_SAMPLES = 20
+"""So many samples without a step of the encoder, at speeds of a hum, are a rest, too."""
+STILL_SHARE = 5e-3
+"""Largest hum of a rest, as a share of the top speed."""
+UNEVEN = 3.0
+"""Noise so many times its usual size is uneven: locally it counts as it is."""
+UNEVEN_SAMPLES = 101
+"""Samples over which local noise is taken."""
 SIGN_SIGMA = 4.0
 """A speed closer to zero than this many standard errors has no sign to rely on."""
 
@@ -76,6 +88,55 @@ def resting_samples(velocity_m_s: Array) -> Mask:
     return rest
 
 
+def still_samples(path: Array, velocity_m_s: Array, step: float) -> Mask:
+    """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
+    and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
+
+    Parameters
+    ----------
+    path
+        Recorded path, m.
+    step
+        The encoder's step, m.
+    """
+    n = len(path)
+    slow = np.abs(velocity_m_s) <= STILL_SHARE * np.max(np.abs(velocity_m_s), initial=0.0)
+    if n < STILL_SAMPLES or not slow.any():
+        return np.zeros(n, dtype=bool)
+    windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
+    calm = np.lib.stride_tricks.sliding_window_view(slow, STILL_SAMPLES)
+    begins = (np.ptp(windows, axis=1) <= 1.5 * step) & calm.all(axis=1)
+    ends = np.concatenate((np.zeros(STILL_SAMPLES), begins.astype(float)))
+    covered = np.cumsum(np.concatenate((begins, np.zeros(STILL_SAMPLES)))) - np.cumsum(ends)
+    resting: Mask = covered[:n] > 0.5
+    return resting
+
+
+def local_noise(signal: Array) -> Array | float:
+    """`noise_of`, sample by sample where the noise is uneven, else one number."""
+    usual = noise_of(signal)
+    if len(signal) < 4 * UNEVEN_SAMPLES:
+        return usual
+    from scipy import ndimage  # most of a second to import: not for a prediction of a short run
+
+    third = np.pad(np.abs(np.diff(signal, 3)), (1, 2), mode="reflect")
+    local = ndimage.median_filter(third, UNEVEN_SAMPLES, mode="reflect") / 0.6745 / np.sqrt(20.0)
+    uneven = local > UNEVEN * usual
+    return np.where(uneven, local, usual) if uneven.any() else usual
+
+
+def _disagreement(time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float) -> float:
+    """Error that the speeds must have beyond their noise to disagree so with the path, m/s."""
+    dt = np.diff(time)
+    gap = np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt
+    step = float(np.median(dt))
+    seen = float(np.median(np.abs(gap)) / 0.6745)
+    expected = np.sqrt(2.0 * sd_path**2 + 0.5 * (sd_speed * step) ** 2)
+    if seen <= 1.5 * expected:
+        return 0.0
+    return float(np.sqrt(seen**2 - 2.0 * sd_path**2) / step)
+
+
 def _step_of(angle: Array) -> float:
     """The encoder's step: the smallest change of angle on record."""
     steps = np.abs(np.diff(angle))
@@ -84,7 +145,7 @@ def _step_of(angle: Array) -> float:
 
 
 def _local_fit(
-    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float, half: int
+    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float, half: int
 ) -> tuple[Array, Array, Array, Array]:
     """Fit a cubic path to path and speed in windows of `2 half + 1` samples.
 
@@ -102,8 +163,9 @@ def _local_fit(
     powers = np.stack([u**k for k in range(order + 1)], axis=-1)
     slopes = np.stack([k * u ** max(k - 1, 0) for k in range(order + 1)], axis=-1) / scale
     origin = path[:, None]
-    design = np.concatenate([powers / sd_path, slopes / sd_speed], axis=1)
-    target = np.concatenate([(path[index] - origin) / sd_path, speed[index] / sd_speed], axis=1)
+    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((1, 1), sd_speed)
+    design = np.concatenate([powers / sd_path, slopes / sd[..., None]], axis=1)
+    target = np.concatenate([(path[index] - origin) / sd_path, speed[index] / sd], axis=1)
     normal = np.einsum("nij,nik->njk", design, design)
     right = np.einsum("nij,ni->nj", design, target)
     inverse = np.linalg.pinv(normal, hermitian=True)
@@ -117,7 +179,7 @@ def _local_fit(
 
 
 def _smooth(
-    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
+    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float
 ) -> tuple[Array, Array, Array, Array]:
     """Path, speed, acceleration and standard error of the speed in one stretch of motion."""
     best: tuple[Array, Array, Array, Array] | None = None
@@ -163,45 +225,67 @@ def _place_rests(
             path[first:end] = placed
 
 
-def impose(run: Run, radius_m: float) -> ImposedMotion:
+def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     """Estimate the imposed motion of a run.
 
     Parameters
     ----------
     run
-        The record; `angle_rad` is used where it is there, else the speed alone.
+        The record; its angle or position is used where it is there, else the speed alone.
     radius_m
-        Journal radius, m: turns the angle into a path.
+        Journal radius, m: turns the angle into a path. None where it is not known: a position
+        then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
+        nothing of the speed.
     """
     time, speed = run.time_s, run.velocity_m_s
     n = len(time)
+    path = _recorded_path(run, radius_m)
     rest = resting_samples(speed)
+    step = 0.0 if path is None else _step_of(path)
+    if path is not None:
+        rest |= still_samples(path, speed, step)
     moving = ~rest
-    if run.angle_rad is not None:
-        path = np.unwrap(run.angle_rad) * radius_m
-        sd_path = _step_of(path) / np.sqrt(12.0)
-    elif run.position_m is not None:
-        path = run.position_m
-        sd_path = _step_of(path) / np.sqrt(12.0)
-    else:
+    if path is None:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
-        path, sd_path = np.concatenate(([0.0], np.cumsum(steps))), np.inf
-    sd_speed = noise_of(speed[moving]) if moving.any() else 0.0
+        path, sd_path = np.concatenate(([0.0], np.cumsum(steps))), 1e3
+    else:
+        sd_path, hum = step / np.sqrt(12.0), noise_of(path[moving])
+        # Where samples are finer than any encoder's, the smallest change on record is chance.
+        if hum > UNEVEN * sd_path:
+            sd_path = hum
+        sd_path = max(sd_path, 1e-9 * float(np.ptp(path)), 1e-15)
     top = float(np.max(np.abs(speed))) if n else 0.0
+    sd_speed = noise_of(speed[moving]) if moving.any() else 0.0
     sd_speed = max(sd_speed, 1e-7 * top, 1e-15)
-    sd_path = max(sd_path, 1e-9 * float(np.ptp(path)), 1e-15) if np.isfinite(sd_path) else 1e3
+    beyond = _disagreement(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
+    usual = max(sd_speed, beyond)
 
-    velocity, acceleration = speed.copy(), np.zeros(n)
+    velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
     smooth_path, error = path.copy(), np.zeros(n)
     edges = np.diff(np.concatenate(([0], moving.astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         part = slice(first, end)
         if end - first < 3:
-            error[part] = sd_speed
+            error[part] = usual
             continue
+        local = local_noise(speed[part])
+        sd: Array | float = usual
+        if isinstance(local, np.ndarray):
+            sd = np.maximum(local, usual)
         smooth_path[part], velocity[part], acceleration[part], error[part] = _smooth(
-            time[part], path[part], speed[part], sd_path, sd_speed
+            time[part], path[part], speed[part], sd_path, sd
         )
     _place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     trusted = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    return ImposedMotion(velocity, acceleration, smooth_path / radius_m, error, rest, trusted)
+    angle = smooth_path / (radius_m or 1.0)
+    if radius_m is None and run.position_m is None and run.angle_rad is not None:
+        angle = np.unwrap(run.angle_rad)
+    return ImposedMotion(velocity, acceleration, angle, error, rest, trusted)
+
+
+def _recorded_path(run: Run, radius_m: float | None) -> Array | None:
+    """The path on record, m; None where only the speed tells of it."""
+    if run.angle_rad is not None and radius_m is not None:
+        path: Array = np.unwrap(run.angle_rad) * radius_m
+        return path
+    return run.position_m

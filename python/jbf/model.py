@@ -9,7 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.catalogue import find_law, find_parameter, in_chain_order, parameters_of, vocabulary
+from jbf.catalogue import (
+    check_applies,
+    find_effect,
+    find_law,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+    vocabulary,
+)
 from jbf.conditioning import ImposedMotion, impose
 from jbf.errors import InputError
 from jbf.model_file import (
@@ -29,8 +37,10 @@ MAX_STEP_S = 0.02
 where the law or an effect asks for them; at 0.02 s the bare law errs by some 1e-5 of its peak."""
 
 
-def _require_sections(rig: Rig) -> None:
-    """An InputError where the rig lacks what the journal law needs."""
+def check_rig(rig: Rig, law: str) -> None:
+    """An InputError where the rig lacks what a law needs."""
+    if not find_law(law).needs_bearing:
+        return
     for section, there in (
         ("bearing", rig.bearing),
         ("lubricant", rig.lubricant),
@@ -39,31 +49,43 @@ def _require_sections(rig: Rig) -> None:
         if there is None:
             raise InputError(
                 problem=f"the rig has no [{section}]",
-                mend=f"the law journal needs one: add a [{section}] section",
+                mend=f"the law {law} needs one: add a [{section}] section",
             )
 
 
-def chain(rig: Rig, clock: str, effects: Sequence[str]) -> _core.Chain:
+def _sizes(rig: Rig) -> _core.BearingSizes | None:
+    """The rig's bearing as the core takes it; None where the rig has none, or no lubricant."""
+    b = rig.bearing
+    if b is None or rig.lubricant is None:
+        return None
+    return {
+        "radius_m": b.radius_m,
+        "length_m": b.length_m,
+        "clearance_m": b.clearance_m,
+        "mass_kg": b.mass_kg,
+        "count": b.count,
+        "viscosity_pa_s": rig.lubricant.viscosity_pa_s,
+    }
+
+
+def _load_n(rig: Rig) -> float | None:
+    return None if rig.load is None else rig.load.normal_n
+
+
+def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain:
     """The core's chain for a rig.
 
     Raises
     ------
     InputError
-        The rig has no bearing, lubricant or load, which the journal law needs.
+        The rig lacks what the law needs, or an effect does not go with the law.
     """
-    _require_sections(rig)
-    assert rig.bearing is not None
-    assert rig.lubricant is not None
-    assert rig.load is not None
-    b = rig.bearing
+    check_rig(rig, law)
+    check_applies(law, effects)
     return _core.Chain(
-        radius_m=b.radius_m,
-        length_m=b.length_m,
-        clearance_m=b.clearance_m,
-        mass_kg=b.mass_kg,
-        count=b.count,
-        viscosity_pa_s=rig.lubricant.viscosity_pa_s,
-        load_n=rig.load.normal_n,
+        law=law,
+        bearing=_sizes(rig),
+        load_n=_load_n(rig),
         clock=clock,
         effects=list(effects),
         max_step_s=MAX_STEP_S,
@@ -71,16 +93,13 @@ def chain(rig: Rig, clock: str, effects: Sequence[str]) -> _core.Chain:
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
-    """The motion that a run imposed on the rig's journal; an InputError without a bearing."""
-    _require_sections(rig)
-    assert rig.bearing is not None
-    return impose(run, rig.bearing.radius_m)
+    """The motion that a run imposed on the rig's journal or slider."""
+    return impose(run, None if _sizes(rig) is None or rig.bearing is None else rig.bearing.radius_m)
 
 
 def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
-    """A run's motion and load, handed to the core."""
-    assert rig.load is not None
-    load = run.load_n if run.load_n is not None else np.full(len(run), rig.load.normal_n)
+    """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
+    load = run.load_n if run.load_n is not None else np.full(len(run), _load_n(rig) or 1.0)
     return _core.Motion(
         np.ascontiguousarray(run.time_s),
         motion.velocity_m_s,
@@ -90,6 +109,34 @@ def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
     )
 
 
+def has_angle(rig: Rig, run: Run) -> bool:
+    """True where the run tells the shaft's angle; on a linear axis there is none."""
+    return run.angle_rad is not None and (_sizes(rig) is not None or run.position_m is None)
+
+
+def has_path(rig: Rig, run: Run) -> bool:
+    """True where the run tells how far the drive has gone, in the units of its speed."""
+    return run.position_m is not None or (run.angle_rad is not None and _sizes(rig) is not None)
+
+
+def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
+    """An InputError where a run lacks a column that one of the effects needs."""
+    for name in effects:
+        needs = find_effect(name).needs
+        if "angle" in needs and not has_angle(rig, run):
+            require(run, "angle_rad", f"the effect {name}")
+            raise InputError(
+                file=run.path or run.name,
+                column="position_m",
+                problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
+                mend="drop position_m, or give the rig its [bearing] and [lubricant]",
+            )
+        if "path" in needs and not has_path(rig, run):
+            if _sizes(rig) is not None:
+                require(run, "angle_rad", f"the effect {name}")
+            require(run, "position_m", f"without a bearing's radius the effect {name}")
+
+
 @dataclass(frozen=True)
 class Model:
     """A law with effects, ready to predict.
@@ -97,9 +144,9 @@ class Model:
     Parameters
     ----------
     rig
-        Bearing, lubricant and load.
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
     law
-        Name of the base law.
+        Name of the base law (`jbf.laws()`).
     effects
         Names of effects, in any order; they act in the order of the signal chain.
     parameters
@@ -112,7 +159,8 @@ class Model:
     Raises
     ------
     InputError
-        An unknown name, a value out of bounds, or a rig without what the law needs.
+        An unknown name, a value out of bounds, a rig without what the law needs, or an effect
+        that does not go with the law.
     """
 
     rig: Rig
@@ -137,7 +185,7 @@ class Model:
         object.__setattr__(self, "effects", chosen)
         object.__setattr__(self, "parameters", values)
         vocabulary().check(self._file())
-        chain(self.rig, self.clock, chosen)
+        chain(self.rig, self.law, self.clock, chosen)
 
     @property
     def values(self) -> Array:
@@ -154,41 +202,25 @@ class Model:
         for run in runs:
             self.require_columns(run)
         motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
-        return chain(self.rig, self.clock, self.effects).predict(self.values, motions)
+        return chain(self.rig, self.law, self.clock, self.effects).predict(self.values, motions)
 
     def require_columns(self, run: Run) -> None:
         """An InputError where a run lacks a column that an effect of this model needs."""
-        from jbf.catalogue import find_effect
-
-        for name in self.effects:
-            if find_effect(name).needs_angle:
-                require(run, "angle_rad", f"the effect {name}")
+        require_record(self.rig, run, self.effects)
 
     def steady_friction(self, velocity_m_s: npt.ArrayLike) -> Array:
         """Steady friction force of the bare law (the Stribeck curve), N.
 
-        Speeds (m/s) of shape (n,), none of them zero; the rig's nominal load.
+        Speeds (m/s) of shape (n,), none of them zero; under the rig's load where the law needs one.
         """
-        assert self.rig.bearing is not None
-        assert self.rig.lubricant is not None
-        assert self.rig.load is not None
-        f_m, u_tr, k0, gamma = self.values[:4]
-        b = self.rig.bearing
-        _, _, f = _core.steady_state(
+        count = len(find_law(self.law).parameters)
+        return _core.steady_friction(
             np.ascontiguousarray(velocity_m_s, dtype=float),
-            f_m=f_m,
-            u_tr_m_s=u_tr,
-            k0=k0,
-            gamma=gamma,
-            radius_m=b.radius_m,
-            length_m=b.length_m,
-            clearance_m=b.clearance_m,
-            mass_kg=b.mass_kg,
-            count=b.count,
-            viscosity_pa_s=self.rig.lubricant.viscosity_pa_s,
-            load_n=self.rig.load.normal_n,
+            law=self.law,
+            parameters=self.values[:count].tolist(),
+            bearing=_sizes(self.rig),
+            load_n=_load_n(self.rig),
         )
-        return f * self.rig.load.normal_n
 
     def _file(self) -> ModelFile:
         return ModelFile(

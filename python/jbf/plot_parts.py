@@ -11,6 +11,7 @@ from matplotlib.ticker import AutoLocator, MaxNLocator
 
 from jbf.axes import all_axes
 from jbf.bin_axes import bin_axis
+from jbf.catalogue import transition_speed
 from jbf.comparison import Comparison, Failure
 from jbf.words import number, step_name
 
@@ -70,7 +71,8 @@ def pattern_along(comparison: Comparison, axis: str | None) -> Failure:
         if axis in (None, failure.axis):
             return failure
     campaign = comparison.campaign
-    u_tr = float(comparison.model.values[1])
+    model = comparison.model
+    u_tr = transition_speed(model.law, model.values.tolist())
     found = {a.axis: a for a in all_axes(campaign, u_tr)}
     binned = found.get(axis or "velocity", found["velocity"])
     trusted = np.concatenate([p.trusted for p in campaign.prepared])

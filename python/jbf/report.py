@@ -19,7 +19,7 @@ from jbf.catalogue import find_effect
 from jbf.errors import write_text
 from jbf.plots import plot_comparison, plot_diagnosis, plot_run
 from jbf.tables import correlation_pairs, ledger_rows, parameter_rows, ratio, run_rows, trial_rows
-from jbf.words import BARE, comparison_sentence, listed, number, verdict_sentence
+from jbf.words import BARE, comparison_sentence, law_words, listed, number, verdict_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -80,7 +80,7 @@ def _measurement(campaign: Campaign, noise_n: float) -> str:
 
 
 def _law(model: Model) -> str:
-    return " + ".join([f"{model.law} law (clock {model.clock})", *model.effects])
+    return " + ".join([f"law {law_words(model)}", *model.effects])
 
 
 def comparison_page(comparison: Comparison) -> str:

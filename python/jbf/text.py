@@ -16,7 +16,7 @@ from jbf.tables import (
     run_rows,
     trial_rows,
 )
-from jbf.words import BARE, comparison_sentence, number, times, verdict_sentence
+from jbf.words import BARE, comparison_sentence, law_words, number, times, verdict_sentence
 
 if TYPE_CHECKING:
     from jbf.comparison import Comparison, Failure
@@ -84,7 +84,7 @@ def fit_report(fit: Fit) -> str:
     """Statistics, parameters with errors, and the strongest correlations."""
     model = fit.model
     facts = [
-        ("law", f"{model.law} (clock {model.clock})"),
+        ("law", law_words(model)),
         ("effects", ", ".join(model.effects) or "none"),
         ("runs", str(len(fit.residuals))),
         ("samples", str(fit.samples)),
@@ -167,7 +167,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"where the sign of the motion is known",
         f"    noise floor {number(bare.noise_n)} N, estimated from the records alone",
         "",
-        f"The {BARE} ({model.law}, clock {model.clock})",
+        f"The {BARE} ({law_words(model, ', ')})",
         f"    misses by {number(bare.rms_n)} N RMS, {times(bare.rms_n, bare.noise_n)} the noise"
         + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
     ]
@@ -186,9 +186,33 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
 # ---- the catalogue --------------------------------------------------------------------------
 
 
-def effects_page(pages: Iterable[Effect]) -> str:
-    """One line an effect, in the order of the signal chain, headed by stage."""
+_NEEDS = {
+    "angle": "the column angle_rad in every run",
+    "path": "the column angle_rad, or position_m on a linear axis, in every run",
+}
+
+
+def refused_words(effect: Effect) -> str:
+    """The laws that an effect does not go with, and why."""
+    reasons = dict.fromkeys(effect.refused.values())
+    return "; ".join(
+        f"{', '.join(law for law, r in effect.refused.items() if r == reason)} ({reason})"
+        for reason in reasons
+    )
+
+
+def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
+    """One line an effect, in the order of the signal chain, headed by stage.
+
+    With a law, those that do not go with it follow, each with the reason.
+    """
     pages = list(pages)
+    if law is not None:
+        refused = {e.name: e.refused[law] for e in pages if law in e.refused}
+        there = effects_page(e for e in pages if e.name not in refused)
+        widest = max(map(len, refused), default=0)
+        named = [line for n, r in refused.items() for line in _hanging(f"{n:<{widest}}  ", r)]
+        return "\n".join([there, "", f"[not with {law}: the law ...]", *named]) if named else there
     widest = max((len(e.name) for e in pages), default=0)
     lines: list[str] = []
     stage = None
@@ -209,8 +233,11 @@ def effect_page(effect: Effect) -> str:
         ("source", effect.source),
         ("limits", effect.limits),
     ]
-    if effect.needs_angle:
-        facts.append(("needs", "the column angle_rad in every run"))
+    for need, words in _NEEDS.items():
+        if need in effect.needs:
+            facts.append(("needs", words))
+    if effect.refused:
+        facts.append(("not with", refused_words(effect)))
     for name, words in facts:
         lines += _hanging(f"{name:<10}", words)
     head = ("parameter", "unit", "from", "to", "vanishes at", "meaning")

@@ -6,9 +6,12 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from jbf.catalogue import find_law
+
 if TYPE_CHECKING:
     from jbf.comparison import Comparison
     from jbf.diagnosis.result import Diagnosis
+    from jbf.model import Model
     from jbf.model_file import ParameterValue
 
 BARE = "bare law"
@@ -20,6 +23,13 @@ def listed(words: Iterable[str], last: str = "and") -> str:
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} {last} {items[-1]}"
+
+
+def law_words(model: Model, join: str = " (") -> str:
+    """A model's law, with its clock where it has a film for the clock to drive."""
+    if not find_law(model.law).has_film:
+        return model.law
+    return f"{model.law}{join}clock {model.clock}" + (")" if "(" in join else "")
 
 
 def number(value: float, digits: int = 3) -> str:

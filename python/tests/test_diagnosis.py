@@ -6,19 +6,24 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import Diagnosis, Rig, Run, diagnose
+from jbf import effects as catalogue
 from jbf.diagnosis.search import TIE
 
-EFFECTS = (
+EFFECTS = tuple(catalogue())
+QUICK = (
     "drive_compliance",
     "thermal_thinning",
+    "film_memory",
+    "stribeck_excess",
     "position_ripple",
     "presliding",
     "coulomb_drag",
     "sensor_lag",
 )
+ALL = [e if e in QUICK else pytest.param(e, marks=pytest.mark.slow) for e in EFFECTS]
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("name", ALL)
 def test_one_hidden_effect_is_named(name: str) -> None:
     rig, runs, truth = campaign(EFFECTS.index(name) + 30, (name,))
     d = diagnose(rig, runs)
@@ -28,7 +33,10 @@ def test_one_hidden_effect_is_named(name: str) -> None:
     # The error falls to the noise, on runs left out too.
     assert d.steps[0].rms_n > d.steps[-1].rms_n
     assert d.steps[0].holdout_rms_n > d.steps[-1].holdout_rms_n
-    assert d.steps[-1].holdout_rms_n < 1.06 * truth["noise_n"]
+    assert d.steps[-1].rms_n < 1.03 * truth["noise_n"]
+    # One run alone has rests, so nothing foretells what a rest does there.
+    if name != "dwell_stiction":
+        assert d.steps[-1].holdout_rms_n < 1.06 * truth["noise_n"]
     assert d.steps[-1].noise_n == pytest.approx(truth["noise_n"], rel=0.08)
 
 

@@ -13,6 +13,16 @@ from jbf.fitting import Problem
 BASE = {"f_m": "f_m", "U_tr_m_s": "U_tr", "K0": "K0", "gamma": "gamma"}
 OWN = {
     "drive_compliance": {"k_n_m_rad": "k"},
+    "shear_thinning": {"U_c_m_s": "U_c", "n": "n"},
+    "film_memory": {"factor": "factor"},
+    "wear_in": {"a": "a", "s_0_m": "s_0"},
+    "dwell_stiction": {"a": "a"},
+    "stribeck_excess": {"a": "a", "v_s_m_s": "v_s", "n": "n"},
+    "direction_asymmetry": {"a": "a"},
+    "quadratic_drag": {"c_n_s2_m2": "c"},
+    "inertia_leak": {"m_e_kg": "m_e"},
+    "sensor_offset": {"b_n": "b"},
+    "sensor_drift": {"d_n_s": "d"},
     "thermal_thinning": {"beta_q_1_j": "beta_q", "tau_s": "tau"},
     "position_ripple": {"a": "a"},
     "presliding": {"sigma_1_m": "sigma"},
@@ -70,7 +80,9 @@ def test_a_parameter_that_the_runs_cannot_show_says_so() -> None:
 @pytest.mark.parametrize("name", list(OWN))
 def test_derivatives_match_differences(name: str) -> None:
     rig, runs, _ = campaign(34, ("coulomb_drag",))
-    problem = Problem(Campaign.prepare(rig, runs[1:2]), "journal", "journal", (name,))
+    # Only the run with rests shows what a rest does.
+    shown = runs[4:5] if name == "dwell_stiction" else runs[1:2]
+    problem = Problem(Campaign.prepare(rig, shown), "journal", "journal", (name,))
     values = problem.starts({})[0]
     _, jacobian = problem.linearise(values)
     for i, page in enumerate(problem.parameters.values()):

@@ -99,11 +99,21 @@ def test_bad_models_are_refused() -> None:
 def test_the_catalogue_is_complete() -> None:
     assert list(effects()) == [
         "drive_compliance",
+        "shear_thinning",
         "thermal_thinning",
+        "film_memory",
+        "wear_in",
+        "dwell_stiction",
+        "stribeck_excess",
+        "direction_asymmetry",
         "position_ripple",
         "presliding",
         "coulomb_drag",
+        "quadratic_drag",
+        "inertia_leak",
         "sensor_lag",
+        "sensor_offset",
+        "sensor_drift",
     ]
     for effect in effects().values():
         assert effect.equation

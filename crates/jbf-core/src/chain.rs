@@ -33,6 +33,8 @@ pub struct State<T: Real, S> {
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
+    /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
+    /// friction of any other, unsigned.
     magnitude: T,
     resistance: Resistance<T>,
     power_w: T,
@@ -105,7 +107,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         self.law.advance(
             &mut state.law,
             [state.film_speed_m_s, middle, end],
-            T::ONE,
+            self.effects.film_rate(&state.effects),
             dt_s,
         );
         state.film_speed_m_s = end;
@@ -136,19 +138,27 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
             &mut sliding,
             dt_s,
         );
-        let magnitude = sliding.level + sliding.viscous.abs();
+        let magnitude = if L::HAS_BRISTLE {
+            sliding.level
+        } else {
+            sliding.level + sliding.viscous.abs()
+        };
         let before = if dt_s > T::ZERO {
             state.magnitude
         } else {
             magnitude
         };
-        let bent = self.effects.bristle(
-            &mut state.effects,
-            &state.journal,
-            &journal,
-            [before, magnitude],
-            dt_s,
-        );
+        let levels = [before, magnitude];
+        // A law's own bristle bends towards the level; one beside a law takes all its friction.
+        let bent = if L::HAS_BRISTLE {
+            let bristle = self
+                .law
+                .bend(&mut state.law, &state.journal, &journal, levels, dt_s);
+            Some(bristle + sliding.viscous)
+        } else {
+            self.effects
+                .bristle(&mut state.effects, &state.journal, &journal, levels, dt_s)
+        };
         let coefficient = bent.unwrap_or_else(|| sliding.coefficient(journal.direction));
         let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
         // A bristle turns the contact's jump into a slope.

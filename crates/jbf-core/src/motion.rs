@@ -82,6 +82,21 @@ pub struct JournalMotion<T> {
     pub time_s: T,
 }
 
+impl<T: Real> JournalMotion<T> {
+    /// Distance slid on the way to `to`, m, the speed on a straight line; back and forth both
+    /// count.
+    #[inline]
+    pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
+        let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);
+        let half = T::of(0.5) * dt_s;
+        if v0.value() * v1.value() < 0.0 {
+            half * (v0 * v0 + v1 * v1) / (v0.abs() + v1.abs())
+        } else {
+            half * (v0 + v1).abs()
+        }
+    }
+}
+
 impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
     #[inline(always)]
     fn from(m: &Motion<T>) -> Self {

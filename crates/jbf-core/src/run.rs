@@ -8,7 +8,7 @@ use crate::real::Real;
 /// The imposed motion of a run, one value a sample; all slices of one length.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
-    /// Time, s, rising.
+    /// Time, s, rising; where it starts does not matter.
     pub time_s: &'a [f64],
     /// Surface speed, m/s.
     pub velocity_m_s: &'a [f64],
@@ -30,7 +30,7 @@ impl Record<'_> {
     #[inline(always)]
     fn sample(&self, i: usize) -> Option<Motion<f64>> {
         Some(Motion {
-            time_s: *self.time_s.get(i)?,
+            time_s: *self.time_s.get(i)? - *self.time_s.first()?,
             velocity_m_s: *self.velocity_m_s.get(i)?,
             acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
             angle_rad: *self.angle_rad.get(i)?,
@@ -59,9 +59,8 @@ pub fn predict<T: Real, L: Law<T>>(
         .velocity_m_s
         .iter()
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
-    let max_step_s = max_step_s
-        .min(chain.law.longest_step_s(top))
-        .min(chain.effects.longest_step_s());
+    let film_s = chain.law.longest_step_s(top) / chain.effects.fastest_film();
+    let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
     let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
     let mut i = 1;

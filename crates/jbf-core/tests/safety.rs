@@ -5,8 +5,9 @@ mod common;
 
 use common::random::Random;
 use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::journal_full::JournalFull;
 use jbf_core::law::Law;
-use jbf_core::stepper::{Euler, Rk4, Stepper};
+use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P, Stepper, StiffStepper};
 use jbf_core::{Bearing, Clock, Real};
 
 const LAWS: u32 = 500;
@@ -88,6 +89,50 @@ fn runge_kutta_in_double_precision_stays_inside() {
 #[test]
 fn runge_kutta_in_single_precision_stays_inside() {
     torture::<f32>(&Rk4, 4);
+}
+
+/// The same torture for the full model.
+fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
+    let mut random = Random::new(seed);
+    for _ in 0..LAWS {
+        let p = Parameters {
+            f_m: T::of(random.log_uniform(1e-4, 10.0)),
+            u_tr_m_s: T::of(random.log_uniform(1e-5, 1e2)),
+            k0: T::of(random.log_uniform(1.0, 1e12)),
+            gamma: T::of(random.log_uniform(1e-3, 1e5)),
+        };
+        let bearing = Bearing {
+            mass_kg: random.log_uniform(1e-3, 1e3),
+            ..Bearing::THESIS
+        };
+        let base_n = random.log_uniform(1.0, 1e4);
+        let law = JournalFull::new(&bearing, base_n, &p, Clock::Journal).expect("in the bounds");
+        let mut state = law.start(T::of(base_n));
+        for _ in 0..STEPS {
+            if random.chance(0.05) {
+                let jumps = [1.0, 100.0, 0.01, 0.0, -1.0];
+                let jump = jumps[(random.unit() * jumps.len() as f64) as usize];
+                law.set_load(&mut state, T::of(base_n * jump));
+            }
+            let u = [0; 3].map(|_| T::of(random.log_uniform(1e-9, 1e6)));
+            let dt = T::of(random.log_uniform(1e-6, 10.0));
+            law.advance_with(stepper, &mut state, u, T::ONE, dt);
+            let eps = state.eps();
+            assert!(
+                eps >= T::ZERO && eps < T::ONE,
+                "eps {eps:?} {law:?} {u:?} {dt:?}"
+            );
+            let f = law.friction(&state, u[2]).coefficient(T::ONE);
+            assert!(f.is_finite(), "f {f:?} {law:?} {state:?} {u:?}");
+        }
+    }
+}
+
+#[test]
+fn the_full_model_stays_inside() {
+    torture_full::<f64>(&Rodas3, 5);
+    torture_full::<f32>(&Rodas3, 6);
+    torture_full::<f64>(&Rodas5P, 7);
 }
 
 /// A step that is too coarse is counted, once, and the film recovers from it.

@@ -1,7 +1,7 @@
 //! The catalogue of laws and effects, as dictionaries.
 
 use jbf_core::effect::{Parameter, CATALOGUE};
-use jbf_core::law::journal;
+use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -35,7 +35,15 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("equation", info.equation)?;
         d.set_item("source", info.source)?;
         d.set_item("limits", info.limits)?;
-        d.set_item("needs_angle", info.needs_angle)?;
+        let needs: Vec<&str> = info.needs.iter().map(|n| n.name()).collect();
+        d.set_item("needs", needs)?;
+        let refused = PyDict::new(py);
+        for law in law::CATALOGUE {
+            if let Some(need) = info.lacking(law) {
+                refused.set_item(law.name, need.why_not())?;
+            }
+        }
+        d.set_item("refused", refused)?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;
@@ -47,10 +55,18 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
 #[pyfunction]
 pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);
-    let d = PyDict::new(py);
-    d.set_item("name", "journal")?;
-    d.set_item("summary", journal::SUMMARY)?;
-    d.set_item("parameters", parameters(py, journal::PARAMETERS)?)?;
-    out.append(d)?;
+    for info in law::CATALOGUE {
+        let d = PyDict::new(py);
+        d.set_item("name", info.name)?;
+        d.set_item("summary", info.summary)?;
+        d.set_item("equation", info.equation)?;
+        d.set_item("source", info.source)?;
+        d.set_item("limits", info.limits)?;
+        d.set_item("needs_bearing", info.needs_bearing)?;
+        d.set_item("has_film", info.has_film)?;
+        d.set_item("has_bristle", info.has_bristle)?;
+        d.set_item("parameters", parameters(py, info.parameters)?)?;
+        out.append(d)?;
+    }
     Ok(out)
 }

@@ -1,8 +1,9 @@
 //! A law with effects, over whole runs: prediction and its derivatives.
 
+use crate::bearing::{refused, Sizes};
 use crate::motion::Motion;
 use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
-use jbf_core::law::journal::{self, Journal, Parameters};
+use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{run, Bearing, Clock, Dual, ParameterError, Real};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -15,48 +16,124 @@ const LANES: usize = 4;
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct Chain {
-    bearing: Bearing,
-    load_n: f64,
+    law: &'static law::Info,
+    bearing: Option<Bearing>,
+    load_n: Option<f64>,
     clock: Clock,
     effects: Vec<&'static Info>,
     max_step_s: f64,
 }
 
-fn refused(error: ParameterError) -> PyErr {
-    PyValueError::new_err(error.to_string())
+/// Runs a chain round whatever law it is handed, and gives every reading to `sink`.
+struct Runs<'a, T: Real, R> {
+    effects: Effects<T>,
+    rig: Rig<T>,
+    run: R,
+    max_step_s: f64,
+    motions: &'a [&'a Motion],
+}
+
+/// What becomes of one run's readings.
+trait Reader<T>: Sync {
+    type Read: Send;
+    fn read(&self, samples: usize, predict: impl FnOnce(&mut dyn FnMut(usize, T))) -> Self::Read;
+}
+
+/// Readings alone.
+struct Values;
+
+impl Reader<f64> for Values {
+    type Read = Vec<f64>;
+    fn read(&self, samples: usize, predict: impl FnOnce(&mut dyn FnMut(usize, f64))) -> Vec<f64> {
+        let mut values = vec![0.0; samples];
+        predict(&mut |i, f| values[i] = f);
+        values
+    }
+}
+
+/// Readings and their derivatives.
+struct Slopes;
+
+impl Reader<Dual<LANES>> for Slopes {
+    type Read = (Vec<f64>, Vec<[f64; LANES]>);
+    fn read(
+        &self,
+        samples: usize,
+        predict: impl FnOnce(&mut dyn FnMut(usize, Dual<LANES>)),
+    ) -> Self::Read {
+        let mut values = vec![0.0; samples];
+        let mut slopes = vec![[0.0; LANES]; samples];
+        predict(&mut |i, f| {
+            values[i] = f.value;
+            slopes[i] = f.slope;
+        });
+        (values, slopes)
+    }
+}
+
+impl<T: Real, R: Reader<T>> Visitor<T> for Runs<'_, T, R> {
+    type Output = Vec<R::Read>;
+
+    fn visit<L: Named<T>>(self, law: L) -> Self::Output {
+        let chain = jbf_core::Chain {
+            law,
+            effects: self.effects,
+            rig: self.rig,
+        };
+        self.motions
+            .par_iter()
+            .with_max_len(1)
+            .map(|motion| {
+                self.run.read(motion.len(), |sink| {
+                    run::predict(&chain, &motion.record(), self.max_step_s, sink);
+                })
+            })
+            .collect()
+    }
 }
 
 impl Chain {
     fn count(&self) -> usize {
-        journal::PARAMETERS.len()
-            + self
-                .effects
-                .iter()
-                .map(|e| e.parameters.len())
-                .sum::<usize>()
+        let theirs = self.effects.iter().map(|e| e.parameters.len());
+        self.law.parameters.len() + theirs.sum::<usize>()
     }
 
-    /// The core's chain for one set of parameter values.
-    fn build<T: Real>(&self, p: &[T]) -> Result<jbf_core::Chain<T, Journal<T>>, ParameterError> {
-        let parameters = Parameters {
-            f_m: p[0],
-            u_tr_m_s: p[1],
-            k0: p[2],
-            gamma: p[3],
-        };
-        let law = Journal::new(&self.bearing, self.load_n, &parameters, self.clock)?;
+    /// Run the chain with one set of parameter values along motions.
+    fn runs<T: Real, R: Reader<T>>(
+        &self,
+        p: &[T],
+        run: R,
+        motions: &[&Motion],
+    ) -> Result<Vec<R::Read>, ParameterError> {
+        let (own, mut rest) = p.split_at(self.law.parameters.len());
         let mut effects = Effects::NONE;
-        let mut at = journal::PARAMETERS.len();
         for info in &self.effects {
-            let end = at + info.parameters.len();
-            effects.set(info.name, &p[at..end])?;
-            at = end;
+            let (values, after) = rest.split_at(info.parameters.len());
+            effects.set(info.name, values)?;
+            rest = after;
         }
+        // Without a bearing the axis is a linear one: a rotary one of radius 1 m.
+        let bearing = self.bearing.as_ref();
         let rig = Rig {
-            radius_m: T::of(self.bearing.radius_m),
-            count: T::of(f64::from(self.bearing.count)),
+            radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
+            count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
         };
-        Ok(jbf_core::Chain { law, effects, rig })
+        let max_step_s = self.max_step_s;
+        let visitor = Runs {
+            effects,
+            rig,
+            run,
+            max_step_s,
+            motions,
+        };
+        with_law(
+            self.law.name,
+            bearing,
+            self.load_n,
+            own,
+            self.clock,
+            visitor,
+        )
     }
 
     fn checked<'a>(&self, parameters: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
@@ -89,43 +166,34 @@ impl Chain {
                 None => Dual::of(v),
             })
             .collect();
-        let chain = self.build(&lifted)?;
-        let mut values = vec![0.0; motion.len()];
-        let mut slopes = vec![[0.0; LANES]; motion.len()];
-        run::predict(&chain, &motion.record(), self.max_step_s, |i, f| {
-            values[i] = f.value;
-            slopes[i] = f.slope;
-        });
-        Ok((values, slopes))
+        let mut runs = self.runs(&lifted, Slopes, &[motion])?;
+        Ok(runs.swap_remove(0))
     }
 }
 
 #[pymethods]
 impl Chain {
     #[new]
-    #[pyo3(signature = (*, radius_m, length_m, clearance_m, mass_kg, count, viscosity_pa_s,
-                        load_n, clock, effects, max_step_s))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (*, law, bearing, load_n, clock, effects, max_step_s))]
     fn new(
-        radius_m: f64,
-        length_m: f64,
-        clearance_m: f64,
-        mass_kg: f64,
-        count: u32,
-        viscosity_pa_s: f64,
-        load_n: f64,
+        law: &str,
+        bearing: Option<Sizes>,
+        load_n: Option<f64>,
         clock: &str,
         effects: Vec<String>,
         max_step_s: f64,
     ) -> PyResult<Self> {
-        let bearing = Bearing {
-            radius_m,
-            length_m,
-            clearance_m,
-            mass_kg,
-            count,
-            viscosity_pa_s,
-        };
+        let law = law::CATALOGUE
+            .iter()
+            .find(|info| info.name == law)
+            .ok_or_else(|| PyValueError::new_err(format!("law {law:?} is not in the catalogue")))?;
+        let bearing = bearing.map(Sizes::checked).transpose()?;
+        if law.needs_bearing && (bearing.is_none() || load_n.is_none()) {
+            return Err(PyValueError::new_err(format!(
+                "the law {} needs a bearing and load_n",
+                law.name
+            )));
+        }
         let clock = Clock::from_name(clock).ok_or_else(|| {
             PyValueError::new_err(format!("clock {clock:?} is neither journal nor thesis"))
         })?;
@@ -136,17 +204,11 @@ impl Chain {
         }
         let effects = effects
             .iter()
-            .map(|name| {
-                CATALOGUE
-                    .iter()
-                    .find(|info| info.name == name)
-                    .ok_or_else(|| {
-                        PyValueError::new_err(format!("effect {name:?} is not in the catalogue"))
-                    })
-            })
+            .map(|name| applicable(name, law))
             .collect::<PyResult<Vec<_>>>()?;
         Ok(Self {
-            bearing: bearing.checked().map_err(refused)?,
+            law,
+            bearing,
             load_n,
             clock,
             effects,
@@ -157,7 +219,7 @@ impl Chain {
     /// Dotted names of the parameters, in the order of every array here.
     #[getter]
     fn parameter_names(&self) -> Vec<String> {
-        let own = journal::PARAMETERS.iter().map(|p| p.name.to_string());
+        let own = self.law.parameters.iter().map(|p| p.name.to_string());
         let theirs = self.effects.iter().flat_map(|e| {
             e.parameters
                 .iter()
@@ -176,19 +238,7 @@ impl Chain {
         let p = self.checked(&parameters)?;
         let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
         let runs = py
-            .detach(|| {
-                let chain = self.build::<f64>(p)?;
-                Ok(motions
-                    .par_iter()
-                    .map(|motion| {
-                        let mut values = vec![0.0; motion.len()];
-                        run::predict(&chain, &motion.record(), self.max_step_s, |i, f| {
-                            values[i] = f;
-                        });
-                        values
-                    })
-                    .collect::<Vec<_>>())
-            })
+            .detach(|| self.runs(p, Values, &motions))
             .map_err(refused)?;
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
     }
@@ -250,5 +300,21 @@ impl Chain {
                 Ok((values.into_pyarray(py), shaped.into_pyarray(py)))
             })
             .collect()
+    }
+}
+
+/// The effect of that name, if it goes with the law.
+fn applicable(name: &str, law: &law::Info) -> PyResult<&'static Info> {
+    let info = CATALOGUE
+        .iter()
+        .find(|info| info.name == name)
+        .ok_or_else(|| PyValueError::new_err(format!("effect {name:?} is not in the catalogue")))?;
+    match info.lacking(law) {
+        None => Ok(info),
+        Some(need) => Err(PyValueError::new_err(format!(
+            "effect {name} does not apply: the law {} {}",
+            law.name,
+            need.why_not()
+        ))),
     }
 }

@@ -1,15 +1,11 @@
 //! Curves of the bare law: film integrals, transition eccentricity, Stribeck curve.
 
+use crate::bearing::{refused, Sizes};
 use jbf_core::film::FilmIntegrals;
-use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::{transition, Bearing, Clock, ParameterError};
+use jbf_core::{law, transition, Clock};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-
-fn refused(error: ParameterError) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
 
 /// J11, J12, J22 at an eccentricity ratio in [0, 1).
 #[pyfunction]
@@ -34,55 +30,31 @@ pub fn transition_eccentricity(load_number: f64) -> PyResult<f64> {
     Ok(transition::transition_eccentricity(load_number))
 }
 
-/// Steady eccentricity, attitude (rad) and friction coefficient at speeds (m/s, not zero).
+/// Steady friction of a law at speeds (m/s, not zero), N.
 #[pyfunction]
-#[pyo3(signature = (velocity_m_s, *, f_m, u_tr_m_s, k0, gamma, radius_m, length_m, clearance_m,
-                    mass_kg, count, viscosity_pa_s, load_n))]
-#[allow(clippy::too_many_arguments, clippy::type_complexity)]
-pub fn steady_state<'py>(
+#[pyo3(signature = (velocity_m_s, *, law, parameters, bearing, load_n))]
+pub fn steady_friction<'py>(
     py: Python<'py>,
     velocity_m_s: PyReadonlyArray1<'py, f64>,
-    f_m: f64,
-    u_tr_m_s: f64,
-    k0: f64,
-    gamma: f64,
-    radius_m: f64,
-    length_m: f64,
-    clearance_m: f64,
-    mass_kg: f64,
-    count: u32,
-    viscosity_pa_s: f64,
-    load_n: f64,
-) -> PyResult<(
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-)> {
-    let bearing = Bearing {
-        radius_m,
-        length_m,
-        clearance_m,
-        mass_kg,
-        count,
-        viscosity_pa_s,
-    };
-    let parameters = Parameters {
-        f_m,
-        u_tr_m_s,
-        k0,
-        gamma,
-    };
-    let law = Journal::new(&bearing, load_n, &parameters, Clock::Journal).map_err(refused)?;
-    let (mut eps, mut phi, mut f) = (Vec::new(), Vec::new(), Vec::new());
-    for &v in velocity_m_s.as_array() {
-        let s = law.steady(v).map_err(refused)?;
-        eps.push(s.eps);
-        phi.push(s.phi_rad);
-        f.push(s.coefficient);
-    }
-    Ok((
-        eps.into_pyarray(py),
-        phi.into_pyarray(py),
-        f.into_pyarray(py),
-    ))
+    law: &str,
+    parameters: Vec<f64>,
+    bearing: Option<Sizes>,
+    load_n: Option<f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let bearing = bearing.map(Sizes::checked).transpose()?;
+    let speeds: Vec<f64> = velocity_m_s.as_array().iter().copied().collect();
+    let mut out = vec![0.0; speeds.len()];
+    // The clock sets how fast a film moves, not where it comes to.
+    let clock = Clock::Journal;
+    law::steady_n(
+        law,
+        bearing.as_ref(),
+        load_n,
+        &parameters,
+        clock,
+        &speeds,
+        &mut out,
+    )
+    .map_err(refused)?;
+    Ok(out.into_pyarray(py))
 }

@@ -3,10 +3,12 @@
 //! One file per Python type; no physics here.
 
 mod batch;
+mod bearing;
 mod catalogue;
 mod chain;
 mod curves;
 mod motion;
+mod trajectory;
 
 use pyo3::prelude::*;
 
@@ -21,6 +23,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
-    m.add_function(wrap_pyfunction!(curves::steady_state, m)?)?;
+    m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     Ok(())
 }

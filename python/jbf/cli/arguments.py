@@ -6,6 +6,8 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeAlias
 
+from jbf.catalogue import laws
+
 if TYPE_CHECKING:
     from jbf.cli import Parser
 
@@ -32,7 +34,7 @@ def add_runs(parser: Parser) -> None:
 
 def add_law(parser: Parser) -> None:
     """--law and --clock."""
-    parser.add_argument("--law", metavar="NAME", default="journal", help="base law (journal)")
+    add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal)")
     parser.add_argument(
         "--clock",
         metavar="NAME",
@@ -40,6 +42,11 @@ def add_law(parser: Parser) -> None:
         default="journal",
         help="the film's clock: journal (default) or thesis",
     )
+
+
+def add_law_name(parser: Parser, default: str | None, does: str) -> None:
+    """--law alone."""
+    parser.add_argument("--law", metavar="NAME", default=default, help=does)
 
 
 def add_json(parser: Parser) -> None:

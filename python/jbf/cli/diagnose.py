@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     find_law(arguments.law)
-    rig = inputs.rig(arguments.rig, arguments.clock)
+    rig = inputs.rig(arguments.rig, arguments.law)
     runs = inputs.runs(arguments.runs, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 

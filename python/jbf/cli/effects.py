@@ -1,13 +1,13 @@
-"""`jbf effects [NAME]`: the catalogue."""
+"""`jbf effects [NAME] [--law NAME]`: the catalogue, and what of it goes with a law."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import asdict
 
-from jbf.catalogue import effects, find_effect
+from jbf.catalogue import effects, find_effect, find_law
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, add_json, command
+from jbf.cli.arguments import Commands, add_json, add_law_name, command
 
 
 def add(commands: Commands) -> None:
@@ -15,6 +15,7 @@ def add(commands: Commands) -> None:
     does = "the catalogue of effects: forms, parameters, sources"
     parser = command(commands, "effects", does, run)
     parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
+    add_law_name(parser, None, "say which effects go with this law, and why the others do not")
     add_json(parser)
 
 
@@ -24,13 +25,16 @@ def run(arguments: argparse.Namespace) -> int:
 
     wanted = {"--json": arguments.json}
     outputs.check(wanted)
+    law = None if arguments.law is None else find_law(arguments.law).name
     if arguments.name is None:
         pages = list(effects().values())
-        text, data = effects_page(pages), [asdict(page) for page in pages]
+        text = effects_page(pages, law)
     else:
-        page = find_effect(arguments.name)
-        text, data = effect_page(page), [asdict(page)]
+        pages = [find_effect(arguments.name)]
+        text = effect_page(pages[0])
+        if law is not None and law in pages[0].refused:
+            text += f"\n\nDoes not apply: the law {law} {pages[0].refused[law]}"
     if arguments.json:
-        outputs.write({arguments.json: outputs.json_text({"effects": data})})
+        outputs.write({arguments.json: outputs.json_text({"effects": list(map(asdict, pages))})})
     outputs.say(text, wanted)
     return 0

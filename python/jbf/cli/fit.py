@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from jbf.catalogue import find_parameter, in_chain_order, parameters_of
+from jbf.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_runs, command
 from jbf.cli.progress import shown
@@ -39,8 +39,9 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--out": arguments.out}
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
+    check_applies(arguments.law, effects)
     fixed = _fixed(arguments.fix, arguments.law, effects)
-    rig = inputs.rig(arguments.rig, arguments.clock)
+    rig = inputs.rig(arguments.rig, arguments.law)
     runs = inputs.runs(arguments.runs, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jbf.errors import InputError
-from jbf.model import Model, chain
+from jbf.model import Model, check_rig
 from jbf.record import Run, read_run, read_runs
 from jbf.rig import Rig, read_rig, read_toml
 
 _RIG_SECTIONS = {"bearing", "lubricant", "load"}
 
 
-def rig(path: str, clock: str) -> Rig:
-    """The rig of a file, complete enough for the journal law."""
+def rig(path: str, law: str) -> Rig:
+    """The rig of a file, complete enough for a law."""
     _refuse_csv(path, "RIG")
     try:
         found = read_rig(path)
-        chain(found, clock, ())
+        check_rig(found, law)
     except InputError as error:
         if {"law", "format", "effects"} & _keys(path):
             raise InputError(

@@ -49,13 +49,15 @@ def propose(
     rest = tuple(e for e in present if e != name)
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in search.campaign.prepared)
     rig = search.campaign.rig
-    assert rig.bearing is not None
+    radius = 1.0 if rig.bearing is None else rig.bearing.radius_m
+    linear = any(p.run.position_m is not None for p in search.campaign.prepared)
     rivals = [present] + [(*rest, other) for other in others]
     best, separation = "", 0.0
     for words, velocity in _motions(top).items():
         time = np.arange(len(velocity)) * STEP_S
         path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * STEP_S)))
-        run = Run.from_arrays(time, velocity, angle_rad=path / rig.bearing.radius_m)
+        place = {"position_m": path} if linear else {"angle_rad": path / radius}
+        run = Run.from_arrays(time, velocity, **place)
         curves = [_predict(search, effects, run) for effects in rivals]
         # The least separated pair decides whether the run would settle it.
         gap = min(float(np.sqrt(np.mean((curves[0] - c) ** 2))) for c in curves[1:])
@@ -79,4 +81,6 @@ def _predict(search: Search, effects: tuple[str, ...], run: Run) -> Array:
     rig = search.campaign.rig
     solution = search.solve(frozenset(effects))
     motion = core_motion(rig, run, imposed(rig, run))
-    return chain(rig, search.clock, solution.effects).predict(solution.values, [motion])[0]
+    return chain(rig, search.law, search.clock, solution.effects).predict(
+        solution.values, [motion]
+    )[0]

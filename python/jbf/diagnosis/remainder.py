@@ -12,6 +12,7 @@ import numpy.typing as npt
 from scipy import signal
 
 from jbf.axes import all_axes
+from jbf.catalogue import transition_speed
 from jbf.comparison import Failure, _failure
 from jbf.diagnosis.result import Remainder
 from jbf.fitting import Problem, Solution
@@ -49,7 +50,7 @@ def _patterns(problem: Problem, solution: Solution, innovations: list[Array]) ->
     e = np.concatenate(innovations)[trusted]
     total = float(e @ e)
     size = float(np.sqrt(total / max(len(e), 1)))
-    u_tr = float(solution.values[1])
+    u_tr = transition_speed(problem.law, solution.values.tolist())
     found = []
     for axis in all_axes(campaign, u_tr):
         failure = _failure(axis, e, trusted, total, size)

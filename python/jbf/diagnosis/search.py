@@ -23,7 +23,8 @@ from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, root_mean_square
+from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
+from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
 
@@ -35,6 +36,15 @@ MARGIN = 20.0
 room for noise that is not quite as described."""
 TIE = 8.0
 """Candidates closer in evidence than this fit equally well; less than one parameter costs."""
+TRACE = 10.0
+"""Gain in twice the log likelihood, of a first step, below which an effect leaves no trace;
+half of what the cheapest effect must bring in the end."""
+SCREEN_EVALUATIONS = 8
+"""Steps after which candidates are ranked; only those that could win go on."""
+CONTENDER = 60.0
+"""How far behind in evidence a candidate may be after screening and still go on,"""
+CLOSE = 0.6
+"""beyond this share of the leader's: what is far from converged may still be the truth."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
 LEAST_EXPLAINED = 0.8
@@ -51,31 +61,65 @@ class Search:
     clock: str
     progress: Progress | None = None
     solved: dict[frozenset[str], Solution] = field(default_factory=dict)
+    glanced: dict[frozenset[str], bool] = field(default_factory=dict)
+    settled: set[frozenset[str]] = field(default_factory=set)
     held_out: dict[frozenset[str], float] = field(default_factory=dict)
 
     @property
     def candidates(self) -> list[str]:
-        """Effects that these records could show."""
+        """Effects that go with the law and that these records could show."""
         return [
-            e.name for e in catalogue().values() if self.campaign.has_angle or not e.needs_angle
+            e.name
+            for e in catalogue().values()
+            if self.law not in e.refused and self.campaign.shows(e.needs)
         ]
 
     def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
         """The fitting problem of some effects."""
         return Problem(self.campaign, self.law, self.clock, tuple(effects))
 
-    def solve(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
-        """Fit these effects, starting near a smaller model's solution where there is one."""
+    def screen(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
+        """Fit these effects well enough to rank them, from a smaller model's solution."""
         if effects not in self.solved:
             problem = self.problem(effects)
             seeds: list[Mapping[str, float]] = [{}]
-            worst = np.inf
             if near is not None:
-                worst = 1.05 * self.problem(near.effects).square(near.values)
                 names = self.problem(near.effects).names
                 law = dict(zip(names, near.values, strict=True))
+                # A law that had to make up for a missing effect may be a poor start.
                 seeds = [law, {n: v for n, v in law.items() if "." in n}]
-            self.solved[effects] = problem.solve(seeds, give_up_above=worst)
+            self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS)
+        return self.solved[effects]
+
+    def blind(self, effects: frozenset[str], near: Solution) -> bool:
+        """True where the records show no trace of an effect beside a smaller model.
+
+        The score test: one Gauss-Newton step from the effect's null, the law free to move with
+        it. An effect whose first step gains next to nothing from any start is not tried further.
+        """
+        if effects not in self.glanced:
+            added = effects - set(near.effects)
+            problem = self.problem(effects)
+            pages = {
+                name: page
+                for name, page in problem.parameters.items()
+                if name.split(".")[0] in added
+            }
+            nulls = {n: p.null for n, p in pages.items() if p.null is not None}
+            if not nulls or not all(np.isfinite(null) for null in nulls.values()):
+                self.glanced[effects] = False
+            else:
+                known = dict(zip(self.problem(near.effects).names, near.values, strict=True))
+                starts = problem.starts({**known, **nulls})
+                gains = (first_step_gain(problem, start, near.noise) for start in starts)
+                self.glanced[effects] = not any(gain > TRACE for gain in gains)
+        return self.glanced[effects]
+
+    def solve(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
+        """Fit these effects to convergence."""
+        if effects not in self.settled:
+            self.solved[effects] = self.problem(effects).settle(self.screen(effects, near))
+            self.settled.add(effects)
         return self.solved[effects]
 
     def price(self, parameters: int) -> float:
@@ -86,6 +130,17 @@ class Search:
     def evidence(self, richer: Solution, simpler: Solution) -> float:
         """Evidence for the richer of two models."""
         return simpler.cost - richer.cost - self.price(richer.free - simpler.free)
+
+    def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
+        """How much evidence is lost when these effects stand in place of those of `whole`."""
+
+        def of(solution: Solution) -> float:
+            return solution.cost + self.price(solution.free) - whole.cost - self.price(whole.free)
+
+        if self.blind(effects, near):
+            return of(near)
+        first = of(self.screen(effects, near))
+        return of(self.solve(effects, near)) if first < CONTENDER else first
 
     def hold_out(self, effects: frozenset[str]) -> float:
         """RMS over runs left out of the fit one at a time, N."""
@@ -112,34 +167,46 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
     """Fit every candidate beside the effects present, and say which should be added."""
     base = search.solve(frozenset(present))
     rivals = [c for c in search.candidates if c not in present]
-    found: list[tuple[float, str, Solution]] = []
+    first: dict[str, float] = {}
     for i, name in enumerate(rivals):
         search.say(f"trying {name}", i, len(rivals))
-        solution = search.solve(frozenset((*present, name)), base)
+        effects = frozenset((*present, name))
+        if search.blind(effects, base):
+            first[name] = -np.inf
+        else:
+            first[name] = search.evidence(search.screen(effects, base), base)
+    line = CLOSE * max(max(first.values(), default=0.0), 0.0) - CONTENDER
+    found: list[tuple[float, str, Solution]] = []
+    for name in rivals:
+        effects = frozenset((*present, name))
+        if first[name] == -np.inf:
+            solution = base
+        else:
+            solution = search.solve(effects, base) if first[name] > line else search.screen(effects)
         # At its null an effect leaves the model as it was: no candidate is worse than that.
-        least = -search.price(solution.free - base.free)
+        least = -search.price(len(search.problem(effects).names) - base.free)
         found.append((max(search.evidence(solution, base), least), name, solution))
     found.sort(key=lambda t: -t[0])
-    leader, ties, trials = None, [], []
+    leader, best, ties, trials = None, 0.0, [], []
     bare = root_mean_square(base.residuals, search.campaign)
     before = search.hold_out(frozenset(present)) if found and found[0][0] > 0 else np.nan
     for evidence, name, solution in found:
         rms = min(root_mean_square(solution.residuals, search.campaign), bare)
         outcome, reason = "useless", "gains no more than chance would"
-        if evidence > 0:
+        if evidence > 0 and leader is None:
             after = search.hold_out(frozenset((*present, name)))
-            if leader is None and after >= before:
-                outcome = "rejected"
-                reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
-            elif leader is None:
+            if after < before:
                 leader, best = name, evidence
                 outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
-            elif evidence > best - TIE:
-                ties.append(name)
-                outcome, reason = "ties", f"fits as well as {leader}"
             else:
                 outcome = "rejected"
-                reason = f"{leader} leads by {best - evidence:.0f} in evidence"
+                reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+        elif evidence > 0 and evidence > best - TIE:
+            ties.append(name)
+            outcome, reason = "ties", f"fits as well as {leader}"
+        elif evidence > 0:
+            outcome = "rejected"
+            reason = f"{leader} leads by {best - evidence:.0f} in evidence"
         trials.append(Trial(name, rms, float(evidence), outcome, reason))
     return Round(trials, leader, tuple(ties))
 
@@ -160,10 +227,7 @@ def question(search: Search, present: tuple[str, ...]) -> tuple[str, ...]:
         for other in search.candidates:
             if other in current:
                 continue
-            swapped = search.solve(frozenset((*rest, other)), simpler)
-            better = (whole.cost + search.price(whole.free)) - (
-                swapped.cost + search.price(swapped.free)
-            )
+            better = -search.loss(frozenset((*rest, other)), whole, simpler)
             if better > gain:
                 best, gain = other, better
         if best != name:
@@ -182,11 +246,7 @@ def alternatives(search: Search, present: tuple[str, ...]) -> dict[str, tuple[st
         for other in search.candidates:
             if other in present:
                 continue
-            swapped = search.solve(frozenset((*rest, other)), simpler)
-            loss = (swapped.cost + search.price(swapped.free)) - (
-                whole.cost + search.price(whole.free)
-            )
-            if loss < TIE:
+            if search.loss(frozenset((*rest, other)), whole, simpler) < TIE:
                 equal.append(other)
         found[name] = tuple(equal)
     return found
@@ -205,7 +265,7 @@ def diagnose(
     Parameters
     ----------
     rig
-        Bearing, lubricant and load.
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
     runs
         Recorded runs with friction; several different motions tell effects apart.
     law, clock
@@ -224,6 +284,7 @@ def diagnose(
         A run lacks friction, or nothing moves in it.
     """
     begun = time.monotonic()
+    check_rig(rig, law)
     search = Search(Campaign.prepare(rig, runs), law, clock, progress)
     campaign = search.campaign
     bare = finish(search.problem(()), search.solve(frozenset()))

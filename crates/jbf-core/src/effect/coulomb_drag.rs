@@ -2,7 +2,7 @@
 //!
 //! Source: Cohn (1998), section 6.6 (the rig's ball bearings and seals); Coulomb (1785).
 
-use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
+use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -33,7 +33,7 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
             log: false,
             period: None,
         }],
-        needs_angle: false,
+        needs: &[Need::NoDryLevel],
         longest_step_s: 0.02,
     };
     type State = ();

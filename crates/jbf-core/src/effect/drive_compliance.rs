@@ -11,7 +11,7 @@
 //! The step is the midpoint rule with the set-valued force solved implicitly (a proximal
 //! step, after Moreau): it sticks, and it does not chatter.
 
-use super::{Drive, Effect, Info, Parameter, Resistance, Rig, Stage};
+use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -77,7 +77,7 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
                 period: None,
             },
         ],
-        needs_angle: true,
+        needs: &[Need::Path, Need::NoBristle],
         longest_step_s: 0.005,
     };
     type State = State<T>;

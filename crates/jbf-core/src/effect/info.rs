@@ -1,7 +1,9 @@
 //! The catalogue's page of an effect: the one source for the command line, the docs and
 //! the fit's bounds and starting values.
 
+use super::need::Need;
 use crate::error::ParameterError;
+use crate::law;
 use crate::real::Real;
 use core::fmt;
 
@@ -75,8 +77,8 @@ pub struct Info {
     pub limits: &'static str,
     /// Parameters in order.
     pub parameters: &'static [Parameter],
-    /// True where the shaft's angle must be on record.
-    pub needs_angle: bool,
+    /// What the law and the record must have for the effect to mean something.
+    pub needs: &'static [Need],
     /// Longest inner step at which the effect is still exact to a hundredth of a usual noise, s.
     pub longest_step_s: f64,
 }
@@ -88,20 +90,12 @@ impl Info {
     /// # Errors
     /// Names the first value that is missing or out of bounds.
     pub fn check<T: Real>(&self, values: &[T]) -> Result<(), ParameterError> {
-        for (i, p) in self.parameters.iter().enumerate() {
-            let value = values.get(i).map_or(f64::NAN, |v| v.value());
-            if p.null == Some(value) {
-                continue;
-            }
-            if !(value >= p.lower && value <= p.upper) {
-                return Err(ParameterError {
-                    name: p.name,
-                    value,
-                    rule: "is missing or outside the bounds of the catalogue",
-                });
-            }
-        }
-        Ok(())
+        in_bounds(self.parameters, values)
+    }
+
+    /// The need that a law leaves open, where there is one: the effect then does not apply.
+    pub fn lacking(&self, law: &law::Info) -> Option<Need> {
+        self.needs.iter().copied().find(|need| !need.met_by(law))
     }
 
     /// True where a parameter stands at an infinite null: the effect is then left out
@@ -112,4 +106,25 @@ impl Info {
                 .is_some_and(|null| !null.is_finite() && v.value() == null)
         })
     }
+}
+
+/// Check values against the bounds of their pages. A null value is always allowed.
+///
+/// # Errors
+/// Names the first value that is missing or out of bounds.
+pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<(), ParameterError> {
+    for (i, p) in pages.iter().enumerate() {
+        let value = values.get(i).map_or(f64::NAN, |v| v.value());
+        if p.null == Some(value) {
+            continue;
+        }
+        if !(value >= p.lower && value <= p.upper) {
+            return Err(ParameterError {
+                name: p.name,
+                value,
+                rule: "is missing or outside the bounds of the catalogue",
+            });
+        }
+    }
+    Ok(())
 }

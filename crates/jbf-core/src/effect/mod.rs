@@ -9,10 +9,12 @@
 //! and name it in its stage's line of `signal_chain!` below.
 
 pub mod info;
+mod need;
 mod registry;
 pub mod relaxation;
 
 pub use info::{Info, Parameter, Stage};
+pub use need::Need;
 
 use crate::error::ParameterError;
 use crate::law::Sliding;
@@ -76,6 +78,14 @@ pub trait Lubricant<T: Real>: Effect<T> {
     fn step(&self, state: &mut Self::State, power_w: [T; 2], dt_s: T);
 }
 
+/// Changes how fast the film follows.
+pub trait Film<T: Real>: Effect<T> {
+    /// Factor on the film's clock.
+    fn rate(&self, state: &Self::State) -> T;
+    /// The largest that factor will be, at least one.
+    fn fastest(&self) -> f64;
+}
+
 /// Changes the friction between the surfaces.
 pub trait Contact<T: Real>: Effect<T> {
     /// Change the sliding friction.
@@ -129,6 +139,18 @@ pub struct Signal<T> {
     pub now_n: T,
 }
 
+impl<T: Real> Signal<T> {
+    /// The signal with a constant added.
+    #[inline]
+    pub fn shifted(self, by_n: T) -> Self {
+        Self {
+            begin_n: self.begin_n + by_n,
+            end_n: self.end_n + by_n,
+            now_n: self.now_n + by_n,
+        }
+    }
+}
+
 /// Between the force and its record.
 pub trait Instrument<T: Real>: Effect<T> {
     /// The first reading of a run that begins with `force_n`.
@@ -140,9 +162,24 @@ pub trait Instrument<T: Real>: Effect<T> {
 // The fixed order of the chain, in one place; inside a stage effects act from left to right.
 registry::signal_chain! {
     drive: [drive_compliance::DriveCompliance],
-    lubricant: [thermal_thinning::ThermalThinning],
-    contact: [position_ripple::PositionRipple],
+    lubricant: [shear_thinning::ShearThinning, thermal_thinning::ThermalThinning],
+    film: [film_memory::FilmMemory],
+    contact: [
+        wear_in::WearIn,
+        dwell_stiction::DwellStiction,
+        stribeck_excess::StribeckExcess,
+        direction_asymmetry::DirectionAsymmetry,
+        position_ripple::PositionRipple,
+    ],
     bristle: [presliding::Presliding],
-    other: [coulomb_drag::CoulombDrag],
-    instrument: [sensor_lag::SensorLag],
+    other: [
+        coulomb_drag::CoulombDrag,
+        quadratic_drag::QuadraticDrag,
+        inertia_leak::InertiaLeak,
+    ],
+    instrument: [
+        sensor_lag::SensorLag,
+        sensor_offset::SensorOffset,
+        sensor_drift::SensorDrift,
+    ],
 }

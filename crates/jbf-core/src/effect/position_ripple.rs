@@ -3,7 +3,7 @@
 //! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of
 //! friction against joint angle; in a journal, its out-of-roundness.
 
-use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::law::Sliding;
 use crate::motion::{JournalMotion, Motion};
@@ -51,7 +51,7 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
                 period: Some(TAU),
             },
         ],
-        needs_angle: true,
+        needs: &[Need::Angle],
         longest_step_s: 0.02,
     };
     type State = ();

@@ -8,7 +8,7 @@
 //! is solved exactly in the distance slid and no stiffness is too large.
 
 use super::relaxation::relax;
-use super::{Bristle, Effect, Info, Parameter, Rig, Stage};
+use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -53,7 +53,7 @@ impl<T: Real> Effect<T> for Presliding<T> {
             log: true,
             period: None,
         }],
-        needs_angle: false,
+        needs: &[Need::NoBristle],
         longest_step_s: 0.01,
     };
     type State = T;

@@ -5,13 +5,14 @@ macro_rules! signal_chain {
     (
         drive: [$($drive:ident::$Drive:ident),* $(,)?],
         lubricant: [$($lubricant:ident::$Lubricant:ident),* $(,)?],
+        film: [$($film:ident::$Film:ident),* $(,)?],
         contact: [$($contact:ident::$Contact:ident),* $(,)?],
         bristle: [$($bristle:ident::$Bristle:ident),* $(,)?],
         other: [$($other:ident::$Other:ident),* $(,)?],
         instrument: [$($instrument:ident::$Instrument:ident),* $(,)?],
     ) => {
         $crate::effect::registry::signal_chain!(@types
-            $($drive::$Drive,)* $($lubricant::$Lubricant,)* $($contact::$Contact,)*
+            $($drive::$Drive,)* $($lubricant::$Lubricant,)* $($film::$Film,)* $($contact::$Contact,)*
             $($bristle::$Bristle,)* $($other::$Other,)* $($instrument::$Instrument,)*);
 
         impl<T: Real> Effects<T> {
@@ -42,6 +43,25 @@ macro_rules! signal_chain {
                     factor *= e.factor(s, journal);
                 })*
                 factor
+            }
+
+            /// Factor on the film's clock.
+            #[inline]
+            pub(crate) fn film_rate(&self, states: &States<T>) -> T {
+                let mut rate = T::ONE;
+                $(if let (Some(e), Some(s)) = (&self.$film, &states.$film) {
+                    rate *= e.rate(s);
+                })*
+                rate
+            }
+
+            /// The same factor where it makes the film faster, else one.
+            pub(crate) fn fastest_film(&self) -> f64 {
+                let mut rate = 1.0_f64;
+                $(if let Some(e) = &self.$film {
+                    rate *= e.fastest();
+                })*
+                rate
             }
 
             /// Let the lubricant take the friction power of the step.

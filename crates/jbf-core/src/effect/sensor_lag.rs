@@ -34,7 +34,7 @@ impl<T: Real> Effect<T> for SensorLag<T> {
             log: false,
             period: None,
         }],
-        needs_angle: false,
+        needs: &[],
         longest_step_s: 0.02,
     };
     /// The reading, N.

@@ -6,7 +6,7 @@
 //! `beta T` and the product is the parameter.
 
 use super::relaxation::relax;
-use super::{Effect, Info, Lubricant, Parameter, Rig, Stage};
+use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -50,7 +50,7 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
                 period: None,
             },
         ],
-        needs_angle: false,
+        needs: &[Need::Film],
         longest_step_s: 0.02,
     };
     type State = T;

@@ -1,18 +1,34 @@
-//! Friction laws, one a file. A law turns speed into a friction coefficient; what a rig
+//! Friction laws, one a file. A law turns motion into a friction coefficient; what a rig
 //! adds to it belongs to [`crate::effect`].
+//!
+//! Laws in newtons (all but those of a bearing) press with 1 N, so that their coefficient is
+//! a force.
+//!
+//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], and name it in
+//! `laws!` below.
 
-pub mod journal;
+mod bristle;
+mod delay_line;
+pub mod info;
+mod newtons;
+mod registry;
 mod steady;
 
+pub use info::{Info, Named, SteadyCurve, Visitor};
 pub use steady::Steady;
 
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::motion::JournalMotion;
 use crate::real::Real;
 
 /// The friction of a law at one instant, in parts because people log them and because
 /// effects act on one or the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliding<T> {
-    /// Coefficient of the part that takes the sign of the motion, unsigned.
+    /// Coefficient of the part that takes the sign of the motion, unsigned. A law with a
+    /// bristle gives the level towards which the bristle bends.
     pub level: T,
     /// Coefficient of the viscous part, signed.
     pub viscous: T,
@@ -30,6 +46,10 @@ impl<T: Real> Sliding<T> {
 pub trait Law<T: Real> {
     /// What the law remembers.
     type State: Copy;
+
+    /// True where the law bends before it slides: [`Law::bend`] then takes the place of the
+    /// sign of the motion.
+    const HAS_BRISTLE: bool = false;
 
     /// The state at which every run starts.
     fn start(&self, load_n: T) -> Self::State;
@@ -52,4 +72,37 @@ pub trait Law<T: Real> {
     /// Advance by `dt_s`; `speed_m_s` is |U| at the start, middle and end of the step, and
     /// `rate` a factor on the law's own clock.
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T);
+
+    /// For laws with [`Law::HAS_BRISTLE`]: bend the bristle along the motion of a step and give
+    /// its coefficient, signed, without the viscous part. `level` is [`Sliding::level`] at both
+    /// ends of the step, contact effects included. A step of no length is the start of a run:
+    /// the bristle is then bent already where the run starts in motion.
+    #[inline]
+    fn bend(
+        &self,
+        state: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        let _ = (state, from, dt_s);
+        level[1] * to.direction
+    }
+}
+
+const UNKNOWN: ParameterError = ParameterError {
+    name: "law",
+    value: f64::NAN,
+    rule: "is not in the catalogue",
+};
+
+registry::laws! {
+    journal::Journal,
+    journal_full::JournalFull,
+    coulomb::Coulomb,
+    stribeck::Stribeck,
+    seven_parameter::SevenParameter,
+    dahl::Dahl,
+    lugre::LuGre,
 }

@@ -3,9 +3,16 @@
 
 mod euler;
 mod rk4;
+mod rodas3;
+pub(crate) mod rodas5p;
+pub(crate) mod rodas5p_tableau;
+mod stiff;
 
 pub use euler::Euler;
 pub use rk4::Rk4;
+pub use rodas3::Rodas3;
+pub use rodas5p::Rodas5P;
+pub use stiff::{Linear, SecondOrder, ShiftedSolver, StiffStepper, StiffSystem, TwoByTwo};
 
 use crate::real::Real;
 

@@ -5,22 +5,31 @@ use super::LOAD_N;
 use jbf_core::{Bearing, Motion, Real};
 
 /// `U = offset + sum of amplitude sin(omega t + phase)`, with its exact rate and angle, under
-/// a constant load. `sign` = -1 mirrors it.
+/// a constant load. `sign` = -1 mirrors it; a rest holds the shaft where it is for a while.
 #[derive(Clone, Debug)]
 pub struct Sines {
     pub offset_m_s: f64,
     /// Amplitude in m/s, angular frequency in rad/s, phase in rad.
     pub waves: Vec<[f64; 3]>,
     pub sign: f64,
+    /// When a rest begins and how long it lasts, s.
+    pub rest_s: Option<[f64; 2]>,
 }
 
 impl Sines {
+    /// The same motion with a rest in it.
+    pub fn resting(mut self, from_s: f64, length_s: f64) -> Self {
+        self.rest_s = Some([from_s, length_s]);
+        self
+    }
+
     /// Two-way motion of chapter 4 at 104 N.
     pub fn two_way(omega_rad_s: f64) -> Self {
         Self {
             offset_m_s: 0.0,
             waves: vec![[0.127, omega_rad_s, 0.0]],
             sign: 1.0,
+            rest_s: None,
         }
     }
 
@@ -30,6 +39,7 @@ impl Sines {
             offset_m_s: 0.0728,
             waves: vec![[0.0595, omega_rad_s, 0.0]],
             sign: 1.0,
+            rest_s: None,
         }
     }
 
@@ -51,6 +61,7 @@ impl Sines {
             offset_m_s,
             waves: (0..3).map(|_| wave(random)).collect(),
             sign: 1.0,
+            rest_s: None,
         }
     }
 
@@ -62,13 +73,22 @@ impl Sines {
     }
 
     pub fn at<T: Real>(&self, time_s: f64) -> Motion<T> {
+        let (since, still) = match self.rest_s {
+            Some([from, length]) if time_s >= from => {
+                ((time_s - length).max(from), time_s < from + length)
+            }
+            _ => (time_s, false),
+        };
         let (mut v, mut a) = (self.offset_m_s, 0.0);
-        let mut path_m = self.offset_m_s * time_s;
+        let mut path_m = self.offset_m_s * since;
         for &[size, omega, phase] in &self.waves {
-            let (sin, cos) = (omega * time_s + phase).sin_cos();
+            let (sin, cos) = (omega * since + phase).sin_cos();
             v += size * sin;
             a += size * omega * cos;
             path_m += size / omega * (phase.cos() - cos);
+        }
+        if still {
+            (v, a) = (0.0, 0.0);
         }
         Motion {
             time_s: T::of(time_s),
@@ -86,6 +106,7 @@ pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
         offset_m_s: velocity_m_s,
         waves: vec![],
         sign: 1.0,
+        rest_s: None,
     }
     .at(time_s)
 }

@@ -1,16 +1,19 @@
-//! A mirrored motion gives the mirrored friction: everything here but the ripple is odd.
+//! A mirrored motion gives the mirrored friction of the mirrored machine.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
 use crate::common::{chain, readings};
 use jbf_core::effect::CATALOGUE;
 
-/// Parameters of the mirrored machine. The ripple alone knows left from right: its largest
-/// friction sits at an angle theta_0, which the mirror takes to -theta_0.
+/// Parameters of the mirrored machine. Few effects know left from right: the ripple's largest
+/// friction sits at an angle theta_0, an asymmetry has its harder way, and a load cell's zero and
+/// drift are signed; the mirror turns each round.
 fn mirrored(name: &str, values: &[f64]) -> Vec<f64> {
     let mut out = values.to_vec();
-    if name == "position_ripple" {
-        out[1] = -out[1];
+    match name {
+        "position_ripple" => out[1] = -out[1],
+        "direction_asymmetry" | "sensor_offset" | "sensor_drift" => out[0] = -out[0],
+        _ => {}
     }
     out
 }

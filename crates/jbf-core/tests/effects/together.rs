@@ -16,7 +16,7 @@ fn run<T: Real>(which: &[&Info]) -> Vec<T> {
         .zip(&values)
         .map(|(info, v)| (info.name, v.as_slice()))
         .collect();
-    let sines = Sines::two_way(1.0);
+    let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     readings(&chain::<T>(&effects), 0.01, 700, |t| sines.at(t))
 }
 

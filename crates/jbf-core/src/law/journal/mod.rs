@@ -14,12 +14,15 @@
 //! chapter 3.
 
 mod build;
+pub(crate) mod film_linear;
 mod film_motion;
+mod named;
 mod parameters;
 mod side_by_side;
 mod state;
 mod stribeck;
 
+pub(in crate::law) use named::parts;
 pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
 pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
@@ -27,7 +30,7 @@ pub use state::{Loaded, State};
 use super::{Law, Sliding};
 use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
-use crate::stepper::{Rk4, Stepper};
+use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::{within, Film};
@@ -45,13 +48,13 @@ pub const LIGHTEST_SHARE: f64 = 0.01;
 pub struct Journal<T> {
     /// `Fb` of one newton.
     fb_per_n: T,
-    f_m: T,
-    k0: T,
+    pub(crate) f_m: T,
+    pub(crate) k0: T,
     /// `gamma (C R/L^2) 2 pi / U_tr`.
     viscous_s_m: T,
-    inverse_u_tr: T,
+    pub(crate) inverse_u_tr: T,
     /// Dimensionless time per second.
-    rate: T,
+    pub(crate) rate: T,
     /// The load of the constructor and its eps_tr, so that a start costs nothing.
     nominal: Loaded<T>,
 }
@@ -81,7 +84,7 @@ impl<T: Real> Journal<T> {
 
     /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
     #[inline(always)]
-    fn asperity_load(&self, eps: T, eps_tr: T) -> T {
+    pub(crate) fn asperity_load(&self, eps: T, eps_tr: T) -> T {
         let touch = eps - eps_tr;
         let load = self.k0 * touch * touch;
         if touch > T::ZERO {
@@ -93,7 +96,7 @@ impl<T: Real> Journal<T> {
 
     /// Friction at an eccentricity ratio, `d = 1 - eps^2` and a speed, (3.14).
     #[inline(always)]
-    fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
         let load = self.asperity_load(eps, loaded.eps_tr);
         Sliding {
             level: self.f_m * loaded.inverse_load_number * load,
@@ -135,6 +138,33 @@ impl<T: Real> Journal<T> {
         // Minus zero is the neutral start of a sum: `-0.0 + x` is `x`, and costs nothing.
         let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        self.moved(state, way);
+    }
+
+    /// One step with any implicit stepper.
+    #[inline]
+    pub fn advance_stiff_with<S: StiffStepper>(
+        &self,
+        stepper: &S,
+        state: &mut State<T>,
+        speed_m_s: [T; 3],
+        rate: T,
+        dt_s: T,
+    ) {
+        let film = Film {
+            law: self,
+            loaded: &state.loaded,
+            from: state.xy,
+        };
+        let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
+        let mut way = [-T::ZERO; 2];
+        stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
+        self.moved(state, way);
+    }
+
+    /// The end of a step, held inside the bearing.
+    #[inline]
+    fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
@@ -166,7 +196,7 @@ impl<T: Real> Journal<T> {
     /// asperities carry the load alone, or where that is too deep (soft asperities) nine
     /// tenths of the way from eps_tr to the wall. Closer to the wall the film hardly flows,
     /// and the journal would stay there for hours.
-    fn deepest(&self, loaded: &Loaded<T>) -> T {
+    pub(crate) fn deepest(&self, loaded: &Loaded<T>) -> T {
         let at_rest = loaded.eps_tr + (loaded.load_number / self.k0).sqrt();
         let near_wall = loaded.eps_tr + (T::ONE - loaded.eps_tr) * T::of(0.9);
         at_rest.min(near_wall).min(T::EPS_LIMIT)

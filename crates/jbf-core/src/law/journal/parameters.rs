@@ -37,7 +37,7 @@ pub const PARAMETERS: &[Parameter] = &[
         unit: "-",
         meaning: "asperity stiffness constant",
         lower: 1.0,
-        upper: 1e12,
+        upper: 1e9,
         null: None,
         starts: &[6.5e5],
         log: true,

@@ -5,7 +5,7 @@ use crate::real::Real;
 /// What depends on the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loaded<T> {
-    pub(super) load_n: T,
+    pub(crate) load_n: T,
     /// Load number Fb.
     pub load_number: T,
     pub(super) inverse_load_number: T,

@@ -1,0 +1,58 @@
+//! The error that a step may make, measured in friction.
+
+use super::Film;
+use crate::law::journal::Loaded;
+use crate::real::Real;
+
+/// Share of the tolerance that one step may err by.
+const STEP_SHARE: f64 = 4.0;
+/// An error far from the asperities weighs this much of one where they carry the whole load: it
+/// is forgotten in part before they touch.
+const FREE_WEIGHT: f64 = 0.1;
+/// Errors of place below this are rounding.
+const ROUNDING: f64 = 2e-14;
+
+/// How the step follows from the error. On films that are stiff at their step the estimate falls
+/// with the fourth power of the step, not the fifth of the smooth theory.
+#[inline]
+pub(super) fn inverse_root(share: f64) -> f64 {
+    1.0 / libm::sqrt(libm::sqrt(share))
+}
+
+/// The error that a step may make.
+pub(super) struct Goal {
+    tolerance: f64,
+    /// `d f / d eps` over the depth of touch.
+    steepness: f64,
+    /// Least weight of an error of place.
+    least: f64,
+    /// Eccentricity may pass eps_tr by this much unseen: friction errs by the square.
+    pub(super) band: f64,
+}
+
+impl Goal {
+    pub(super) fn new<T: Real, F: Film<T, N>, const N: usize>(
+        film: &F,
+        loaded: &Loaded<T>,
+        tolerance: f64,
+    ) -> Self {
+        let journal = film.journal();
+        let (fb, k0) = (loaded.load_number.value(), journal.k0.value());
+        let f_m = journal.f_m.value().max(1e-3);
+        let steepness = 2.0 * f_m * k0 / fb;
+        Self {
+            tolerance: tolerance * STEP_SHARE,
+            steepness,
+            least: FREE_WEIGHT * 2.0 * f_m * libm::sqrt(k0 / fb),
+            band: libm::sqrt(0.01 * tolerance * fb / (k0 * f_m)),
+        }
+    }
+
+    /// An error of place over what is allowed.
+    #[inline]
+    pub(super) fn share(&self, error: [f64; 2], depth: f64) -> f64 {
+        let size = libm::sqrt(error[0] * error[0] + error[1] * error[1]);
+        let weight = (self.steepness * depth).max(self.least);
+        size / (self.tolerance / weight).max(ROUNDING)
+    }
+}

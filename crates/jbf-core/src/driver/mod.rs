@@ -1,0 +1,162 @@
+//! Trajectories to a tolerance, for analysis: steps as long as the error of the friction
+//! coefficient allows, which land on every reversal and on every touch of the asperities, where
+//! the model has kinks. Samples come from a polynomial along each step, so that their number
+//! does not set the number of steps. A loop uses [`Law::advance`](crate::law::Law::advance).
+//!
+//! ```
+//! use jbf_core::driver::{trajectory, Sine};
+//! use jbf_core::law::journal::{Journal, Parameters};
+//! use jbf_core::{Bearing, Clock};
+//! let law = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
+//! let motion = Sine::new(0.127, 1.0)?; // U = 0.127 sin(t)
+//! let times_s = [0.125663706143592, 1.5707963267949, 6.47168086639497];
+//! let mut f = [0.0; 3];
+//! trajectory(&law, &motion, &times_s, 1e-9, &mut f)?;
+//! assert!((f[0] - 0.04785707000713).abs() < 1e-9);
+//! assert!((f[2] - 0.09170630580666).abs() < 1e-9);
+//! # Ok::<(), jbf_core::ParameterError>(())
+//! ```
+
+mod excitation;
+mod film;
+mod follow;
+mod goal;
+mod kinks;
+mod sampled;
+
+pub use excitation::{Excitation, Function, Sine};
+pub use film::Film;
+pub use follow::follow;
+pub use sampled::Sampled;
+
+use crate::error::{check, ParameterError};
+use crate::law::journal::START_PHI_RAD;
+use crate::real::Real;
+
+/// Where a trajectory starts; by default at time zero, as [`Law::start`](crate::law::Law::start)
+/// has it: asperities just in touch, attitude angle 0.15 rad, no velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start<T> {
+    /// Time, s.
+    pub time_s: f64,
+    /// Eccentricity ratio; none for eps_tr.
+    pub eps: Option<T>,
+    /// Attitude angle, rad.
+    pub phi_rad: T,
+}
+
+impl<T: Real> Default for Start<T> {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            eps: None,
+            phi_rad: T::of(START_PHI_RAD),
+        }
+    }
+}
+
+/// The film at one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<T> {
+    /// `eps cos(phi)` and `eps sin(phi)`.
+    pub xy: [T; 2],
+    /// Eccentricity ratio.
+    pub eps: T,
+    /// Friction coefficient, with the sign of the speed; at rest without its asperities' part,
+    /// which is set-valued there.
+    pub coefficient: T,
+}
+
+impl Sample<f64> {
+    /// Attitude angle, rad.
+    pub fn phi_rad(&self) -> f64 {
+        libm::atan2(self.xy[1], self.xy[0])
+    }
+}
+
+/// What a trajectory cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Steps taken.
+    pub steps: u32,
+    /// Steps computed and thrown away, because the error was too large or a kink lay inside.
+    pub rejected: u32,
+    /// Evaluations of the equations of motion.
+    pub slopes: u32,
+    /// Evaluations with derivatives.
+    pub linearisations: u32,
+    /// Steps as short as time itself resolves, taken whatever their error.
+    pub forced: u32,
+}
+
+/// Friction coefficients at `times_s` (rising, none before zero), to about `tolerance`.
+///
+/// `out` takes as many as it has room for.
+///
+/// # Errors
+/// Names the first of `tolerance` (positive, finite) and `times_s` (rising, finite) that breaks
+/// its rule. Any tolerance works: the coarsest used is 0.1, the finest is what rounding leaves.
+pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
+    film: &F,
+    excitation: &E,
+    times_s: &[f64],
+    tolerance: f64,
+    out: &mut [T],
+) -> Result<Cost, ParameterError> {
+    follow(
+        film,
+        excitation,
+        &Start::default(),
+        times_s,
+        tolerance,
+        |i, sample: &Sample<T>| {
+            if let Some(place) = out.get_mut(i) {
+                *place = sample.coefficient;
+            }
+        },
+    )
+}
+
+fn checked<T: Real>(
+    start: &Start<T>,
+    times_s: &[f64],
+    tolerance: f64,
+) -> Result<(), ParameterError> {
+    check(
+        tolerance > 0.0 && tolerance.is_finite(),
+        "tolerance",
+        tolerance,
+        "must be positive and finite",
+    )?;
+    check(
+        start.time_s.is_finite(),
+        "time_s",
+        start.time_s,
+        "of the start must be finite",
+    )?;
+    let eps = start.eps.map_or(0.5, Real::value);
+    check(
+        eps > 0.0 && eps < 1.0,
+        "eps",
+        eps,
+        "of the start must lie between 0 and 1",
+    )?;
+    let phi_rad = start.phi_rad.value();
+    check(
+        phi_rad.is_finite(),
+        "phi_rad",
+        phi_rad,
+        "of the start must be finite",
+    )?;
+    let mut before = start.time_s;
+    for &t in times_s {
+        check(
+            t >= before && t.is_finite(),
+            "times_s",
+            t,
+            "must be finite, not before the start, and rise",
+        )?;
+        before = t;
+    }
+    Ok(())
+}

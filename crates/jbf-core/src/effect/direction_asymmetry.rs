@@ -1,0 +1,68 @@
+//! Friction times `1 + a sgn v`: one way is harder than the other.
+//!
+//! Source: mounted bearings and belts, whose side load adds to one direction and takes from the
+//! other; listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).
+
+use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Friction that depends on the direction of motion.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectionAsymmetry<T> {
+    share: T,
+}
+
+impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
+    const INFO: Info = Info {
+        name: "direction_asymmetry",
+        stage: Stage::Contact,
+        summary: "friction that is larger one way than the other",
+        equation: "f -> f (1 + a sgn(v))",
+        source: "Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)",
+        limits: "scales the whole friction; an offset of the cell shifts it instead, and is there at rest too",
+        parameters: &[Parameter {
+            name: "a",
+            unit: "-",
+            meaning: "share by which friction is larger in positive motion",
+            lower: -0.95,
+            upper: 0.95,
+            null: Some(0.0),
+            starts: &[0.05],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            share: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
+    #[inline]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+        // At rest the motion may go either way: the direction that holds the journal decides.
+        let way = if journal.velocity_m_s == T::ZERO {
+            journal.direction.sign()
+        } else {
+            journal.velocity_m_s.sign()
+        };
+        let factor = T::ONE + self.share * way;
+        sliding.level *= factor;
+        sliding.viscous *= factor;
+    }
+
+    #[inline]
+    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
+}

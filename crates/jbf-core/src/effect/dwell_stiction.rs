@@ -1,0 +1,132 @@
+//! After a rest of length t_d: `+ a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`, s the distance slid
+//! since: contacts grow while they rest and are torn off as they slide.
+//!
+//! Source: Kato et al. (1972); Cohn (1998), section 2.1.5.
+
+use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Static friction that rises with the length of a rest.
+#[derive(Clone, Copy, Debug)]
+pub struct DwellStiction<T> {
+    height: T,
+    inverse_time_1_s: T,
+    exponent: T,
+    inverse_distance_1_m: T,
+}
+
+/// The last rest, and the distance since.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    rest_s: T,
+    slid_m: T,
+    resting: bool,
+}
+
+impl<T: Real> Effect<T> for DwellStiction<T> {
+    const INFO: Info = Info {
+        name: "dwell_stiction",
+        stage: Stage::Contact,
+        summary: "static friction that has grown during a rest",
+        equation: "f -> f + a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0) sgn(v)",
+        source: "Kato et al. 1972; Cohn 1998, section 2.1.5",
+        limits: "a rest is speed exactly zero; creep during a rest, and its history, are not seen",
+        parameters: &[
+            Parameter {
+                name: "a",
+                unit: "-",
+                meaning: "friction coefficient added after a very long rest",
+                lower: 0.0,
+                upper: 1e3,
+                null: Some(0.0),
+                starts: &[0.08],
+                log: false,
+                period: None,
+            },
+            Parameter {
+                name: "t_0_s",
+                unit: "s",
+                meaning: "length of rest for 63 % of it",
+                lower: 1e-3,
+                upper: 1e6,
+                null: None,
+                starts: &[3.0],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "m",
+                unit: "-",
+                meaning: "exponent of the growth",
+                lower: 0.05,
+                upper: 5.0,
+                null: None,
+                starts: &[0.7],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "s_0_m",
+                unit: "m",
+                meaning: "distance in which sliding takes it off",
+                lower: 1e-6,
+                upper: 1e2,
+                null: None,
+                starts: &[2e-3, 2e-2],
+                log: true,
+                period: None,
+            },
+        ],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = State<T>;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            height: parameters[0],
+            inverse_time_1_s: T::ONE / parameters[1],
+            exponent: parameters[2],
+            inverse_distance_1_m: T::ONE / parameters[3],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            rest_s: T::ZERO,
+            slid_m: T::ZERO,
+            resting: false,
+        }
+    }
+}
+
+impl<T: Real> Contact<T> for DwellStiction<T> {
+    #[inline]
+    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+        if state.rest_s.value() <= 0.0 {
+            return;
+        }
+        let grown = T::ONE - (-(state.rest_s * self.inverse_time_1_s).powf(self.exponent)).exp();
+        let left = (-(state.slid_m * self.inverse_distance_1_m)).exp();
+        sliding.level += self.height * grown * left;
+    }
+
+    #[inline]
+    fn step(&self, state: &mut State<T>, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
+        if from.velocity_m_s == T::ZERO && to.velocity_m_s == T::ZERO {
+            if !state.resting {
+                state.rest_s = T::ZERO;
+                state.slid_m = T::ZERO;
+                state.resting = true;
+            }
+            state.rest_s += dt_s;
+        } else {
+            state.resting = false;
+            state.slid_m += from.distance_m(to, dt_s);
+        }
+    }
+}

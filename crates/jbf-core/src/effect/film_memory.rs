@@ -1,0 +1,60 @@
+//! The film's clock times a factor: it follows the speed sooner or later than the short-bearing
+//! theory says.
+//!
+//! Source: Cohn (1998): the bearing is of medium length (section 3.2), and the thesis's own
+//! programs run the film on another clock (appendices D and E).
+
+use super::{Effect, Film, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::Motion;
+use crate::real::Real;
+
+/// A film that is faster or slower than the law's.
+#[derive(Clone, Copy, Debug)]
+pub struct FilmMemory<T> {
+    factor: T,
+}
+
+impl<T: Real> Effect<T> for FilmMemory<T> {
+    const INFO: Info = Info {
+        name: "film_memory",
+        stage: Stage::Film,
+        summary: "a film that follows the speed later (or sooner) than the law's",
+        equation: "d(eps, phi)/dt -> factor d(eps, phi)/dt",
+        source: "Cohn 1998, section 3.2 and appendices D, E",
+        limits: "one factor for squeeze and wedge alike; the steady state does not change",
+        parameters: &[Parameter {
+            name: "factor",
+            unit: "-",
+            meaning: "speed of the film's clock",
+            lower: 1e-3,
+            upper: 1e3,
+            null: Some(1.0),
+            starts: &[0.5, 2.0],
+            log: true,
+            period: None,
+        }],
+        needs: &[Need::Film],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            factor: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Film<T> for FilmMemory<T> {
+    #[inline]
+    fn rate(&self, _state: &()) -> T {
+        self.factor
+    }
+    fn fastest(&self) -> f64 {
+        self.factor.value().max(1.0)
+    }
+}

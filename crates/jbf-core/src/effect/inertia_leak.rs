@@ -1,0 +1,60 @@
+//! `+ m_e dv/dt`: the load cell also feels a mass that is accelerated.
+//!
+//! Source: d'Alembert; the housing on the arm of Cohn's apparatus (1998, section 4.1), and any
+//! drive force measured ahead of the moving mass.
+
+use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// An accelerated mass in the force path.
+#[derive(Clone, Copy, Debug)]
+pub struct InertiaLeak<T> {
+    mass_kg: T,
+}
+
+impl<T: Real> Effect<T> for InertiaLeak<T> {
+    const INFO: Info = Info {
+        name: "inertia_leak",
+        stage: Stage::Other,
+        summary: "the load cell also feels a mass that is accelerated",
+        equation: "F -> F + m_e dv/dt",
+        source: "d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)",
+        limits: "a rigid mass; the slope of the speed comes from the record and has its noise",
+        parameters: &[Parameter {
+            name: "m_e_kg",
+            unit: "kg",
+            meaning: "mass as felt at the journal's surface",
+            lower: 0.0,
+            upper: 1e6,
+            null: Some(0.0),
+            starts: &[4.0, 100.0],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            mass_kg: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> OtherFriction<T> for InertiaLeak<T> {
+    #[inline]
+    fn level_n(&self) -> T {
+        T::ZERO
+    }
+    #[inline]
+    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        self.mass_kg * journal.acceleration_m_s2
+    }
+}

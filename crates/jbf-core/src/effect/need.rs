@@ -1,0 +1,53 @@
+//! What an effect needs of the law beside it, and of the record.
+
+use crate::law;
+
+/// One need. Those of a law are answered by its page; those of a record by whoever reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Of the law: a lubricant film.
+    Film,
+    /// Of the law: that it jumps at zero speed, so that a bristle or a soft drive can take the
+    /// jump's place.
+    NoBristle,
+    /// Of the law: no dry friction of its own that depends on no load.
+    NoDryLevel,
+    /// Of the record: the shaft's angle.
+    Angle,
+    /// Of the record: how far the drive has gone, as an angle or on a line.
+    Path,
+}
+
+impl Need {
+    /// The name used in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Need::Film => "film",
+            Need::NoBristle => "no_bristle",
+            Need::NoDryLevel => "no_dry_level",
+            Need::Angle => "angle",
+            Need::Path => "path",
+        }
+    }
+
+    /// True where a law gives what is needed, or where it is not the law's to give.
+    pub const fn met_by(self, law: &law::Info) -> bool {
+        match self {
+            Need::Film => law.has_film,
+            Need::NoBristle => !law.has_bristle,
+            Need::NoDryLevel => !law.has_dry_level,
+            Need::Angle | Need::Path => true,
+        }
+    }
+
+    /// Why a law that leaves the need open does not go with the effect: "the law ...".
+    pub const fn why_not(self) -> &'static str {
+        match self {
+            Need::Film => "has no lubricant film",
+            Need::NoBristle => "bends before it slides: it has a bristle of its own",
+            Need::NoDryLevel => "already holds a dry friction that does not depend on the load",
+            Need::Angle => "needs no angle",
+            Need::Path => "needs no path",
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! `+ c v |v|`: oil that is thrown about.
+//!
+//! Source: turbulent drag after Rayleigh (1876); the flooded, gravity-fed bearings of Cohn
+//! (1998), section 4.1.
+
+use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Drag that grows with the square of the speed.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadraticDrag<T> {
+    drag_n_s2_m2: T,
+}
+
+impl<T: Real> Effect<T> for QuadraticDrag<T> {
+    const INFO: Info = Info {
+        name: "quadratic_drag",
+        stage: Stage::Other,
+        summary: "churning or windage: drag with the square of the speed",
+        equation: "F -> F + c v |v|",
+        source: "Rayleigh 1876; Cohn 1998, section 4.1",
+        limits: "the same both ways; slow flow drags in proportion to speed, which gamma takes up",
+        parameters: &[Parameter {
+            name: "c_n_s2_m2",
+            unit: "N s^2/m^2",
+            meaning: "drag at 1 m/s",
+            lower: 0.0,
+            upper: 1e7,
+            null: Some(0.0),
+            starts: &[50.0],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            drag_n_s2_m2: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> OtherFriction<T> for QuadraticDrag<T> {
+    #[inline]
+    fn level_n(&self) -> T {
+        T::ZERO
+    }
+    #[inline]
+    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        self.drag_n_s2_m2 * journal.velocity_m_s * journal.velocity_m_s.abs()
+    }
+}

@@ -1,0 +1,62 @@
+//! `+ d t`: the charge of a piezo cell leaks, a bridge warms.
+//!
+//! Source: charge amplifiers of piezo-electric load cells (Gautschi 2002).
+
+use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
+use crate::error::ParameterError;
+use crate::motion::Motion;
+use crate::real::Real;
+
+/// A load cell whose zero wanders steadily.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorDrift<T> {
+    slope_n_s: T,
+}
+
+impl<T: Real> Effect<T> for SensorDrift<T> {
+    const INFO: Info = Info {
+        name: "sensor_drift",
+        stage: Stage::Instrument,
+        summary: "the load cell's zero wanders steadily during a run",
+        equation: "r -> r + d t, t since the run began",
+        source: "Gautschi 2002 (charge leak of piezo cells)",
+        limits: "a straight line from zero in each run; a leak levels off after its time constant",
+        parameters: &[Parameter {
+            name: "d_n_s",
+            unit: "N/s",
+            meaning: "change of the reading per second",
+            lower: -1e4,
+            upper: 1e4,
+            null: Some(0.0),
+            starts: &[0.005],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            slope_n_s: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Instrument<T> for SensorDrift<T> {
+    fn first(&self, _state: &mut (), force_n: T) -> T {
+        force_n
+    }
+
+    #[inline]
+    fn step(&self, _state: &mut (), signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
+        let before = signal.begin_n + self.slope_n_s * (time_s - dt_s);
+        let mut after = signal.shifted(self.slope_n_s * time_s);
+        after.begin_n = before;
+        after
+    }
+}

@@ -1,0 +1,59 @@
+//! `+ b`: the zero of the load cell.
+//!
+//! Source: any strain-gauge bridge; Cohn (1998), section 4.1.
+
+use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
+use crate::error::ParameterError;
+use crate::motion::Motion;
+use crate::real::Real;
+
+/// A load cell whose zero is off.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorOffset<T> {
+    offset_n: T,
+}
+
+impl<T: Real> Effect<T> for SensorOffset<T> {
+    const INFO: Info = Info {
+        name: "sensor_offset",
+        stage: Stage::Instrument,
+        summary: "the load cell's zero is off",
+        equation: "r -> r + b",
+        source: "Cohn 1998, section 4.1 (strain gauges)",
+        limits: "one offset for all runs; a zero that is set anew for each run is not this one",
+        parameters: &[Parameter {
+            name: "b_n",
+            unit: "N",
+            meaning: "reading without force",
+            lower: -1e5,
+            upper: 1e5,
+            null: Some(0.0),
+            starts: &[0.3],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            offset_n: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Instrument<T> for SensorOffset<T> {
+    fn first(&self, _state: &mut (), force_n: T) -> T {
+        force_n + self.offset_n
+    }
+
+    #[inline]
+    fn step(&self, _state: &mut (), signal: Signal<T>, _time_s: T, _dt_s: T) -> Signal<T> {
+        signal.shifted(self.offset_n)
+    }
+}

@@ -1,0 +1,75 @@
+//! `Ub -> Ub / (1 + (|U|/U_c)^n)`: long molecules that line up in fast shear.
+//!
+//! Source: Cross (1965), for multigrade oils such as the thesis's 10W-40. Viscosity and
+//! transition speed go together (mu U_tr = const), so Fb and eps_tr stay.
+
+use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Viscosity that falls with the rate of shear.
+#[derive(Clone, Copy, Debug)]
+pub struct ShearThinning<T> {
+    inverse_speed_s_m: T,
+    exponent: T,
+}
+
+impl<T: Real> Effect<T> for ShearThinning<T> {
+    const INFO: Info = Info {
+        name: "shear_thinning",
+        stage: Stage::Lubricant,
+        summary: "multigrade oil that thins in fast shear",
+        equation: "Ub -> Ub / (1 + (|U|/U_c)^n)",
+        source: "Cross 1965",
+        limits: "shear rate taken as proportional to the speed: the film's thickness is left out",
+        parameters: &[
+            Parameter {
+                name: "U_c_m_s",
+                unit: "m/s",
+                meaning: "speed at which the viscosity has halved",
+                lower: 1e-4,
+                upper: 1e6,
+                null: Some(f64::INFINITY),
+                starts: &[0.12, 0.6],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "n",
+                unit: "-",
+                meaning: "steepness",
+                lower: 0.1,
+                upper: 8.0,
+                null: None,
+                starts: &[1.2],
+                log: true,
+                period: None,
+            },
+        ],
+        needs: &[Need::Film],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            inverse_speed_s_m: T::ONE / parameters[0],
+            exponent: parameters[1],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Lubricant<T> for ShearThinning<T> {
+    #[inline]
+    fn factor(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        let shear = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
+        T::ONE / (T::ONE + shear.powf(self.exponent))
+    }
+
+    #[inline]
+    fn step(&self, _state: &mut (), _power_w: [T; 2], _dt_s: T) {}
+}

@@ -1,0 +1,89 @@
+//! `+ a exp(-(|v|/v_s)^n)`: boundary lubrication that the asperity law does not hold.
+//!
+//! Source: Stribeck's curve in the exponential form of Tustin (n = 1), Bo & Pavelescu (0.5 to 1)
+//! and Armstrong-Helouvry (2); Cohn (1998), sections 2.1.2 and 2.2.
+
+use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Friction above the law's at low speed.
+#[derive(Clone, Copy, Debug)]
+pub struct StribeckExcess<T> {
+    height: T,
+    inverse_speed_s_m: T,
+    exponent: T,
+}
+
+impl<T: Real> Effect<T> for StribeckExcess<T> {
+    const INFO: Info = Info {
+        name: "stribeck_excess",
+        stage: Stage::Contact,
+        summary: "boundary friction at low speed beyond the law's own",
+        equation: "f -> f + a exp(-(|v|/v_s)^n) sgn(v)",
+        source: "Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2",
+        limits: "no memory: a film that lags behind the speed is film_memory's; no dwell",
+        parameters: &[
+            Parameter {
+                name: "a",
+                unit: "-",
+                meaning: "friction coefficient added at rest",
+                lower: 0.0,
+                upper: 1e3,
+                null: Some(0.0),
+                starts: &[0.05],
+                log: false,
+                period: None,
+            },
+            Parameter {
+                name: "v_s_m_s",
+                unit: "m/s",
+                meaning: "speed at which it has fallen to 1/e",
+                lower: 1e-5,
+                upper: 1e2,
+                null: None,
+                starts: &[0.01, 0.04],
+                log: true,
+                period: None,
+            },
+            Parameter {
+                name: "n",
+                unit: "-",
+                meaning: "exponent of the fall",
+                lower: 0.2,
+                upper: 8.0,
+                null: None,
+                starts: &[1.5],
+                log: true,
+                period: None,
+            },
+        ],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            height: parameters[0],
+            inverse_speed_s_m: T::ONE / parameters[1],
+            exponent: parameters[2],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for StribeckExcess<T> {
+    #[inline]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+        let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
+        sliding.level += self.height * (-speed.powf(self.exponent)).exp();
+    }
+
+    #[inline]
+    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
+}

@@ -1,0 +1,80 @@
+//! f_m times `1 + a exp(-s/s_0)`, s the distance slid in the run: the surfaces run in.
+//!
+//! Source: Cohn (1998), section 4.2 (the worn clearance); running-in after Blau (1989).
+
+use super::{Contact, Effect, Info, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::law::Sliding;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Asperity friction that changes with the distance slid.
+#[derive(Clone, Copy, Debug)]
+pub struct WearIn<T> {
+    excess: T,
+    inverse_distance_1_m: T,
+}
+
+impl<T: Real> Effect<T> for WearIn<T> {
+    const INFO: Info = Info {
+        name: "wear_in",
+        stage: Stage::Contact,
+        summary: "asperities that run in: friction of contact falls with the distance slid",
+        equation: "f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run",
+        source: "Blau 1989; Cohn 1998, section 4.2",
+        limits: "unworn at the start of each run; wear that stays from run to run is not this one",
+        parameters: &[
+            Parameter {
+                name: "a",
+                unit: "-",
+                meaning: "excess of the fresh surface",
+                lower: -0.95,
+                upper: 10.0,
+                null: Some(0.0),
+                starts: &[0.2],
+                log: false,
+                period: None,
+            },
+            Parameter {
+                name: "s_0_m",
+                unit: "m",
+                meaning: "distance in which the excess falls to 1/e",
+                lower: 1e-3,
+                upper: 1e5,
+                null: None,
+                starts: &[1.0, 5.0],
+                log: true,
+                period: None,
+            },
+        ],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    /// Distance slid, m.
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            excess: parameters[0],
+            inverse_distance_1_m: T::ONE / parameters[1],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
+        T::ZERO
+    }
+}
+
+impl<T: Real> Contact<T> for WearIn<T> {
+    #[inline]
+    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+        let fresh = (-(*state * self.inverse_distance_1_m)).exp();
+        sliding.level *= T::ONE + self.excess * fresh;
+    }
+
+    #[inline]
+    fn step(&self, state: &mut T, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
+        *state += from.distance_m(to, dt_s);
+    }
+}

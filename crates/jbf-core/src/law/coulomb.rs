@@ -1,0 +1,92 @@
+//! `F = (F_c + F_v |v|) sgn(v)` in motion, anything up to `F_s` either way at rest.
+//!
+//! Source: Coulomb (1785); Morin (1833) for static friction; Reynolds (1886) for the viscous
+//! part; Cohn (1998), section 2.1.1.
+//!
+//! Static friction is set-valued: it acts where the journal *stays* at rest and something
+//! elastic pulls at it, which is what a soft drive does (`drive_compliance`): the journal then
+//! holds to `F_s` and slides on at `F_c`. Under a speed imposed by a rigid drive a rest has no
+//! force of its own and the breakaway takes no time, so `F_s` cannot be seen and a fit says
+//! that it never moved. A reversal in passing is no rest.
+
+use super::newtons::{in_newtons, moving, F_C, F_S, F_V};
+use super::{Info, Law, Named, Sliding, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::real::Real;
+
+/// Static, kinetic and viscous friction.
+#[derive(Clone, Copy, Debug)]
+pub struct Coulomb<T> {
+    kinetic_n: T,
+    static_n: T,
+    viscous_n_s_m: T,
+}
+
+impl<T: Real> Named<T> for Coulomb<T> {
+    const INFO: Info = Info {
+        name: "coulomb",
+        summary: "static, Coulomb and viscous friction",
+        equation: "F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest",
+        source: "Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1",
+        limits: "no memory, no fall of friction with speed; F_s shows only through a soft drive",
+        parameters: &[F_C, F_S, F_V],
+        needs_bearing: false,
+        has_film: false,
+        has_bristle: false,
+        has_dry_level: true,
+    };
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            kinetic_n: values[0],
+            static_n: values[1],
+            viscous_n_s_m: values[2],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for Coulomb<T> {
+    /// True while the journal has been at rest for a whole step.
+    type State = bool;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> bool {
+        true
+    }
+
+    #[inline]
+    fn friction(&self, resting: &bool, velocity_m_s: T) -> Sliding<T> {
+        let held = *resting && velocity_m_s == T::ZERO;
+        Sliding {
+            level: if held { self.static_n } else { self.kinetic_n },
+            viscous: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn advance(&self, resting: &mut bool, speed_m_s: [T; 3], _rate: T, _dt_s: T) {
+        *resting = speed_m_s.iter().all(|&v| v == T::ZERO);
+    }
+}
+
+impl SteadyCurve for Coulomb<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        Ok(self
+            .friction(&false, velocity_m_s)
+            .coefficient(velocity_m_s.sign()))
+    }
+}

@@ -1,0 +1,170 @@
+//! `dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v))`, x the way slid.
+//!
+//! Source: Dahl (1968, 1977). i = 1 is the usual form; i below 1 is ductile (the force reaches
+//! F_c after a finite way), i above 1 brittle (it creeps towards F_c). As sigma_0 grows the law
+//! becomes Coulomb's.
+//!
+//! The rate does not enter, so a step is solved in the way slid, in closed form for any i: with
+//! `u = 1 - (F/F_c) sgn(v)` and `k = sigma_0/F_c`
+//!
+//! ```text
+//! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
+//! ```
+
+use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
+use super::{Info, Law, Named, Sliding, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::motion::JournalMotion;
+use crate::real::Real;
+
+/// A bristle that bends before it slides, by way alone.
+#[derive(Clone, Copy, Debug)]
+pub struct Dahl<T> {
+    coulomb_n: T,
+    stiffness_n_m: T,
+    exponent: T,
+    viscous_n_s_m: T,
+}
+
+impl<T: Real> Dahl<T> {
+    /// The force at the end of a leg that begins with `force_n`.
+    #[inline]
+    fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
+        if leg.distance_m.value() <= 0.0 {
+            return force_n;
+        }
+        let way = leg.direction;
+        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
+        let ratio = self.stiffness_n_m * leg.distance_m / mean;
+        let lacking = T::ONE - way * force_n / mean;
+        let left = lacking.sign() * self.decay(lacking.abs(), ratio);
+        // A level that changes on the way (a ripple) is met at its mean; this is what the
+        // closed form of a ramp for i = 1 adds, so that a sliding bristle ends at level[1].
+        let gain = -(-ratio).exp_m1();
+        let change = leg.level[1] - leg.level[0];
+        way * (mean * (T::ONE - left) + change * (T::of(0.5) * (T::of(2.0) - gain) - gain / ratio))
+    }
+
+    /// What remains of `u > 0` after `ratio = k s`.
+    #[inline]
+    fn decay(&self, u: T, ratio: T) -> T {
+        // So close to sliding that powers below one would lose their digits.
+        if u.value() < 1e-12 {
+            return u;
+        }
+        let m = T::ONE - self.exponent;
+        let y = ratio * u.powf(-m);
+        let x = m * y;
+        if x.value() >= 1.0 {
+            return T::ZERO;
+        }
+        // -ln(1 - x)/m, by its series where the difference would cancel.
+        let power = if x.value().abs() < 1e-3 {
+            let of = |k: f64| T::of(1.0 / k);
+            y * (T::ONE + x * (of(2.0) + x * (of(3.0) + x * (of(4.0) + x * of(5.0)))))
+        } else {
+            -(T::ONE - x).ln() / m
+        };
+        u * (-power).exp()
+    }
+}
+
+impl<T: Real> Named<T> for Dahl<T> {
+    const INFO: Info = Info {
+        name: "dahl",
+        summary: "a contact that bends before it slides, by way alone",
+        equation: "dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v",
+        source: "Dahl 1968, 1977; Cohn 1998, section 2.1.3",
+        limits: "no Stribeck fall, no static friction above F_c; inner loops drift",
+        parameters: &[
+            F_C,
+            stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
+            number(
+                "exponent",
+                "shape of the bend: below 1 ductile, above 1 brittle",
+                [0.01, 5.0],
+                &[1.0],
+            ),
+            F_V,
+        ],
+        needs_bearing: false,
+        has_film: false,
+        has_bristle: true,
+        has_dry_level: false,
+    };
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            coulomb_n: values[0],
+            stiffness_n_m: values[1],
+            exponent: values[2],
+            viscous_n_s_m: values[3],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for Dahl<T> {
+    /// Force of the bristle, N.
+    type State = T;
+
+    const HAS_BRISTLE: bool = true;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> T {
+        T::ZERO
+    }
+
+    #[inline]
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
+        Sliding {
+            level: self.coulomb_n,
+            viscous: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn advance(&self, _state: &mut T, _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+
+    #[inline]
+    fn bend(
+        &self,
+        state: &mut T,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        if dt_s.value() <= 0.0 {
+            *state = level[1] * to.velocity_m_s.sign();
+            return *state;
+        }
+        let turning = || (level[0] + level[1]) * T::of(0.5);
+        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+            *state = self.slide(*state, leg);
+        }
+        *state
+    }
+}
+
+impl SteadyCurve for Dahl<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        Ok(self
+            .friction(&0.0, velocity_m_s)
+            .coefficient(velocity_m_s.sign()))
+    }
+}

@@ -1,0 +1,110 @@
+//! A pure delay of a signal: a fixed number of points spread over the delay, straight lines
+//! between them, so that the delayed value has a derivative with respect to the delay.
+
+use crate::real::Real;
+
+/// Points on the line. With steps longer than `delay / (POINTS - 4)` every step is a point;
+/// shorter ones share a point, so that the line always reaches back over the whole delay.
+pub(super) const POINTS: usize = 64;
+
+/// The line. It fits any step and any delay; what lies before the first point is taken to
+/// have been constant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DelayLine<T> {
+    value: [T; POINTS],
+    /// Time from the point before, s.
+    gap_s: [T; POINTS],
+    newest: usize,
+    filled: usize,
+}
+
+impl<T: Real> DelayLine<T> {
+    pub(super) fn new() -> Self {
+        Self {
+            value: [T::ZERO; POINTS],
+            gap_s: [T::ZERO; POINTS],
+            newest: 0,
+            filled: 0,
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.filled == 0
+    }
+
+    /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
+    #[inline]
+    pub(super) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
+        let spacing = delay_s.value() / (POINTS - 4) as f64;
+        // The newest point stands for now; it moves on until it is far enough from the last.
+        if self.filled > 1 && self.gap_s[self.newest].value() < spacing {
+            self.value[self.newest] = value;
+            self.gap_s[self.newest] += dt_s;
+            return;
+        }
+        if self.filled > 0 {
+            self.newest = (self.newest + 1) % POINTS;
+        }
+        self.filled = (self.filled + 1).min(POINTS);
+        self.value[self.newest] = value;
+        self.gap_s[self.newest] = dt_s;
+    }
+
+    /// The signal `delay_s` ago; zero of an empty line.
+    #[inline]
+    pub(super) fn back(&self, delay_s: T) -> T {
+        let mut age = T::ZERO;
+        let mut at = self.newest;
+        for _ in 1..self.filled {
+            let before = (at + POINTS - 1) % POINTS;
+            let gap = self.gap_s[at];
+            if (age + gap).value() > delay_s.value() {
+                let share = (delay_s - age) / gap;
+                return self.value[at] + (self.value[before] - self.value[at]) * share;
+            }
+            age += gap;
+            at = before;
+        }
+        self.value[at]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+
+    /// A ramp comes out late by the delay, exactly, for steps short and long against it.
+    #[test]
+    fn a_ramp_is_late_by_the_delay() {
+        let delay = 0.0173_f64;
+        for dt in [1e-5, 1e-4, 2e-3, 0.01, 0.05] {
+            let mut line = DelayLine::new();
+            let n = (0.5 / dt) as u32;
+            line.push(0.0, 0.0, delay);
+            for i in 1..=n {
+                let t = f64::from(i) * dt;
+                line.push(3.0 * t, dt, delay);
+                let late = 3.0 * (t - delay).max(0.0);
+                // Points that share a place round the corner at the start.
+                let exact = t > 2.0 * delay || dt > delay / 30.0;
+                let error = (line.back(delay) - late).abs();
+                assert!(
+                    error < if exact { 1e-12 } else { 3.0 * delay / 60.0 },
+                    "{dt} {t} {error}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_derivative_by_the_delay_is_the_slope() {
+        let delay = Dual::<1>::parameter(0.02, 0);
+        let mut line = DelayLine::new();
+        for i in 0..100 {
+            let t = f64::from(i) * 1e-3;
+            line.push(Dual::of(5.0 * t), Dual::of(1e-3), delay);
+        }
+        assert!((line.back(delay).slope[0] + 5.0).abs() < 1e-9);
+    }
+}

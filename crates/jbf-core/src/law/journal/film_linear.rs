@@ -1,0 +1,253 @@
+//! Derivatives of the equations of motion of the film, in the frame that turns with it:
+//!
+//! ```text
+//! slope = vr r + vt t,   d slope/d eps = (vr_e, vt_e),   d slope/d phi = (vr_phi - vt, vt_phi + vr)
+//! J     = Q M Q^T,       M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
+//! ```
+
+use super::film_motion::Film;
+use super::{Journal, Loaded};
+use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
+use crate::real::Real;
+use crate::stepper::{Linear, StiffSystem, System, TwoByTwo};
+use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+
+/// The place of the journal centre in polar form.
+#[derive(Clone, Copy)]
+pub(crate) struct Polar<T> {
+    pub e: T,
+    pub cos: T,
+    pub sin: T,
+    pub inverse_e: T,
+}
+
+impl<T: Real> Polar<T> {
+    /// Held inside the bearing in its own direction, as [`Film`] does it.
+    #[inline]
+    pub fn held(x: T, y: T) -> Self {
+        let distance = (x * x + y * y).sqrt().max(T::of(1e-12));
+        let inverse_e = T::ONE / distance;
+        Self {
+            e: distance.min(T::EPS_LIMIT),
+            cos: x * inverse_e,
+            sin: y * inverse_e,
+            inverse_e,
+        }
+    }
+
+    /// `Q M Q^T`.
+    #[inline]
+    pub fn turned(&self, m: [[T; 2]; 2]) -> [[T; 2]; 2] {
+        let (c, s) = (self.cos, self.sin);
+        let along = [c * m[0][0] - s * m[1][0], c * m[0][1] - s * m[1][1]];
+        let across = [s * m[0][0] + c * m[1][0], s * m[0][1] + c * m[1][1]];
+        [
+            [along[0] * c - along[1] * s, along[0] * s + along[1] * c],
+            [across[0] * c - across[1] * s, across[0] * s + across[1] * c],
+        ]
+    }
+
+    /// A vector from its radial and tangential parts.
+    #[inline]
+    pub fn vector(&self, radial: T, tangential: T) -> [T; 2] {
+        [
+            radial * self.cos - tangential * self.sin,
+            radial * self.sin + tangential * self.cos,
+        ]
+    }
+}
+
+/// Slope and derivatives of the film under an asperity load and its stiffness `dW/d eps`.
+#[inline]
+pub(super) fn linearise<T: Real>(
+    load_number: T,
+    at: &Polar<T>,
+    [asperity_load, stiffness]: [T; 2],
+    ub: T,
+) -> Linear<T, 2> {
+    let (e, c, s, fb) = (at.e, at.cos, at.sin, load_number);
+    let d = (T::ONE - e) * (T::ONE + e);
+    let root = d.sqrt();
+    let inverse_d = T::ONE / d;
+    let inverse_root = root * inverse_d;
+    let ratio = T::of(FOUR_OVER_PI) * e * inverse_root;
+    let ratio_e = T::of(FOUR_OVER_PI) * inverse_root * inverse_d;
+    let determinant = T::of(FRAC_PI_2) + e * e * T::of(PI_LESS_8_OVER_PI);
+    let inverse_determinant = T::ONE / determinant;
+    let ease = d * d * root * inverse_determinant;
+    let ease_e =
+        -ease * e * (T::of(5.0) * inverse_d + T::of(2.0 * PI_LESS_8_OVER_PI) * inverse_determinant);
+    let push = fb * (c - ratio * s) - asperity_load;
+    let push_e = -fb * ratio_e * s - stiffness;
+    let push_phi = -fb * (s + ratio * c);
+    let squeeze = fb * T::of(FRAC_2_PI) * root;
+    let radial = push * ease;
+    let radial_e = push_e * ease + push * ease_e;
+    let radial_phi = push_phi * ease;
+    let tangential = T::of(0.5) * e * ub + ratio * radial - squeeze * s * d;
+    let tangential_e =
+        T::of(0.5) * ub + ratio_e * radial + ratio * radial_e + T::of(3.0) * squeeze * s * e;
+    let tangential_phi = ratio * radial_phi - squeeze * c * d;
+    Linear {
+        slope: at.vector(radial, tangential),
+        jacobian: at.turned([
+            [radial_e, (radial_phi - tangential) * at.inverse_e],
+            [tangential_e, (tangential_phi + radial) * at.inverse_e],
+        ]),
+        by_input: at.vector(T::ZERO, T::of(0.5) * e),
+    }
+}
+
+impl<T: Real> StiffSystem<T, 2> for Film<'_, T> {
+    type Solver = TwoByTwo<T>;
+
+    #[inline]
+    fn linearise(&self, way: &[T; 2], ub: T) -> Linear<T, 2> {
+        let at = Polar::held(self.from[0] + way[0], self.from[1] + way[1]);
+        let touch = (at.e - self.loaded.eps_tr).max(T::ZERO);
+        let stiffness = T::of(2.0) * self.law.k0 * touch;
+        let asperities = [self.law.k0 * touch * touch, stiffness];
+        linearise(self.loaded.load_number, &at, asperities, ub)
+    }
+}
+
+/// The film with its asperities in touch, or free of them, whatever its eccentricity: smooth
+/// where the law itself has the kink of `W` at eps_tr, so that an error-controlled step may
+/// look across it. Outside the bearing its numbers are not finite.
+#[derive(Clone, Copy)]
+pub struct SmoothFilm<T> {
+    load_number: T,
+    eps_tr: T,
+    /// `K0`, or zero where the film is free.
+    k0: T,
+}
+
+impl<T: Real> SmoothFilm<T> {
+    pub(crate) fn new(law: &Journal<T>, loaded: &Loaded<T>, touching: bool) -> Self {
+        Self {
+            load_number: loaded.load_number,
+            eps_tr: loaded.eps_tr,
+            k0: if touching { law.k0 } else { T::ZERO },
+        }
+    }
+}
+
+impl<T: Real> System<T, 2> for SmoothFilm<T> {
+    #[inline]
+    fn slope(&self, &[x, y]: &[T; 2], ub: T) -> [T; 2] {
+        let fb = self.load_number;
+        let e2 = x * x + y * y;
+        let e = e2.sqrt();
+        let inverse_e = T::ONE / e;
+        let d = T::ONE - e2;
+        let root = d.sqrt();
+        // With slope = (vr/e) (x, y) + (vt/e) (-y, x) neither sine nor cosine is needed.
+        let touch = e - self.eps_tr;
+        let lean = T::of(FOUR_OVER_PI) / root;
+        let push = fb * (x - lean * e * y) * inverse_e - self.k0 * touch * touch;
+        let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
+        let radial = push * inverse_e * (d * d * root / determinant);
+        let turn = T::of(0.5) * ub + lean * e * radial
+            - fb * T::of(FRAC_2_PI) * y * inverse_e * inverse_e * (d * root);
+        [radial * x - turn * y, radial * y + turn * x]
+    }
+}
+
+impl<T: Real> StiffSystem<T, 2> for SmoothFilm<T> {
+    type Solver = TwoByTwo<T>;
+
+    #[inline]
+    fn linearise(&self, &[x, y]: &[T; 2], ub: T) -> Linear<T, 2> {
+        let e = (x * x + y * y).sqrt();
+        let inverse_e = T::ONE / e;
+        let at = Polar {
+            e,
+            cos: x * inverse_e,
+            sin: y * inverse_e,
+            inverse_e,
+        };
+        let touch = at.e - self.eps_tr;
+        let stiffness = T::of(2.0) * self.k0 * touch;
+        linearise(
+            self.load_number,
+            &at,
+            [self.k0 * touch * touch, stiffness],
+            ub,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::journal::Parameters;
+    use crate::law::journal_full::motion::FullFilm;
+    use crate::law::journal_full::JournalFull;
+    use crate::{Bearing, Clock, Dual};
+
+    type D = Dual<5>;
+
+    fn full() -> JournalFull<D> {
+        let p = Parameters::TABLE_4_2;
+        let parameters = Parameters {
+            f_m: D::of(p.f_m),
+            u_tr_m_s: D::of(p.u_tr_m_s),
+            k0: D::of(p.k0),
+            gamma: D::of(p.gamma),
+        };
+        JournalFull::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
+    }
+
+    /// Derivatives written by hand against those that dual numbers give the slope.
+    fn agree<const N: usize>(system: &impl StiffSystem<D, N>, state: [f64; N], ub: f64) {
+        let lifted = core::array::from_fn(|i| D::parameter(state[i], i));
+        let exact = system.slope(&lifted, D::parameter(ub, 4));
+        let got = system.linearise(&state.map(D::of), D::of(ub));
+        for (i, row) in exact.iter().enumerate() {
+            let size = row.slope.iter().fold(1e-9, |m: f64, s| m.max(s.abs()));
+            let near = |a: f64, b: f64| {
+                assert!((a - b).abs() < 1e-9 * size, "row {i}: {a} {b} of {size}");
+            };
+            near(got.slope[i].value, row.value);
+            for (j, by_state) in row.slope[..N].iter().enumerate() {
+                near(got.jacobian[i][j].value, *by_state);
+            }
+            near(got.by_input[i].value, row.slope[4]);
+        }
+    }
+
+    #[test]
+    fn jacobians_match_dual_numbers() {
+        let law = full();
+        let film = law.reduced();
+        let loaded = film.nominal();
+        let places = [
+            (0.99, 0.02),
+            (0.98, 0.12),
+            (0.96, 0.22),
+            (0.5, 1.1),
+            (0.98, -2.0),
+        ];
+        for (eps, phi) in places {
+            let (x, y) = (eps * libm::cos(phi), eps * libm::sin(phi));
+            let (law_film, from) = (film, [D::ZERO; 2]);
+            let held = Film {
+                law: law_film,
+                loaded: &loaded,
+                from,
+            };
+            agree(&held, [x, y], 0.7);
+            let state = [x, y, 0.03, -0.2];
+            agree(&FullFilm::held(&law, &loaded, from), state, 0.7);
+            for touching in [false, true] {
+                agree(&SmoothFilm::new(film, &loaded, touching), [x, y], 0.7);
+                agree(&FullFilm::smooth(&law, &loaded, touching), state, 0.7);
+            }
+            let touching = eps > loaded.eps_tr.value;
+            let smooth = SmoothFilm::new(film, &loaded, touching);
+            let at = [D::of(x), D::of(y)];
+            let (a, b) = (smooth.slope(&at, D::of(0.7)), held.slope(&at, D::of(0.7)));
+            assert!((a[0] - b[0]).value.abs() + (a[1] - b[1]).value.abs() < 1e-11);
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The law's page in the catalogue.
+
+use super::{Journal, Parameters, PARAMETERS, SUMMARY};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::{check, ParameterError};
+use crate::law::{Info, Named, SteadyCurve};
+use crate::real::Real;
+
+impl<T: Real> Named<T> for Journal<T> {
+    const INFO: Info = Info {
+        name: "journal",
+        summary: SUMMARY,
+        equation: "eps', phi' of the film; f = [f_m W sgn(U) + gamma (C R/L^2) 2 pi Ub / \
+                   sqrt(1 - eps^2)] / Fb, W = K0 (eps - eps_tr)^2",
+        source: "Harnoy & Friedland 1994; Cohn 1998, chapter 3",
+        limits: "short bearing, one load direction, constant viscosity, no inertia of the film",
+        parameters: PARAMETERS,
+        needs_bearing: true,
+        has_film: true,
+        has_bristle: false,
+        has_dry_level: false,
+    };
+
+    fn build(
+        bearing: Option<&Bearing>,
+        load_n: Option<f64>,
+        values: &[T],
+        clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        let (bearing, load_n, parameters) = parts(bearing, load_n, values)?;
+        Journal::new(bearing, load_n, &parameters, clock)
+    }
+}
+
+/// What both journal laws are built from.
+pub(in crate::law) fn parts<'a, T: Real>(
+    bearing: Option<&'a Bearing>,
+    load_n: Option<f64>,
+    values: &[T],
+) -> Result<(&'a Bearing, f64, Parameters<T>), ParameterError> {
+    const NEEDED: &str = "is missing: the law computes from the bearing";
+    check(
+        values.len() >= PARAMETERS.len(),
+        "parameters",
+        values.len() as f64,
+        "are too few for the law",
+    )?;
+    let (Some(bearing), Some(load_n)) = (bearing, load_n) else {
+        let name = if bearing.is_none() {
+            "bearing"
+        } else {
+            "load_n"
+        };
+        return Err(ParameterError {
+            name,
+            value: f64::NAN,
+            rule: NEEDED,
+        });
+    };
+    let parameters = Parameters {
+        f_m: values[0],
+        u_tr_m_s: values[1],
+        k0: values[2],
+        gamma: values[3],
+    };
+    Ok((bearing, load_n, parameters))
+}
+
+impl SteadyCurve for Journal<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        Ok(self.steady(velocity_m_s)?.coefficient * self.nominal().load_n)
+    }
+}

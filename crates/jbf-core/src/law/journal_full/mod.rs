@@ -1,0 +1,176 @@
+//! The full Harnoy-Friedland model of a journal bearing, the journal's inertia included,
+//! equations (3.7), (3.8) and (3.14); a dot is d/d(tbar):
+//!
+//! ```text
+//! mb eps''     = Fb cos(phi) - W + J12 eps |Ub|/2 - J12 eps phi' - J22 eps' + mb eps phi'^2
+//! mb eps phi'' = -Fb sin(phi) + J11 eps |Ub|/2 - J11 eps phi' - J12 eps' - 2 mb eps' phi'
+//! ```
+//!
+//! These are Newton's law in polar coordinates: the two terms in `mb phi'` are those of an
+//! acceleration seen in a turning frame. With `r = (eps cos(phi), eps sin(phi))` and the load
+//! along x they say
+//!
+//! ```text
+//! mb r'' = Fb x - W r/eps - D (r' - (|Ub|/2) z cross r),   D = [ J22  J12 ]  in the frame of r,
+//!                                                              [ J12  J11 ]
+//! ```
+//!
+//! which is how [`motion`] has them (derived anew: the printed equations are right). The state
+//! is `(x, y)` and its rate. Why not eps and phi: no sine or cosine in a step, no singularity at
+//! the centre, no terms in `mb phi'` that would couple the fast variables, and `D` stays
+//! symmetric and positive, so that the linear system of an implicit step, `mb s I + D + K/s`
+//! (`s` of the order of one over the step, `K` the stiffness of film and asperities), has good
+//! pivots for every mass, down to none.
+//!
+//! The two rates fall onto the reduced model's within `mb/J11`, some ten microseconds: an
+//! explicit step would have to be shorter than that. The law's own stepper is [`Rodas3`].
+//!
+//! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
+//! chapter 3.
+
+mod build;
+pub mod motion;
+mod named;
+mod state;
+
+pub use state::State;
+
+use super::journal::{Journal, Loaded, START_PHI_RAD};
+use super::{Law, Sliding};
+use crate::real::Real;
+use crate::stepper::{Rodas3, StiffStepper};
+use motion::FullFilm;
+
+/// One line for the catalogue.
+pub const SUMMARY: &str =
+    "hydrodynamic journal bearing with the journal's inertia (full Harnoy-Friedland model)";
+
+/// Where a step is cut in three while the rates fall onto the film's: at a start and after a
+/// jump of the load. In one step of 2 ms the fall would cost 2e-4 of the friction's peak, in three 6e-7.
+const CUTS: [f64; 2] = [0.05, 0.2];
+
+/// A change of the load by more than this share is a jump.
+const JUMP: f64 = 0.01;
+
+/// The law, ready to step. Parameters are those of [`Journal`]; the mass is the bearing's.
+#[derive(Clone, Copy, Debug)]
+pub struct JournalFull<T> {
+    pub(crate) film: Journal<T>,
+    inverse_mass_number: T,
+}
+
+impl<T: Real> JournalFull<T> {
+    /// The same film without the journal's inertia.
+    pub fn reduced(&self) -> &Journal<T> {
+        &self.film
+    }
+
+    /// One step with any implicit stepper; [`Law::advance`] uses [`Rodas3`].
+    #[inline]
+    pub fn advance_with<S: StiffStepper>(
+        &self,
+        stepper: &S,
+        state: &mut State<T>,
+        speed_m_s: [T; 3],
+        rate: T,
+        dt_s: T,
+    ) {
+        if !state.fresh {
+            return self.once(stepper, state, speed_m_s, rate, dt_s);
+        }
+        state.fresh = false;
+        let [start, middle, end] = speed_m_s;
+        let speed_at = |s: f64| {
+            if s < 0.5 {
+                start + (middle - start) * T::of(2.0 * s)
+            } else {
+                middle + (end - middle) * T::of(2.0 * s - 1.0)
+            }
+        };
+        for (from, to) in [(0.0, CUTS[0]), (CUTS[0], CUTS[1]), (CUTS[1], 1.0)] {
+            let speeds = [from, 0.5 * (from + to), to].map(speed_at);
+            self.once(stepper, state, speeds, rate, dt_s * T::of(to - from));
+        }
+    }
+
+    fn once<S: StiffStepper>(
+        &self,
+        stepper: &S,
+        state: &mut State<T>,
+        speed_m_s: [T; 3],
+        rate: T,
+        dt_s: T,
+    ) {
+        let film = FullFilm::held(self, &state.loaded, state.xy);
+        let ub = speed_m_s.map(|u| u * self.film.inverse_u_tr);
+        let [vx, vy] = state.velocity;
+        let mut way = [state.kept[0], state.kept[1], vx, vy];
+        stepper.step(&film, &mut way, ub, dt_s * rate * self.film.rate);
+        let [wx, wy, vx, vy] = way;
+        let xy = [state.xy[0] + wx, state.xy[1] + wy];
+        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
+        let sound = e2.is_finite() && vx.is_finite() && vy.is_finite();
+        let limit = T::EPS_LIMIT;
+        if sound && e2.value() <= (limit * limit).value() {
+            // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+            state.kept = [wx - (xy[0] - state.xy[0]), wy - (xy[1] - state.xy[1])];
+            state.xy = xy;
+            state.velocity = [vx, vy];
+            return;
+        }
+        // Too coarse a step. One that lost its numbers leaves the film where it was; any other
+        // is held in its direction. The film takes up any velocity at once, so none is kept.
+        state.clamped = state.clamped.saturating_add(1);
+        state.velocity = [T::ZERO; 2];
+        if sound {
+            let shrink = self.film.deepest(&state.loaded) / e2.sqrt();
+            state.xy = [xy[0] * shrink, xy[1] * shrink];
+            state.kept = [T::ZERO; 2];
+        }
+    }
+
+    /// Load number and transition eccentricity under a load, as [`Journal::under`].
+    pub fn under(&self, load_n: T) -> Loaded<T> {
+        self.film.under(load_n)
+    }
+}
+
+impl<T: Real> Law<T> for JournalFull<T> {
+    type State = State<T>;
+
+    fn start(&self, load_n: T) -> State<T> {
+        let loaded = self.under(load_n);
+        State::at(loaded.eps_tr, T::of(START_PHI_RAD), loaded)
+    }
+
+    /// The implicit stepper is stable at any step; the film's own pace asks for this one.
+    fn longest_step_s(&self, top_speed_m_s: f64) -> f64 {
+        self.film.longest_step_s(top_speed_m_s)
+    }
+
+    #[inline]
+    fn pressed_n(&self, load_n: T) -> T {
+        self.film.pressed_n(load_n)
+    }
+
+    #[inline]
+    fn set_load(&self, state: &mut State<T>, load_n: T) {
+        let before = state.loaded.load_n;
+        if load_n.value() != before.value() {
+            state.fresh |= (load_n - before).abs() > before.abs() * T::of(JUMP);
+            state.loaded = self.under(load_n);
+        }
+    }
+
+    #[inline]
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+        let eps = state.eps();
+        let d = (T::ONE - eps) * (T::ONE + eps);
+        self.film.sliding(&state.loaded, eps, d, velocity_m_s)
+    }
+
+    #[inline]
+    fn advance(&self, state: &mut State<T>, speed_m_s: [T; 3], rate: T, dt_s: T) {
+        self.advance_with(&Rodas3, state, speed_m_s, rate, dt_s);
+    }
+}

@@ -1,0 +1,155 @@
+//! The equations of motion of the journal in its film as a system of four states, `(x, y)` and
+//! its rate, driven by `|Ub|`, with their derivatives.
+
+use super::JournalFull;
+use crate::film::FilmIntegrals;
+use crate::law::journal::film_linear::Polar;
+use crate::law::journal::Loaded;
+use crate::real::Real;
+use crate::stepper::{Linear, SecondOrder, StiffSystem, System};
+use core::f64::consts::FRAC_PI_2;
+
+/// The journal in its film.
+#[derive(Clone, Copy, Debug)]
+pub struct FullFilm<T> {
+    inverse_mass: T,
+    load_number: T,
+    eps_tr: T,
+    k0: T,
+    /// `x` and `y` where the step began: the state is the way from there, which single
+    /// precision resolves far better than the place itself.
+    from: [T; 2],
+    /// Hold every stage inside the bearing, and part the asperities below eps_tr.
+    held: bool,
+}
+
+impl<T: Real> FullFilm<T> {
+    /// The law itself, for a loop: any stage of any step gives finite numbers.
+    pub(crate) fn held(law: &JournalFull<T>, loaded: &Loaded<T>, from: [T; 2]) -> Self {
+        Self {
+            inverse_mass: law.inverse_mass_number,
+            load_number: loaded.load_number,
+            eps_tr: loaded.eps_tr,
+            k0: law.film.k0,
+            from,
+            held: true,
+        }
+    }
+
+    /// With its asperities in touch, or free of them, whatever the eccentricity: smooth where
+    /// the law has the kink of `W`. Outside the bearing its numbers are not finite.
+    pub(crate) fn smooth(law: &JournalFull<T>, loaded: &Loaded<T>, touching: bool) -> Self {
+        Self {
+            k0: if touching { law.film.k0 } else { T::ZERO },
+            held: false,
+            ..Self::held(law, loaded, [T::ZERO; 2])
+        }
+    }
+
+    #[inline]
+    fn polar(&self, state: &[T; 4]) -> Polar<T> {
+        let (x, y) = (self.from[0] + state[0], self.from[1] + state[1]);
+        if self.held {
+            return Polar::held(x, y);
+        }
+        let e = (x * x + y * y).sqrt();
+        let inverse_e = T::ONE / e;
+        Polar {
+            e,
+            cos: x * inverse_e,
+            sin: y * inverse_e,
+            inverse_e,
+        }
+    }
+
+    #[inline]
+    fn touch(&self, e: T) -> T {
+        let touch = e - self.eps_tr;
+        if self.held {
+            touch.max(T::ZERO)
+        } else {
+            touch
+        }
+    }
+}
+
+impl<T: Real> System<T, 4> for FullFilm<T> {
+    #[inline]
+    fn slope(&self, state: &[T; 4], ub: T) -> [T; 4] {
+        let at = self.polar(state);
+        let [_, _, vx, vy] = *state;
+        let (e, fb) = (at.e, self.load_number);
+        let d = (T::ONE - e) * (T::ONE + e);
+        let inverse_d = T::ONE / d;
+        // The integrals of (3.11) to (3.13) from one root and one division.
+        let j11 = T::of(FRAC_PI_2) * d.sqrt() * inverse_d * inverse_d;
+        let j12 = T::of(-2.0) * e * inverse_d * inverse_d;
+        let j22 = j11 * inverse_d * (T::ONE + T::of(2.0) * e * e);
+        let radial = vx * at.cos + vy * at.sin;
+        // Tangential velocity against that of oil that turns at half the journal's speed.
+        let slip = vy * at.cos - vx * at.sin - T::of(0.5) * e * ub;
+        let touch = self.touch(e);
+        let outward = fb * at.cos - self.k0 * touch * touch - j22 * radial - j12 * slip;
+        let forward = -fb * at.sin - j12 * radial - j11 * slip;
+        let [ax, ay] = at.vector(outward * self.inverse_mass, forward * self.inverse_mass);
+        [vx, vy, ax, ay]
+    }
+}
+
+impl<T: Real> StiffSystem<T, 4> for FullFilm<T> {
+    type Solver = SecondOrder<T>;
+
+    /// As [`System::slope`], with the derivatives of each force by eps and, the velocity held,
+    /// by phi: `radial' = tangential velocity`, `slip' = -radial`.
+    #[inline]
+    fn linearise(&self, state: &[T; 4], ub: T) -> Linear<T, 4> {
+        let at = self.polar(state);
+        let [_, _, vx, vy] = *state;
+        let (e, fb, inverse_mass) = (at.e, self.load_number, self.inverse_mass);
+        let FilmIntegrals { j11, j12, j22 } = FilmIntegrals::at(e);
+        let inverse_d = T::ONE / ((T::ONE - e) * (T::ONE + e));
+        let j11_e = T::of(3.0) * e * j11 * inverse_d;
+        let j12_e = T::of(4.0) * e * j12 * inverse_d - T::of(2.0) * inverse_d * inverse_d;
+        let j22_e = e * inverse_d * (T::of(5.0) * j22 + T::of(4.0) * j11);
+
+        let radial = vx * at.cos + vy * at.sin;
+        let tangential = vy * at.cos - vx * at.sin;
+        let half = T::of(0.5) * ub;
+        let slip = tangential - half * e;
+        let touch = self.touch(e);
+        let outward = fb * at.cos - self.k0 * touch * touch - j22 * radial - j12 * slip;
+        let forward = -fb * at.sin - j12 * radial - j11 * slip;
+        let outward_e = -T::of(2.0) * self.k0 * touch - j22_e * radial - j12_e * slip + j12 * half;
+        let forward_e = -j12_e * radial - j11_e * slip + j11 * half;
+        let outward_phi = -fb * at.sin - j22 * tangential + j12 * radial;
+        let forward_phi = -fb * at.cos - j12 * tangential + j11 * radial;
+
+        let stiffness = at.turned([
+            [outward_e, (outward_phi - forward) * at.inverse_e],
+            [forward_e, (forward_phi + outward) * at.inverse_e],
+        ]);
+        let damping = at.turned([[-j22, -j12], [-j12, -j11]]);
+        let [ax, ay] = at.vector(outward * inverse_mass, forward * inverse_mass);
+        let drag = T::of(0.5) * e * inverse_mass;
+        let [ux, uy] = at.vector(j12 * drag, j11 * drag);
+        let row = |i: usize| {
+            [
+                stiffness[i][0] * inverse_mass,
+                stiffness[i][1] * inverse_mass,
+                damping[i][0] * inverse_mass,
+                damping[i][1] * inverse_mass,
+            ]
+        };
+        let (zero, one) = (T::ZERO, T::ONE);
+        Linear {
+            slope: [vx, vy, ax, ay],
+            jacobian: [
+                [zero, zero, one, zero],
+                [zero, zero, zero, one],
+                row(0),
+                row(1),
+            ],
+            by_input: [zero, zero, ux, uy],
+        }
+    }
+}

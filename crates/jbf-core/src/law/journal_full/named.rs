@@ -1,0 +1,41 @@
+//! The full model in the catalogue of laws.
+
+use super::JournalFull;
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::law::journal::{parts, PARAMETERS};
+use crate::law::{Info, Named, SteadyCurve};
+use crate::real::Real;
+
+impl<T: Real> Named<T> for JournalFull<T> {
+    const INFO: Info = Info {
+        name: "journal_full",
+        summary: "hydrodynamic journal bearing with the inertia of the shaft (four states)",
+        equation: "mb eps'' and mb eps phi'' of the film, (3.7) and (3.8); f as in journal",
+        source: "Harnoy & Friedland 1994; Cohn 1998, equations (3.7), (3.8), (3.14)",
+        limits: "short bearing, one load direction, constant viscosity",
+        parameters: PARAMETERS,
+        needs_bearing: true,
+        has_film: true,
+        has_bristle: false,
+        has_dry_level: false,
+    };
+
+    fn build(
+        bearing: Option<&Bearing>,
+        load_n: Option<f64>,
+        values: &[T],
+        clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        let (bearing, load_n, parameters) = parts(bearing, load_n, values)?;
+        JournalFull::new(bearing, load_n, &parameters, clock)
+    }
+}
+
+impl SteadyCurve for JournalFull<f64> {
+    /// Inertia plays no part in a steady state: the curve is the reduced model's.
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        self.film.steady_n(velocity_m_s)
+    }
+}

@@ -1,0 +1,174 @@
+//! LuGre in Olsson's form: bristles with a Stribeck curve and a damping that dies with speed.
+//!
+//! ```text
+//! F  = sigma_0 z + sigma_1(v) z' + F_v v
+//! z' = v - |v| z / g(v)
+//! g(v)       = [F_c + (F_s - F_c) exp(-(v/v_s)^2)] / sigma_0
+//! sigma_1(v) = sigma_1 exp(-(v/v_d)^2)
+//! ```
+//!
+//! Source: Canudas de Wit, Olsson, Astrom & Lischinsky (1995); Olsson (1996); Cohn (1998),
+//! section 2.3.1. The fall of sigma_1 with speed keeps the law passive where
+//! `sigma_1(v) |v| < 4 sigma_0 g(v)`, that is, surely, where `sigma_1 v_d < 9 min(F_c, F_s)`.
+//!
+//! With `y = sigma_0 z` this is a relaxation of y towards `sigma_0 g sgn(v)` over the way slid
+//! at the rate `1/g`: it is solved exactly in the way, with the level on a straight line, so any
+//! step is stable and short ones are exact to second order.
+
+use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
+use super::{Info, Law, Named, Sliding, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::effect::relaxation::relax;
+use crate::error::ParameterError;
+use crate::motion::JournalMotion;
+use crate::real::Real;
+
+/// The LuGre law.
+#[derive(Clone, Copy, Debug)]
+pub struct LuGre<T> {
+    coulomb_n: T,
+    static_n: T,
+    stribeck_m_s: T,
+    stiffness_n_m: T,
+    damping_n_s_m: T,
+    damping_speed_m_s: T,
+    viscous_n_s_m: T,
+}
+
+impl<T: Real> LuGre<T> {
+    /// `sigma_0 g(v)`, N.
+    #[inline]
+    fn level(&self, velocity_m_s: T) -> T {
+        let share = velocity_m_s / self.stribeck_m_s;
+        // Two positive parts: a difference could round to zero in single precision.
+        let still = (-share * share).exp();
+        self.coulomb_n * (T::ONE - still) + self.static_n * still
+    }
+
+    /// The bristle's force at the end of a leg.
+    #[inline]
+    fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
+        if leg.distance_m.value() <= 0.0 {
+            return force_n;
+        }
+        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
+        let target = leg.level.map(|level| level * leg.direction);
+        relax(force_n, target, self.stiffness_n_m * leg.distance_m / mean)
+    }
+
+    /// `sigma_1(v) z'`, N, with the bristle at `force_n`.
+    #[inline]
+    fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
+        let share = velocity_m_s / self.damping_speed_m_s;
+        let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL_N));
+        self.damping_n_s_m * (-share * share).exp() * rate
+    }
+}
+
+impl<T: Real> Named<T> for LuGre<T> {
+    const INFO: Info = Info {
+        name: "lugre",
+        summary: "bristles with a Stribeck curve: presliding, breakaway and frictional lag",
+        equation: "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
+                   sigma_0 g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
+        source: "Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1",
+        limits: "drifts under small vibration; its lag in sliding is that of the bristle alone",
+        parameters: &[
+            F_C,
+            F_S,
+            V_S,
+            stiffness("sigma_0_n_m", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
+            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]),
+            speed("v_d_m_s", "speed at which the damping has died", &[0.1]),
+            F_V,
+        ],
+        needs_bearing: false,
+        has_film: false,
+        has_bristle: true,
+        has_dry_level: false,
+    };
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            coulomb_n: values[0],
+            static_n: values[1],
+            stribeck_m_s: values[2],
+            stiffness_n_m: values[3],
+            damping_n_s_m: values[4],
+            damping_speed_m_s: values[5],
+            viscous_n_s_m: values[6],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for LuGre<T> {
+    /// `sigma_0 z`, N.
+    type State = T;
+
+    const HAS_BRISTLE: bool = true;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> T {
+        T::ZERO
+    }
+
+    #[inline]
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
+        Sliding {
+            level: self.level(velocity_m_s),
+            viscous: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    /// The level bends with the speed, which a straight line per step must follow.
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        0.002
+    }
+
+    #[inline]
+    fn advance(&self, _state: &mut T, _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+
+    #[inline]
+    fn bend(
+        &self,
+        state: &mut T,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        let v = to.velocity_m_s;
+        if dt_s.value() <= 0.0 {
+            *state = level[1] * v.sign();
+        } else {
+            // At the turn the law is at its static level, times what contact effects made of
+            // the levels at the ends.
+            let turning = || {
+                let own = self.level(from.velocity_m_s) + self.level(v);
+                self.level(T::ZERO) * (level[0] + level[1]) / own
+            };
+            for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+                *state = self.slide(*state, leg);
+            }
+        }
+        *state + self.damping(*state, v, level[1])
+    }
+}
+
+impl SteadyCurve for LuGre<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        Ok(self
+            .friction(&0.0, velocity_m_s)
+            .coefficient(velocity_m_s.sign()))
+    }
+}

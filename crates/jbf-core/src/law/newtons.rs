@@ -1,0 +1,124 @@
+//! What the laws in newtons share: the pages of their parameters, whose bounds span every
+//! machine from a watch to a press, and the check of a speed.
+//!
+//! The starting values are those of a machine with some 10 N of friction; a fit takes its own
+//! from the data.
+
+use crate::effect::Parameter;
+use crate::error::{check, ParameterError};
+
+const fn page(
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    bounds: [f64; 2],
+    starts: &'static [f64],
+    log: bool,
+) -> Parameter {
+    Parameter {
+        name,
+        unit,
+        meaning,
+        lower: bounds[0],
+        upper: bounds[1],
+        null: None,
+        starts,
+        log,
+        period: None,
+    }
+}
+
+/// A force that is never zero, N.
+pub(super) const fn force(
+    name: &'static str,
+    meaning: &'static str,
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "N", meaning, [1e-6, 1e7], starts, true)
+}
+
+/// A speed that is a scale, m/s.
+pub(super) const fn speed(
+    name: &'static str,
+    meaning: &'static str,
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "m/s", meaning, [1e-7, 1e3], starts, true)
+}
+
+/// A stiffness, N/m.
+pub(super) const fn stiffness(
+    name: &'static str,
+    meaning: &'static str,
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "N/m", meaning, [1e-2, 1e12], starts, true)
+}
+
+/// A damping that may be absent, N s/m.
+pub(super) const fn damping(
+    name: &'static str,
+    meaning: &'static str,
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "N s/m", meaning, [0.0, 1e7], starts, false)
+}
+
+/// A time from `lower` to `upper`, s; a scale unless it may be zero.
+pub(super) const fn time(
+    name: &'static str,
+    meaning: &'static str,
+    bounds: [f64; 2],
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "s", meaning, bounds, starts, bounds[0] > 0.0)
+}
+
+/// A plain number.
+pub(super) const fn number(
+    name: &'static str,
+    meaning: &'static str,
+    bounds: [f64; 2],
+    starts: &'static [f64],
+) -> Parameter {
+    page(name, "-", meaning, bounds, starts, true)
+}
+
+/// Coulomb friction.
+pub(super) const F_C: Parameter = force("F_c_n", "Coulomb (kinetic) friction", &[10.0]);
+/// Static friction.
+pub(super) const F_S: Parameter = force("F_s_n", "static (breakaway) friction", &[12.0]);
+/// Viscous friction.
+pub(super) const F_V: Parameter = damping("F_v_n_s_m", "viscous friction", &[10.0]);
+/// Stribeck speed.
+pub(super) const V_S: Parameter = speed(
+    "v_s_m_s",
+    "Stribeck speed: friction falls over it",
+    &[0.01, 0.1],
+);
+
+/// The rule of every steady curve: at rest friction is set-valued.
+pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
+    check(
+        velocity_m_s.is_finite() && velocity_m_s != 0.0,
+        "velocity_m_s",
+        velocity_m_s,
+        "must be finite and not zero",
+    )
+}
+
+/// The methods of [`super::Law`] that are the same for every law in newtons.
+macro_rules! in_newtons {
+    () => {
+        /// One newton: the coefficient of this law is a force.
+        #[inline]
+        fn pressed_n(&self, _load_n: T) -> T {
+            T::ONE
+        }
+
+        #[inline]
+        fn set_load(&self, _state: &mut Self::State, _load_n: T) {}
+    };
+}
+
+pub(super) use in_newtons;

@@ -1,0 +1,57 @@
+//! The macro behind the catalogue of laws: from the list in `law/mod.rs` it makes the modules,
+//! the catalogue, and the dispatch by name.
+
+macro_rules! laws {
+    ($($module:ident::$Type:ident),* $(,)?) => {
+        $(pub mod $module;)*
+
+        /// Every law, the default first.
+        pub const CATALOGUE: &[Info] = &[$(<$module::$Type<f64> as Named<f64>>::INFO,)*];
+
+        /// Build the law of that name and hand it to `visitor`: one call for every law, each
+        /// compiled for its own type.
+        ///
+        /// # Errors
+        /// Those of [`Named::build`]; an unknown name is reported as the parameter `law`.
+        pub fn with_law<T: Real, V: Visitor<T>>(
+            name: &str,
+            bearing: Option<&Bearing>,
+            load_n: Option<f64>,
+            values: &[T],
+            clock: Clock,
+            visitor: V,
+        ) -> Result<V::Output, ParameterError> {
+            $(if name == <$module::$Type<T> as Named<T>>::INFO.name {
+                let law = <$module::$Type<T> as Named<T>>::build(bearing, load_n, values, clock)?;
+                return Ok(visitor.visit(law));
+            })*
+            Err(UNKNOWN)
+        }
+
+        /// Steady friction (N) of the law of that name at speeds (m/s, not zero), into `out`.
+        ///
+        /// # Errors
+        /// Those of [`Named::build`] and of [`SteadyCurve::steady_n`].
+        pub fn steady_n(
+            name: &str,
+            bearing: Option<&Bearing>,
+            load_n: Option<f64>,
+            values: &[f64],
+            clock: Clock,
+            velocity_m_s: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), ParameterError> {
+            $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
+                let law =
+                    <$module::$Type<f64> as Named<f64>>::build(bearing, load_n, values, clock)?;
+                for (f, &v) in out.iter_mut().zip(velocity_m_s) {
+                    *f = law.steady_n(v)?;
+                }
+                return Ok(());
+            })*
+            Err(UNKNOWN)
+        }
+    };
+}
+
+pub(crate) use laws;

@@ -1,0 +1,243 @@
+//! The seven-parameter model: a spring before breakaway, a Stribeck curve with pure delay in
+//! sliding, and static friction that rises with the time at rest.
+//!
+//! ```text
+//! stuck:    F = k_t x                                      until |F| = F_c + F_s(t_2)
+//! sliding:  F = [F_c + F_v |v| + F_s(t_2) / (1 + (v(t - tau_L)/v_s)^2)] sgn(v)
+//! F_s(t_2) = F_s,a + (F_s,inf - F_s,a) t_2 / (t_2 + gamma)
+//! ```
+//!
+//! t_2 is the time stuck, F_s,a the Stribeck part of friction at the end of the last sliding.
+//! Without a delay that part is whole again at every stop, so that rising static friction shows
+//! only with tau_L above zero: the model's own trait.
+//!
+//! Source: Armstrong-Helouvry & Dupont (1993); Armstrong-Helouvry, Dupont & Canudas de Wit
+//! (1994); Cohn (1998), section 2.3.1.
+//!
+//! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
+
+use super::bristle::{legs, Leg};
+use super::delay_line::DelayLine;
+use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
+use super::{Info, Law, Named, Sliding, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::motion::JournalMotion;
+use crate::real::Real;
+
+/// The seven-parameter model.
+#[derive(Clone, Copy, Debug)]
+pub struct SevenParameter<T> {
+    stiffness_n_m: T,
+    coulomb_n: T,
+    viscous_n_s_m: T,
+    static_n: T,
+    stribeck_m_s: T,
+    delay_s: T,
+    dwell_s: T,
+}
+
+/// What the model remembers.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    /// -1 or +1 in sliding, zero while stuck.
+    way: T,
+    /// Force without the viscous part, N.
+    force_n: T,
+    /// Stribeck part at the end of the last sliding, N.
+    arrival_n: T,
+    /// Stribeck part that the contact has grown to, N.
+    grown_n: T,
+    /// Time stuck, s.
+    stuck_s: T,
+    /// |v| a delay ago, m/s.
+    late_m_s: T,
+    line: DelayLine<T>,
+}
+
+impl<T: Real> SevenParameter<T> {
+    /// Share of the Stribeck part that is there at a (delayed) speed.
+    #[inline]
+    fn share(&self, speed_m_s: T) -> T {
+        let x = speed_m_s / self.stribeck_m_s;
+        T::ONE / (T::ONE + x * x)
+    }
+
+    /// The contact comes to rest.
+    #[inline]
+    fn stop(&self, state: &mut State<T>) {
+        if state.way != T::ZERO {
+            state.way = T::ZERO;
+            state.arrival_n = state.grown_n * self.share(state.late_m_s);
+            state.stuck_s = T::ZERO;
+        }
+    }
+
+    /// Along one leg: the spring bends, breaks away, or slides on.
+    #[inline]
+    fn slide(&self, state: &mut State<T>, leg: &Leg<T>) {
+        let (way, level) = (leg.direction, leg.level[1]);
+        if way == T::ZERO || way != state.way {
+            self.stop(state);
+        }
+        if state.way == T::ZERO {
+            state.force_n += self.stiffness_n_m * leg.distance_m * way;
+            if way != T::ZERO && state.force_n * way >= level {
+                state.way = way;
+            }
+        }
+        state.force_n = if state.way == T::ZERO {
+            state.force_n.max(-level).min(level)
+        } else {
+            level * way
+        };
+    }
+}
+
+impl<T: Real> Named<T> for SevenParameter<T> {
+    const INFO: Info = Info {
+        name: "seven_parameter",
+        summary: "spring, Stribeck curve with a pure delay, static friction that rises at rest",
+        equation:
+            "stuck: F = k_t x; sliding: F = [F_c + F_v |v| + F_s(t_2)/(1 + (v(t-tau_L)/v_s)^2)] \
+                   sgn(v); F_s(t_2) = F_sa + (F_s_inf - F_sa) t_2/(t_2 + gamma)",
+        source: "Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1",
+        limits: "switches between stuck and sliding; rising static friction needs tau_L > 0",
+        parameters: &[
+            stiffness(
+                "k_t_n_m",
+                "stiffness of the stuck contact",
+                &[1e5, 1e6, 1e4],
+            ),
+            F_C,
+            F_V,
+            force(
+                "F_s_inf_n",
+                "Stribeck friction after a long rest; breakaway is at F_c + F_s",
+                &[3.0],
+            ),
+            V_S,
+            time(
+                "tau_L_s",
+                "delay of friction behind speed",
+                [0.0, 1.0],
+                &[0.01, 0.1],
+            ),
+            time(
+                "gamma_s",
+                "time at rest in which half of the static friction returns",
+                [1e-4, 1e5],
+                &[1.0],
+            ),
+        ],
+        needs_bearing: false,
+        has_film: false,
+        has_bristle: true,
+        has_dry_level: false,
+    };
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            stiffness_n_m: values[0],
+            coulomb_n: values[1],
+            viscous_n_s_m: values[2],
+            static_n: values[3],
+            stribeck_m_s: values[4],
+            delay_s: values[5],
+            dwell_s: values[6],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for SevenParameter<T> {
+    type State = State<T>;
+
+    const HAS_BRISTLE: bool = true;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> State<T> {
+        State {
+            way: T::ZERO,
+            force_n: T::ZERO,
+            arrival_n: self.static_n,
+            grown_n: self.static_n,
+            stuck_s: T::ZERO,
+            late_m_s: T::ZERO,
+            line: DelayLine::new(),
+        }
+    }
+
+    #[inline]
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+        // A run has no past yet at its first sample: it went on as it begins.
+        let late = if state.line.is_empty() {
+            velocity_m_s
+        } else {
+            state.late_m_s
+        };
+        Sliding {
+            level: self.coulomb_n + state.grown_n * self.share(late),
+            viscous: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    /// Breakaway is found to the step.
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        0.002
+    }
+
+    #[inline]
+    fn advance(&self, state: &mut State<T>, speed_m_s: [T; 3], _rate: T, dt_s: T) {
+        if state.line.is_empty() {
+            state.line.push(speed_m_s[0], T::ZERO, self.delay_s);
+        }
+        state.line.push(speed_m_s[2], dt_s, self.delay_s);
+        state.late_m_s = state.line.back(self.delay_s);
+        if state.way == T::ZERO {
+            state.stuck_s += dt_s;
+            let share = state.stuck_s / (state.stuck_s + self.dwell_s);
+            state.grown_n = state.arrival_n + (self.static_n - state.arrival_n) * share;
+        }
+    }
+
+    #[inline]
+    fn bend(
+        &self,
+        state: &mut State<T>,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        if dt_s.value() <= 0.0 {
+            state.way = to.velocity_m_s.sign();
+            state.force_n = level[1] * state.way;
+            return state.force_n;
+        }
+        let turning = || (level[0] + level[1]) * T::of(0.5);
+        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+            self.slide(state, leg);
+        }
+        if to.velocity_m_s == T::ZERO {
+            self.stop(state);
+        }
+        state.force_n
+    }
+}
+
+impl SteadyCurve for SevenParameter<f64> {
+    /// Steady sliding after a breakaway from a long rest.
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        let level = self.coulomb_n + self.static_n * self.share(velocity_m_s);
+        Ok(level * velocity_m_s.sign() + self.viscous_n_s_m * velocity_m_s)
+    }
+}

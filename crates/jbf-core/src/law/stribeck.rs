@@ -1,0 +1,99 @@
+//! `F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)`: friction falls from its
+//! static level as the speed rises, then grows with it.
+//!
+//! Source: Tustin (1947), delta = 1; Bo & Pavelescu (1982), delta 0.5 to 1;
+//! Armstrong-Helouvry (1991), delta = 2; Cohn (1998), section 2.2.
+
+use super::newtons::{in_newtons, moving, number, F_C, F_S, F_V, V_S};
+use super::{Info, Law, Named, Sliding, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::real::Real;
+
+/// The Stribeck curve without memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Stribeck<T> {
+    coulomb_n: T,
+    static_n: T,
+    stribeck_m_s: T,
+    delta: T,
+    viscous_n_s_m: T,
+}
+
+impl<T: Real> Named<T> for Stribeck<T> {
+    const INFO: Info = Info {
+        name: "stribeck",
+        summary: "friction that falls from a static level, then grows with speed",
+        equation: "F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)",
+        source: "Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2",
+        limits: "a curve without memory: the same friction on the way up and on the way down; \
+                 F_s may come out below F_c, as for way lubricants",
+        parameters: &[
+            F_C,
+            F_S,
+            V_S,
+            number(
+                "delta",
+                "shape of the fall: 1 Tustin, 2 Armstrong",
+                [0.2, 5.0],
+                &[2.0, 1.0],
+            ),
+            F_V,
+        ],
+        needs_bearing: false,
+        has_film: false,
+        has_bristle: false,
+        has_dry_level: true,
+    };
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            coulomb_n: values[0],
+            static_n: values[1],
+            stribeck_m_s: values[2],
+            delta: values[3],
+            viscous_n_s_m: values[4],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for Stribeck<T> {
+    type State = ();
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) {}
+
+    #[inline]
+    fn friction(&self, _state: &(), velocity_m_s: T) -> Sliding<T> {
+        let share = (velocity_m_s.abs() / self.stribeck_m_s).powf(self.delta);
+        let still = (-share).exp();
+        Sliding {
+            level: self.coulomb_n * (T::ONE - still) + self.static_n * still,
+            viscous: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn advance(&self, _state: &mut (), _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+}
+
+impl SteadyCurve for Stribeck<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        Ok(self
+            .friction(&(), velocity_m_s)
+            .coefficient(velocity_m_s.sign()))
+    }
+}

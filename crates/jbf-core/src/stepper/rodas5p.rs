@@ -1,0 +1,164 @@
+//! Rodas5P (Steinebach, BIT Numerical Mathematics 63:27, 2023): a Rosenbrock method of order
+//! five, L-stable and stiffly accurate, with an embedded method of order four, made for stiff
+//! and differential-algebraic systems.
+//!
+//! Written in the unknowns that need no product with the Jacobian (Hairer & Wanner, Solving
+//! Ordinary Differential Equations II, IV.7):
+//!
+//! ```text
+//! (1/(gamma h) - J) u_i = f(t + c_i h, y + sum_j a_ij u_j) + sum_j (C_ij / h) u_j + d_i h f_t
+//! ```
+
+use super::rodas5p_tableau::{A, C, D, GAMMA, H, NODES};
+use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
+use crate::real::Real;
+
+/// The input along a step, as the stages need it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Input<T> {
+    /// Its value at [`NODES`].
+    pub at_nodes: [T; 4],
+    /// Its value at the end of the step.
+    pub at_end: T,
+    /// Its rate at the start of the step, times the length of the step.
+    pub change: T,
+}
+
+/// What one step computed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stages<T, const N: usize> {
+    unknowns: [[T; N]; 8],
+    /// The state at the end.
+    pub end: [T; N],
+}
+
+impl<T: Real, const N: usize> Stages<T, N> {
+    /// Estimate of the error of the end.
+    #[inline]
+    pub fn error(&self) -> &[T; N] {
+        &self.unknowns[7]
+    }
+
+    /// Component `n` along the step, of order four: coefficients of 1, s, .., s^4, where s goes
+    /// from zero to one. (Hermite's polynomial through slopes and curvatures is finer where the film is not stiff,
+    /// and much coarser where it is: there they magnify the error of the state.)
+    #[inline]
+    pub fn quartic(&self, start: &[T; N], n: usize) -> [T; 5] {
+        let row = |r: usize| {
+            let mut sum = T::ZERO;
+            for (unknown, &h) in self.unknowns.iter().zip(&H[r]) {
+                sum += unknown[n] * T::of(h);
+            }
+            sum
+        };
+        let (p, q, r) = (row(0), row(1), row(2));
+        [start[n], self.end[n] - start[n] + p, q - p, r - q, -r]
+    }
+}
+
+/// `sum_j row_j u_j` of the first `K` unknowns; `K` is a constant so that the sum has no loop.
+#[inline(always)]
+fn combined<T: Real, const N: usize, const K: usize>(
+    row: &[f64],
+    unknowns: &[[T; N]; 8],
+    i: usize,
+) -> T {
+    let mut sum = unknowns[0][i] * T::of(row[0]);
+    for j in 1..K {
+        sum += unknowns[j][i] * T::of(row[j]);
+    }
+    sum
+}
+
+/// One step from a system already linearised at `state`.
+#[inline]
+pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
+    system: &S,
+    linear: &Linear<T, N>,
+    state: &[T; N],
+    input: &Input<T>,
+    dt: T,
+) -> Stages<T, N> {
+    use core::array::from_fn;
+    let inverse_dt = T::ONE / dt;
+    let solver = S::Solver::new(&linear.jacobian, inverse_dt * T::of(1.0 / GAMMA));
+    // f_t h, which each stage takes a share of.
+    let drift: [T; N] = from_fn(|i| linear.by_input[i] * input.change);
+    let mut u = [[T::ZERO; N]; 8];
+    u[0] = solver.solve(&from_fn(|i| linear.slope[i] + drift[i] * T::of(D[0])));
+    let mut at: [T; N];
+    // Written out stage by stage: as a loop it takes a third longer.
+    macro_rules! stage {
+        ($k:literal, $input:expr, $at:expr, $share:expr) => {
+            at = $at;
+            let slope = system.slope(&at, $input);
+            u[$k] = solver.solve(&from_fn(|i| {
+                slope[i]
+                    + combined::<T, N, $k>(&C[$k - 1], &u, i) * inverse_dt
+                    + $share.map_or(T::ZERO, |d: f64| drift[i] * T::of(d))
+            }));
+        };
+    }
+    macro_rules! early {
+        ($k:literal) => {
+            stage!(
+                $k,
+                input.at_nodes[$k - 1],
+                from_fn(|i| state[i] + combined::<T, N, $k>(&A[$k - 1], &u, i)),
+                Some(D[$k])
+            )
+        };
+    }
+    macro_rules! late {
+        ($k:literal) => {
+            stage!(
+                $k,
+                input.at_end,
+                from_fn(|i| at[i] + u[$k - 1][i]),
+                None::<f64>
+            )
+        };
+    }
+    early!(1);
+    early!(2);
+    early!(3);
+    early!(4);
+    stage!(
+        5,
+        input.at_end,
+        from_fn(|i| state[i] + combined::<T, N, 5>(&A[4], &u, i)),
+        None::<f64>
+    );
+    late!(6);
+    late!(7);
+    Stages {
+        unknowns: u,
+        end: from_fn(|i| at[i] + u[7][i]),
+    }
+}
+
+/// L-stable Rosenbrock method of order five.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rodas5P;
+
+impl StiffStepper for Rodas5P {
+    #[inline]
+    fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
+        &self,
+        system: &S,
+        state: &mut [T; N],
+        [start, middle, end]: [T; 3],
+        dt: T,
+    ) {
+        // Three values make a parabola.
+        let change = T::of(4.0) * middle - T::of(3.0) * start - end;
+        let bend = (start + end - T::of(2.0) * middle) * T::of(2.0);
+        let input = Input {
+            at_nodes: NODES.map(|c| start + T::of(c) * (change + T::of(c) * bend)),
+            at_end: end,
+            change,
+        };
+        let linear = system.linearise(state, start);
+        *state = self::step(system, &linear, state, &input, dt).end;
+    }
+}

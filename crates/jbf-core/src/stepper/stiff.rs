@@ -1,0 +1,177 @@
+//! What an implicit stepper asks of a system, and how it solves its linear equations.
+//!
+//! The solves are written out here, not taken from nalgebra: its decompositions want a
+//! `RealField`, which dual numbers are not, and cost more (factor and four solves, `f64`, AMD EPYC:
+//! 80 ns against 240 ns for the four states, 55 ns against 85 ns for the two).
+
+use super::System;
+use crate::real::Real;
+
+/// A system linearised at one state and input.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear<T, const N: usize> {
+    /// Rate of change of the state.
+    pub slope: [T; N],
+    /// Derivatives of the slope: row `i`, column `j` is `d slope[i] / d state[j]`.
+    pub jacobian: [[T; N]; N],
+    /// Derivatives of the slope with respect to the input.
+    pub by_input: [T; N],
+}
+
+/// A [`System`] that knows its own derivatives.
+pub trait StiffSystem<T: Real, const N: usize>: System<T, N> {
+    /// How `(shift I - jacobian) x = right` is solved: a system knows the zeros of its
+    /// Jacobian.
+    type Solver: ShiftedSolver<T, N>;
+
+    /// Slope and derivatives at a state and input.
+    fn linearise(&self, state: &[T; N], input: T) -> Linear<T, N>;
+}
+
+/// One fixed step of an implicit method.
+pub trait StiffStepper {
+    /// Advance `state` by `dt`; `input` holds the input at the start, middle and end.
+    fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
+        &self,
+        system: &S,
+        state: &mut [T; N],
+        input: [T; 3],
+        dt: T,
+    );
+}
+
+/// `(shift I - jacobian) x = right`, factored once and solved for many right sides.
+pub trait ShiftedSolver<T: Real, const N: usize>: Copy {
+    /// Factor.
+    fn new(jacobian: &[[T; N]; N], shift: T) -> Self;
+    /// Solve for one right side.
+    fn solve(&self, right: &[T; N]) -> [T; N];
+}
+
+/// Two equations, by elimination with the larger pivot first. (Cramer's rule would be as
+/// quick, but its products overflow single precision close to the wall of the bearing.)
+#[derive(Clone, Copy, Debug)]
+pub struct TwoByTwo<T> {
+    inverse_pivot: T,
+    factor: T,
+    upper: T,
+    inverse_last: T,
+    swapped: bool,
+}
+
+impl<T: Real> TwoByTwo<T> {
+    #[inline]
+    fn factored(m: [[T; 2]; 2]) -> Self {
+        let swapped = m[0][0].abs() < m[1][0].abs();
+        let [first, second] = if swapped { [m[1], m[0]] } else { m };
+        let inverse_pivot = T::ONE / first[0];
+        let factor = second[0] * inverse_pivot;
+        Self {
+            inverse_pivot,
+            factor,
+            upper: first[1],
+            inverse_last: T::ONE / (second[1] - factor * first[1]),
+            swapped,
+        }
+    }
+}
+
+impl<T: Real> ShiftedSolver<T, 2> for TwoByTwo<T> {
+    #[inline]
+    fn new(j: &[[T; 2]; 2], shift: T) -> Self {
+        Self::factored([[shift - j[0][0], -j[0][1]], [-j[1][0], shift - j[1][1]]])
+    }
+
+    #[inline]
+    fn solve(&self, right: &[T; 2]) -> [T; 2] {
+        let [first, second] = if self.swapped {
+            [right[1], right[0]]
+        } else {
+            *right
+        };
+        let last = (second - self.factor * first) * self.inverse_last;
+        [(first - self.upper * last) * self.inverse_pivot, last]
+    }
+}
+
+/// Two positions and their velocities: `[p', v'] = [v, a(p, v)]`. The upper rows of the
+/// Jacobian are `[0, I]`, so the positions go out by hand and a two by two solve is left,
+/// a quarter of the work of a general four by four and free of its large pivots.
+#[derive(Clone, Copy, Debug)]
+pub struct SecondOrder<T> {
+    /// `1 / shift`.
+    inverse_shift: T,
+    /// Derivatives of the acceleration by position, over `shift`.
+    stiffness: [[T; 2]; 2],
+    velocity: TwoByTwo<T>,
+}
+
+impl<T: Real> ShiftedSolver<T, 4> for SecondOrder<T> {
+    #[inline]
+    fn new(j: &[[T; 4]; 4], shift: T) -> Self {
+        let inverse_shift = T::ONE / shift;
+        let k = [
+            [j[2][0] * inverse_shift, j[2][1] * inverse_shift],
+            [j[3][0] * inverse_shift, j[3][1] * inverse_shift],
+        ];
+        Self {
+            inverse_shift,
+            stiffness: k,
+            velocity: TwoByTwo::factored([
+                [shift - j[2][2] - k[0][0], -j[2][3] - k[0][1]],
+                [-j[3][2] - k[1][0], shift - j[3][3] - k[1][1]],
+            ]),
+        }
+    }
+
+    #[inline]
+    fn solve(&self, r: &[T; 4]) -> [T; 4] {
+        let k = &self.stiffness;
+        let v = self.velocity.solve(&[
+            r[2] + k[0][0] * r[0] + k[0][1] * r[1],
+            r[3] + k[1][0] * r[0] + k[1][1] * r[1],
+        ]);
+        [
+            (r[0] + v[0]) * self.inverse_shift,
+            (r[1] + v[1]) * self.inverse_shift,
+            v[0],
+            v[1],
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn residual<const N: usize>(j: &[[f64; N]; N], shift: f64, x: &[f64; N], r: &[f64; N]) -> f64 {
+        (0..N)
+            .map(|i| {
+                let jx: f64 = (0..N).map(|k| j[i][k] * x[k]).sum();
+                (shift * x[i] - jx - r[i]).abs()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn two_equations_are_solved_whichever_pivot_is_larger() {
+        for j in [[[1.0, 2.0], [3.0, 4.0]], [[6.9, 2.0], [-30.0, 4.0]]] {
+            let right = [0.3, -0.7];
+            let x = TwoByTwo::new(&j, 7.0).solve(&right);
+            assert!(residual(&j, 7.0, &x, &right) < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_second_order_system_is_solved() {
+        let j = [
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-3.0, 2.0, -50.0, 7.0],
+            [1.0, -9.0, 8.0, -400.0],
+        ];
+        let right = [0.1, 0.2, -3.0, 4.0];
+        let x = SecondOrder::new(&j, 11.0).solve(&right);
+        assert!(residual(&j, 11.0, &x, &right) < 1e-12);
+    }
+}

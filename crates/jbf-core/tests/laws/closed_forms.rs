@@ -1,0 +1,177 @@
+//! Each law against what a pencil gives.
+
+use super::support::{along, axis, in_newtons, moving, sine, starts};
+use jbf_core::effect::Effects;
+use jbf_core::law::coulomb::Coulomb;
+use jbf_core::law::{steady_n, Named};
+use jbf_core::{Clock, Motion};
+
+/// A long slide at one speed ends on the steady curve, for every law and both ways.
+#[test]
+fn a_long_slide_ends_on_the_steady_curve() {
+    for law in in_newtons() {
+        let values = starts(law);
+        for v in [1e-4, 3e-3, 0.02, 0.5, -0.02] {
+            let mut expected = [0.0];
+            steady_n(
+                law.name,
+                None,
+                None,
+                &values,
+                Clock::Journal,
+                &[v],
+                &mut expected,
+            )
+            .expect("valid");
+            // From rest, so that bristles have to bend first: a millimetre is a hundred of theirs.
+            let steps = 2000;
+            let dt = (0.05 / v.abs()).max(1.0) / f64::from(steps);
+            let at = |t: f64| moving(t, if t > 0.0 { v } else { 0.0 }, v * t);
+            let end = *along::<f64>(law.name, &values, dt, steps, at)
+                .last()
+                .expect("steps");
+            let error = (end - expected[0]).abs();
+            assert!(
+                error < 1e-9 * end.abs(),
+                "{} {v}: {end} {expected:?}",
+                law.name
+            );
+        }
+    }
+}
+
+#[test]
+fn the_stribeck_curve_is_its_formula() {
+    let (fc, fs, vs, fv): (f64, f64, f64, f64) = (7.0, 11.0, 0.02, 30.0);
+    for delta in [0.5, 1.0, 2.0] {
+        for v in [1e-5, 0.004, 0.02, 0.3] {
+            let mut f = [0.0];
+            let values = [fc, fs, vs, delta, fv];
+            steady_n(
+                "stribeck",
+                None,
+                None,
+                &values,
+                Clock::Journal,
+                &[-v],
+                &mut f,
+            )
+            .expect("valid");
+            let formula = fc + (fs - fc) * (-(v / vs).powf(delta)).exp() + fv * v;
+            assert!((f[0] + formula).abs() < 1e-13 * formula);
+        }
+    }
+}
+
+/// Dahl's reversal: from sliding one way to the other, the force follows the closed form of the
+/// way slid, whatever the speed and the step.
+#[test]
+fn dahl_turns_round_in_its_closed_form() {
+    let (fc, sigma) = (8.0, 2e5);
+    let speed = 0.01;
+    for exponent in [0.3, 0.999, 1.0, 1.0004, 1.5, 3.0] {
+        let values = [fc, sigma, exponent, 0.0];
+        for steps in [7, 50, 1000] {
+            let dt = 0.05 / f64::from(steps);
+            let at = |t: f64| moving(t, if t < 1e-12 { speed } else { -speed }, 0.0);
+            let force = along::<f64>("dahl", &values, dt, steps, at);
+            assert_eq!(force[0], fc);
+            // The first step turns half way through: it slides nowhere. The others go back.
+            for (i, f) in force.iter().enumerate().skip(2) {
+                let s = speed * dt * (i as f64 - 1.0) + 0.25 * speed * dt;
+                let k = sigma / fc;
+                let u0: f64 = 2.0;
+                let u = if exponent == 1.0 {
+                    u0 * (-k * s).exp()
+                } else {
+                    let m = 1.0 - exponent;
+                    let base: f64 = 1.0 - m * k * s * u0.powf(-m);
+                    if base > 0.0 {
+                        u0 * base.powf(1.0 / m)
+                    } else {
+                        0.0
+                    }
+                };
+                let expected = -fc * (1.0 - u);
+                assert!(
+                    (f - expected).abs() < 1e-9 * fc,
+                    "i {exponent}, {steps} steps, sample {i}: {f} {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// LuGre at one speed from rest: `sigma_0 z = level (1 - exp(-sigma_0 s/level))`, and the damping
+/// on top of it.
+#[test]
+fn lugre_bends_in_its_closed_form() {
+    let (fc, fs, vs, s0, s1, vd, fv): (f64, f64, f64, f64, f64, f64, f64) =
+        (6.0, 9.0, 0.01, 1e5, 200.0, 0.05, 12.0);
+    let values = [fc, fs, vs, s0, s1, vd, fv];
+    let v = 0.004;
+    let level = fc + (fs - fc) * (-(v / vs) * (v / vs)).exp();
+    let damping = s1 * (-(v / vd) * (v / vd)).exp();
+    // At this speed from the first sample on the bristle is bent; a reversal unbends it.
+    let dt = 1e-3;
+    let at = |t: f64| moving::<f64>(t, if t < 1e-12 { 0.0 } else { v }, 0.0);
+    let force = along::<f64>("lugre", &values, dt, 400, at);
+    // After the first step, in which the speed rises from zero, the bristle starts where it is.
+    let first = (force[1] - fv * v - damping * v) / (1.0 - damping * v / level);
+    for (i, f) in force.iter().enumerate().skip(1) {
+        let way = v * dt * (i as f64 - 1.0);
+        let y = level + (first - level) * (-s0 * way / level).exp();
+        let expected = y + damping * (v - v * y / level) + fv * v;
+        assert!((f - expected).abs() < 1e-10, "{i}: {f} {expected}");
+    }
+}
+
+/// Static friction holds a slider at rest behind a soft drive up to F_s, and lets go at F_c.
+#[test]
+fn coulomb_sticks_to_f_s_and_slides_at_f_c() {
+    let law = <Coulomb<f64> as Named<f64>>::build(None, None, &[6.0, 9.0, 0.0], Clock::Journal)
+        .expect("valid");
+    let mut effects = Effects::NONE;
+    effects
+        .set("drive_compliance", &[1000.0, 5.0, 0.5])
+        .expect("valid");
+    let chain = axis(law, effects);
+    let speed = 0.01;
+    let at = |t: f64| Motion {
+        velocity_m_s: speed,
+        ..moving(t, speed, speed * t)
+    };
+    let mut state = chain.start(&Motion {
+        velocity_m_s: 0.0,
+        ..at(0.0)
+    });
+    let mut peak: f64 = 0.0;
+    let mut broke_at = 0.0;
+    let dt = 1e-3;
+    for i in 1..2000 {
+        let t = dt * f64::from(i);
+        let force = chain.step(&mut state, &at(t), dt);
+        if state.journal().velocity_m_s == 0.0 && broke_at == 0.0 {
+            peak = peak.max(force);
+        } else if broke_at == 0.0 {
+            broke_at = t;
+        } else if state.journal().velocity_m_s > 0.0 {
+            assert!(
+                (force - 6.0).abs() < 1e-9 || t < broke_at + 2.0 * dt,
+                "{t} {force}"
+            );
+        }
+    }
+    // The spring of 1000 N/m reaches 9 N after 9 mm, 0.9 s; the damper carries 0.05 N.
+    assert!((peak - 9.0).abs() < 0.05, "{peak}");
+    assert!((broke_at - 0.9).abs() < 0.02, "{broke_at}");
+}
+
+/// Under a rigid drive static friction of the Coulomb law cannot be seen, and a reversal in
+/// passing is no rest.
+#[test]
+fn coulomb_static_friction_needs_a_rest_and_a_soft_drive() {
+    let there = along::<f64>("coulomb", &[6.0, 9.0, 1.0], 0.01, 500, sine(0.05, 2.0));
+    let other = along::<f64>("coulomb", &[6.0, 90.0, 1.0], 0.01, 500, sine(0.05, 2.0));
+    assert_eq!(there, other);
+}

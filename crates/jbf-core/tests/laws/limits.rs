@@ -1,0 +1,54 @@
+//! Where one law becomes another.
+
+use super::support::{along, gap, sine};
+
+const STEPS: u32 = 3000;
+/// No sample comes within a few of a stiff bristle's ways of a reversal.
+const DT_S: f64 = 2.03e-3;
+
+#[test]
+fn a_very_stiff_dahl_is_coulomb() {
+    let stiff = along::<f64>(
+        "dahl",
+        &[8.0, 1e12, 1.0, 30.0],
+        DT_S,
+        STEPS,
+        sine(0.02, 3.0),
+    );
+    let rigid = along::<f64>("coulomb", &[8.0, 9.0, 30.0], DT_S, STEPS, sine(0.02, 3.0));
+    assert!(gap(&stiff, &rigid) < 1e-9, "{}", gap(&stiff, &rigid));
+}
+
+#[test]
+fn a_very_stiff_lugre_is_stribeck() {
+    let values = [8.0, 12.0, 0.01, 1e12, 0.0, 0.1, 30.0];
+    let stiff = along::<f64>("lugre", &values, DT_S, STEPS, sine(0.02, 3.0));
+    let values = [8.0, 12.0, 0.01, 2.0, 30.0];
+    let rigid = along::<f64>("stribeck", &values, DT_S, STEPS, sine(0.02, 3.0));
+    assert!(gap(&stiff, &rigid) < 1e-6, "{}", gap(&stiff, &rigid));
+}
+
+#[test]
+fn lugre_without_fall_and_damping_is_dahl() {
+    let values = [8.0, 8.0, 0.01, 1e5, 0.0, 0.1, 30.0];
+    let lugre = along::<f64>("lugre", &values, DT_S, STEPS, sine(2e-4, 3.0));
+    let dahl = along::<f64>("dahl", &[8.0, 1e5, 1.0, 30.0], DT_S, STEPS, sine(2e-4, 3.0));
+    assert!(gap(&lugre, &dahl) < 1e-9, "{}", gap(&lugre, &dahl));
+}
+
+#[test]
+fn a_stiff_seven_parameter_without_fall_is_coulomb() {
+    let values = [1e12, 8.0, 30.0, 1e-6, 0.01, 0.0, 1.0];
+    let seven = along::<f64>("seven_parameter", &values, DT_S, STEPS, sine(0.02, 3.0));
+    let rigid = along::<f64>("coulomb", &[8.0, 9.0, 30.0], DT_S, STEPS, sine(0.02, 3.0));
+    assert!(gap(&seven, &rigid) < 2e-6, "{}", gap(&seven, &rigid));
+}
+
+/// A Dahl exponent towards zero is a spring that slips: the elasto-plastic contact.
+#[test]
+fn a_ductile_dahl_is_elasto_plastic() {
+    let dahl = along::<f64>("dahl", &[8.0, 1e5, 0.01, 0.0], DT_S, STEPS, sine(2e-4, 3.0));
+    let values = [1e5, 8.0, 0.0, 1e-6, 0.01, 0.0, 1.0];
+    let seven = along::<f64>("seven_parameter", &values, DT_S, STEPS, sine(2e-4, 3.0));
+    assert!(gap(&dahl, &seven) < 0.3, "{}", gap(&dahl, &seven));
+}

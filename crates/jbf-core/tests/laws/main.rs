@@ -1,0 +1,15 @@
+//! The laws in newtons: rules that hold for all over the catalogue, and closed forms one by one.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod closed_forms;
+mod derivatives;
+mod energy;
+mod finite;
+mod limits;
+mod needs;
+mod seven_parameter;
+mod steps;
+mod support;
+mod symmetry;

@@ -1,0 +1,30 @@
+//! Which effects go with which law.
+
+use jbf_core::effect::{self, Need};
+use jbf_core::law;
+
+fn lacking(effect: &str, law: &str) -> Option<Need> {
+    let effect = effect::CATALOGUE.iter().find(|e| e.name == effect);
+    let law = law::CATALOGUE.iter().find(|l| l.name == law);
+    effect.expect("known").lacking(law.expect("known"))
+}
+
+#[test]
+fn every_effect_goes_with_the_journal() {
+    for effect in effect::CATALOGUE {
+        assert_eq!(lacking(effect.name, "journal"), None);
+    }
+}
+
+#[test]
+fn effects_that_mean_nothing_are_refused() {
+    for law in law::CATALOGUE.iter().filter(|l| l.name != "journal") {
+        assert_eq!(lacking("thermal_thinning", law.name), Some(Need::Film));
+        assert_eq!(lacking("sensor_lag", law.name), None);
+        let bristle = law.has_bristle.then_some(Need::NoBristle);
+        assert_eq!(lacking("presliding", law.name), bristle);
+        assert_eq!(lacking("drive_compliance", law.name), bristle);
+        let dry = law.has_dry_level.then_some(Need::NoDryLevel);
+        assert_eq!(lacking("coulomb_drag", law.name), dry);
+    }
+}

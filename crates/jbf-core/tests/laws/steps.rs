@@ -1,0 +1,48 @@
+//! What the step costs: laws of the way alone are exact for any step along the same way, the
+//! others fall with its square.
+
+use super::support::{along, sine, starts};
+use jbf_core::law::CATALOGUE;
+
+/// Root mean square over the last of four periods of the difference to a run with steps
+/// sixty-four times shorter.
+fn error(name: &str, per_period: u32, amplitude: f64) -> f64 {
+    let law = CATALOGUE.iter().find(|l| l.name == name).expect("known");
+    let omega = 5.0;
+    let run = |n: u32| {
+        let dt = std::f64::consts::TAU / omega / f64::from(n);
+        // A quarter of a step late, so that no sample falls on a reversal.
+        let at = sine(amplitude, omega);
+        let shift = 0.25 * std::f64::consts::TAU / omega / 100.0;
+        along::<f64>(name, &starts(law), dt, 4 * n, |t| at(t + shift))
+    };
+    let (coarse, fine) = (run(per_period), run(64 * per_period));
+    let squares = (3 * per_period..4 * per_period)
+        .map(|i| (coarse[i as usize] - fine[64 * i as usize]).powi(2));
+    (squares.sum::<f64>() / f64::from(per_period)).sqrt()
+}
+
+#[test]
+fn lugre_is_of_second_order() {
+    let errors = [500, 1000, 2000].map(|n| error("lugre", n, 2e-4));
+    assert!(errors[0] < 0.05, "{errors:?}");
+    for pair in errors.windows(2) {
+        assert!(pair[0] / pair[1] > 3.0, "{errors:?}");
+    }
+}
+
+#[test]
+fn dahl_errs_by_the_way_alone() {
+    // The way of a straight line in speed; nothing of the law's own.
+    let errors = [500, 1000].map(|n| error("dahl", n, 2e-4));
+    assert!(
+        errors[0] < 1e-3 && errors[0] / errors[1] > 3.0,
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn curves_have_no_step_at_all() {
+    assert_eq!(error("stribeck", 100, 0.02), 0.0);
+    assert_eq!(error("coulomb", 100, 0.02), 0.0);
+}

@@ -1,0 +1,92 @@
+//! Any law of the catalogue along any motion.
+
+use crate::common::random::Random;
+use crate::common::readings;
+use jbf_core::effect::{Effects, Rig};
+use jbf_core::law::{with_law, Info, Named, Visitor, CATALOGUE};
+use jbf_core::{Chain, Clock, Motion, Real};
+
+/// The laws that need no bearing.
+pub fn in_newtons() -> impl Iterator<Item = &'static Info> {
+    CATALOGUE.iter().filter(|law| !law.needs_bearing)
+}
+
+/// A linear axis: a rotary one of radius 1 m.
+pub fn axis<T: Real, L>(law: L, effects: Effects<T>) -> Chain<T, L> {
+    let rig = Rig {
+        radius_m: T::ONE,
+        count: T::ONE,
+    };
+    Chain { law, effects, rig }
+}
+
+struct Along<F> {
+    dt_s: f64,
+    steps: u32,
+    motion: F,
+}
+
+impl<T: Real, F: Fn(f64) -> Motion<T>> Visitor<T> for Along<F> {
+    type Output = Vec<T>;
+
+    fn visit<L: Named<T>>(self, law: L) -> Vec<T> {
+        readings(
+            &axis(law, Effects::NONE),
+            self.dt_s,
+            self.steps,
+            self.motion,
+        )
+    }
+}
+
+/// Readings (N) of the law of that name: the first sample, then `steps` steps of `dt_s`.
+pub fn along<T: Real>(
+    name: &str,
+    values: &[T],
+    dt_s: f64,
+    steps: u32,
+    motion: impl Fn(f64) -> Motion<T>,
+) -> Vec<T> {
+    let visitor = Along {
+        dt_s,
+        steps,
+        motion,
+    };
+    with_law(name, None, None, values, Clock::Journal, visitor)
+        .unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// Its starting values.
+pub fn starts(law: &Info) -> Vec<f64> {
+    law.parameters.iter().map(|p| p.starts[0]).collect()
+}
+
+/// Values anywhere in its bounds.
+pub fn anywhere(law: &Info, random: &mut Random) -> Vec<f64> {
+    law.parameters.iter().map(|p| random.parameter(p)).collect()
+}
+
+/// A speed at a time, with place and nothing else.
+pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T> {
+    Motion {
+        time_s: T::of(time_s),
+        velocity_m_s: T::of(velocity_m_s),
+        acceleration_m_s2: T::ZERO,
+        angle_rad: T::of(place_m),
+        load_n: T::ONE,
+    }
+}
+
+/// A sine of a place, amplitude in m.
+pub fn sine<T: Real>(amplitude_m: f64, omega_rad_s: f64) -> impl Fn(f64) -> Motion<T> {
+    move |t| {
+        let (sin, cos) = (omega_rad_s * t).sin_cos();
+        moving(t, amplitude_m * omega_rad_s * cos, amplitude_m * sin)
+    }
+}
+
+/// Largest difference of two signals.
+pub fn gap(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,38 @@
+//! A bearing as Python hands it over: a dictionary of its sizes.
+
+use jbf_core::{Bearing, ParameterError};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The sizes of [`Bearing`], by name.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Sizes {
+    radius_m: f64,
+    length_m: f64,
+    clearance_m: f64,
+    mass_kg: f64,
+    count: u32,
+    viscosity_pa_s: f64,
+}
+
+impl Sizes {
+    /// The bearing, checked.
+    pub fn checked(self) -> PyResult<Bearing> {
+        Bearing {
+            radius_m: self.radius_m,
+            length_m: self.length_m,
+            clearance_m: self.clearance_m,
+            mass_kg: self.mass_kg,
+            count: self.count,
+            viscosity_pa_s: self.viscosity_pa_s,
+        }
+        .checked()
+        .map_err(refused)
+    }
+}
+
+/// The core's error as Python's.
+pub fn refused(error: ParameterError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}

@@ -212,7 +212,7 @@ fn step<F: Float, S: Stepper>(
         let (law, mut film) = (lanes.law(i), lanes.film(i));
         let (u0, u1) = (Lane(from(i)), Lane(to(i)));
         *f = law.friction(&film, u0).coefficient(u0.sign()).0;
-        law.advance_with(stepper, &mut film, ends(u0, u1), Lane::ONE, Lane(dt_s));
+        law.advance_inline(stepper, &mut film, ends(u0, u1), Lane::ONE, Lane(dt_s));
         lanes.put(i, &film);
     }
 }

@@ -86,6 +86,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
     ///
     /// A step of no length, and a sample that is not finite, change nothing: one lost sample
     /// of a sensor must not stay in the state of a filter for ever.
+    #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State>, to: &Motion<T>, dt_s: T) -> T {
         if !(dt_s > T::ZERO && dt_s.is_finite() && to.is_finite()) {
             return state.reading_n;
@@ -126,7 +127,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
     }
 
     /// From the film's state to the force: contact, other friction, and what feeds back.
-    #[inline]
+    #[inline(always)]
     fn act(&self, state: &mut State<T, L::State>, journal: JournalMotion<T>, factor: T, dt_s: T) {
         let load_n = self.law.pressed_n(state.motion.load_n);
         let mut sliding = self.law.friction(&state.law, journal.velocity_m_s * factor);
@@ -191,7 +192,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
 /// How the direction of motion inside a step (the sign of its mean speed) differs from the
 /// `direction` at one of its ends: a rigid journal that starts, stops or turns there jumps.
 /// A journal held by a soft drive goes through every direction in between and never jumps.
-#[inline]
+#[inline(always)]
 fn turn<T: Real>(direction: T, mean_speed_m_s: T) -> T {
     let inside = mean_speed_m_s.sign();
     if inside == T::ZERO || (direction != T::ZERO && direction != -inside) {

@@ -39,8 +39,21 @@ impl<T: Real> Motion<T> {
             && self.load_n.is_finite()
     }
 
+    /// The same motion in another kind of number, without derivatives.
+    #[inline(always)]
+    pub fn lift<U: Real>(&self) -> Motion<U> {
+        let lift = |value: T| U::of(value.value());
+        Motion {
+            time_s: lift(self.time_s),
+            velocity_m_s: lift(self.velocity_m_s),
+            acceleration_m_s2: lift(self.acceleration_m_s2),
+            angle_rad: lift(self.angle_rad),
+            load_n: lift(self.load_n),
+        }
+    }
+
     /// The motion a `fraction` of the way to `other`: every quantity on a straight line.
-    #[inline]
+    #[inline(always)]
     pub fn towards(&self, other: &Self, fraction: T) -> Self {
         let line = |a: T, b: T| a + (b - a) * fraction;
         Self {
@@ -85,6 +98,7 @@ impl<T: Real> JournalMotion<T> {
 }
 
 impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
+    #[inline(always)]
     fn from(m: &Motion<T>) -> Self {
         Self {
             velocity_m_s: m.velocity_m_s,

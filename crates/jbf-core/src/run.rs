@@ -22,13 +22,19 @@ pub struct Record<'a> {
 
 impl Record<'_> {
     /// The motion at sample `i`; none past the shortest slice.
+    #[inline(always)]
     pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
+        Some(self.sample(i)?.lift())
+    }
+
+    #[inline(always)]
+    fn sample(&self, i: usize) -> Option<Motion<f64>> {
         Some(Motion {
-            time_s: T::of(*self.time_s.get(i)? - *self.time_s.first()?),
-            velocity_m_s: T::of(*self.velocity_m_s.get(i)?),
-            acceleration_m_s2: T::of(*self.acceleration_m_s2.get(i)?),
-            angle_rad: T::of(*self.angle_rad.get(i)?),
-            load_n: T::of(*self.load_n.get(i)?),
+            time_s: *self.time_s.get(i)? - *self.time_s.first()?,
+            velocity_m_s: *self.velocity_m_s.get(i)?,
+            acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
+            angle_rad: *self.angle_rad.get(i)?,
+            load_n: *self.load_n.get(i)?,
         })
     }
 }
@@ -36,13 +42,17 @@ impl Record<'_> {
 /// Run `chain` along `record` with inner steps of at most `max_step_s` (shorter where the law
 /// asks for it; landing on every reversal), and hand each
 /// sample's reading (N) to `sink` with its index.
+///
+/// The whole of it is inlined into its caller, so that a caller who compiles for a wider
+/// instruction set gets all of it there.
+#[inline(always)]
 pub fn predict<T: Real, L: Law<T>>(
     chain: &Chain<T, L>,
     record: &Record<'_>,
     max_step_s: f64,
     mut sink: impl FnMut(usize, T),
 ) {
-    let Some(mut from) = record.motion::<T>(0) else {
+    let Some(mut from) = record.sample(0) else {
         return;
     };
     let top = record
@@ -51,47 +61,50 @@ pub fn predict<T: Real, L: Law<T>>(
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
     let film_s = chain.law.longest_step_s(top) / chain.effects.fastest_film();
     let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
-    let mut state = chain.start(&from);
+    let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
     let mut i = 1;
-    while let Some(to) = record.motion::<T>(i) {
-        if let Some(zero) = crossing(&from, &to) {
-            between(chain, &mut state, &from, &zero, max_step_s);
-            between(chain, &mut state, &zero, &to, max_step_s);
-        } else {
-            between(chain, &mut state, &from, &to, max_step_s);
+    while let Some(sample) = record.sample(i) {
+        // To the reversal first, where there is one; from there no sign changes.
+        let zero = crossing(&from, &sample);
+        let to = zero.unwrap_or(sample);
+        between(chain, &mut state, &from, &to, max_step_s);
+        if zero.is_none() {
+            sink(i, state.reading_n);
+            i += 1;
         }
-        sink(i, state.reading_n);
         from = to;
-        i += 1;
     }
 }
 
 /// The instant between two samples at which the speed is zero, if it changes sign there:
 /// friction jumps at it, so a step must land on it.
-fn crossing<T: Real>(from: &Motion<T>, to: &Motion<T>) -> Option<Motion<T>> {
+#[inline(always)]
+fn crossing(from: &Motion<f64>, to: &Motion<f64>) -> Option<Motion<f64>> {
     let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-    if v0.value() * v1.value() >= 0.0 {
+    if v0 * v1 >= 0.0 {
         return None;
     }
     let mut zero = from.towards(to, v0 / (v0 - v1));
-    zero.velocity_m_s = T::ZERO;
+    zero.velocity_m_s = 0.0;
     Some(zero)
 }
 
-/// Equal inner steps from one motion to the next.
+/// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
+/// plain numbers until a step takes it.
+#[inline(always)]
 fn between<T: Real, L: Law<T>>(
     chain: &Chain<T, L>,
     state: &mut State<T, L::State>,
-    from: &Motion<T>,
-    to: &Motion<T>,
+    from: &Motion<f64>,
+    to: &Motion<f64>,
     max_step_s: f64,
 ) {
-    let dt = to.time_s.value() - from.time_s.value();
+    let dt = to.time_s - from.time_s;
     let steps = libm::ceil(dt / max_step_s - 1e-9).clamp(1.0, 1e6);
     let inner = T::of(dt / steps);
     for k in 1..=steps as u32 {
-        let motion = from.towards(to, T::of(f64::from(k) / steps));
-        chain.step(state, &motion, inner);
+        let motion = from.towards(to, f64::from(k) / steps);
+        chain.step(state, &motion.lift(), inner);
     }
 }

@@ -49,11 +49,11 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
 }
 
 impl<T: Real> OtherFriction<T> for CoulombDrag<T> {
-    #[inline]
+    #[inline(always)]
     fn level_n(&self) -> T {
         self.force_n
     }
-    #[inline]
+    #[inline(always)]
     fn smooth_n(&self, _state: &(), _journal: &JournalMotion<T>) -> T {
         T::ZERO
     }

@@ -105,6 +105,7 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
 }
 
 impl<T: Real> Drive<T> for DriveCompliance<T> {
+    #[inline(always)]
     fn step(
         &self,
         state: &mut State<T>,

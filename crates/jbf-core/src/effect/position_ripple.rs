@@ -69,7 +69,7 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
 }
 
 impl<T: Real> Contact<T> for PositionRipple<T> {
-    #[inline]
+    #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
         // cos(theta - theta_0) with the offset's own cosine and sine taken once.
         let wave =
@@ -79,6 +79,6 @@ impl<T: Real> Contact<T> for PositionRipple<T> {
         sliding.viscous *= factor;
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

@@ -21,7 +21,7 @@ pub struct Presliding<T> {
 
 impl<T: Real> Presliding<T> {
     /// Slide `distance_m` in one direction, f going between two magnitudes.
-    #[inline]
+    #[inline(always)]
     fn slide(&self, c: T, direction: T, magnitude: [T; 2], distance_m: T) -> T {
         if distance_m.value() <= 0.0 {
             return c;
@@ -76,7 +76,7 @@ impl<T: Real> Bristle<T> for Presliding<T> {
         *state
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(
         &self,
         state: &mut T,

@@ -17,7 +17,7 @@ macro_rules! signal_chain {
 
         impl<T: Real> Effects<T> {
             /// The journal's motion at the end of the step.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn drive(
                 &self,
                 states: &mut States<T>,
@@ -36,7 +36,7 @@ macro_rules! signal_chain {
             }
 
             /// Factor on the speed that the film feels.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn lubricant(&self, states: &States<T>, journal: &JournalMotion<T>) -> T {
                 let mut factor = T::ONE;
                 $(if let (Some(e), Some(s)) = (&self.$lubricant, &states.$lubricant) {
@@ -65,7 +65,7 @@ macro_rules! signal_chain {
             }
 
             /// Let the lubricant take the friction power of the step.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn warm(&self, states: &mut States<T>, power_w: [T; 2], dt_s: T) {
                 $(if let (Some(e), Some(s)) = (&self.$lubricant, &mut states.$lubricant) {
                     e.step(s, power_w, dt_s);
@@ -73,7 +73,7 @@ macro_rules! signal_chain {
             }
 
             /// Sliding friction between the surfaces.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn contact(
                 &self,
                 states: &mut States<T>,
@@ -89,7 +89,7 @@ macro_rules! signal_chain {
             }
 
             /// The contact's coefficient, signed, through the bristle where there is one.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn bristle(
                 &self,
                 states: &mut States<T>,
@@ -109,7 +109,7 @@ macro_rules! signal_chain {
             }
 
             /// Forces beside the bearing's: the level that takes the motion's sign, and the rest.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn other(
                 &self,
                 states: &States<T>,
@@ -133,7 +133,7 @@ macro_rules! signal_chain {
             }
 
             /// The reading at the end of the step.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn reading(
                 &self,
                 states: &mut States<T>,

@@ -8,7 +8,7 @@ use crate::real::Real;
 /// Short steps are written as an increment of `y`, long ones as a distance from `x[1]`: the
 /// other way round each would cancel, which in single precision makes a quantity that can
 /// only warm up go below zero.
-#[inline]
+#[inline(always)]
 pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     let gain = -(-ratio).exp_m1();
     if ratio.value() < 1.0 {
@@ -19,7 +19,7 @@ pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
 }
 
 /// `1 - gain / ratio`, by its series where the difference would cancel.
-#[inline]
+#[inline(always)]
 fn lead<T: Real>(ratio: T, gain: T) -> T {
     if ratio.value() < 1e-3 {
         ratio * (T::of(0.5) - ratio * (T::of(1.0 / 6.0) - ratio * T::of(1.0 / 24.0)))

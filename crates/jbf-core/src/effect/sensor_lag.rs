@@ -58,7 +58,7 @@ impl<T: Real> Instrument<T> for SensorLag<T> {
         force_n
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, state: &mut T, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
         let begin_n = *state;
         // Below the resolution of a step the lag is its limit: no lag, or a shift by tau.

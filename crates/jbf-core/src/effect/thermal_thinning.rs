@@ -69,12 +69,12 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
 }
 
 impl<T: Real> Lubricant<T> for ThermalThinning<T> {
-    #[inline]
+    #[inline(always)]
     fn factor(&self, state: &T, _journal: &JournalMotion<T>) -> T {
         (-*state).exp()
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, state: &mut T, power_w: [T; 2], dt_s: T) {
         let gain = self.rate_1_j * self.tau_s;
         *state = relax(

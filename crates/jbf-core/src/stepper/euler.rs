@@ -18,7 +18,7 @@ impl Stepper for Euler {
         input: [T; 3],
         dt: T,
     ) {
-        let slope = system.slope(state, input[0]);
+        let slope = system.slope_at_start(state, input[0]);
         *state = along(state, &slope, dt);
     }
 }

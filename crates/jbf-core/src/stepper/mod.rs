@@ -20,6 +20,12 @@ use crate::real::Real;
 pub trait System<T: Real, const N: usize> {
     /// Rate of change of the state.
     fn slope(&self, state: &[T; N], input: T) -> [T; N];
+
+    /// The same where a step begins, of which a system may know more than `state` tells.
+    #[inline(always)]
+    fn slope_at_start(&self, state: &[T; N], input: T) -> [T; N] {
+        self.slope(state, input)
+    }
 }
 
 /// One fixed step of an explicit method.

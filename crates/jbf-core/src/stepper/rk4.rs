@@ -8,7 +8,7 @@ use crate::real::Real;
 pub struct Rk4;
 
 impl Stepper for Rk4 {
-    #[inline]
+    #[inline(always)]
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,
@@ -17,7 +17,7 @@ impl Stepper for Rk4 {
         dt: T,
     ) {
         let half = dt * T::of(0.5);
-        let k1 = system.slope(state, input[0]);
+        let k1 = system.slope_at_start(state, input[0]);
         let k2 = system.slope(&along(state, &k1, half), input[1]);
         let k3 = system.slope(&along(state, &k2, half), input[1]);
         let k4 = system.slope(&along(state, &k3, dt), input[2]);

@@ -15,10 +15,16 @@ use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
 use crate::stepper::System;
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 /// Closer to the centre than this the journal has no direction of its own.
 const CENTRE: f64 = 1e-12;
+
+/// True where the equations hold as they stand: off the centre and inside the bearing.
+#[inline(always)]
+pub(super) fn within<T: Real>(e2: T) -> bool {
+    e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
+}
 
 /// The film as a system of two states driven by `|Ub|`: its way from where a step began,
 /// which single precision resolves far better than the place itself.
@@ -27,13 +33,26 @@ pub(super) struct Film<'a, T> {
     pub(super) loaded: &'a Loaded<T>,
     /// `x` and `y` where the step began.
     pub(super) from: [T; 2],
+    /// `x^2 + y^2` there.
+    pub(super) from_e2: T,
 }
 
 impl<T: Real> System<T, 2> for Film<'_, T> {
     #[inline(always)]
     fn slope(&self, way: &[T; 2], ub: T) -> [T; 2] {
         let (x, y) = (self.from[0] + way[0], self.from[1] + way[1]);
-        let e2 = x * x + y * y;
+        self.anywhere(x, y, x * x + y * y, ub)
+    }
+
+    #[inline(always)]
+    fn slope_at_start(&self, _way: &[T; 2], ub: T) -> [T; 2] {
+        self.anywhere(self.from[0], self.from[1], self.from_e2, ub)
+    }
+}
+
+impl<T: Real> Film<'_, T> {
+    #[inline(always)]
+    fn anywhere(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
         let outside = !within(e2);
         if outside && !T::SIDE_BY_SIDE {
             return self.edge(x, y, e2, ub);
@@ -41,15 +60,7 @@ impl<T: Real> System<T, 2> for Film<'_, T> {
         let one = if outside { T::of(f64::NAN) } else { T::ONE };
         self.inside(x, y, e2, ub, one)
     }
-}
 
-/// True where the equations hold as they stand: off the centre and inside the bearing.
-#[inline(always)]
-pub(super) fn within<T: Real>(e2: T) -> bool {
-    e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
-}
-
-impl<T: Real> Film<'_, T> {
     /// Stages of a coarse step may look outside the bearing: show them the limit, in their own
     /// direction; and the centre the slope beside it.
     #[cold]
@@ -73,18 +84,17 @@ impl<T: Real> Film<'_, T> {
         let d = T::ONE - e2;
         let (e, root) = (e2.sqrt(), d.sqrt());
         let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
-        let d_determinant = d * determinant;
-        let inverse = one / (e2 * d_determinant);
+        let inverse = one / (e2 * (d * determinant));
         let stiff = d * d * d * inverse;
-        let across = (fb * T::of(FOUR_OVER_PI)) * y * inverse;
         // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
-        let push = (fb * x * d_determinant * inverse) * e
-            - self.law.asperity_load(e, self.loaded.eps_tr)
-            - (across * (e2 * determinant)) * root;
+        let along = (fb * x) * d * determinant * inverse * e;
+        let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
+        let push = along - self.law.asperity_load(e, self.loaded.eps_tr) - across;
         // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
-        let radial = push * (stiff * (e * root));
-        let swing = push * (stiff * (e2 * T::of(FOUR_OVER_PI)));
-        let lag = T::of(0.5) * ((across * (d_determinant * d)) * root - ub);
+        let radial = push * (stiff * e * root);
+        let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
+        let lag =
+            (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
         let turn = swing - lag;
         [radial * x - turn * y, radial * y + turn * x]
     }

@@ -114,13 +114,28 @@ impl<T: Real> Journal<T> {
         rate: T,
         dt_s: T,
     ) {
+        self.advance_inline(stepper, state, speed_m_s, rate, dt_s);
+    }
+
+    /// As [`Journal::advance_with`], and part of its caller whatever its size: for loops that are
+    /// compiled for a wider instruction set.
+    #[inline(always)]
+    pub fn advance_inline<S: Stepper>(
+        &self,
+        stepper: &S,
+        state: &mut State<T>,
+        speed_m_s: [T; 3],
+        rate: T,
+        dt_s: T,
+    ) {
         let film = Film {
             law: self,
             loaded: &state.loaded,
             from: state.xy,
+            from_e2: state.e2,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        // Minus zero is the neutral start of a sum: `x + -0.0` is `x`, and costs nothing.
+        // Minus zero is the neutral start of a sum: `-0.0 + x` is `x`, and costs nothing.
         let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
         self.moved(state, way);
@@ -161,11 +176,11 @@ impl<T: Real> Journal<T> {
         ];
         if T::SIDE_BY_SIDE {
             state.clamped |= u32::from(!within(e2));
-            (state.xy, state.kept) = (xy, kept);
+            (state.xy, state.e2, state.kept) = (xy, e2, kept);
             return;
         }
         if e2 <= limit {
-            (state.xy, state.kept) = (xy, kept);
+            (state.xy, state.e2, state.kept) = (xy, e2, kept);
             return;
         }
         // Too coarse a step. A step that lost its numbers altogether leaves the film as it
@@ -173,8 +188,7 @@ impl<T: Real> Journal<T> {
         state.clamped = state.clamped.saturating_add(1);
         if e2.is_finite() {
             let shrink = self.deepest(&state.loaded) / e2.sqrt();
-            state.xy = [xy[0] * shrink, xy[1] * shrink];
-            state.kept = [T::ZERO; 2];
+            state.put([xy[0] * shrink, xy[1] * shrink]);
         }
     }
 
@@ -213,12 +227,12 @@ impl<T: Real> Law<T> for Journal<T> {
         1.0 / (rate * (4.0 * ub + squeezing + pushing))
     }
 
-    #[inline]
+    #[inline(always)]
     fn pressed_n(&self, load_n: T) -> T {
         load_n.max(self.nominal.load_n * T::of(LIGHTEST_SHARE))
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_load(&self, state: &mut State<T>, load_n: T) {
         if load_n.value() != state.loaded.load_n.value() {
             state.loaded = self.under(load_n);
@@ -228,12 +242,12 @@ impl<T: Real> Law<T> for Journal<T> {
     #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
         // As the slope forms them, so that a step and its friction share both roots.
-        let e2 = state.eps_squared();
-        self.sliding(&state.loaded, e2.sqrt(), T::ONE - e2, velocity_m_s)
+        let d = T::ONE - state.e2;
+        self.sliding(&state.loaded, state.e2.sqrt(), d, velocity_m_s)
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, state: &mut State<T>, speed_m_s: [T; 3], rate: T, dt_s: T) {
-        self.advance_with(&Rk4, state, speed_m_s, rate, dt_s);
+        self.advance_inline(&Rk4, state, speed_m_s, rate, dt_s);
     }
 }

@@ -22,6 +22,7 @@ pub struct SideBySide<T, const N: usize> {
     eps_tr: [T; N],
     x: [T; N],
     y: [T; N],
+    e2: [T; N],
     kept_x: [T; N],
     kept_y: [T; N],
     clamped: [u32; N],
@@ -51,6 +52,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
             eps_tr: film(|f| f.loaded.eps_tr),
             x: film(|f| f.xy[0]),
             y: film(|f| f.xy[1]),
+            e2: film(|f| f.e2),
             kept_x: film(|f| f.kept[0]),
             kept_y: film(|f| f.kept[1]),
             clamped: core::array::from_fn(|i| films[i].clamped),
@@ -86,6 +88,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
     pub fn film(&self, i: usize) -> State<T> {
         State {
             xy: [self.x[i], self.y[i]],
+            e2: self.e2[i],
             kept: [self.kept_x[i], self.kept_y[i]],
             loaded: self.loaded(i),
             clamped: self.clamped[i],
@@ -97,6 +100,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         let film = self.film(i);
         State {
             xy: film.xy.map(as_kind),
+            e2: as_kind(film.e2),
             kept: film.kept.map(as_kind),
             loaded: Loaded {
                 load_n: as_kind(film.loaded.load_n),
@@ -113,6 +117,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
     pub fn put<S: Real>(&mut self, i: usize, film: &State<S>) {
         self.x[i] = as_kind(film.xy[0]);
         self.y[i] = as_kind(film.xy[1]);
+        self.e2[i] = as_kind(film.e2);
         self.kept_x[i] = as_kind(film.kept[0]);
         self.kept_y[i] = as_kind(film.kept[1]);
         self.clamped[i] = film.clamped;

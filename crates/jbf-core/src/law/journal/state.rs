@@ -24,6 +24,8 @@ impl<T: Real> Loaded<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     pub(super) xy: [T; 2],
+    /// `x^2 + y^2`, as the last step left it.
+    pub(super) e2: T,
     /// What rounding kept out of `xy` so far: without it a single-precision film that creeps,
     /// or takes short steps, stands still.
     pub(super) kept: [T; 2],
@@ -36,24 +38,28 @@ pub struct State<T> {
 impl<T: Real> State<T> {
     /// A state at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
-        let xy = [eps * phi_rad.cos(), eps * phi_rad.sin()];
-        Self {
-            xy,
+        let mut state = Self {
+            xy: [T::ZERO; 2],
+            e2: T::ZERO,
             kept: [T::ZERO; 2],
             loaded,
             clamped: 0,
-        }
+        };
+        state.put([eps * phi_rad.cos(), eps * phi_rad.sin()]);
+        state
+    }
+
+    /// Put the journal somewhere, exactly.
+    pub(super) fn put(&mut self, xy: [T; 2]) {
+        self.xy = xy;
+        self.e2 = xy[0] * xy[0] + xy[1] * xy[1];
+        self.kept = [T::ZERO; 2];
     }
 
     /// Eccentricity ratio.
     #[inline]
     pub fn eps(&self) -> T {
-        self.eps_squared().sqrt()
-    }
-
-    #[inline(always)]
-    pub(super) fn eps_squared(&self) -> T {
-        self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]
+        self.e2.sqrt()
     }
 
     /// `eps cos(phi)` and `eps sin(phi)`.

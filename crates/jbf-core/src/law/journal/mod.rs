@@ -155,6 +155,7 @@ impl<T: Real> Journal<T> {
             law: self,
             loaded: &state.loaded,
             from: state.xy,
+            from_e2: state.e2,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
         let mut way = [-T::ZERO; 2];

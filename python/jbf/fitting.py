@@ -31,7 +31,7 @@ Array = npt.NDArray[np.float64]
 MAX_EVALUATIONS = 60
 MOST_FORGIVEN = 2.0
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
-TRIAL_EVALUATIONS = 4
+TRIAL_EVALUATIONS = 6
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
 """How many of the starting points are given them."""

@@ -235,6 +235,7 @@ mod tests {
                 law: law_film,
                 loaded: &loaded,
                 from,
+                from_e2: D::ZERO,
             };
             agree(&held, [x, y], 0.7);
             let state = [x, y, 0.03, -0.2];

@@ -155,6 +155,7 @@ impl<T: Real> Journal<T> {
             law: self,
             loaded: &state.loaded,
             from: state.xy,
+            from_e2: state.e2,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
         let mut way = [-T::ZERO; 2];
@@ -163,7 +164,7 @@ impl<T: Real> Journal<T> {
     }
 
     /// The end of a step, held inside the bearing.
-    #[inline]
+    #[inline(always)]
     fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];

@@ -277,6 +277,9 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         )
     _place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     trusted = rest | (np.abs(velocity) > SIGN_SIGMA * error)
+    # A contact that bends begins bent where the run begins in motion: noise is none.
+    if n and not trusted[0]:
+        velocity[0] = 0.0
     angle = smooth_path / (radius_m or 1.0)
     if radius_m is None and run.position_m is None and run.angle_rad is not None:
         angle = np.unwrap(run.angle_rad)

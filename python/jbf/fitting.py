@@ -29,7 +29,7 @@ from jbf.starts import with_starts
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
-MOST_FORGIVEN = 1.02
+MOST_FORGIVEN = 2.0
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
 TRIAL_EVALUATIONS = 4
 """Steps given to each starting point before the best goes on alone."""

@@ -54,9 +54,9 @@ def check_rig(rig: Rig, law: str) -> None:
 
 
 def _sizes(rig: Rig) -> _core.BearingSizes | None:
-    """The rig's bearing as the core takes it; None where the rig has none, or no lubricant."""
+    """The rig's bearing as the core takes it; None where the rig has none."""
     b = rig.bearing
-    if b is None or rig.lubricant is None:
+    if b is None:
         return None
     return {
         "radius_m": b.radius_m,
@@ -64,7 +64,8 @@ def _sizes(rig: Rig) -> _core.BearingSizes | None:
         "clearance_m": b.clearance_m,
         "mass_kg": b.mass_kg,
         "count": b.count,
-        "viscosity_pa_s": rig.lubricant.viscosity_pa_s,
+        # A law with a film has been refused by now; any other takes the radius alone.
+        "viscosity_pa_s": 1.0 if rig.lubricant is None else rig.lubricant.viscosity_pa_s,
     }
 
 
@@ -94,7 +95,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
     """The motion that a run imposed on the rig's journal or slider."""
-    return impose(run, None if _sizes(rig) is None or rig.bearing is None else rig.bearing.radius_m)
+    return impose(run, None if rig.bearing is None else rig.bearing.radius_m)
 
 
 def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
@@ -111,12 +112,12 @@ def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
 
 def has_angle(rig: Rig, run: Run) -> bool:
     """True where the run tells the shaft's angle; on a linear axis there is none."""
-    return run.angle_rad is not None and (_sizes(rig) is not None or run.position_m is None)
+    return run.angle_rad is not None and (rig.bearing is not None or run.position_m is None)
 
 
 def has_path(rig: Rig, run: Run) -> bool:
     """True where the run tells how far the drive has gone, in the units of its speed."""
-    return run.position_m is not None or (run.angle_rad is not None and _sizes(rig) is not None)
+    return run.position_m is not None or (run.angle_rad is not None and rig.bearing is not None)
 
 
 def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
@@ -129,10 +130,10 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
                 file=run.path or run.name,
                 column="position_m",
                 problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
-                mend="drop position_m, or give the rig its [bearing] and [lubricant]",
+                mend="drop position_m, or give the rig its [bearing]",
             )
         if "path" in needs and not has_path(rig, run):
-            if _sizes(rig) is not None:
+            if rig.bearing is not None:
                 require(run, "angle_rad", f"the effect {name}")
             require(run, "position_m", f"without a bearing's radius the effect {name}")
 

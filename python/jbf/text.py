@@ -211,8 +211,9 @@ def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
         refused = {e.name: e.refused[law] for e in pages if law in e.refused}
         there = effects_page(e for e in pages if e.name not in refused)
         widest = max(map(len, refused), default=0)
-        named = [line for n, r in refused.items() for line in _hanging(f"{n:<{widest}}  ", r)]
-        return "\n".join([there, "", f"[not with {law}: the law ...]", *named]) if named else there
+        reasons = [x for n, r in refused.items() for x in _hanging(f"{n:<{widest}}  ", r)]
+        head = ["", f"[not with {law}: the law ...]"] if reasons else []
+        return "\n".join([there, *head, *reasons])
     widest = max((len(e.name) for e in pages), default=0)
     lines: list[str] = []
     stage = None

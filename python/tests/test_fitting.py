@@ -122,7 +122,7 @@ def test_comparison_points_at_the_right_axis() -> None:
     for effects, axis in (
         (("coulomb_drag",), "velocity"),
         (("position_ripple",), "angle"),
-        (("sensor_lag",), "acceleration"),
+        (("sensor_lag",), "distance since a reversal"),
     ):
         rig, runs, truth = campaign(61, effects)
         names = [f.axis for f in compare(fit(rig, runs).model, runs).failures]

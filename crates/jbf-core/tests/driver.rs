@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::random::Random;
 use common::table::rows;
 use common::{law, table_4_2, LOAD_N};
 use jbf_core::driver::{follow, trajectory, Excitation, Film, Function, Sampled, Sine, Start};
@@ -257,6 +258,55 @@ fn derivatives_match_differences() {
                 times[i]
             );
         }
+    }
+}
+
+/// Laws far from the thesis's, at any tolerance: every run ends, in numbers.
+#[test]
+fn far_laws_are_followed() {
+    let mut random = Random::new(21);
+    let times: Vec<f64> = (1..50).map(|i| 0.1 * f64::from(i)).collect();
+    let mut out = vec![0.0; times.len()];
+    for round in 0..400 {
+        let p = Parameters {
+            f_m: random.log_uniform(1e-3, 1.0),
+            u_tr_m_s: random.log_uniform(1e-3, 1.0),
+            k0: random.log_uniform(1e3, 1e9),
+            gamma: random.log_uniform(0.1, 1e3),
+        };
+        let bearing = Bearing {
+            mass_kg: random.log_uniform(0.01, 100.0),
+            ..Bearing::THESIS
+        };
+        let load_n = random.log_uniform(5.0, 2000.0);
+        let clock = if random.chance(0.5) {
+            Clock::Journal
+        } else {
+            Clock::Thesis
+        };
+        let amplitude = p.u_tr_m_s * random.log_uniform(0.1, 20.0);
+        let omega = random.log_uniform(0.1, 20.0);
+        let bias = if random.chance(0.5) {
+            0.0
+        } else {
+            amplitude * random.uniform(-1.5, 1.5)
+        };
+        let motion = Sine::with_bias(amplitude, omega, bias).expect("valid");
+        let tolerance = random.log_uniform(1e-9, 1e-2);
+        let name = format!("{round}: {p:?} {load_n} N {clock:?} {motion:?} {tolerance:e}");
+        let full = JournalFull::new(&bearing, load_n, &p, clock).expect("valid");
+        let cost = trajectory(full.reduced(), &motion, &times, tolerance, &mut out).expect("runs");
+        assert!(
+            cost.steps < 1_000_000 && cost.forced == 0,
+            "{name}: {cost:?}"
+        );
+        assert!(out.iter().all(|f| f.is_finite()), "{name}");
+        let cost = trajectory(&full, &motion, &times, tolerance, &mut out).expect("runs");
+        assert!(
+            cost.steps < 1_000_000 && cost.forced == 0,
+            "full {name}: {cost:?}"
+        );
+        assert!(out.iter().all(|f| f.is_finite()), "full {name}");
     }
 }
 

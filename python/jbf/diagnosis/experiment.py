@@ -81,6 +81,5 @@ def _predict(search: Search, effects: tuple[str, ...], run: Run) -> Array:
     rig = search.campaign.rig
     solution = search.solve(frozenset(effects))
     motion = core_motion(rig, run, imposed(rig, run))
-    return chain(rig, search.law, search.clock, solution.effects).predict(
-        solution.values, [motion]
-    )[0]
+    core = chain(rig, search.law, search.clock, solution.effects)
+    return core.predict(solution.values, [motion])[0]

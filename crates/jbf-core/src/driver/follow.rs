@@ -64,6 +64,11 @@ enum Touch {
     Wrong,
 }
 
+/// Eccentricity ratio of a state.
+fn radius<T: Real, const N: usize>(state: &[T; N]) -> f64 {
+    libm::sqrt((state[0] * state[0] + state[1] * state[1]).value())
+}
+
 struct Way<'a, T, F, E, S, const N: usize> {
     film: &'a F,
     excitation: &'a E,
@@ -134,15 +139,19 @@ where
             };
             let stages = rodas5p::step(&system, &linear, &self.state, &seen, dt);
             self.cost.slopes += 7;
-            let [x, y] = [stages.end[0], stages.end[1]];
-            let eps = libm::sqrt((x * x + y * y).value());
-            let depth = (eps - self.loaded.eps_tr.value()).max(0.0);
+            let (eps_here, eps) = (radius(&self.state), radius(&stages.end));
+            let depth = eps - self.loaded.eps_tr.value();
             let error = stages.error();
-            let share = self.goal.share([error[0].value(), error[1].value()], depth);
+            let share = self
+                .goal
+                .share([error[0].value(), error[1].value()], depth, eps);
             let shortest = 1e-14 / clock + 4e-16 * libm::fabs(self.time_s);
-            if !(share <= 1.0 && eps < 1.0) && step_s > shortest {
+            // No step takes more than three quarters of the gap: asperities told to be free hold
+            // nothing back.
+            let sound = share.is_finite() && 1.0 - eps > 0.25 * (1.0 - eps_here);
+            if !(share <= 1.0 && sound) && step_s > shortest {
                 self.cost.rejected += 1;
-                let factor = if share.is_finite() {
+                let factor = if sound {
                     (0.9 * inverse_root(share)).clamp(0.1, 0.9)
                 } else {
                     0.1
@@ -153,6 +162,21 @@ where
             }
             if step_s <= shortest {
                 self.cost.forced += 1;
+                if !sound {
+                    // Nothing left to try: the film waits where it is.
+                    let [x, y] = [self.state[0], self.state[1]];
+                    self.state = self.film.at([x, y]);
+                    let nil = T::ZERO;
+                    self.emit(
+                        &[[x, nil, nil, nil, nil], [y, nil, nil, nil, nil]],
+                        step_s,
+                        to,
+                    );
+                    self.time_s = to;
+                    self.step_s = 1e4 * shortest;
+                    (stale, landing_on_touch) = (true, None);
+                    continue;
+                }
             }
             if let Some(zero) = self.untold_reversal(to, direction) {
                 end = zero;

@@ -9,6 +9,8 @@ const STEP_SHARE: f64 = 4.0;
 /// An error far from the asperities weighs this much of one where they carry the whole load: it
 /// is forgotten in part before they touch.
 const FREE_WEIGHT: f64 = 0.1;
+/// Share of the gap between journal and wall that a step may err by, whatever the tolerance.
+const GAP_SHARE: f64 = 0.01;
 /// Errors of place below this are rounding.
 const ROUNDING: f64 = 2e-14;
 
@@ -50,9 +52,10 @@ impl Goal {
 
     /// An error of place over what is allowed.
     #[inline]
-    pub(super) fn share(&self, error: [f64; 2], depth: f64) -> f64 {
+    pub(super) fn share(&self, error: [f64; 2], depth: f64, eps: f64) -> f64 {
         let size = libm::sqrt(error[0] * error[0] + error[1] * error[1]);
         let weight = (self.steepness * depth).max(self.least);
-        size / (self.tolerance / weight).max(ROUNDING)
+        let allowed = (self.tolerance / weight).min(GAP_SHARE * (1.0 - eps));
+        size / allowed.max(ROUNDING)
     }
 }

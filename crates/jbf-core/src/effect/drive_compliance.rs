@@ -7,6 +7,8 @@
 //! with F set-valued at rest: the journal sticks while the twist torque is below the
 //! sliding friction, and the load cell then sees the twist torque.
 //!
+//! A linear axis is a rotary one of radius 1 m: k is then in N/m, c in N s/m, J in kg.
+//!
 //! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994).
 //! The step is the midpoint rule with the set-valued force solved implicitly (a proximal
 //! step, after Moreau): it sticks, and it does not chatter.
@@ -41,7 +43,8 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
         equation: "J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')",
         source: "Cohn 1998, section 5.1; Harnoy et al. 1994",
         limits:
-            "one spring, one inertia; above the first torsional mode the drive is a chain of them",
+            "one spring, one inertia; above the first torsional mode the drive is a chain of them; \
+             on a linear axis k is in N/m, c in N s/m, J in kg",
         parameters: &[
             Parameter {
                 name: "k_n_m_rad",

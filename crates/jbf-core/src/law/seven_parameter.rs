@@ -87,11 +87,10 @@ impl<T: Real> SevenParameter<T> {
                 state.way = way;
             }
         }
-        state.force_n = if state.way == T::ZERO {
-            state.force_n.max(-level).min(level)
-        } else {
-            level * way
-        };
+        // A spring still bent beyond a level that fell meanwhile is let be: it unbends backwards.
+        if state.way != T::ZERO {
+            state.force_n = level * way;
+        }
     }
 }
 

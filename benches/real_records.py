@@ -1,0 +1,63 @@
+"""Every law in newtons on recordings of real machines: `python benches/real_records.py FOLDER`.
+
+FOLDER holds `emps/run.csv` (a ball-screw axis; its friction is the whole drive force) and
+`tribometer/run.csv` (reciprocating sliding); columns time_s, position_m, velocity_m_s,
+friction_n. The recordings are not ours to ship: without them this says so and does nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import jbf
+import numpy as np
+from jbf.conditioning import impose
+
+MASS_KG, OFFSET_N = 95.1, -3.2
+"""Of the ball-screw axis, from its publication: taken off by hand until effects do it."""
+
+
+def without_inertia(run: jbf.Run) -> jbf.Run:
+    """The friction of a drive force: less the mass's inertia and the sensor's offset."""
+    assert run.friction_n is not None
+    acceleration = impose(run, None).acceleration_m_s2
+    friction = run.friction_n - MASS_KG * acceleration - OFFSET_N
+    return replace(run, friction_n=friction, name=f"{run.name}, inertia taken off")
+
+
+def table(title: str, run: jbf.Run) -> None:
+    """Fit each law and print its RMS, its time and its parameters."""
+    assert run.friction_n is not None
+    print(f"{title}: {len(run)} samples, RMS of the record {np.std(run.friction_n):.3g} N")
+    for law in jbf.laws().values():
+        if law.needs_bearing:
+            continue
+        begun = time.monotonic()
+        fit = jbf.fit(jbf.Rig(), [run], law=law.name)
+        took = time.monotonic() - begun
+        values = ", ".join(f"{n} {p.value:.4g}" for n, p in fit.parameters.items())
+        print(f"  {law.name:16}{fit.rms_n:8.3f} N  {took:5.1f} s  {values}", flush=True)
+
+
+def main() -> int:
+    """Do it."""
+    if len(sys.argv) != 2:
+        print("skipped: name the folder of the recordings: python benches/real_records.py FOLDER")
+        return 0
+    for name in ("emps", "tribometer"):
+        path = Path(sys.argv[1]) / name / "run.csv"
+        if not path.is_file():
+            print(f"skipped: there is no {path}")
+            continue
+        run = jbf.read_run(path)
+        table(name, run)
+        if name == "emps":
+            table(f"{name}, inertia and offset taken off", without_inertia(run))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

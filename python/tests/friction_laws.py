@@ -1,0 +1,135 @@
+"""Friction laws written down a second time, with scipy's integrators, to make data that owes
+nothing to the core."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from jbf import Run
+from scipy.integrate import solve_ivp
+
+Array = npt.NDArray[np.float64]
+Speed = Callable[[float], float]
+
+
+def stroke_speed(amplitude_m: float, omega: float, second: float = 0.37) -> Speed:
+    """Speed (m/s) of two sines that swell from rest: inner loops and several speeds appear."""
+
+    def speed(t: float) -> float:
+        waves = np.cos(omega * t) + 0.6 * np.cos(second * omega * t + 1.0)
+        return float(amplitude_m * omega * min(2.0 * t, 1.0) * waves)
+
+    return speed
+
+
+def _bristle(speed: Speed, t: Array, slope: Callable[[float, float], float]) -> Array:
+    """A state driven by speed from zero, at the times `t`."""
+    found = solve_ivp(
+        lambda s, y: [slope(speed(s), y[0])],
+        (t[0], t[-1]),
+        [0.0],
+        method="LSODA",
+        t_eval=t,
+        rtol=1e-9,
+        atol=1e-12,
+        max_step=float(t[1] - t[0]),
+    )
+    assert found.success
+    return np.asarray(found.y[0])
+
+
+def dahl(speed: Speed, t: Array, *, fc: float, s0: float, exponent: float, fv: float) -> Array:
+    """Dahl with any exponent, N."""
+
+    def slope(v: float, f: float) -> float:
+        u = 1.0 - f / fc * np.sign(v)
+        return float(s0 * v * np.abs(u) ** exponent * np.sign(u))
+
+    v = np.array([speed(x) for x in t])
+    return _bristle(speed, t, slope) + fv * v
+
+
+def lugre(
+    speed: Speed,
+    t: Array,
+    *,
+    fc: float,
+    fs: float,
+    vs: float,
+    s0: float,
+    s1: float,
+    vd: float,
+    fv: float,
+) -> Array:
+    """LuGre in Olsson's form, N."""
+
+    def level(v: float | Array) -> float | Array:
+        return fc + (fs - fc) * np.exp(-((v / vs) ** 2))
+
+    def rate(v: float, z: float) -> float:
+        return float(v - abs(v) * z * s0 / level(v))
+
+    z = _bristle(speed, t, rate)
+    v = np.array([speed(x) for x in t])
+    damped = s1 * np.exp(-((v / vd) ** 2)) * (v - np.abs(v) * z * s0 / level(v))
+    return s0 * z + damped + fv * v
+
+
+def stribeck(
+    speed: Speed, t: Array, *, fc: float, fs: float, vs: float, delta: float, fv: float
+) -> Array:
+    """The Stribeck curve, N."""
+    v = np.array([speed(x) for x in t])
+    return (fc + (fs - fc) * np.exp(-((np.abs(v) / vs) ** delta)) + fv * np.abs(v)) * np.sign(v)
+
+
+def seven(
+    speed: Speed,
+    t: Array,
+    *,
+    kt: float,
+    fc: float,
+    fv: float,
+    fs: float,
+    vs: float,
+    tau: float,
+    gamma: float,
+) -> Array:
+    """The seven-parameter model as a plain machine of two states on a grid of 0.1 ms, N."""
+    dt = 1e-4
+    fine = np.arange(t[0], t[-1] + dt, dt)
+    v = np.array([speed(x) for x in fine])
+    late = np.array([speed(max(x - tau, t[0])) for x in fine])
+    force = np.zeros_like(fine)
+    sliding, bent, at_stop, grown, stuck_for = False, 0.0, fs, fs, 0.0
+    way = 0.0
+    for i in range(len(fine)):
+        part = 1.0 / (1.0 + (late[i] / vs) ** 2)
+        if sliding and np.sign(v[i]) != way:
+            sliding, at_stop, stuck_for, bent = False, grown * part, 0.0, force[i - 1]
+        if not sliding:
+            stuck_for += dt
+            grown = at_stop + (fs - at_stop) * stuck_for / (stuck_for + gamma)
+            bent += kt * v[i] * dt
+            if bent * np.sign(v[i]) >= fc + grown * part:
+                sliding, way = True, np.sign(v[i])
+        force[i] = way * (fc + grown * part) if sliding else bent
+    return np.interp(t, fine, force + fv * v)
+
+
+def record(
+    speed: Speed, t: Array, friction: Array, noise_n: float, seed: int, name: str = "run"
+) -> Run:
+    """A run of a linear axis: position to 0.1 um, speed and friction with noise."""
+    rng = np.random.default_rng(seed)
+    v = np.array([speed(x) for x in t])
+    place = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))))
+    return Run.from_arrays(
+        t,
+        v + 1e-4 * np.max(np.abs(v)) * rng.standard_normal(len(t)),
+        friction + noise_n * rng.standard_normal(len(t)),
+        position_m=np.round(place, 7),
+        name=name,
+    )

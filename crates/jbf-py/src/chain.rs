@@ -2,6 +2,7 @@
 
 use crate::bearing::{refused, Sizes};
 use crate::motion::Motion;
+use crate::share::longest_first;
 use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{run, Bearing, Clock, Dual, ParameterError, Real};
@@ -271,11 +272,11 @@ impl Chain {
                 let jobs: Vec<(usize, usize)> = (0..motions.len())
                     .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
                     .collect();
-                let done: Vec<_> = jobs
-                    .par_iter()
-                    .with_max_len(1)
-                    .map(|&(m, g)| self.slopes(p, groups[g], motions[m]))
-                    .collect::<Result<_, _>>()?;
+                let done = longest_first(
+                    &jobs,
+                    |&(m, _)| motions[m].len(),
+                    |&(m, g)| self.slopes(p, groups[g], motions[m]),
+                )?;
                 let mut out = Vec::with_capacity(motions.len());
                 for (m, parts) in done.chunks(groups.len()).enumerate() {
                     let n = motions[m].len();

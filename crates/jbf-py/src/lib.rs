@@ -8,6 +8,7 @@ mod catalogue;
 mod chain;
 mod curves;
 mod motion;
+mod share;
 mod trajectory;
 
 use pyo3::prelude::*;

@@ -164,7 +164,7 @@ impl<T: Real> Journal<T> {
     }
 
     /// The end of a step, held inside the bearing.
-    #[inline]
+    #[inline(always)]
     fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];

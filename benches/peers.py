@@ -1,0 +1,229 @@
+"""jbf beside the best peers, in one run: `python benches/peers.py FOLDER`.
+
+FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1 and numbalsoda
+(`solvers.py`, `common.py`) for T2 and T3. They are not ours to ship: without FOLDER, a compiler or
+a package, the task is skipped and says so. The folder is copied and built elsewhere.
+
+Peers and jbf take turns, so that a busy machine is busy for both: read ratios, not times.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import importlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import jbf
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+RIG = jbf.Rig.thesis()
+TABLE = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
+STEPS, DT_S, SETS = 50_000, 0.002, 1024
+SPEED = 0.127 * np.sin(0.25 * DT_S * np.arange(STEPS))
+
+Timed = dict[str, Callable[[], float]]
+
+
+def table(title: str, unit: str, peer: str, rounds: int, rows: Timed) -> None:
+    """Time `rows` in turn, and print each beside the row `peer`."""
+    times: dict[str, list[float]] = {name: [] for name in rows}
+    for _ in range(rounds):
+        for name, run in rows.items():
+            times[name].append(run())
+    middle = {name: float(np.median(t)) for name, t in times.items()}
+    print(f"\n{title}\n\n| | median, {unit} | least | {peer} / this, median | least |")
+    print("|---|---|---|---|---|")
+    for name, t in times.items():
+        ratio, least = middle[peer] / middle[name], min(times[peer]) / min(t)
+        print(f"| {name} | {middle[name]:.3g} | {min(t):.3g} | {ratio:.2f} | {least:.2f} |")
+
+
+def clock(work: Callable[[], object], per: float) -> Callable[[], float]:
+    """Seconds that `work` takes times `per`."""
+
+    def timed() -> float:
+        begin = time.perf_counter()
+        work()
+        return (time.perf_counter() - begin) * per
+
+    return timed
+
+
+def skip(task: str, reason: str) -> None:
+    print(f"\n{task}: skipped, {reason}")
+
+
+def library(folder: Path, name: str) -> ctypes.CDLL:
+    return ctypes.CDLL(str(folder / "c" / name))
+
+
+def pointer(array: np.ndarray | None) -> ctypes.c_void_p:
+    return ctypes.c_void_p(None if array is None else array.ctypes.data)
+
+
+def peer_sets(sets: dict[str, np.ndarray]) -> np.ndarray:
+    """The peers' table of a parameter set: one row a number, one column a set."""
+    bearing, lubricant, load = RIG.bearing, RIG.lubricant, RIG.load
+    assert bearing is not None
+    assert lubricant is not None
+    assert load is not None
+    group = bearing.clearance_m**2 / (lubricant.viscosity_pa_s * bearing.length_m**3)
+    load_number = group * load.normal_n / sets["U_tr_m_s"]
+    eps_tr = np.array([jbf._core.transition_eccentricity(f) for f in load_number])
+    ratio = bearing.radius_m * bearing.clearance_m / bearing.length_m**2
+    rows = [load_number, eps_tr, sets["K0"], sets["f_m"], sets["gamma"]]
+    rows += [np.full(len(eps_tr), ratio), sets["U_tr_m_s"], sets["U_tr_m_s"] / bearing.radius_m]
+    return np.ascontiguousarray(rows)
+
+
+def single(folder: Path, rounds: int) -> None:
+    """T1: one step after the other, from Rust and from C."""
+    build = ["cargo", "build", "--release", "--quiet", "-p", "jbf-benches", "--bin", "t1"]
+    subprocess.run(build, check=True, cwd=HERE.parent)
+    target = Path(os.environ.get("CARGO_TARGET_DIR", HERE.parent / "target"))
+    ours = subprocess.Popen(
+        [target / "release" / "t1"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+
+    def ask(task: str) -> float:
+        assert ours.stdin is not None
+        assert ours.stdout is not None
+        ours.stdin.write(task + "\n")
+        ours.stdin.flush()
+        return float(ours.stdout.readline().split()[0])
+
+    one = peer_sets({name: np.array([value]) for name, value in TABLE.items()})
+    halves = 0.127 * np.sin(0.25 * 0.5 * DT_S * np.arange(2 * STEPS + 1))
+    kinds = {"f64": (np.float64, ctypes.c_double, "d"), "f32": (np.float32, ctypes.c_float, "f")}
+
+    def theirs(file: str, method: str, kind: str) -> Callable[[], float]:
+        dtype, real, suffix = kinds[kind]
+        speed = np.ascontiguousarray(halves if method == "rk4" else halves[: 2 * STEPS : 2], dtype)
+        out = np.empty(STEPS, dtype)
+        kernel = getattr(library(folder, file), f"{method}_{suffix}")
+        dt = real(DT_S)
+        return clock(
+            lambda: kernel(pointer(one), STEPS, dt, pointer(speed), pointer(out)), 1e9 / STEPS
+        )
+
+    for method in ("euler", "rk4"):
+        for kind in ("f64", "f32"):
+            rows: Timed = {
+                "C": theirs("libpeers.so", method, kind),
+                "C, -ffast-math": theirs("libpeers_fast.so", method, kind),
+                "jbf": lambda task=f"{method} {kind}": ask(task),
+            }
+            table(f"T1, one step, {method}, {kind}", "ns/step", "C", 5 * rounds, rows)
+    assert ours.stdin is not None
+    ours.stdin.close()
+    ours.wait()
+
+
+def batch(folder: Path, rounds: int) -> None:
+    """T1, many parameter sets: `jbf.batch` from the wheel, and C with OpenMP and SIMD."""
+    random = np.random.default_rng(1)
+    sets = {name: value * random.uniform(0.8, 1.2, SETS) for name, value in TABLE.items()}
+    numbers, kernels = peer_sets(sets), library(folder, "libpeers_simd.so")
+    kernels.omp_set_num_threads(os.cpu_count())
+    per = 1e9 / (STEPS * SETS)
+    for kind, dtype, real, suffix in (
+        ("f64", np.float64, ctypes.c_double, "d"),
+        ("f32", np.float32, ctypes.c_float, "f"),
+    ):
+        speed, out = SPEED.astype(dtype), np.zeros((STEPS, SETS), dtype)
+        sums, kernel = np.zeros(SETS), getattr(kernels, f"batch_{suffix}")
+
+        def theirs(store: bool, kernel=kernel, speed=speed, out=out, sums=sums, real=real) -> None:
+            rest = (out, None, None) if store else (None, speed, sums)
+            kernel(pointer(numbers), SETS, STEPS, real(DT_S), pointer(speed), *map(pointer, rest))
+
+        def stored(speed=speed, out=out, dtype=dtype) -> None:
+            jbf.batch(RIG, speed, DT_S, **sets, dtype=dtype, out=out)
+
+        def squares(speed=speed, dtype=dtype) -> None:
+            jbf.batch(RIG, speed, DT_S, **sets, dtype=dtype, data=speed)
+
+        rows = {"C": clock(lambda: theirs(True), per), "jbf": clock(stored, per)}
+        table(f"T1, {SETS} sets, {kind}, stored", "ns/step/set", "C", rounds, rows)
+        rows = {"C": clock(lambda: theirs(False), per), "jbf": clock(squares, per)}
+        table(f"T1, {SETS} sets, {kind}, sum of squares", "ns/step/set", "C", rounds, rows)
+
+
+def solvers(folder: Path, rounds: int) -> None:
+    """T2 and T3: eight motions to an error of the friction, and numbalsoda at its best settings."""
+    if not hasattr(jbf, "trajectories"):
+        return skip("T2 and T3", "jbf has no trajectories")
+    sys.path.insert(0, str(folder))
+    try:
+        peers = importlib.import_module("solvers")
+    except ImportError as error:
+        return skip("T2 and T3", f"{error}: pip install numba numbalsoda (it needs gfortran)")
+    best = {2: dict(rtol=6e-7, atol=6e-9), 4: dict(rtol=1e-7, atol=1e-6)}
+    for order, model, wanted in ((2, "journal", 1e-6), (4, "journal_full", 1e-5)):
+        references = peers.reference(order)
+        runs = []
+        for w in peers.WS:
+            runs.append((np.concatenate(([0.0], peers.tgrid(w)[1])), (peers.A, w, 0.0)))
+        start = dict(eps=float(peers.PV0[1]), phi_rad=0.01)
+
+        def ours(tolerance: float, model=model, runs=runs, start=start) -> list[np.ndarray]:
+            done = jbf.trajectories(RIG, TABLE, runs, model=model, tolerance=tolerance, **start)
+            return [d.friction_coefficient for d in done]
+
+        def error(found: list[np.ndarray], references=references) -> float:
+            worst = 0.0
+            for w, f, eps in zip(peers.WS, found, references, strict=True):
+                expected = peers.fric(peers.PV0, eps, peers.tgrid(w)[1], w)
+                worst = max(worst, float(np.abs(f[1:] - expected).max()))
+            return worst
+
+        def theirs(order=order) -> list[np.ndarray]:
+            return peers.run_all(parallel[order], **best[order])
+
+        parallel = {order: peers.numbalsoda_par(order)}
+        passing = [t for t in np.geomspace(wanted * 30, wanted / 30, 41) if error(ours(t)) < wanted]
+        tolerance = float(passing[0]) if passing else wanted
+        print(f"\nT{order // 2 + 1}: largest friction error wanted {wanted:g}")
+        print(f"numbalsoda {best[order]}: {peers.err_of(theirs(), references):.1e}")
+        for asked in (tolerance, wanted):
+            print(f"jbf, tolerance {asked:.2g}: {error(ours(asked)):.1e}")
+        rows: Timed = {
+            "numbalsoda, 2 threads": clock(theirs, 1e3),
+            "jbf, as asked": clock(lambda: ours(wanted), 1e3),
+            "jbf, cheapest passing": clock(lambda: ours(tolerance), 1e3),
+        }
+        table(f"T{order // 2 + 1}, 8 runs", "ms", "numbalsoda, 2 threads", 5 * rounds, rows)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, nargs="?", help="where the peers are")
+    parser.add_argument("--rounds", type=int, default=5, help="turns of the longest task")
+    asked = parser.parse_args()
+    if asked.folder is None or not (asked.folder / "c" / "kern.h").is_file():
+        return skip("All", f"no peers in {asked.folder}: give the folder that holds c/kern.h")
+    with tempfile.TemporaryDirectory() as temporary:
+        copy = Path(temporary) / "peers"
+        shutil.copytree(asked.folder, copy, ignore=shutil.ignore_patterns("target", "venv"))
+        subprocess.run(["chmod", "-R", "u+w", str(copy)], check=True)
+        files = ["libpeers.so", "libpeers_fast.so", "libpeers_simd.so"]
+        if shutil.which("gcc") is None or shutil.which("make") is None:
+            skip("T1", "gcc and make are needed")
+        else:
+            subprocess.run(["make", "-s", "-C", str(copy / "c"), *files], check=True)
+            single(copy, asked.rounds)
+            batch(copy, asked.rounds)
+        solvers(copy, asked.rounds)
+
+
+if __name__ == "__main__":
+    main()

@@ -76,26 +76,37 @@ impl<T: Real> Film<'_, T> {
         }
     }
 
-    /// The slope at `e2 = x^2 + y^2`, well between 0 and 1; `one` is one, or no number where the
-    /// slope shall be none.
     #[inline(always)]
     fn inside(&self, x: T, y: T, e2: T, ub: T, one: T) -> [T; 2] {
-        let fb = self.loaded.load_number;
-        let d = T::ONE - e2;
-        let (e, root) = (e2.sqrt(), d.sqrt());
-        let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
-        let inverse = one / (e2 * (d * determinant));
-        let stiff = d * d * d * inverse;
-        // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
-        let along = (fb * x) * d * determinant * inverse * e;
-        let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
-        let push = along - self.law.asperity_load(e, self.loaded.eps_tr) - across;
-        // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
-        let radial = push * (stiff * e * root);
-        let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
-        let lag =
-            (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
-        let turn = swing - lag;
-        [radial * x - turn * y, radial * y + turn * x]
+        let load = |e| self.law.asperity_load(e, self.loaded.eps_tr);
+        slope(self.loaded.load_number, [x, y], e2, load, ub, one)
     }
+}
+
+/// The slope at `e2 = x^2 + y^2`, well between 0 and 1, of a film whose asperities carry
+/// `asperity_load` at an eccentricity; `one` is one, or no number where the slope shall be none.
+#[inline(always)]
+pub(super) fn slope<T: Real>(
+    fb: T,
+    [x, y]: [T; 2],
+    e2: T,
+    asperity_load: impl FnOnce(T) -> T,
+    ub: T,
+    one: T,
+) -> [T; 2] {
+    let d = T::ONE - e2;
+    let (e, root) = (e2.sqrt(), d.sqrt());
+    let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
+    let inverse = one / (e2 * (d * determinant));
+    let stiff = d * d * d * inverse;
+    // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
+    let along = (fb * x) * d * determinant * inverse * e;
+    let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
+    let push = along - asperity_load(e) - across;
+    // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
+    let radial = push * (stiff * e * root);
+    let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
+    let lag = (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
+    let turn = swing - lag;
+    [radial * x - turn * y, radial * y + turn * x]
 }

@@ -301,17 +301,13 @@ where
 
     #[inline]
     fn hand_over(&mut self, xy: [T; 2], time_s: f64) {
-        let eps = (xy[0] * xy[0] + xy[1] * xy[1]).sqrt();
+        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
         let velocity_m_s = self.excitation.velocity_m_s(time_s);
-        let sliding = self.film.journal().sliding(
-            &self.loaded,
-            eps,
-            (T::ONE - eps) * (T::ONE + eps),
-            T::of(velocity_m_s),
-        );
+        let journal = self.film.journal();
+        let sliding = journal.sliding(&self.loaded, e2, T::of(velocity_m_s));
         let sample = Sample {
             xy,
-            eps,
+            eps: e2.sqrt(),
             coefficient: sliding.coefficient(T::of(velocity_m_s.sign())),
         };
         (self.sink)(self.next, &sample);

@@ -139,7 +139,7 @@ impl<T: Real> System<T, 2> for SmoothFilm<T> {
             let touch = e - self.eps_tr;
             self.k0 * touch * touch
         };
-        slope(self.load_number, [x, y], x * x + y * y, load, ub, T::ONE)
+        slope(self.load_number, [x, y], x * x + y * y, load, ub)
     }
 }
 

@@ -46,7 +46,7 @@ macro_rules! signal_chain {
             }
 
             /// Factor on the film's clock.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn film_rate(&self, states: &States<T>) -> T {
                 let mut rate = T::ONE;
                 $(if let (Some(e), Some(s)) = (&self.$film, &states.$film) {

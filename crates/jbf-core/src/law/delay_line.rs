@@ -33,7 +33,7 @@ impl<T: Real> DelayLine<T> {
     }
 
     /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
         let spacing = delay_s.value() / (POINTS - 4) as f64;
         // The newest point stands for now; it moves on until it is far enough from the last.
@@ -51,7 +51,7 @@ impl<T: Real> DelayLine<T> {
     }
 
     /// The signal `delay_s` ago; zero of an empty line.
-    #[inline]
+    #[inline(always)]
     pub(super) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
         let mut at = self.newest;

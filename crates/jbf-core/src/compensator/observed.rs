@@ -6,7 +6,7 @@
 //! ```text
 //! F_hat = (level + c) dir + smooth + d
 //! v' = -a v + b (u - F_hat), set-valued at rest;  d' = 0
-//! corrected by l (measured - predicted) from the angle alone, three poles at -w
+//! corrected by l (measured - predicted) from the angle alone, poles at -w, -w, -max(a, w)
 //! c' = mu d dir  (and d falls by as much: what keeps its sign with the motion is friction)
 //! ```
 //!
@@ -44,6 +44,11 @@ pub struct Settings {
     pub approach_1_s: f64,
     /// Share of the level that is sent out where the shaft is slow; below one it cannot hunt.
     pub breakaway: f64,
+    /// Feedback beside the control law's: the compensated plant is known, and bears more.
+    /// Of the angle's error, V/rad.
+    pub stiffer_v_rad: f64,
+    /// Of the speed's error, V s/rad.
+    pub stiffer_v_s_rad: f64,
     /// What the control law itself feeds forward of the wanted speed, V s/rad.
     pub law_forward_v_s_rad: f64,
     /// Time step of the loop, s.
@@ -75,6 +80,8 @@ pub struct Observed<T, M> {
     inverse_slow: T,
     approach_1_s: T,
     breakaway: T,
+    stiffer_v_rad: T,
+    stiffer_v_s_rad: T,
     speed_v_s_rad: T,
     acceleration_v_s2_rad: T,
     dt_s: T,
@@ -118,12 +125,13 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
                 "must be zero or positive, and finite",
             )?;
         }
-        check(
-            s.law_forward_v_s_rad.is_finite(),
-            "law_forward_v_s_rad",
-            s.law_forward_v_s_rad,
-            "must be finite",
-        )?;
+        for (name, value) in [
+            ("stiffer_v_rad", s.stiffer_v_rad),
+            ("stiffer_v_s_rad", s.stiffer_v_s_rad),
+            ("law_forward_v_s_rad", s.law_forward_v_s_rad),
+        ] {
+            check(value.is_finite(), name, value, "must be finite")?;
+        }
         check(
             s.learning_1_s * s.dt_s < 1.0,
             "learning_1_s",
@@ -132,7 +140,12 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         )?;
         let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
         let gain = s.input_rad_s2_v / s.damping_1_s * fall;
-        let correct = poles(1.0 - fall, gain, s.dt_s, libm::exp(-s.bandwidth_rad_s * s.dt_s));
+        let correct = poles(
+            1.0 - fall,
+            gain,
+            s.dt_s,
+            libm::exp(-s.bandwidth_rad_s * s.dt_s),
+        );
         check(
             correct.iter().all(|g| g.is_finite()),
             "bandwidth_rad_s",
@@ -151,6 +164,8 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
             inverse_slow: T::of(1.0 / s.slow_rad_s),
             approach_1_s: T::of(s.approach_1_s),
             breakaway: T::of(s.breakaway),
+            stiffer_v_rad: T::of(s.stiffer_v_rad),
+            stiffer_v_s_rad: T::of(s.stiffer_v_s_rad),
             speed_v_s_rad: T::of(s.damping_1_s / s.input_rad_s2_v - s.law_forward_v_s_rad),
             acceleration_v_s2_rad: T::of(1.0 / s.input_rad_s2_v),
             dt_s: T::of(s.dt_s),
@@ -187,18 +202,22 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     }
 }
 
-/// Gains that place the three poles of the sampled observer at `p`: Ackermann's formula for
-/// angle, speed and disturbance, seen through the angle after each step.
+/// Gains that place the poles of the sampled observer, two at `p` and the third where the plant's
+/// own pole is, or at `p` too where that is faster: Ackermann's formula for angle, speed and
+/// disturbance, seen through the angle after each step. A pole slower than the plant's own would
+/// make the first gain negative, and a stuck observer would run away.
 fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
     let h = 0.5 * dt_s;
     // The prediction: x + h (v + v'), v' = keep v - gain d, d.
     let (a12, a13) = (h * (1.0 + keep), -h * gain);
-    // phi(A) = (A - p)^3 for the upper triangular A = [1 a12 a13; 0 keep -gain; 0 0 1].
-    let m = [
-        [1.0 - p, a12, a13],
-        [0.0, keep - p, -gain],
-        [0.0, 0.0, 1.0 - p],
-    ];
+    // phi(A) = (A - p)^2 (A - own) for the upper triangular A = [1 a12 a13; 0 keep -gain; 0 0 1].
+    let less = |p: f64| {
+        [
+            [1.0 - p, a12, a13],
+            [0.0, keep - p, -gain],
+            [0.0, 0.0, 1.0 - p],
+        ]
+    };
     let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]| {
         let mut z = [[0.0; 3]; 3];
         for (i, row) in z.iter_mut().enumerate() {
@@ -208,7 +227,7 @@ fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
         }
         z
     };
-    let phi = product(&product(&m, &m), &m);
+    let phi = product(&product(&less(p), &less(p)), &less(p.min(keep)));
     // Rows C A, C A^2, C A^3 of what is seen; their solution against (0, 0, 1).
     let a = [[1.0, a12, a13], [0.0, keep, -gain], [0.0, 0.0, 1.0]];
     let a2 = product(&a, &a);
@@ -303,7 +322,9 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         };
         let friction_v = signed_v + state.friction.smooth_v + state.learned.rest_v;
         let forward_v = self.speed_v_s_rad * sense.wanted_rad_s
-            + self.acceleration_v_s2_rad * sense.wanted_rad_s2;
+            + self.acceleration_v_s2_rad * sense.wanted_rad_s2
+            - self.stiffer_v_rad * sense.error
+            - self.stiffer_v_s_rad * (v - sense.wanted_rad_s);
         Answer {
             sum_v: friction_v + forward_v,
             friction_v,

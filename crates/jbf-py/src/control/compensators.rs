@@ -144,6 +144,8 @@ pub struct ObservedSpec {
     slow_rad_s: f64,
     approach_1_s: f64,
     breakaway: f64,
+    stiffer_v_rad: f64,
+    stiffer_v_s_rad: f64,
     law_forward_v_s_rad: f64,
     start: (f64, f64),
 }
@@ -186,6 +188,8 @@ impl ObservedSpec {
             slow_rad_s: self.slow_rad_s,
             approach_1_s: self.approach_1_s,
             breakaway: self.breakaway,
+            stiffer_v_rad: self.stiffer_v_rad,
+            stiffer_v_s_rad: self.stiffer_v_s_rad,
             law_forward_v_s_rad: self.law_forward_v_s_rad,
             dt_s,
         }

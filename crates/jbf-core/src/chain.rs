@@ -51,9 +51,41 @@ impl<T: Real, S> State<T, S> {
     pub fn journal(&self) -> &JournalMotion<T> {
         &self.journal
     }
+
+    /// The commanded motion that the chain was last brought to.
+    pub fn motion(&self) -> &Motion<T> {
+        &self.motion
+    }
+}
+
+/// What resists the commanded side, N a bearing: `jump sgn(v) + smooth`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt<T> {
+    /// The part that takes the sign of the motion, unsigned; at rest it holds up to this.
+    pub jump_n: T,
+    /// The rest, signed.
+    pub smooth_n: T,
 }
 
 impl<T: Real, L: Law<T>> Chain<T, L> {
+    /// What resists whoever moves the shaft: friction itself, or behind a soft drive its spring.
+    #[inline]
+    pub fn felt(&self, state: &State<T, L::State>) -> Felt<T> {
+        match self
+            .effects
+            .transmitted_n(&state.effects, &state.motion, &self.rig)
+        {
+            Some(smooth_n) => Felt {
+                jump_n: T::ZERO,
+                smooth_n,
+            },
+            None => Felt {
+                jump_n: state.jump_n,
+                smooth_n: state.force_n - state.jump_n * state.journal.direction,
+            },
+        }
+    }
+
     /// The state at the first sample of a run.
     pub fn start(&self, motion: &Motion<T>) -> State<T, L::State> {
         let journal = JournalMotion::from(motion);

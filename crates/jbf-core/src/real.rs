@@ -43,6 +43,16 @@ pub trait Real:
     fn of(value: f64) -> Self;
     /// The value, without derivatives.
     fn value(self) -> f64;
+    /// A whole number; on a target without double precision no detour through it.
+    #[inline]
+    fn from_i32(value: i32) -> Self {
+        Self::of(f64::from(value))
+    }
+    /// The largest whole number that is not above the value; the nearest `i32` where none fits.
+    #[inline]
+    fn floor_i32(self) -> i32 {
+        libm::floor(self.value()) as i32
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Exponential.
@@ -121,6 +131,19 @@ macro_rules! real {
             #[inline(always)]
             fn value(self) -> f64 {
                 self as f64
+            }
+            #[inline(always)]
+            fn from_i32(value: i32) -> Self {
+                value as $t
+            }
+            #[inline(always)]
+            fn floor_i32(self) -> i32 {
+                let whole = self as i32;
+                whole.saturating_sub(i32::from((whole as $t) > self))
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                <$t>::is_finite(self)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {

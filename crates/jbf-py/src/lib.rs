@@ -6,6 +6,7 @@ mod batch;
 mod bearing;
 mod catalogue;
 mod chain;
+mod control;
 mod curves;
 mod motion;
 mod share;
@@ -26,5 +27,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
+    m.add_function(wrap_pyfunction!(control::control_reference, m)?)?;
+    m.add_function(wrap_pyfunction!(control::control_run, m)?)?;
     Ok(())
 }

@@ -161,4 +161,12 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             time_s: to.time_s,
         }
     }
+
+    #[inline]
+    fn transmitted_n(&self, state: &State<T>, motion: &Motion<T>, rig: &Rig<T>) -> T {
+        let twist = motion.angle_rad - state.angle_rad;
+        let slip = motion.velocity_m_s / rig.radius_m - state.speed_rad_s;
+        (self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip)
+            / (rig.count * rig.radius_m)
+    }
 }

@@ -68,6 +68,8 @@ pub trait Drive<T: Real>: Effect<T> {
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
+    /// The force that the commanded side feels, as a force on one bearing, N.
+    fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> T;
 }
 
 /// Changes the speed that the film feels (its viscosity).

@@ -35,6 +35,19 @@ macro_rules! signal_chain {
                 JournalMotion::from(to)
             }
 
+            /// What a soft drive hands on to the commanded side, N a bearing.
+            pub(crate) fn transmitted_n(
+                &self,
+                states: &States<T>,
+                motion: &Motion<T>,
+                rig: &Rig<T>,
+            ) -> Option<T> {
+                $(if let (Some(e), Some(s)) = (&self.$drive, &states.$drive) {
+                    return Some(e.transmitted_n(s, motion, rig));
+                })*
+                None
+            }
+
             /// Factor on the speed that the film feels.
             #[inline(always)]
             pub(crate) fn lubricant(&self, states: &States<T>, journal: &JournalMotion<T>) -> T {

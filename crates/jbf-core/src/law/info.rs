@@ -46,7 +46,7 @@ impl Info {
 }
 
 /// A law of the catalogue: built from a list of values, whatever it is.
-pub trait Named<T: Real>: Law<T> + Copy + Send + Sync {
+pub trait Named<T: Real>: Law<T> + Copy + Send + Sync + 'static {
     /// The page in the catalogue.
     const INFO: Info;
 

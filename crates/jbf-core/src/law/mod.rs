@@ -45,7 +45,7 @@ impl<T: Real> Sliding<T> {
 /// A friction law: configuration here, what changes in `State`.
 pub trait Law<T: Real> {
     /// What the law remembers.
-    type State: Copy;
+    type State: Copy + Send + 'static;
 
     /// True where the law bends before it slides: [`Law::bend`] then takes the place of the
     /// sign of the motion.

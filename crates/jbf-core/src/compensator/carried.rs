@@ -1,0 +1,125 @@
+//! A friction model as a compensator carries it: moved by the shaft's speed, it gives the
+//! friction in volts, in the part that takes the sign of the motion and the rest.
+
+use crate::chain::{self, Chain};
+use crate::law::Law;
+use crate::motion::Motion;
+use crate::real::Real;
+
+/// Friction in volts: `level sgn(v) + smooth`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction<T> {
+    /// Unsigned; at rest friction holds up to this.
+    pub level_v: T,
+    /// Signed.
+    pub smooth_v: T,
+}
+
+/// A friction model in a loop.
+pub trait Carried<T: Real> {
+    /// What the model remembers.
+    type State: Copy;
+
+    /// The model on a shaft that has stood still.
+    fn start(&self) -> Self::State;
+
+    /// Move on by `dt_s` to a speed (rad/s) and an angle (rad).
+    fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
+
+    /// Friction at the speed that the model was last moved to.
+    fn friction(&self, state: &Self::State) -> Friction<T>;
+}
+
+/// A law alone, without effects: the smallest and fastest. A law with a bristle is taken as if
+/// it slid at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Bare<T, L> {
+    /// The law.
+    pub law: L,
+    /// Journal radius, m.
+    pub radius_m: T,
+    /// What one newton of friction on one bearing is in volts.
+    pub volts_per_n: T,
+    /// Load on one bearing, N.
+    pub load_n: T,
+}
+
+/// A law's state with the speed it was last given.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<T, S> {
+    law: S,
+    velocity_m_s: T,
+}
+
+impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
+    type State = Moving<T, L::State>;
+
+    fn start(&self) -> Self::State {
+        Moving {
+            law: self.law.start(self.load_n),
+            velocity_m_s: T::ZERO,
+        }
+    }
+
+    #[inline]
+    fn advance(&self, state: &mut Self::State, velocity_rad_s: T, _angle_rad: T, dt_s: T) {
+        let before = state.velocity_m_s.abs();
+        state.velocity_m_s = velocity_rad_s * self.radius_m;
+        let now = state.velocity_m_s.abs();
+        let middle = (before + now) * T::of(0.5);
+        self.law
+            .advance(&mut state.law, [before, middle, now], T::ONE, dt_s);
+    }
+
+    #[inline]
+    fn friction(&self, state: &Self::State) -> Friction<T> {
+        let sliding = self.law.friction(&state.law, state.velocity_m_s);
+        let volts = self.volts_per_n * self.law.pressed_n(self.load_n);
+        Friction {
+            level_v: sliding.level * volts,
+            smooth_v: sliding.viscous * volts,
+        }
+    }
+}
+
+/// A whole chain: a law with the effects of a fitted model.
+#[derive(Clone, Copy, Debug)]
+pub struct Whole<T: Real, L> {
+    /// The chain.
+    pub chain: Chain<T, L>,
+    /// What one newton of friction on one bearing is in volts.
+    pub volts_per_n: T,
+    /// Load on one bearing, N.
+    pub load_n: T,
+}
+
+impl<T: Real, L: Law<T>> Carried<T> for Whole<T, L> {
+    type State = chain::State<T, L::State>;
+
+    fn start(&self) -> Self::State {
+        self.chain.start(&Motion::at_rest(self.load_n))
+    }
+
+    #[inline]
+    fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T) {
+        let velocity_m_s = velocity_rad_s * self.chain.rig.radius_m;
+        let change = velocity_m_s - state.motion().velocity_m_s;
+        let to = Motion {
+            time_s: state.motion().time_s + dt_s,
+            velocity_m_s,
+            acceleration_m_s2: change / dt_s,
+            angle_rad,
+            load_n: self.load_n,
+        };
+        self.chain.step(state, &to, dt_s);
+    }
+
+    #[inline]
+    fn friction(&self, state: &Self::State) -> Friction<T> {
+        let felt = self.chain.felt(state);
+        Friction {
+            level_v: felt.jump_n * self.volts_per_n,
+            smooth_v: felt.smooth_n * self.volts_per_n,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Friction compensators, one a file: from what the loop senses to the voltage that shall cancel
+//! friction. Configuration here, what changes in `State`; [`crate::controller`] puts one into a
+//! loop.
+
+pub mod carried;
+pub mod coulomb;
+pub mod learning;
+pub mod observed;
+pub mod repetitive;
+pub mod table;
+
+pub use carried::{Bare, Carried, Friction};
+pub use coulomb::Coulomb;
+pub use learning::Learning;
+pub use observed::Observed;
+pub use repetitive::Repetitive;
+pub use table::Table;
+
+use crate::real::Real;
+
+/// What a compensator is told at each step.
+#[derive(Clone, Copy, Debug)]
+pub struct Sense<T> {
+    /// Angle since the start, rad.
+    pub angle_rad: T,
+    /// Speed estimate, rad/s.
+    pub velocity_rad_s: T,
+    /// What is controlled minus its reference, rad or rad/s.
+    pub error: T,
+    /// Speed that the reference asks for, rad/s.
+    pub wanted_rad_s: T,
+    /// Acceleration that the reference asks for, rad/s^2; zero where it is not known.
+    pub wanted_rad_s2: T,
+    /// Output of the control law before compensation, V.
+    pub base_v: T,
+    /// False while the loop is saturated or blind: nothing may be learned then.
+    pub may_learn: bool,
+}
+
+/// A compensator's answer, in parts for logging.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Answer<T> {
+    /// Voltage to add to the control law's, V.
+    pub sum_v: T,
+    /// Friction that the compensator believes in, with the sign of the motion, V.
+    pub friction_v: T,
+    /// The part of it that an observer added to a model, V.
+    pub correction_v: T,
+    /// Voltage that is not friction: what the reference's motion asks for, V.
+    pub forward_v: T,
+    /// Up to two learned numbers; their meaning is the compensator's.
+    pub learned: [T; 2],
+}
+
+/// A friction compensator.
+pub trait Compensator<T: Real> {
+    /// What changes while it runs.
+    type State: Copy;
+
+    /// The state at the start of a run. It is also the reset.
+    fn start(&self) -> Self::State;
+
+    /// A compensator with an observer of its own replaces the loop's speed estimate. `moved_rad`
+    /// is the shaft's motion since the step before, `applied_v` the voltage that was applied
+    /// meanwhile; `blind` where the encoder is not to be believed.
+    #[inline]
+    fn observe(
+        &self,
+        state: &mut Self::State,
+        velocity_rad_s: T,
+        moved_rad: T,
+        applied_v: T,
+        blind: bool,
+    ) -> T {
+        let _ = (state, moved_rad, applied_v, blind);
+        velocity_rad_s
+    }
+
+    /// One step.
+    fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
+}
+
+/// No compensation: the control law alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoCompensation;
+
+impl<T: Real> Compensator<T> for NoCompensation {
+    type State = ();
+
+    fn start(&self) {}
+
+    #[inline]
+    fn step(&self, _state: &mut (), _sense: &Sense<T>) -> Answer<T> {
+        Answer {
+            sum_v: T::ZERO,
+            friction_v: T::ZERO,
+            correction_v: T::ZERO,
+            forward_v: T::ZERO,
+            learned: [T::ZERO; 2],
+        }
+    }
+}

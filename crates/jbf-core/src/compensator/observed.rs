@@ -1,0 +1,336 @@
+//! A friction model corrected by an observer: what chapter 7 of the thesis asks for.
+//!
+//! The model (the film, with whatever effects a fit gave it) says what friction is to be expected;
+//! an observer of the whole plant says what is left:
+//!
+//! ```text
+//! F_hat = (level + c) dir + smooth + d
+//! v' = -a v + b (u - F_hat), set-valued at rest;  d' = 0
+//! corrected by l (measured - predicted) from the angle alone, poles at -w, -w, -max(a, w)
+//! c' = mu d dir  (and d falls by as much: what keeps its sign with the motion is friction)
+//! ```
+//!
+//! The observer sticks as the plant does, so that rest teaches nothing that is not so. The
+//! compensator sends out F_hat with `dir` the direction that the motion is wanted in where the
+//! shaft is slow, and what the reference's motion asks of the plant.
+//!
+//! Source: extended state observers (Han 1995; Gao 2003); disturbance observers (Ohnishi 1987);
+//! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
+//! chapter 7.
+
+use super::carried::{Carried, Friction};
+use super::{Answer, Compensator, Sense};
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// Settings of [`Observed`], in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The plant's damping `a`, 1/s.
+    pub damping_1_s: f64,
+    /// The plant's input gain `b`, rad/s^2/V.
+    pub input_rad_s2_v: f64,
+    /// Poles of the observer, rad/s.
+    pub bandwidth_rad_s: f64,
+    /// Rate at which a lasting correction is taken for friction, 1/s.
+    pub learning_1_s: f64,
+    /// Most that the level may be corrected by, V, either way.
+    pub level_limit_v: f64,
+    /// Most that the rest may be, V, either way.
+    pub rest_limit_v: f64,
+    /// Speed below which the shaft counts as slow, rad/s: some times the noise of the estimate.
+    pub slow_rad_s: f64,
+    /// What an error of angle asks for in speed, 1/s; zero in velocity control.
+    pub approach_1_s: f64,
+    /// Share of the level that is sent out where the shaft is slow; below one it cannot hunt.
+    pub breakaway: f64,
+    /// Feedback beside the control law's: the compensated plant is known, and bears more.
+    /// Of the angle's error, V/rad.
+    pub stiffer_v_rad: f64,
+    /// Of the speed's error, V s/rad.
+    pub stiffer_v_s_rad: f64,
+    /// What the control law itself feeds forward of the wanted speed, V s/rad.
+    pub law_forward_v_s_rad: f64,
+    /// Time step of the loop, s.
+    pub dt_s: f64,
+}
+
+/// The learned corrections: what is worth keeping over a power cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Learned<T> {
+    /// Correction of the level, V.
+    pub level_v: T,
+    /// What has no sign of the motion, V.
+    pub rest_v: T,
+}
+
+/// The compensator.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed<T, M> {
+    /// The friction model.
+    pub model: M,
+    keep: T,
+    gain: T,
+    correct: [T; 3],
+    learning: T,
+    level_limit_v: T,
+    rest_limit_v: T,
+    slow_rad_s: T,
+    inverse_slow: T,
+    approach_1_s: T,
+    breakaway: T,
+    stiffer_v_rad: T,
+    stiffer_v_s_rad: T,
+    speed_v_s_rad: T,
+    acceleration_v_s2_rad: T,
+    dt_s: T,
+    begin: Learned<T>,
+}
+
+/// Model, observer and what is learned, now.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T, S> {
+    model: S,
+    friction: Friction<T>,
+    velocity_rad_s: T,
+    slip_rad: T,
+    direction: T,
+    /// What has been learned.
+    pub learned: Learned<T>,
+}
+
+impl<T: Real, M: Carried<T>> Observed<T, M> {
+    /// A model and settings.
+    ///
+    /// # Errors
+    /// Names the setting that breaks its rule.
+    pub fn new(model: M, s: &Settings) -> Result<Self, ParameterError> {
+        positive("damping_1_s", s.damping_1_s)?;
+        positive("input_rad_s2_v", s.input_rad_s2_v)?;
+        positive("bandwidth_rad_s", s.bandwidth_rad_s)?;
+        positive("slow_rad_s", s.slow_rad_s)?;
+        positive("dt_s", s.dt_s)?;
+        for (name, value) in [
+            ("learning_1_s", s.learning_1_s),
+            ("level_limit_v", s.level_limit_v),
+            ("rest_limit_v", s.rest_limit_v),
+            ("approach_1_s", s.approach_1_s),
+            ("breakaway", s.breakaway),
+        ] {
+            check(
+                value >= 0.0 && value.is_finite(),
+                name,
+                value,
+                "must be zero or positive, and finite",
+            )?;
+        }
+        for (name, value) in [
+            ("stiffer_v_rad", s.stiffer_v_rad),
+            ("stiffer_v_s_rad", s.stiffer_v_s_rad),
+            ("law_forward_v_s_rad", s.law_forward_v_s_rad),
+        ] {
+            check(value.is_finite(), name, value, "must be finite")?;
+        }
+        check(
+            s.learning_1_s * s.dt_s < 1.0,
+            "learning_1_s",
+            s.learning_1_s,
+            "is too large for the time step",
+        )?;
+        let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
+        let gain = s.input_rad_s2_v / s.damping_1_s * fall;
+        let correct = poles(
+            1.0 - fall,
+            gain,
+            s.dt_s,
+            libm::exp(-s.bandwidth_rad_s * s.dt_s),
+        );
+        check(
+            correct.iter().all(|g| g.is_finite()),
+            "bandwidth_rad_s",
+            s.bandwidth_rad_s,
+            "gives gains that overflow",
+        )?;
+        Ok(Self {
+            model,
+            keep: T::of(1.0 - fall),
+            gain: T::of(gain),
+            correct: correct.map(T::of),
+            learning: T::of(s.learning_1_s * s.dt_s),
+            level_limit_v: T::of(s.level_limit_v),
+            rest_limit_v: T::of(s.rest_limit_v),
+            slow_rad_s: T::of(s.slow_rad_s),
+            inverse_slow: T::of(1.0 / s.slow_rad_s),
+            approach_1_s: T::of(s.approach_1_s),
+            breakaway: T::of(s.breakaway),
+            stiffer_v_rad: T::of(s.stiffer_v_rad),
+            stiffer_v_s_rad: T::of(s.stiffer_v_s_rad),
+            speed_v_s_rad: T::of(s.damping_1_s / s.input_rad_s2_v - s.law_forward_v_s_rad),
+            acceleration_v_s2_rad: T::of(1.0 / s.input_rad_s2_v),
+            dt_s: T::of(s.dt_s),
+            begin: Learned {
+                level_v: T::ZERO,
+                rest_v: T::ZERO,
+            },
+        })
+    }
+
+    /// Begin from what an earlier run learned, held within the limits; numbers that are none
+    /// change nothing.
+    #[must_use]
+    pub fn resumed(mut self, learned: Learned<T>) -> Self {
+        if learned.level_v.is_finite() && learned.rest_v.is_finite() {
+            self.begin = self.held(learned);
+        }
+        self
+    }
+
+    #[inline]
+    fn held(&self, l: Learned<T>) -> Learned<T> {
+        let within = |x: T, most: T| x.max(-most).min(most);
+        Learned {
+            level_v: within(l.level_v, self.level_limit_v),
+            rest_v: within(l.rest_v, self.rest_limit_v),
+        }
+    }
+
+    /// The level that the model and the observer agree on, V.
+    #[inline]
+    fn level_v(&self, state: &State<T, M::State>) -> T {
+        (state.friction.level_v + state.learned.level_v).max(T::ZERO)
+    }
+}
+
+/// Gains that place the poles of the sampled observer, two at `p` and the third where the plant's
+/// own pole is, or at `p` too where that is faster: Ackermann's formula for angle, speed and
+/// disturbance, seen through the angle after each step. A pole slower than the plant's own would
+/// make the first gain negative, and a stuck observer would run away.
+fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
+    let h = 0.5 * dt_s;
+    // The prediction: x + h (v + v'), v' = keep v - gain d, d.
+    let (a12, a13) = (h * (1.0 + keep), -h * gain);
+    // phi(A) = (A - p)^2 (A - own) for the upper triangular A = [1 a12 a13; 0 keep -gain; 0 0 1].
+    let less = |p: f64| {
+        [
+            [1.0 - p, a12, a13],
+            [0.0, keep - p, -gain],
+            [0.0, 0.0, 1.0 - p],
+        ]
+    };
+    let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]| {
+        let mut z = [[0.0; 3]; 3];
+        for (i, row) in z.iter_mut().enumerate() {
+            for (j, cell) in row.iter_mut().enumerate() {
+                *cell = (0..3).map(|k| x[i][k] * y[k][j]).sum();
+            }
+        }
+        z
+    };
+    let phi = product(&product(&less(p), &less(p)), &less(p.min(keep)));
+    // Rows C A, C A^2, C A^3 of what is seen; their solution against (0, 0, 1).
+    let a = [[1.0, a12, a13], [0.0, keep, -gain], [0.0, 0.0, 1.0]];
+    let a2 = product(&a, &a);
+    let a3 = product(&a2, &a);
+    let (r1, r2, r3) = (a[0], a2[0], a3[0]);
+    // The first entry of each row is 1: eliminate it, then two equations are left.
+    let (b1, c1) = (r2[1] - r1[1], r2[2] - r1[2]);
+    let (b2, c2) = (r3[1] - r2[1], r3[2] - r2[2]);
+    let determinant = b1 * c2 - b2 * c1;
+    let (q1, q2) = (-c1 / determinant, b1 / determinant);
+    let q0 = -(r1[1] * q1 + r1[2] * q2);
+    let q = [q0, q1, q2];
+    phi.map(|row| row[0] * q[0] + row[1] * q[1] + row[2] * q[2])
+}
+
+impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
+    type State = State<T, M::State>;
+
+    fn start(&self) -> Self::State {
+        let model = self.model.start();
+        State {
+            friction: self.model.friction(&model),
+            model,
+            velocity_rad_s: T::ZERO,
+            slip_rad: T::ZERO,
+            direction: T::ZERO,
+            learned: self.begin,
+        }
+    }
+
+    #[inline]
+    fn observe(
+        &self,
+        state: &mut Self::State,
+        _velocity_rad_s: T,
+        moved_rad: T,
+        applied_v: T,
+        blind: bool,
+    ) -> T {
+        let v = state.velocity_rad_s;
+        let net_v = applied_v - state.friction.smooth_v - state.learned.rest_v;
+        let push = self.keep * v + self.gain * net_v;
+        let hold = self.gain * self.level_v(state);
+        // The proximal step of the plant: friction takes what it can hold, and no more.
+        let predicted = if push > hold {
+            state.direction = T::ONE;
+            push - hold
+        } else if push < -hold {
+            state.direction = -T::ONE;
+            push + hold
+        } else {
+            // Stuck, and so is what a correction would make of it.
+            state.direction = push.sign();
+            T::ZERO
+        };
+        if blind {
+            state.velocity_rad_s = predicted;
+            state.slip_rad = T::ZERO;
+            return predicted;
+        }
+        let ahead = (v + predicted) * (self.dt_s * T::of(0.5));
+        let slip = state.slip_rad + moved_rad - ahead;
+        let [angle, speed, rest] = self.correct;
+        state.slip_rad = slip - angle * slip;
+        state.velocity_rad_s = predicted + speed * slip;
+        state.learned.rest_v += rest * slip;
+        state.velocity_rad_s
+    }
+
+    #[inline]
+    fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T> {
+        let v = sense.velocity_rad_s;
+        let moving = v.abs() > self.slow_rad_s;
+        let mut next = state.learned;
+        if sense.may_learn && moving {
+            let share = self.learning * next.rest_v;
+            next.level_v += share * v.sign();
+            next.rest_v += -share;
+        }
+        state.learned = self.held(next);
+        self.model
+            .advance(&mut state.model, v, sense.angle_rad, self.dt_s);
+        state.friction = self.model.friction(&state.model);
+        // A slow shaft goes where it is wanted, not where noise says that it goes.
+        let wish = sense.wanted_rad_s - self.approach_1_s * sense.error;
+        let asked = (wish * self.inverse_slow).max(-T::ONE).min(T::ONE);
+        let level_v = self.level_v(state);
+        let signed_v = if moving && v * wish >= T::ZERO {
+            level_v * v.sign()
+        } else {
+            level_v * asked * self.breakaway
+        };
+        let friction_v = signed_v + state.friction.smooth_v + state.learned.rest_v;
+        let forward_v = self.speed_v_s_rad * sense.wanted_rad_s
+            + self.acceleration_v_s2_rad * sense.wanted_rad_s2
+            - self.stiffer_v_rad * sense.error
+            - self.stiffer_v_s_rad * (v - sense.wanted_rad_s);
+        Answer {
+            sum_v: friction_v + forward_v,
+            friction_v,
+            correction_v: state.learned.level_v * v.sign() + state.learned.rest_v,
+            forward_v,
+            learned: [state.learned.level_v, state.learned.rest_v],
+        }
+    }
+}

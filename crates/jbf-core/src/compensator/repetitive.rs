@@ -1,0 +1,166 @@
+//! Repetitive compensation: learning from lap to lap what a periodic task needs.
+//!
+//! ```text
+//! u_r(phase) <- Q [ u_r(phase) ] - g e(phase + lead)
+//! ```
+//!
+//! with Q a three-point smoothing that keeps what a lap cannot teach (high frequencies) from
+//! building up; its phase is zero. The lap is `N` cells, read on straight lines between them.
+//!
+//! Source: Tung, Anwar & Tomizuka (1993); Tomizuka, Tsao & Chew (1989) for Q; Cohn (1998),
+//! section 2.4.1.
+
+use super::{Answer, Compensator, Sense};
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// Learning from lap to lap.
+#[derive(Clone, Copy, Debug)]
+pub struct Repetitive<T, const N: usize> {
+    gain: T,
+    smooth: T,
+    cell_per_step: f32,
+    /// Steps in a cell, at least: the mean error of a cell teaches it.
+    inverse_steps: T,
+    steps_per_lap: u32,
+    lead_cells: u32,
+    limit_v: T,
+}
+
+/// The lap's memory, V, and where in it the loop is.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>"
+    ))
+)]
+pub struct State<T, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "serde_big_array::BigArray"))]
+    memory_v: [T; N],
+    step: u32,
+    cell: u32,
+    error_sum: T,
+}
+
+impl<T: Real, const N: usize> Repetitive<T, N> {
+    /// A lap of `steps_per_lap` steps, the learning gain (V per unit of error and lap), the
+    /// smoothing (0 to 0.5), the lead in seconds by which the plant answers late, and the most
+    /// that any cell may hold, V.
+    ///
+    /// # Errors
+    /// Names the number that breaks its rule. A lap must have at least as many steps as cells.
+    pub fn new(
+        steps_per_lap: u32,
+        gain: f64,
+        smooth: f64,
+        lead_s: f64,
+        limit_v: f64,
+        dt_s: f64,
+    ) -> Result<Self, ParameterError> {
+        positive("gain", gain)?;
+        positive("limit_v", limit_v)?;
+        positive("dt_s", dt_s)?;
+        check(N >= 4, "cells", N as f64, "must be at least 4")?;
+        check(
+            steps_per_lap as usize >= N,
+            "steps_per_lap",
+            f64::from(steps_per_lap),
+            "must be at least the number of cells",
+        )?;
+        check(
+            (0.0..=0.5).contains(&smooth),
+            "smooth",
+            smooth,
+            "must lie between 0 and 0.5",
+        )?;
+        let steps = f64::from(steps_per_lap);
+        let lead = libm::round(lead_s / dt_s / steps * N as f64);
+        check(
+            lead >= 0.0 && lead < N as f64,
+            "lead_s",
+            lead_s,
+            "must be zero or positive, and below a lap",
+        )?;
+        Ok(Self {
+            gain: T::of(gain),
+            smooth: T::of(smooth),
+            cell_per_step: (N as f64 / steps) as f32,
+            inverse_steps: T::of(N as f64 / steps),
+            steps_per_lap,
+            lead_cells: lead as u32,
+            limit_v: T::of(limit_v),
+        })
+    }
+
+    /// What the lap just left teaches a cell.
+    #[inline]
+    fn teach(&self, state: &mut State<T, N>, cell: u32, error: T) {
+        let n = N as u32;
+        let at = (cell % n + n - self.lead_cells) % n;
+        let value = |i: u32| {
+            state
+                .memory_v
+                .get((i % n) as usize)
+                .copied()
+                .unwrap_or(T::ZERO)
+        };
+        let (before, here, after) = (value(at + n - 1), value(at), value(at + 1));
+        let blurred = here + self.smooth * T::of(0.5) * (before + after - here - here);
+        let next = (blurred - self.gain * error)
+            .max(-self.limit_v)
+            .min(self.limit_v);
+        if let Some(slot) = state.memory_v.get_mut(at as usize) {
+            *slot = next;
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Compensator<T> for Repetitive<T, N> {
+    type State = State<T, N>;
+
+    fn start(&self) -> State<T, N> {
+        State {
+            memory_v: [T::ZERO; N],
+            step: 0,
+            cell: 0,
+            error_sum: T::ZERO,
+        }
+    }
+
+    #[inline]
+    fn step(&self, state: &mut State<T, N>, sense: &Sense<T>) -> Answer<T> {
+        let n = N as u32;
+        let at = state.step as f32 * self.cell_per_step;
+        let cell = (at as u32).min(n - 1);
+        if cell != state.cell {
+            let error = state.error_sum * self.inverse_steps;
+            if sense.may_learn {
+                self.teach(state, state.cell, error);
+            }
+            state.error_sum = T::ZERO;
+            state.cell = cell;
+        }
+        state.error_sum += sense.error;
+        state.step += 1;
+        if state.step >= self.steps_per_lap {
+            state.step = 0;
+        }
+        let low = state.memory_v.get(cell as usize).copied();
+        let high = state.memory_v.get(((cell + 1) % n) as usize).copied();
+        let share = T::of(f64::from(at - cell as f32));
+        let sum_v = match (low, high) {
+            (Some(low), Some(high)) => low + (high - low) * share,
+            _ => T::ZERO,
+        };
+        Answer {
+            sum_v,
+            friction_v: sum_v,
+            correction_v: T::ZERO,
+            forward_v: T::ZERO,
+            learned: [sum_v, T::ZERO],
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! A look-up table of friction, against the speed or against the angle of a turn.
+//!
+//! Source: Armstrong-Helouvry (1991), break-away torque against position; Cohn (1998), section
+//! 2.4.1. Values between the entries lie on straight lines.
+
+use super::{Answer, Compensator, Sense};
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// What the table is read by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// |speed|, from zero; beyond the last entry that entry holds.
+    Speed,
+    /// Angle; the table is one period and repeats.
+    Angle,
+}
+
+/// `N` levels of friction, V, at equal distances.
+#[derive(Clone, Copy, Debug)]
+pub struct Table<T, const N: usize> {
+    level_v: [T; N],
+    axis: Axis,
+    inverse_width: T,
+    viscous_v_s: T,
+}
+
+impl<T: Real, const N: usize> Table<T, N> {
+    /// Levels (V, unsigned) at distances of `width` (rad/s or rad), and a viscous friction beside
+    /// them (V s/rad).
+    ///
+    /// # Errors
+    /// At least two levels, all finite; the width positive.
+    pub fn new(
+        level_v: [T; N],
+        axis: Axis,
+        width: f64,
+        viscous_v_s: f64,
+    ) -> Result<Self, ParameterError> {
+        positive("width", width)?;
+        check(N >= 2, "entries", N as f64, "must be at least 2")?;
+        check(
+            viscous_v_s.is_finite(),
+            "viscous_v_s",
+            viscous_v_s,
+            "must be finite",
+        )?;
+        for level in &level_v {
+            check(
+                level.is_finite(),
+                "level_v",
+                level.value(),
+                "must be finite",
+            )?;
+        }
+        Ok(Self {
+            level_v,
+            axis,
+            inverse_width: T::of(1.0 / width),
+            viscous_v_s: T::of(viscous_v_s),
+        })
+    }
+
+    /// The level at a speed (rad/s) or an angle (rad), V.
+    #[inline]
+    pub fn at(&self, place: T) -> T {
+        let last = T::from_i32(N as i32 - 1);
+        let raw = place * self.inverse_width;
+        let at = match self.axis {
+            Axis::Speed => raw.abs().min(last),
+            Axis::Angle => {
+                let turns = raw * T::of(1.0 / N as f64);
+                (turns - T::from_i32(turns.floor_i32())) * T::from_i32(N as i32)
+            }
+        };
+        let below = at.floor_i32().max(0);
+        let i = (below as usize).min(N - 1);
+        let j = match self.axis {
+            Axis::Speed => (i + 1).min(N - 1),
+            Axis::Angle => (i + 1) % N,
+        };
+        match (self.level_v.get(i), self.level_v.get(j)) {
+            (Some(&low), Some(&high)) => low + (high - low) * (at - T::from_i32(below)),
+            _ => T::ZERO,
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Compensator<T> for Table<T, N> {
+    type State = ();
+
+    fn start(&self) {}
+
+    #[inline]
+    fn step(&self, _state: &mut (), sense: &Sense<T>) -> Answer<T> {
+        let v = sense.velocity_rad_s;
+        let level_v = match self.axis {
+            Axis::Speed => self.at(v),
+            Axis::Angle => self.at(sense.angle_rad),
+        };
+        let friction_v = level_v * v.sign() + self.viscous_v_s * v;
+        Answer {
+            sum_v: friction_v,
+            friction_v,
+            correction_v: T::ZERO,
+            forward_v: T::ZERO,
+            learned: [level_v, T::ZERO],
+        }
+    }
+}

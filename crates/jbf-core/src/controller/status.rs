@@ -1,0 +1,50 @@
+//! What a loop says of itself.
+
+use core::ops::{BitOr, BitOrAssign};
+
+/// Flags of one step; [`Status::OK`] is none of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Status(u8);
+
+impl Status {
+    /// All is well.
+    pub const OK: Self = Self(0);
+    /// The output stands at its limit: nothing is learned.
+    pub const SATURATED: Self = Self(1);
+    /// The counter stands still though the voltage should move the shaft.
+    pub const FROZEN: Self = Self(2);
+    /// The counter went further than the shaft can.
+    pub const JUMPED: Self = Self(4);
+    /// The reference is not a finite number: the last one holds.
+    pub const NOT_FINITE: Self = Self(8);
+    /// The control law acts alone, without compensation.
+    pub const FALLBACK: Self = Self(16);
+
+    /// True where any of `other`'s flags is set.
+    #[inline]
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// The flags as a number, for logging.
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+}
+
+impl BitOr for Status {
+    type Output = Self;
+
+    #[inline]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl BitOrAssign for Status {
+    #[inline]
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}

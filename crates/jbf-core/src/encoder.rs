@@ -1,0 +1,115 @@
+//! An incremental encoder: from a counter that rolls over to an angle that does not.
+
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// Counts to radians, roll-over and jumps.
+#[derive(Clone, Copy, Debug)]
+pub struct Encoder<T> {
+    rad_per_count: T,
+    /// Shift that brings the counter's sign bit to the top of an `i32`.
+    shift: u32,
+    most_counts: i32,
+}
+
+/// What the encoder remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct State {
+    last: u32,
+    total: i64,
+    started: bool,
+    still: u32,
+}
+
+/// One sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<T> {
+    /// Angle since the sample before, rad; zero in a jump.
+    pub moved_rad: T,
+    /// True where the counter went further than the shaft can: the step is not believed.
+    pub jumped: bool,
+    /// Samples since the counter last changed.
+    pub still: u32,
+}
+
+impl<T: Real> Encoder<T> {
+    /// `counts_per_rad` lines, a counter of `bits` bits, and the fastest speed (rad/s) that the
+    /// shaft can have, which tells a jump from a motion.
+    ///
+    /// # Errors
+    /// Sizes must be positive; the counter must have 8 to 32 bits and more than twice the counts
+    /// that the fastest speed makes in one step, or a roll-over could not be told.
+    pub fn new(
+        counts_per_rad: f64,
+        bits: u32,
+        top_speed_rad_s: f64,
+        dt_s: f64,
+    ) -> Result<Self, ParameterError> {
+        positive("counts_per_rad", counts_per_rad)?;
+        positive("top_speed_rad_s", top_speed_rad_s)?;
+        positive("dt_s", dt_s)?;
+        check(
+            (8..=32).contains(&bits),
+            "bits",
+            f64::from(bits),
+            "must lie between 8 and 32",
+        )?;
+        let most = counts_per_rad * top_speed_rad_s * dt_s + 2.0;
+        let half = libm::exp2(f64::from(bits) - 1.0);
+        check(
+            most < half,
+            "top_speed_rad_s",
+            top_speed_rad_s,
+            "passes half the counter's range in one step: a roll-over cannot be told",
+        )?;
+        Ok(Self {
+            rad_per_count: T::of(1.0 / counts_per_rad),
+            shift: 32 - bits,
+            most_counts: most as i32,
+        })
+    }
+
+    /// Take the counter's value. The first sample is where angles count from.
+    #[inline]
+    pub fn step(&self, state: &mut State, counter: u32) -> Sample<T> {
+        let raw = counter.wrapping_sub(state.last) << self.shift;
+        // An arithmetic shift brings the sign back: the short way round the counter.
+        let moved = (raw as i32) >> self.shift;
+        state.last = counter;
+        if !state.started {
+            state.started = true;
+            return Sample {
+                moved_rad: T::ZERO,
+                jumped: false,
+                still: 0,
+            };
+        }
+        let jumped = moved > self.most_counts || moved < -self.most_counts;
+        let believed = if jumped { 0 } else { moved };
+        state.still = if moved == 0 {
+            state.still.saturating_add(1)
+        } else {
+            0
+        };
+        state.total = state.total.wrapping_add(i64::from(believed));
+        Sample {
+            moved_rad: T::from_i32(believed) * self.rad_per_count,
+            jumped,
+            still: state.still,
+        }
+    }
+
+    /// Angle since the first sample, rad, without the loss of a sum of increments.
+    #[inline]
+    pub fn angle_rad(&self, state: &State) -> T {
+        let high = (state.total >> 20) as i32;
+        let low = (state.total & 0xf_ffff) as i32;
+        (T::from_i32(high) * T::of(1_048_576.0) + T::from_i32(low)) * self.rad_per_count
+    }
+
+    /// The angle of one count, rad.
+    pub fn rad_per_count(&self) -> T {
+        self.rad_per_count
+    }
+}

@@ -1,0 +1,82 @@
+//! Speed from an encoder, (6.2), plain or with the plant's input fed forward:
+//!
+//! ```text
+//! v_hat = z + k x,   z' = -k v_hat                    (plain)
+//!                    z' = -(a + k) v_hat + b u        (fed forward, Appendix E)
+//! ```
+//!
+//! Source: Tafazoli, de Silva & Lawrence (1995); Cohn (1998), (6.2), Appendices D and E.
+//!
+//! The step keeps v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. Term for term that is
+//! the thesis's Euler step, and neither the angle nor its rounding grows with the hours.
+
+use crate::error::{check, positive, ParameterError};
+use crate::real::Real;
+
+/// Gains of the velocity observer. Its state is the speed, rad/s.
+#[derive(Clone, Copy, Debug)]
+pub struct VelocityObserver<T> {
+    gain_1_s: T,
+    keep: T,
+    input: T,
+}
+
+impl<T: Real> VelocityObserver<T> {
+    /// Plain: gain `k` (1/s).
+    ///
+    /// # Errors
+    /// The gain must be positive, and `k dt` below 1.
+    pub fn plain(gain_1_s: f64, dt_s: f64) -> Result<Self, ParameterError> {
+        Self::fed_forward(gain_1_s, 0.0, 0.0, dt_s)
+    }
+
+    /// With the input of the plant `v' = -a v + b u` fed forward.
+    ///
+    /// # Errors
+    /// Gains must be positive (`a` and `b` may be zero), and `(a + k) dt` below 1.
+    pub fn fed_forward(
+        gain_1_s: f64,
+        damping_1_s: f64,
+        input_rad_s2_v: f64,
+        dt_s: f64,
+    ) -> Result<Self, ParameterError> {
+        positive("gain_1_s", gain_1_s)?;
+        positive("dt_s", dt_s)?;
+        for (name, value) in [
+            ("damping_1_s", damping_1_s),
+            ("input_rad_s2_v", input_rad_s2_v),
+        ] {
+            check(
+                value >= 0.0 && value.is_finite(),
+                name,
+                value,
+                "must be zero or positive, and finite",
+            )?;
+        }
+        let decay = (gain_1_s + damping_1_s) * dt_s;
+        check(
+            decay < 1.0,
+            "gain_1_s",
+            gain_1_s,
+            "is too large for the time step: (a + k) dt must stay below 1",
+        )?;
+        Ok(Self {
+            gain_1_s: T::of(gain_1_s),
+            keep: T::of(1.0 - decay),
+            input: T::of(input_rad_s2_v * dt_s),
+        })
+    }
+
+    /// The estimate once the shaft has moved by `moved_rad`, rad/s. Call before the control law.
+    #[inline]
+    pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
+        velocity_rad_s + self.gain_1_s * moved_rad
+    }
+
+    /// What becomes of the estimate until the next sample, under the input `u_v` (V; of no
+    /// account to the plain form). Call after the control law.
+    #[inline]
+    pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {
+        self.keep * velocity_rad_s + self.input * u_v
+    }
+}

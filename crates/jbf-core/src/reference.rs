@@ -1,0 +1,139 @@
+//! What the loop shall follow: sine, triangle and square as the thesis's programs make them.
+//!
+//! ```text
+//! sine      (high + low + (high - low) sin(w t - p)) / 2,  p = asin((high + low)/(high - low))
+//!           where the wave passes zero (it then starts there), else pi/2 (it starts at low)
+//! triangle  from low up to high and back, starting at low
+//! square    high in the first half of a period, low in the second
+//! ```
+//!
+//! Source: Cohn (1998), Appendices D and E.
+
+use crate::error::{check, positive, ParameterError};
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+/// Shape of a periodic reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wave {
+    /// Sine.
+    Sine,
+    /// Triangle.
+    Triangle,
+    /// Square.
+    Square,
+}
+
+impl Wave {
+    /// Every wave.
+    pub const ALL: [Self; 3] = [Self::Sine, Self::Triangle, Self::Square];
+
+    /// Name, as options spell it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Wave::Sine => "sine",
+            Wave::Triangle => "triangle",
+            Wave::Square => "square",
+        }
+    }
+
+    /// The wave of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|wave| wave.name() == name)
+    }
+}
+
+/// A point of a reference.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Target<T> {
+    /// The value: rad, or rad/s for velocity control.
+    pub value: T,
+    /// Its rate of change, 1/s; zero across a jump.
+    pub rate: T,
+}
+
+/// A periodic reference. Made in double precision: a target takes its points from a table or
+/// from a host.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    wave: Wave,
+    low: f64,
+    high: f64,
+    frequency_rad_s: f64,
+    phase_rad: f64,
+}
+
+impl Reference {
+    /// A wave between `low` and `high` at a frequency (rad/s), with the thesis's phase.
+    ///
+    /// # Errors
+    /// The frequency must be positive, `high` above `low`, both finite.
+    pub fn new(
+        wave: Wave,
+        low: f64,
+        high: f64,
+        frequency_rad_s: f64,
+    ) -> Result<Self, ParameterError> {
+        positive("frequency_rad_s", frequency_rad_s)?;
+        check(low.is_finite(), "low", low, "must be finite")?;
+        check(
+            high.is_finite() && high > low,
+            "high",
+            high,
+            "must be finite and above low",
+        )?;
+        let phase_rad = if high * low < 0.0 {
+            libm::asin((high + low) / (high - low))
+        } else {
+            FRAC_PI_2
+        };
+        Ok(Self {
+            wave,
+            low,
+            high,
+            frequency_rad_s,
+            phase_rad,
+        })
+    }
+
+    /// One period, s.
+    pub fn period_s(&self) -> f64 {
+        TAU / self.frequency_rad_s
+    }
+
+    /// Value and rate at a time, s.
+    pub fn at(&self, time_s: f64) -> Target<f64> {
+        let (span, period) = (self.high - self.low, self.period_s());
+        let phase = time_s - libm::floor(time_s / period) * period;
+        match self.wave {
+            Wave::Sine => {
+                let angle = self.frequency_rad_s * time_s - self.phase_rad;
+                Target {
+                    value: (self.high + self.low + span * libm::sin(angle)) / 2.0,
+                    rate: span * self.frequency_rad_s * libm::cos(angle) / 2.0,
+                }
+            }
+            Wave::Triangle => {
+                let slope = 2.0 * span / period;
+                if phase > period / 2.0 {
+                    Target {
+                        value: self.high - slope * (phase - period / 2.0),
+                        rate: -slope,
+                    }
+                } else {
+                    Target {
+                        value: self.low + slope * phase,
+                        rate: slope,
+                    }
+                }
+            }
+            Wave::Square => Target {
+                value: if phase > period / 2.0 {
+                    self.low
+                } else {
+                    self.high
+                },
+                rate: 0.0,
+            },
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The closed loop on the simulated bench: a run in, arrays out.
+
+mod bench;
+mod compensators;
+mod model;
+mod plant;
+mod settings;
+
+use crate::bearing::refused;
+use bench::{Faults, Log, Noise};
+use compensators::Stepping;
+use jbf_core::reference::{Reference, Wave};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use settings::LoopSpec;
+
+/// Value and rate of a periodic reference at `samples` steps of `dt_s` from zero.
+#[pyfunction]
+#[pyo3(signature = (wave, low, high, frequency_rad_s, dt_s, samples))]
+#[allow(clippy::type_complexity)]
+pub fn control_reference<'py>(
+    py: Python<'py>,
+    wave: &str,
+    low: f64,
+    high: f64,
+    frequency_rad_s: f64,
+    dt_s: f64,
+    samples: usize,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let wave = Wave::from_name(wave).ok_or_else(|| {
+        PyValueError::new_err(format!("wave {wave:?} is none of sine, triangle, square"))
+    })?;
+    let reference = Reference::new(wave, low, high, frequency_rad_s).map_err(refused)?;
+    let points: Vec<_> = (0..samples)
+        .map(|i| reference.at(i as f64 * dt_s))
+        .collect();
+    let value: Vec<f64> = points.iter().map(|p| p.value).collect();
+    let rate: Vec<f64> = points.iter().map(|p| p.rate).collect();
+    Ok((value.into_pyarray(py), rate.into_pyarray(py)))
+}
+
+/// Run a loop on the bench; every array has one value a step of the loop.
+#[pyfunction]
+#[pyo3(signature = (plant, loop_settings, compensator, reference, rate, load_n, faults, *, precision))]
+#[allow(clippy::too_many_arguments)]
+pub fn control_run<'py>(
+    py: Python<'py>,
+    plant: plant::PlantSpec,
+    loop_settings: LoopSpec,
+    compensator: compensators::Spec,
+    reference: PyReadonlyArray1<'py, f64>,
+    rate: PyReadonlyArray1<'py, f64>,
+    load_n: PyReadonlyArray1<'py, f64>,
+    faults: Faults,
+    precision: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let contiguous = |_| PyValueError::new_err("arrays must be contiguous");
+    let reference = reference.as_slice().map_err(contiguous)?;
+    let rate = rate.as_slice().map_err(contiguous)?;
+    let load = load_n.as_slice().map_err(contiguous)?;
+    if rate.len() != reference.len() || load.len() != reference.len() {
+        return Err(PyValueError::new_err(
+            "reference, rate and load must have one length",
+        ));
+    }
+    let mut looped: Box<dyn Stepping> = match precision {
+        "f64" => compensator.into_loop::<f64>(&loop_settings)?,
+        "f32" => compensator.into_loop::<f32>(&loop_settings)?,
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "precision {other:?} is neither f64 nor f32"
+            )))
+        }
+    };
+    let log = py.detach(|| -> PyResult<Log> {
+        let first_load = load.first().copied().unwrap_or(0.0);
+        let mut shaft = plant.build(loop_settings.dt_s, first_load)?;
+        let noise = Noise::new(&plant);
+        Ok(bench::run(
+            shaft.as_mut(),
+            looped.as_mut(),
+            &plant,
+            noise,
+            [reference, rate, load],
+            &faults,
+        ))
+    })?;
+    log.into_dict(py)
+}

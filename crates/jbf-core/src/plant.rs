@@ -12,6 +12,8 @@
 //!
 //! Source: Cohn (1998), chapter 6 and Appendices D and E. The observer of Appendix E is the
 //! observer of this plant with a = 135 1/s, b = 457 rad/s^2/V; its feed-forward 0.295 is a/b.
+// `!(x > 0)` is true of a NaN too, and means to be.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::chain::{self, Chain};
 use crate::error::{check, positive, ParameterError};
@@ -133,7 +135,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         let free = self.keep * state.speed_rad_s + self.gain * u;
         let end = self
             .sliding_on(state, free, load_n)
-            .unwrap_or_else(|| self.from_rest(state, free, load_n));
+            .unwrap_or_else(|| self.leave_rest(state, free, load_n));
         // What the step's motion needed: at rest, whatever holds the shaft.
         state.friction_v = (free - end.speed_rad_s) / self.gain;
         state.speed_rad_s = end.speed_rad_s;
@@ -161,7 +163,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// A step that may stick: only what friction at rest cannot hold moves the shaft.
     #[inline]
-    fn from_rest(&self, state: &State<T, L::State>, free: T, load_n: T) -> Trial<T, L::State> {
+    fn leave_rest(&self, state: &State<T, L::State>, free: T, load_n: T) -> Trial<T, L::State> {
         let still = self.attempt(state, T::ZERO, load_n);
         let push = free - self.gain * still.smooth_v;
         let hold = self.gain * still.jump_v;

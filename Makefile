@@ -62,6 +62,10 @@ format: $(BUILT)
 bench:
 	cargo bench -p jbf-benches
 
+# Instructions of every step against the committed baseline; needs valgrind.
+counts:
+	$(PYTHON) benches/counts.py
+
 # The bits of every step, in each build that a user may make, against the committed table.
 bits:
 	cargo run --quiet -p jbf-trace --example table | tail -n 1

@@ -29,6 +29,7 @@ help:
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
+	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
 	@echo "make bits    the same bits in debug, release and native builds"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
 	@echo "make clean   removes $(VENV), target and the built extension"
@@ -76,6 +77,11 @@ bits:
 # After a change that is meant to change numbers.
 bits-table:
 	cargo run --quiet --release -p jbf-trace --example table -- --write crates/jbf-trace/src/table.rs
+
+# Needs nightly Rust and cargo-fuzz.
+fuzz:
+	cd crates/jbf-core && for target in film chain driver; do \
+		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
 
 clean:
 	rm -rf $(VENV) target python/jbf/_core*.so

@@ -1,4 +1,4 @@
-//! Steps for `benches/counts.py`, which runs this under callgrind: a call of [`mark`] parts one
+//! Steps for `benches/counts.py`, which runs this under callgrind: a call of the mark parts one
 //! thing from the next, and the names go to standard output in their order.
 
 use jbf_benches::steps::{all, Watch, PERIOD};

@@ -1,6 +1,9 @@
 # Needs stable Rust, Python 3.10 or later with its venv module, and make. Everything else goes
 # into .venv and target.
 
+# A failure anywhere in a pipe is a failure.
+SHELL := /bin/bash -o pipefail
+
 VENV := .venv
 PYTHON ?= python3
 RUST := $(shell find crates -name '*.rs' -path '*/src/*') \
@@ -16,7 +19,7 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv demo test test-slow lint format bench clean
+.PHONY: help venv demo test test-slow lint format bench counts bits bits-table fuzz clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -25,6 +28,9 @@ help:
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
+	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
+	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
+	@echo "make bits    the same bits in debug, release and native builds"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
 	@echo "make clean   removes $(VENV), target and the built extension"
 
@@ -56,6 +62,26 @@ format: $(BUILT)
 
 bench:
 	cargo bench -p jbf-benches
+
+# Instructions of every step against the committed baseline; needs valgrind.
+counts:
+	$(PYTHON) benches/counts.py
+
+# The bits of every step, in each build that a user may make, against the committed table.
+bits:
+	cargo run --quiet -p jbf-trace --example table | tail -n 1
+	cargo run --quiet --release -p jbf-trace --example table | tail -n 1
+	RUSTFLAGS="-C target-cpu=native" cargo run --quiet --release --target-dir target/native \
+		-p jbf-trace --example table | tail -n 1
+
+# After a change that is meant to change numbers.
+bits-table:
+	cargo run --quiet --release -p jbf-trace --example table -- --write crates/jbf-trace/src/table.rs
+
+# Needs nightly Rust and cargo-fuzz.
+fuzz:
+	cd crates/jbf-core && for target in film chain driver; do \
+		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
 
 clean:
 	rm -rf $(VENV) target python/jbf/_core*.so

@@ -1,5 +1,7 @@
 //! What the benchmarks share: Table 4.2 over any scalar, chains, and a sampled motion.
 
+pub mod steps;
+
 use jbf_core::effect::{Effects, Rig, CATALOGUE};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};

@@ -13,6 +13,9 @@ use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
+/// A step shorter than this, s, is one of no length: its inverse leaves single precision.
+pub const SHORTEST_STEP_S: f64 = 1e-12;
+
 /// A friction law and the effects between it and the record.
 #[derive(Clone, Copy, Debug)]
 pub struct Chain<T: Real, L> {
@@ -116,11 +119,11 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
 
     /// Advance to the motion `to`, `dt_s` later, and give the reading there, N.
     ///
-    /// A step of no length, and a sample that is not finite, change nothing: one lost sample
-    /// of a sensor must not stay in the state of a filter for ever.
+    /// A step of no length ([`SHORTEST_STEP_S`]), and a sample that is not finite, change
+    /// nothing: one lost sample of a sensor must not stay in the state of a filter for ever.
     #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State>, to: &Motion<T>, dt_s: T) -> T {
-        if !(dt_s > T::ZERO && dt_s.is_finite() && to.is_finite()) {
+        if !(dt_s.value() >= SHORTEST_STEP_S && dt_s.is_finite() && to.is_finite()) {
             return state.reading_n;
         }
         self.law.set_load(&mut state.law, to.load_n);

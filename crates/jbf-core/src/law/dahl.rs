@@ -39,6 +39,10 @@ impl<T: Real> Dahl<T> {
         let way = leg.direction;
         let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
         let ratio = self.stiffness_n_m * leg.distance_m / mean;
+        // A way so short that its ratio rounds to zero.
+        if ratio.value() <= 0.0 {
+            return force_n;
+        }
         let lacking = T::ONE - way * force_n / mean;
         let left = lacking.sign() * self.decay(lacking.abs(), ratio);
         // A level that changes on the way (a ripple) is met at its mean; this is what the

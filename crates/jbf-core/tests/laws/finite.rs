@@ -1,9 +1,10 @@
 //! No law gives a NaN or an infinity, wherever in its bounds its parameters stand, and a value
 //! outside them is refused by name.
 
-use super::support::{along, anywhere, in_newtons, starts};
+use super::support::{along, anywhere, in_newtons, moving, starts};
 use crate::common::motion::Sines;
 use crate::common::random::Random;
+use jbf_core::effect::Parameter;
 use jbf_core::law::{steady_n, with_law, Named, Visitor, CATALOGUE};
 use jbf_core::{Clock, Dual, Motion, Real};
 use std::cell::RefCell;
@@ -65,6 +66,28 @@ fn finite_everywhere_with_derivatives() {
         |i, v| Dual::parameter(v, i),
         |f| f.slope.iter().all(|s| s.is_finite()),
     );
+}
+
+/// Ways and speeds so small that their products with a law's numbers round to zero.
+#[test]
+fn finite_at_speeds_below_the_smallest_normal_number() {
+    for law in in_newtons() {
+        for soft in [false, true] {
+            let value = |p: &Parameter| {
+                if soft && p.unit == "N/m" {
+                    p.lower
+                } else {
+                    p.starts[0]
+                }
+            };
+            let values: Vec<f64> = law.parameters.iter().map(value).collect();
+            let tiny = [1e-315, 1e-315, -1e-310, 3e-308, 0.0, 1e-300, -5e-324];
+            let creep = |t: f64| moving(t, tiny[(t * 1e6) as usize % tiny.len()], 0.0);
+            for f in along::<f64>(law.name, &values, 1e-6, 60, creep) {
+                assert!(f.is_finite(), "{} {values:?}", law.name);
+            }
+        }
+    }
 }
 
 struct Nothing;

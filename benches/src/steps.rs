@@ -1,0 +1,163 @@
+//! Everything that a loop may step, under one name each. Criterion, the budget and the instruction
+//! counts all go over this list; a law or an effect of a catalogue is in it by itself. To add
+//! another kind of thing, write a function like those below and call it in [`all`].
+//!
+//! All go through whole periods of U = 0.127 sin(t) at 2 ms, so that reversals, contact and full
+//! film come in their due shares.
+
+use crate::{chain, law, period, LOAD_N, LOOP_STEP_S};
+use jbf_core::effect::CATALOGUE;
+use jbf_core::law::journal::Parameters;
+use jbf_core::law::journal_full::JournalFull;
+use jbf_core::law::{self, with_law, Law, Named, Visitor};
+use jbf_core::motion::JournalMotion;
+use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
+use jbf_core::{Bearing, Clock, Dual, Motion, Real};
+use std::hint::black_box;
+
+/// Steps in a period of the motion.
+pub const PERIOD: u64 = 3141;
+
+/// Someone who wants to see things step.
+pub trait Watch {
+    /// `steps(n)` takes `n` steps of the thing of that name, on from where it was.
+    fn watch(&mut self, name: &str, steps: &mut dyn FnMut(u64));
+}
+
+/// Everything.
+pub fn all(watch: &mut impl Watch) {
+    laws::<f64>(watch, "f64");
+    laws::<f32>(watch, "f32");
+    steppers::<f64>(watch, "f64");
+    steppers::<f32>(watch, "f32");
+    chains(watch);
+}
+
+/// Call `step` with the ends of each step of the motion in turn.
+fn along<T: Real, O>(
+    watch: &mut impl Watch,
+    name: &str,
+    mut step: impl FnMut(&Motion<T>, &Motion<T>) -> O,
+) {
+    let motions = period::<T>();
+    let mut at = 0;
+    watch.watch(name, &mut |n| {
+        for _ in 0..n {
+            black_box(step(&motions[at], &motions[at + 1]));
+            at = (at + 1) % (motions.len() - 1);
+        }
+    });
+}
+
+/// |U| at the start, middle and end of a step.
+fn speeds<T: Real>(from: &Motion<T>, to: &Motion<T>) -> [T; 3] {
+    let (u0, u1) = (from.velocity_m_s, to.velocity_m_s);
+    [u0, (u0 + u1) * T::of(0.5), u1].map(T::abs)
+}
+
+struct Bare<'a, W> {
+    watch: &'a mut W,
+    name: String,
+}
+
+impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
+    type Output = ();
+
+    /// The law by itself: film or memory, friction, bristle.
+    fn visit<L: Named<T>>(self, law: L) {
+        let mut state = law.start(T::of(LOAD_N));
+        let mut before = T::ZERO;
+        let dt_s = T::of(LOOP_STEP_S);
+        along(self.watch, &self.name, |from: &Motion<T>, to| {
+            law.advance(&mut state, speeds(from, to), T::ONE, dt_s);
+            let sliding = law.friction(&state, to.velocity_m_s);
+            if !L::HAS_BRISTLE {
+                return sliding.coefficient(to.velocity_m_s.sign());
+            }
+            let levels = [before, sliding.level];
+            before = sliding.level;
+            let (from, to) = (JournalMotion::from(from), JournalMotion::from(to));
+            law.bend(&mut state, &from, &to, levels, dt_s) + sliding.viscous
+        });
+    }
+}
+
+/// Every law of the catalogue, with its own stepper, at the values where its fits start.
+fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
+    for page in law::CATALOGUE {
+        let values: Vec<T> = page.parameters.iter().map(|p| T::of(p.starts[0])).collect();
+        let name = format!("law/{}/{kind}", page.name);
+        let bearing = Some(&Bearing::THESIS);
+        let bare = Bare { watch, name };
+        with_law(
+            page.name,
+            bearing,
+            Some(LOAD_N),
+            &values,
+            Clock::Journal,
+            bare,
+        )
+        .expect("starting values are valid");
+    }
+}
+
+/// Every stepper, on the films that it is for, and the friction after it.
+fn steppers<T: Real>(watch: &mut impl Watch, kind: &str) {
+    let reduced = law::<T>(|_, v| T::of(v));
+    let p = Parameters::TABLE_4_2;
+    let parameters = Parameters {
+        f_m: T::of(p.f_m),
+        u_tr_m_s: T::of(p.u_tr_m_s),
+        k0: T::of(p.k0),
+        gamma: T::of(p.gamma),
+    };
+    let full = JournalFull::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal)
+        .expect("Table 4.2 is valid");
+    let dt_s = T::of(LOOP_STEP_S);
+    macro_rules! on {
+        ($($name:literal: $law:ident.$advance:ident($stepper:expr);)*) => {$({
+            let mut state = $law.start(T::of(LOAD_N));
+            along(watch, &format!("step/{}/{kind}", $name), |from: &Motion<T>, to| {
+                $law.$advance(&$stepper, &mut state, speeds(from, to), T::ONE, dt_s);
+                let u = to.velocity_m_s;
+                $law.friction(&state, u).coefficient(u.sign())
+            });
+        })*};
+    }
+    on! {
+        "euler": reduced.advance_with(Euler);
+        "rk4": reduced.advance_with(Rk4);
+        "rodas3": reduced.advance_stiff_with(Rodas3);
+        "rodas5p": reduced.advance_stiff_with(Rodas5P);
+        "rodas3_full": full.advance_with(Rodas3);
+        "rodas5p_full": full.advance_with(Rodas5P);
+    }
+}
+
+fn one_chain<T: Real>(
+    watch: &mut impl Watch,
+    name: &str,
+    effects: &[&str],
+    lift: impl Fn(usize, f64) -> T,
+) {
+    let chain = chain(effects, lift);
+    let mut state = chain.start(&period::<T>()[0]);
+    let dt_s = T::of(LOOP_STEP_S);
+    along(watch, name, |_, to| chain.step(&mut state, to, dt_s));
+}
+
+/// The signal chain round the first law: without effects, with each, with all, and with the
+/// derivatives of the four parameters carried along.
+fn chains(watch: &mut impl Watch) {
+    let all: Vec<&str> = CATALOGUE.iter().map(|info| info.name).collect();
+    one_chain(watch, "chain/none/f64", &[], |_, v| v);
+    for name in &all {
+        one_chain(watch, &format!("chain/{name}/f64"), &[name], |_, v| v);
+    }
+    one_chain(watch, "chain/all/f64", &all, |_, v| v);
+    one_chain(watch, "chain/none/f32", &[], |_, v| v as f32);
+    one_chain(watch, "chain/all/f32", &all, |_, v| v as f32);
+    let dual = |i, v| Dual::<4>::parameter(v, i);
+    one_chain(watch, "chain/none/dual4", &[], dual);
+    one_chain(watch, "chain/all/dual4", &all, dual);
+}

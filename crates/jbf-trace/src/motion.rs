@@ -1,0 +1,43 @@
+//! One motion for all: two sines with many reversals, contact and full film, a rest, and a load
+//! that jumps. Of sums, products and `jbf-core`'s own sine alone.
+
+use jbf_core::{Bearing, Motion, Real};
+
+/// Length of a step, s.
+pub const STEP_S: f64 = 0.005;
+
+const STEPS: u32 = 600;
+
+/// Amplitude (m/s), frequency (rad/s), phase (rad).
+const WAVES: [[f64; 3]; 2] = [[0.08, 3.0, 0.0], [0.04, 7.1, 1.0]];
+
+/// At rest between these samples.
+const REST: core::ops::Range<u32> = 240..280;
+
+/// The load (N) jumps at this sample.
+const JUMP: (u32, f64, f64) = (400, 104.0, 150.0);
+
+/// The motion, sample by sample.
+pub fn motions<T: Real>() -> impl Iterator<Item = Motion<T>> {
+    let mut angle_rad = 0.0_f64;
+    let mut before_m_s = 0.0_f64;
+    (0..=STEPS).map(move |i| {
+        let time_s = STEP_S * f64::from(i);
+        let (mut speed, mut rate) = (0.0, 0.0);
+        if !REST.contains(&i) {
+            for [size, omega, phase] in WAVES {
+                speed += size * Real::sin(omega * time_s + phase);
+                rate += size * omega * Real::cos(omega * time_s + phase);
+            }
+        }
+        angle_rad += 0.5 * STEP_S * (before_m_s + speed) / Bearing::THESIS.radius_m;
+        before_m_s = speed;
+        Motion {
+            time_s: T::of(time_s),
+            velocity_m_s: T::of(speed),
+            acceleration_m_s2: T::of(rate),
+            angle_rad: T::of(angle_rad),
+            load_n: T::of(if i < JUMP.0 { JUMP.1 } else { JUMP.2 }),
+        }
+    })
+}

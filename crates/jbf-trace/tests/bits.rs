@@ -1,0 +1,51 @@
+//! The fingerprints of this build are the table's. `make bits` repeats it for debug, release and
+//! native builds.
+
+use jbf_trace::{check, traces, Hash, Trace, TABLE};
+use std::collections::BTreeMap;
+
+#[test]
+fn every_trace_is_the_tables() {
+    let mut wrong = Vec::new();
+    let mut new = Vec::new();
+    let found = check(|trace, expected| match expected {
+        Some(hash) if hash == trace.hash => {}
+        Some(_) => wrong.push(*trace),
+        None => new.push(trace.name),
+    });
+    assert!(
+        wrong.is_empty(),
+        "bits changed; where that is meant, say `make bits-table`: {wrong:#?}"
+    );
+    assert!(
+        found.same as usize == TABLE.len(),
+        "the table names what is no more"
+    );
+    if !new.is_empty() {
+        println!("not in the table yet, `make bits-table` adds them: {new:?}");
+    }
+}
+
+/// A hash that many share, or that nothing was taken into, would prove nothing.
+#[test]
+fn traces_are_of_something() {
+    let mut seen: BTreeMap<u64, Vec<Trace>> = BTreeMap::new();
+    traces::<f64>("f64", &mut |t| seen.entry(t.hash).or_default().push(*t));
+    assert!(!seen.contains_key(&Hash::default().0));
+    for same in seen.values().filter(|s| s.len() > 1) {
+        // The first law's own run is also the law's chain; an effect must show.
+        assert!(same.iter().all(|t| t.group != "effect"), "{same:?}");
+    }
+}
+
+#[test]
+fn one_bit_changes_the_hash() {
+    let of = |number: f64| {
+        let mut hash = Hash::default();
+        hash.take(1.0);
+        hash.take(number);
+        hash
+    };
+    assert_ne!(of(0.1), of(0.1_f64.next_up()));
+    assert_ne!(of(0.0), of(-0.0));
+}

@@ -19,7 +19,9 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 
 import jbf
 import numpy as np
@@ -160,48 +162,56 @@ def batch(folder: Path, rounds: int) -> None:
 
 def solvers(folder: Path, rounds: int) -> None:
     """T2 and T3: eight motions to an error of the friction, and numbalsoda at its best settings."""
-    if not hasattr(jbf, "trajectories"):
-        return skip("T2 and T3", "jbf has no trajectories")
     sys.path.insert(0, str(folder))
     try:
         peers = importlib.import_module("solvers")
     except ImportError as error:
-        return skip("T2 and T3", f"{error}: pip install numba numbalsoda (it needs gfortran)")
-    best = {2: dict(rtol=6e-7, atol=6e-9), 4: dict(rtol=1e-7, atol=1e-6)}
-    for order, model, wanted in ((2, "journal", 1e-6), (4, "journal_full", 1e-5)):
-        references = peers.reference(order)
-        runs = []
-        for w in peers.WS:
-            runs.append((np.concatenate(([0.0], peers.tgrid(w)[1])), (peers.A, w, 0.0)))
-        start = dict(eps=float(peers.PV0[1]), phi_rad=0.01)
+        skip("T2 and T3", f"{error}: pip install numba numbalsoda (it needs gfortran)")
+        return
+    trajectories(peers, "T2", 2, "journal", 1e-6, {"rtol": 6e-7, "atol": 6e-9}, rounds)
+    trajectories(peers, "T3", 4, "journal_full", 1e-5, {"rtol": 1e-7, "atol": 1e-6}, rounds)
 
-        def ours(tolerance: float, model=model, runs=runs, start=start) -> list[np.ndarray]:
-            done = jbf.trajectories(RIG, TABLE, runs, model=model, tolerance=tolerance, **start)
-            return [d.friction_coefficient for d in done]
 
-        def error(found: list[np.ndarray], references=references) -> float:
-            worst = 0.0
-            for w, f, eps in zip(peers.WS, found, references, strict=True):
-                expected = peers.fric(peers.PV0, eps, peers.tgrid(w)[1], w)
-                worst = max(worst, float(np.abs(f[1:] - expected).max()))
-            return worst
+def trajectories(
+    peers: ModuleType,
+    task: str,
+    order: int,
+    model: str,
+    wanted: float,
+    best: dict[str, float],
+    rounds: int,
+) -> None:
+    references = peers.reference(order)
+    runs = [(np.append(0.0, peers.tgrid(w)[1]), (peers.A, w, 0.0)) for w in peers.WS]
+    eps = float(peers.PV0[1])
+    solver = peers.numbalsoda_par(order)
 
-        def theirs(order=order) -> list[np.ndarray]:
-            return peers.run_all(parallel[order], **best[order])
+    def theirs() -> list[np.ndarray]:
+        return peers.run_all(solver, **best)
 
-        parallel = {order: peers.numbalsoda_par(order)}
-        passing = [t for t in np.geomspace(wanted * 30, wanted / 30, 41) if error(ours(t)) < wanted]
-        tolerance = float(passing[0]) if passing else wanted
-        print(f"\nT{order // 2 + 1}: largest friction error wanted {wanted:g}")
-        print(f"numbalsoda {best[order]}: {peers.err_of(theirs(), references):.1e}")
-        for asked in (tolerance, wanted):
-            print(f"jbf, tolerance {asked:.2g}: {error(ours(asked)):.1e}")
-        rows: Timed = {
-            "numbalsoda, 2 threads": clock(theirs, 1e3),
-            "jbf, as asked": clock(lambda: ours(wanted), 1e3),
-            "jbf, cheapest passing": clock(lambda: ours(tolerance), 1e3),
-        }
-        table(f"T{order // 2 + 1}, 8 runs", "ms", "numbalsoda, 2 threads", 5 * rounds, rows)
+    def ours(tolerance: float) -> list[np.ndarray]:
+        done = jbf.trajectories(
+            RIG, TABLE, runs, model=model, tolerance=tolerance, eps=eps, phi_rad=0.01
+        )
+        return [d.friction_coefficient for d in done]
+
+    def error(found: list[np.ndarray]) -> float:
+        expected = (
+            peers.fric(peers.PV0, eps, peers.tgrid(w)[1], w)
+            for w, eps in zip(peers.WS, references, strict=True)
+        )
+        pairs = zip(found, expected, strict=True)
+        return max(float(np.abs(f[1:] - e).max()) for f, e in pairs)
+
+    asked = np.geomspace(wanted * 30, wanted / 30, 41)
+    passing = [float(t) for t in asked if error(ours(t)) < wanted]
+    print(f"\n{task}: largest friction error wanted {wanted:g}")
+    print(f"numbalsoda {best}: {peers.err_of(theirs(), references):.1e}")
+    rows: Timed = {"numbalsoda, 2 threads": clock(theirs, 1e3)}
+    for name, tolerance in (("as asked", wanted), ("cheapest passing", passing[0])):
+        print(f"jbf, {name}, tolerance {tolerance:.2g}: {error(ours(tolerance)):.1e}")
+        rows[f"jbf, {name}"] = clock(partial(ours, tolerance), 1e3)
+    table(f"{task}, 8 runs", "ms", "numbalsoda, 2 threads", 5 * rounds, rows)
 
 
 def main() -> None:
@@ -210,7 +220,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5, help="turns of the longest task")
     asked = parser.parse_args()
     if asked.folder is None or not (asked.folder / "c" / "kern.h").is_file():
-        return skip("All", f"no peers in {asked.folder}: give the folder that holds c/kern.h")
+        skip("All", f"no peers in {asked.folder}: give the folder that holds c/kern.h")
+        return
     with tempfile.TemporaryDirectory() as temporary:
         copy = Path(temporary) / "peers"
         shutil.copytree(asked.folder, copy, ignore=shutil.ignore_patterns("target", "venv"))

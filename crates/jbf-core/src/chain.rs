@@ -152,7 +152,8 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     /// The law as it is under this load, where an effect makes it another.
     #[inline(always)]
     fn scaled(&self, states: &mut States<T, O>, load_n: T) -> Option<L> {
-        let scales = self.effects.scales(states, self.law.load_share(load_n))?;
+        let share = || self.law.load_share(load_n);
+        let scales = self.effects.scales(states, share)?;
         self.law.scaled(&scales)
     }
 

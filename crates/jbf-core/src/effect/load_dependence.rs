@@ -82,7 +82,7 @@ impl<T: Real> Effect<T> for LoadDependence<T> {
 }
 
 impl<T: Real> Loading<T> for LoadDependence<T> {
-    #[inline]
+    #[inline(always)]
     fn scales(&self, state: &mut State<T>, share: T) -> Scales<T> {
         if share.value() != state.share.value() {
             let held = share.max(T::of(1.0 / FURTHEST)).min(T::of(FURTHEST));

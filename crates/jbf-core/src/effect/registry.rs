@@ -40,11 +40,11 @@ macro_rules! signal_chain {
             pub(crate) fn scales(
                 &self,
                 states: &mut States<T, O>,
-                share: T,
+                share: impl Fn() -> T,
             ) -> Option<Scales<T>> {
                 let mut found = None;
                 $(if let (Some(e), Some(s)) = (&self.$load, &mut states.$load) {
-                    let own = e.scales(s, share);
+                    let own = e.scales(s, share());
                     let before = found.unwrap_or(Scales {
                         transition_speed: T::ONE,
                         stiffness: T::ONE,
@@ -68,7 +68,7 @@ macro_rules! signal_chain {
             }
 
             /// Factor on the film's clock.
-            #[inline]
+            #[inline(always)]
             pub(crate) fn film_rate(&self, states: &States<T, O>) -> T {
                 let mut rate = T::ONE;
                 $(if let (Some(e), Some(s)) = (&self.$film, &states.$film) {

@@ -75,7 +75,7 @@ impl<T: Real> Instrument<T> for TimeDelay<T> {
         force_n
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, state: &mut State<T>, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
         state.line.push(signal.now_n, dt_s, self.tau_s);
         let begin_n = state.reading_n;

@@ -236,14 +236,14 @@ impl<T: Real> Law<T> for Journal<T> {
         load_n.max(self.nominal.load_n * T::of(LIGHTEST_SHARE))
     }
 
-    #[inline]
+    #[inline(always)]
     fn load_share(&self, load_n: T) -> T {
         self.pressed_n(load_n) / self.nominal.load_n
     }
 
     /// The scales belong to one load and are one under the constructor's, so that what that gave
     /// still holds.
-    #[inline]
+    #[inline(always)]
     fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
         let slower = T::ONE / scales.transition_speed;
         let rate = match self.clock {

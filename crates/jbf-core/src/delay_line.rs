@@ -33,13 +33,8 @@ impl<T: Real> DelayLine<T> {
     }
 
     /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
-<<<<<<< HEAD:crates/jbf-core/src/delay_line.rs
-    #[inline]
-    pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
-=======
     #[inline(always)]
-    pub(super) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
->>>>>>> main:crates/jbf-core/src/law/delay_line.rs
+    pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
         let spacing = delay_s.value() / (POINTS - 4) as f64;
         // The newest point stands for now; it moves on until it is far enough from the last.
         if self.filled > 1 && self.gap_s[self.newest].value() < spacing {
@@ -56,13 +51,8 @@ impl<T: Real> DelayLine<T> {
     }
 
     /// The signal `delay_s` ago; zero of an empty line.
-<<<<<<< HEAD:crates/jbf-core/src/delay_line.rs
-    #[inline]
-    pub(crate) fn back(&self, delay_s: T) -> T {
-=======
     #[inline(always)]
-    pub(super) fn back(&self, delay_s: T) -> T {
->>>>>>> main:crates/jbf-core/src/law/delay_line.rs
+    pub(crate) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
         let mut at = self.newest;
         for _ in 1..self.filled {

@@ -1,7 +1,7 @@
 //! The signal chain: a law with effects round it, one step at a time.
 //!
 //! ```text
-//! commanded motion -> drive -> load -> lubricant -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
 //! Each stage takes its input at both ends of the step and gives its output at the end,

@@ -2,7 +2,7 @@
 //! file, each at one stage of the signal chain:
 //!
 //! ```text
-//! commanded motion -> drive -> load -> lubricant -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
 //! An effect knows its own stage and nothing of the others. To add one: write its file
@@ -182,8 +182,8 @@ pub trait Instrument<T: Real>: Effect<T> {
 // The fixed order of the chain, in one place; inside a stage effects act from left to right.
 registry::signal_chain! {
     drive: [drive_compliance::DriveCompliance, backlash::Backlash],
-    load: [load_dependence::LoadDependence],
     lubricant: [shear_thinning::ShearThinning, thermal_thinning::ThermalThinning],
+    load: [load_dependence::LoadDependence],
     film: [film_memory::FilmMemory],
     contact: [
         wear_in::WearIn,

@@ -4,8 +4,8 @@
 macro_rules! signal_chain {
     (
         drive: [$($drive:ident::$Drive:ident),* $(,)?],
-        load: [$($load:ident::$Load:ident),* $(,)?],
         lubricant: [$($lubricant:ident::$Lubricant:ident),* $(,)?],
+        load: [$($load:ident::$Load:ident),* $(,)?],
         film: [$($film:ident::$Film:ident),* $(,)?],
         contact: [$($contact:ident::$Contact:ident),* $(,)?],
         bristle: [$($bristle:ident::$Bristle:ident),* $(,)?],
@@ -13,7 +13,7 @@ macro_rules! signal_chain {
         instrument: [$($instrument:ident::$Instrument:ident),* $(,)?],
     ) => {
         $crate::effect::registry::signal_chain!(@types
-            $($drive::$Drive,)* $($load::$Load,)* $($lubricant::$Lubricant,)* $($film::$Film,)* $($contact::$Contact,)*
+            $($drive::$Drive,)* $($lubricant::$Lubricant,)* $($load::$Load,)* $($film::$Film,)* $($contact::$Contact,)*
             $($bristle::$Bristle,)* $($other::$Other,)* $($instrument::$Instrument,)*);
 
         impl<T: Real, O: Own<T>> Effects<T, O> {

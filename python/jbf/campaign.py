@@ -25,7 +25,11 @@ LOADS_DIFFER = 0.05
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready."""
+    """One run, ready.
+
+    A verdict looks at the `trusted` samples. A fit gives each sample its `weight`, 0 to 1: that of
+    a trusted one is 1, and one next to a jump that is itself fitted has little.
+    """
 
     run: Run
     motion: ImposedMotion
@@ -33,6 +37,7 @@ class Prepared:
     friction_n: Array
     trusted: Mask
     step_s: float
+    weight: Array
 
 
 @dataclass(frozen=True)
@@ -73,6 +78,7 @@ class Campaign:
                     friction_n=run.friction_n,
                     trusted=motion.trusted,
                     step_s=float(np.median(np.diff(run.time_s))),
+                    weight=motion.trusted.astype(float),
                 )
             )
         return cls(rig, tuple(prepared))

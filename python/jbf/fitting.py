@@ -133,9 +133,9 @@ class Problem:
         ]
 
     def square(self, values: Array) -> float:
-        """Sum of squares over trusted samples, N^2."""
+        """Sum of squares of weighted residuals, N^2."""
         return sum(
-            float(np.sum(r[p.trusted] ** 2))
+            float(np.sum((r * p.weight) ** 2))
             for r, p in zip(self.residuals(values), self.campaign.prepared, strict=True)
         )
 
@@ -160,17 +160,17 @@ class Problem:
         for i in range(len(residuals)) if which is None else which:
             res, jac, p = residuals[i], jacobian[i], self.campaign.prepared[i]
             # An untrusted sample is a gap: a zero there drives nothing.
-            keep = p.trusted.astype(float)
-            r.append(noise.innovations(res * keep, p.step_s)[p.trusted])
-            j.append(noise.innovations(jac * keep[:, None], p.step_s)[p.trusted])
+            keep = p.weight > 0.0
+            r.append(noise.innovations(res * p.weight, p.step_s)[keep])
+            j.append(noise.innovations(jac * p.weight[:, None], p.step_s)[keep])
         return np.concatenate(r), np.concatenate(j)
 
     def innovation_cost(self, residuals: list[Array], noise: Noise) -> float:
         """`n log(mean square innovation)` of residuals over trusted samples."""
         prepared = self.campaign.prepared
-        masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
+        masked = [r * p.weight for r, p in zip(residuals, prepared, strict=True)]
         return innovation_cost(
-            noise, masked, [p.step_s for p in prepared], [p.trusted for p in prepared]
+            noise, masked, [p.step_s for p in prepared], [p.weight > 0.0 for p in prepared]
         )
 
     def estimate_noise(self, residuals: list[Array]) -> Noise:
@@ -244,7 +244,7 @@ class Problem:
         return sure.solution(self._wrapped(values), noise, converged, message)
 
     def without_doubt(self, values: Array) -> Problem:
-        """The problem on samples that the model at these values leaves in no doubt."""
+        """The problem with the weights that the model at these values leaves to the samples."""
         sure = without_jumps(self.campaign, self.effects, self.predict(values))
         return self if sure is self.campaign else self.on(sure)
 
@@ -263,10 +263,9 @@ class Problem:
             values, converged, message = self.search(values, WHITE, MAX_EVALUATIONS)
             noise = self.estimate_noise(self.residuals(values))
         if doubted:
-            # With the jumps the search found its way; without them it finds the place.
+            # With jumps at full weight the search found its way; with little it finds the place.
             sure = self.without_doubt(values)
-            again = sure.solution(values, noise, False, message)
-            return sure.settle(again)
+            return sure.settle(sure.solution(values, noise, False, message))
         if noise.colour > 0.0:
             again = self.search(values, noise, MAX_EVALUATIONS)
             # A wrong law leaves a residual that no noise is. Taken for its colour, nearly all of
@@ -356,16 +355,16 @@ class Problem:
 
 
 def costs(a: Solution, b: Solution) -> tuple[float, float]:
-    """The costs of two solutions on the samples that both trust."""
+    """The costs of two solutions, each sample with the smaller of the weights they give it."""
     if a.campaign is b.campaign:
         return a.cost, b.cost
     pairs = zip(a.campaign.prepared, b.campaign.prepared, strict=True)
-    masks = [p.trusted & q.trusted for p, q in pairs]
+    weights = [np.minimum(p.weight, q.weight) for p, q in pairs]
     steps = [p.step_s for p in a.campaign.prepared]
 
     def cost(solution: Solution) -> float:
-        masked = [r * m for r, m in zip(solution.residuals, masks, strict=True)]
-        return innovation_cost(solution.noise, masked, steps, masks)
+        weighted = [r * w for r, w in zip(solution.residuals, weights, strict=True)]
+        return innovation_cost(solution.noise, weighted, steps, [w > 0.0 for w in weights])
 
     return cost(a), cost(b)
 

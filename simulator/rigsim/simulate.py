@@ -54,7 +54,8 @@ def simulate_run(
 ) -> Record:
     """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` ones.
 
-    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is exact; `rng` is needed by noise and some foreign effects.
+    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is
+    exact; `rng` is needed by noise and some foreign effects.
     """
     effects = check(effects)
     rng = rng if rng is not None else np.random.default_rng(0)

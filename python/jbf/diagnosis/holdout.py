@@ -75,7 +75,7 @@ def _halves_rms(problem: Problem, solution: Solution) -> float:
     first = np.arange(len(only.run)) < len(only.run) // 2
     total, samples = 0.0, 0
     for half in (first, ~first):
-        masked = replace(only, trusted=only.trusted & half)
+        masked = replace(only, trusted=only.trusted & half, weight=only.weight * half)
         part = Problem(
             Campaign(problem.campaign.rig, (masked,)), problem.law, problem.clock, problem.effects
         )

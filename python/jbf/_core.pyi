@@ -55,6 +55,7 @@ class BearingSizes(TypedDict):
     viscosity_pa_s: float
 
 class Motion:
+    columns: dict[str, Array]
     def __init__(
         self,
         time_s: Array,
@@ -121,6 +122,9 @@ def steady_friction(
     bearing: BearingSizes | None,
     load_n: float | None,
 ) -> Array: ...
+def read_force(
+    effects: Sequence[tuple[str, Sequence[float]]], time_s: Array, force_n: Array
+) -> tuple[Array, Array]: ...
 def trajectories(
     runs: Sequence[tuple[Array, tuple[float, float, float] | tuple[Array, Array]]],
     *,

@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.catalogue import Effect
 from jbf.conditioning import ImposedMotion
 from jbf.errors import InputError
 from jbf.model import core_motion, has_angle, has_path, imposed
+from jbf.own_effects import ALWAYS
 from jbf.record import Run, require
 from jbf.rig import Rig
 
@@ -114,8 +116,12 @@ class Campaign:
         span = max([*spans, max(known) - min(known)]) if known else 0.0
         return bool(known) and span > LOADS_DIFFER * max(known)
 
-    def lacking(self, needs: Sequence[str]) -> str | None:
+    def lacking(self, effect: Effect) -> str | None:
         """What these runs do not hold of what an effect needs, in words; None where nothing."""
+        needs = effect.needs
+        for column in effect.columns:
+            if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
+                return f"not every run has the column {column}"
         if "angle" in needs and not self.has_angle:
             return "not every run has the shaft's angle"
         if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
@@ -124,9 +130,9 @@ class Campaign:
             return "all runs have one load, under which it changes nothing"
         return None
 
-    def shows(self, needs: Sequence[str]) -> bool:
+    def shows(self, effect: Effect) -> bool:
         """True where every run holds what an effect needs of the record."""
-        return self.lacking(needs) is None
+        return self.lacking(effect) is None
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""

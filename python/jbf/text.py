@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from jbf.catalogue import Effect, Parameter
+from jbf.catalogue import Effect, Parameter, built_in
 from jbf.tables import (
     LEAST_CORRELATION,
     correlation_pairs,
@@ -223,9 +223,10 @@ def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
     lines: list[str] = []
     stage = None
     for effect in pages:
-        if effect.stage != stage:
-            lines += ([""] if lines else []) + [f"[{effect.stage}]"]
-            stage = effect.stage
+        own = "" if effect.name in built_in() else "your own, "
+        if own + effect.stage != stage:
+            stage = own + effect.stage
+            lines += ([""] if lines else []) + [f"[{stage}]"]
         lines += _hanging(f"{effect.name:<{widest}}  ", effect.summary)
     return "\n".join(lines)
 
@@ -242,6 +243,8 @@ def effect_page(effect: Effect) -> str:
     for need, words in _NEEDS.items():
         if need in effect.needs:
             facts.append(("needs", words))
+    if effect.columns:
+        facts.append(("columns", ", ".join(effect.columns)))
     if effect.refused:
         facts.append(("not with", refused_words(effect)))
     for name, words in facts:

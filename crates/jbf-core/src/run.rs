@@ -2,6 +2,7 @@
 
 use crate::chain::{Chain, State};
 use crate::effect::own::Own;
+use crate::effect::{Effects, Rig, Signal};
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -75,6 +76,44 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
             i += 1;
         }
         from = to;
+    }
+}
+
+/// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines
+/// between the samples; each sample's reading (N) goes to `sink` with its index.
+pub fn read_force<T: Real>(
+    effects: &Effects<T>,
+    time_s: &[f64],
+    force_n: &[f64],
+    mut sink: impl FnMut(usize, T),
+) {
+    let rig = Rig {
+        radius_m: T::ONE,
+        count: T::ONE,
+    };
+    let mut states = effects.start(&Motion::at_rest(T::ONE), &rig);
+    let longest_s = effects.longest_step_s().min(0.02);
+    let mut last: Option<(f64, f64)> = None;
+    for (i, (&t, &force)) in time_s.iter().zip(force_n).enumerate() {
+        let Some((before_s, before_n)) = last.replace((t, force)) else {
+            sink(i, effects.first_reading(&mut states, T::of(force)));
+            continue;
+        };
+        let dt = t - before_s;
+        let steps = libm::ceil(dt / longest_s - 1e-9).clamp(1.0, 1e6);
+        let mut reading = T::ZERO;
+        for k in 0..steps as u32 {
+            let at = |share: f64| T::of(before_n + (force - before_n) * share);
+            let (begin, end) = (f64::from(k) / steps, f64::from(k + 1) / steps);
+            let signal = Signal {
+                begin_n: at(begin),
+                end_n: at(end),
+                now_n: at(end),
+            };
+            let time = T::of(before_s + dt * end - time_s[0]);
+            reading = effects.reading(&mut states, signal, time, T::of(dt / steps));
+        }
+        sink(i, reading);
     }
 }
 

@@ -7,6 +7,7 @@ mod bearing;
 mod catalogue;
 mod chain;
 mod curves;
+mod instrument;
 mod motion;
 mod share;
 mod trajectory;
@@ -25,6 +26,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     Ok(())
 }

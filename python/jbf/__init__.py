@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from jbf._core import __version__
 from jbf.batching import batch
-from jbf.catalogue import effects, laws
+from jbf.catalogue import Parameter, effects, laws
 from jbf.errors import InputError, JbfError
 from jbf.model import Model
 from jbf.model_file import ParameterValue
+from jbf.own_effects import forget_effect, load_effects, register_effect
 from jbf.record import Run, read_run, read_runs
 from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.trajectory import Trajectory, trajectories, trajectory
@@ -46,6 +47,7 @@ __all__ = [
     "Load",
     "Lubricant",
     "Model",
+    "Parameter",
     "ParameterValue",
     "Rig",
     "Run",
@@ -56,10 +58,13 @@ __all__ = [
     "diagnose",
     "effects",
     "fit",
+    "forget_effect",
     "laws",
+    "load_effects",
     "read_rig",
     "read_run",
     "read_runs",
+    "register_effect",
     "trajectories",
     "trajectory",
 ]

@@ -31,6 +31,7 @@ class EffectPage(TypedDict):
     limits: str
     needs: list[str]
     refused: dict[str, str]
+    moves_jumps: bool
     longest_step_s: float
     parameters: list[ParameterPage]
 
@@ -54,6 +55,7 @@ class BearingSizes(TypedDict):
     viscosity_pa_s: float
 
 class Motion:
+    columns: dict[str, Array]
     def __init__(
         self,
         time_s: Array,
@@ -120,6 +122,9 @@ def steady_friction(
     bearing: BearingSizes | None,
     load_n: float | None,
 ) -> Array: ...
+def read_force(
+    effects: Sequence[tuple[str, Sequence[float]]], time_s: Array, force_n: Array
+) -> tuple[Array, Array]: ...
 def trajectories(
     runs: Sequence[tuple[Array, tuple[float, float, float] | tuple[Array, Array]]],
     *,

@@ -10,19 +10,28 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
+from jbf.catalogue import Effect
 from jbf.conditioning import ImposedMotion
 from jbf.errors import InputError
 from jbf.model import core_motion, has_angle, has_path, imposed
+from jbf.own_effects import ALWAYS
 from jbf.record import Run, require
 from jbf.rig import Rig
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+LOADS_DIFFER = 0.05
+"""Loads that differ by less than this share are one load."""
+
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready."""
+    """One run, ready.
+
+    A verdict looks at the `trusted` samples. A fit gives each sample its `weight`, 0 to 1: that of
+    a trusted one is 1, and one next to a jump that is itself fitted has little.
+    """
 
     run: Run
     motion: ImposedMotion
@@ -30,6 +39,7 @@ class Prepared:
     friction_n: Array
     trusted: Mask
     step_s: float
+    weight: Array
 
 
 @dataclass(frozen=True)
@@ -70,6 +80,7 @@ class Campaign:
                     friction_n=run.friction_n,
                     trusted=motion.trusted,
                     step_s=float(np.median(np.diff(run.time_s))),
+                    weight=motion.trusted.astype(float),
                 )
             )
         return cls(rig, tuple(prepared))
@@ -89,10 +100,39 @@ class Campaign:
         """True where every run has the shaft's angle."""
         return all(has_angle(self.rig, p.run) for p in self.prepared)
 
-    def shows(self, needs: Sequence[str]) -> bool:
+    @property
+    def has_loads(self) -> bool:
+        """True where the loads differ, within a run or from run to run."""
+        usual = self.rig.load.normal_n if self.rig.load is not None else None
+        means = [
+            usual if p.run.load_n is None else float(np.median(p.run.load_n)) for p in self.prepared
+        ]
+        known = [m for m in means if m is not None]
+        spans = [
+            np.ptp(np.quantile(p.run.load_n, [0.05, 0.95]))
+            for p in self.prepared
+            if p.run.load_n is not None
+        ]
+        span = max([*spans, max(known) - min(known)]) if known else 0.0
+        return bool(known) and span > LOADS_DIFFER * max(known)
+
+    def lacking(self, effect: Effect) -> str | None:
+        """What these runs do not hold of what an effect needs, in words; None where nothing."""
+        needs = effect.needs
+        for column in effect.columns:
+            if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
+                return f"not every run has the column {column}"
+        if "angle" in needs and not self.has_angle:
+            return "not every run has the shaft's angle"
+        if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
+            return "not every run has the path of the drive"
+        if "loads" in needs and not self.has_loads:
+            return "all runs have one load, under which it changes nothing"
+        return None
+
+    def shows(self, effect: Effect) -> bool:
         """True where every run holds what an effect needs of the record."""
-        paths = all(has_path(self.rig, p.run) for p in self.prepared)
-        return (self.has_angle or "angle" not in needs) and (paths or "path" not in needs)
+        return self.lacking(effect) is None
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""

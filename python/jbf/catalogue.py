@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
+
 from jbf import _core
 from jbf.errors import InputError, did_you_mean
 from jbf.model_file import Vocabulary
@@ -13,17 +15,31 @@ from jbf.model_file import Vocabulary
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter of a law or an effect; `name` carries the unit."""
+    """One parameter of a law or an effect; `name` carries the unit.
+
+    Attributes
+    ----------
+    lower, upper
+        Bounds, in the unit.
+    null
+        The value at which the effect vanishes, where this parameter has one.
+    starts
+        Where a fit may start, likeliest first.
+    log
+        True where a fit should walk in the logarithm.
+    period
+        The period of an angle, for parameters that wrap.
+    """
 
     name: str
-    unit: str
-    meaning: str
-    lower: float
-    upper: float
-    null: float | None
-    starts: tuple[float, ...]
-    log: bool
-    period: float | None
+    unit: str = "-"
+    meaning: str = ""
+    lower: float = -np.inf
+    upper: float = np.inf
+    null: float | None = None
+    starts: tuple[float, ...] = ()
+    log: bool = False
+    period: float | None = None
 
 
 @dataclass(frozen=True)
@@ -31,7 +47,8 @@ class Effect:
     """The page of one effect.
 
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
-    it does not go with why: "the law ...".
+    it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
+    instants at which friction jumps. `columns` are those that an effect of one's own asks for.
     """
 
     name: str
@@ -42,8 +59,10 @@ class Effect:
     limits: str
     needs: tuple[str, ...]
     refused: Mapping[str, str]
+    moves_jumps: bool
     longest_step_s: float
     parameters: tuple[Parameter, ...]
+    columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -71,8 +90,8 @@ def _parameter(page: _core.ParameterPage) -> Parameter:
 
 
 @cache
-def effects() -> dict[str, Effect]:
-    """Every effect by name, in the order of the signal chain."""
+def built_in() -> dict[str, Effect]:
+    """The core's effects by name, in the order of the signal chain."""
     pages = {}
     for page in _core.effects():
         fields = dict(page)
@@ -80,6 +99,31 @@ def effects() -> dict[str, Effect]:
         fields["needs"] = tuple(page["needs"])
         pages[page["name"]] = Effect(**fields)  # type: ignore[arg-type]
     return pages
+
+
+_own: dict[str, Effect] = {}
+
+
+def own() -> dict[str, Effect]:
+    """Effects of one's own that are registered now."""
+    return _own
+
+
+def put(page: Effect) -> None:
+    """Take an effect of one's own in."""
+    _own[page.name] = page
+    vocabulary.cache_clear()
+
+
+def drop(name: str) -> bool:
+    """Take an effect of one's own out; False where there is none of that name."""
+    vocabulary.cache_clear()
+    return _own.pop(name, None) is not None
+
+
+def effects() -> dict[str, Effect]:
+    """Every effect by name, in the order of the signal chain; one's own come last."""
+    return {**built_in(), **_own}
 
 
 @cache

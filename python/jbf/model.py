@@ -27,6 +27,8 @@ from jbf.model_file import (
     read_model_file,
     write_model_file,
 )
+from jbf.own_chain import OwnChain
+from jbf.own_effects import ALWAYS, OwnEffect
 from jbf.record import PathLike, Run, require
 from jbf.rig import Rig
 
@@ -73,7 +75,7 @@ def _load_n(rig: Rig) -> float | None:
     return None if rig.load is None else rig.load.normal_n
 
 
-def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain:
+def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain | OwnChain:
     """The core's chain for a rig.
 
     Raises
@@ -83,14 +85,25 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
     """
     check_rig(rig, law)
     check_applies(law, effects)
-    return _core.Chain(
+    pages = [find_effect(name) for name in in_chain_order(effects)]
+    own = [page for page in pages if isinstance(page, OwnEffect)]
+    core = _core.Chain(
         law=law,
         bearing=_sizes(rig),
         load_n=_load_n(rig),
         clock=clock,
-        effects=list(effects),
+        effects=[page.name for page in pages if page not in own],
         max_step_s=MAX_STEP_S,
     )
+    if not own:
+        return core
+    names = core.parameter_names
+    instrument = [
+        (page.name, [names.index(f"{page.name}.{p.name}") for p in page.parameters])
+        for page in pages
+        if page.stage == "instrument" and page not in own
+    ]
+    return OwnChain(core, instrument, own)
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
@@ -101,13 +114,21 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
 def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
     """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
     load = run.load_n if run.load_n is not None else np.full(len(run), _load_n(rig) or 1.0)
-    return _core.Motion(
+    made = _core.Motion(
         np.ascontiguousarray(run.time_s),
         motion.velocity_m_s,
         motion.acceleration_m_s2,
         motion.angle_rad,
         np.ascontiguousarray(load),
     )
+    # What effects of one's own see: the record, its motion as the models are driven with it.
+    made.columns = run.columns() | {
+        "velocity_m_s": motion.velocity_m_s,
+        "acceleration_m_s2": motion.acceleration_m_s2,
+        "angle_rad": motion.angle_rad,
+        "load_n": load,
+    }
+    return made
 
 
 def has_angle(rig: Rig, run: Run) -> bool:
@@ -124,6 +145,9 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
     """An InputError where a run lacks a column that one of the effects needs."""
     for name in effects:
         needs = find_effect(name).needs
+        for column in find_effect(name).columns:
+            if column not in ALWAYS:
+                require(run, column, f"the effect {name}")
         if "angle" in needs and not has_angle(rig, run):
             require(run, "angle_rad", f"the effect {name}")
             raise InputError(

@@ -124,7 +124,10 @@ class Vocabulary:
         for key, word, known in named:
             if word not in known:
                 problem = f"{quoted(word)} is not known"
-                raise InputError(key=key, problem=problem, mend=did_you_mean(word, known))
+                mend = did_you_mean(word, known)
+                if key == "effects":
+                    mend += "; one of your own is registered first: --effects-from FILE.py"
+                raise InputError(key=key, problem=problem, mend=mend)
         for name, parameter in model.parameters.items():
             effect, dot, short = name.rpartition(".")
             bounds = self.effects[effect] if dot else self.law_parameters.get(model.law, {})

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from jbf.catalogue import Effect, Parameter
+from jbf.catalogue import Effect, Parameter, built_in
 from jbf.tables import (
     LEAST_CORRELATION,
     correlation_pairs,
@@ -149,6 +149,10 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         lines.append(f"{head:<{lead}}why")
         for line, row in zip(table, rows, strict=True):
             lines += _hanging(f"{line:<{lead}}", row[4], 0)
+    if diagnosis.not_tried:
+        lines += ["", "Not tried: these runs cannot show"]
+        for name, reason in diagnosis.not_tried.items():
+            lines += _hanging(f"    {name}: ", reason, 0)
     return lines
 
 
@@ -189,6 +193,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
 _NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
+    "loads": "runs under several loads",
 }
 
 
@@ -218,9 +223,10 @@ def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
     lines: list[str] = []
     stage = None
     for effect in pages:
-        if effect.stage != stage:
-            lines += ([""] if lines else []) + [f"[{effect.stage}]"]
-            stage = effect.stage
+        own = "" if effect.name in built_in() else "your own, "
+        if own + effect.stage != stage:
+            stage = own + effect.stage
+            lines += ([""] if lines else []) + [f"[{stage}]"]
         lines += _hanging(f"{effect.name:<{widest}}  ", effect.summary)
     return "\n".join(lines)
 
@@ -237,6 +243,8 @@ def effect_page(effect: Effect) -> str:
     for need, words in _NEEDS.items():
         if need in effect.needs:
             facts.append(("needs", words))
+    if effect.columns:
+        facts.append(("columns", ", ".join(effect.columns)))
     if effect.refused:
         facts.append(("not with", refused_words(effect)))
     for name, words in facts:

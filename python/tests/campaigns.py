@@ -30,6 +30,7 @@ def campaign(
     foreign: tuple[str, ...] = (),
     strength: float = 1.0,
     motions: tuple[Motion, ...] = SHORT.motions,
+    loads: tuple[tuple[str, float], ...] = (),
 ) -> tuple[Rig, list[Run], dict[str, Any]]:
     """A rig, its runs, and the truth behind them."""
     records, truth = simulate_campaign(
@@ -38,7 +39,7 @@ def campaign(
         strength=strength,
         coloured=coloured,
         foreign=foreign,
-        campaign=Campaign("short", motions),
+        campaign=Campaign("short", motions, dict(loads)),
     )
     rig = Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3")
     runs = [

@@ -99,8 +99,10 @@ def test_bad_models_are_refused() -> None:
 def test_the_catalogue_is_complete() -> None:
     assert list(effects()) == [
         "drive_compliance",
+        "backlash",
         "shear_thinning",
         "thermal_thinning",
+        "load_dependence",
         "film_memory",
         "wear_in",
         "dwell_stiction",
@@ -112,6 +114,7 @@ def test_the_catalogue_is_complete() -> None:
         "quadratic_drag",
         "inertia_leak",
         "sensor_lag",
+        "time_delay",
         "sensor_offset",
         "sensor_drift",
     ]

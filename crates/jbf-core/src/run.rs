@@ -1,6 +1,8 @@
 //! A whole recorded run through a chain: the samples as slices, inner steps between them.
 
 use crate::chain::{Chain, State};
+use crate::effect::own::Own;
+use crate::effect::{Effects, Rig, Signal};
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -46,8 +48,8 @@ impl Record<'_> {
 /// The whole of it is inlined into its caller, so that a caller who compiles for a wider
 /// instruction set gets all of it there.
 #[inline(always)]
-pub fn predict<T: Real, L: Law<T>>(
-    chain: &Chain<T, L>,
+pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
     record: &Record<'_>,
     max_step_s: f64,
     mut sink: impl FnMut(usize, T),
@@ -59,7 +61,7 @@ pub fn predict<T: Real, L: Law<T>>(
         .velocity_m_s
         .iter()
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
-    let film_s = chain.law.longest_step_s(top) / chain.effects.fastest_film();
+    let film_s = chain.longest_film_step_s(record, top) / chain.effects.fastest_film();
     let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
     let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
@@ -74,6 +76,44 @@ pub fn predict<T: Real, L: Law<T>>(
             i += 1;
         }
         from = to;
+    }
+}
+
+/// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines
+/// between the samples; each sample's reading (N) goes to `sink` with its index.
+pub fn read_force<T: Real>(
+    effects: &Effects<T>,
+    time_s: &[f64],
+    force_n: &[f64],
+    mut sink: impl FnMut(usize, T),
+) {
+    let rig = Rig {
+        radius_m: T::ONE,
+        count: T::ONE,
+    };
+    let mut states = effects.start(&Motion::at_rest(T::ONE), &rig);
+    let longest_s = effects.longest_step_s().min(0.02);
+    let mut last: Option<(f64, f64)> = None;
+    for (i, (&t, &force)) in time_s.iter().zip(force_n).enumerate() {
+        let Some((before_s, before_n)) = last.replace((t, force)) else {
+            sink(i, effects.first_reading(&mut states, T::of(force)));
+            continue;
+        };
+        let dt = t - before_s;
+        let steps = libm::ceil(dt / longest_s - 1e-9).clamp(1.0, 1e6);
+        let mut reading = T::ZERO;
+        for k in 0..steps as u32 {
+            let at = |share: f64| T::of(before_n + (force - before_n) * share);
+            let (begin, end) = (f64::from(k) / steps, f64::from(k + 1) / steps);
+            let signal = Signal {
+                begin_n: at(begin),
+                end_n: at(end),
+                now_n: at(end),
+            };
+            let time = T::of(before_s + dt * end - time_s[0]);
+            reading = effects.reading(&mut states, signal, time, T::of(dt / steps));
+        }
+        sink(i, reading);
     }
 }
 
@@ -93,9 +133,9 @@ fn crossing(from: &Motion<f64>, to: &Motion<f64>) -> Option<Motion<f64>> {
 /// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
 /// plain numbers until a step takes it.
 #[inline(always)]
-fn between<T: Real, L: Law<T>>(
-    chain: &Chain<T, L>,
-    state: &mut State<T, L::State>,
+fn between<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
+    state: &mut State<T, L::State, O>,
     from: &Motion<f64>,
     to: &Motion<f64>,
     max_step_s: f64,

@@ -8,6 +8,7 @@ mod catalogue;
 mod chain;
 mod control;
 mod curves;
+mod instrument;
 mod motion;
 mod share;
 mod trajectory;
@@ -26,6 +27,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     m.add_function(wrap_pyfunction!(control::control_reference, m)?)?;
     m.add_function(wrap_pyfunction!(control::control_run, m)?)?;

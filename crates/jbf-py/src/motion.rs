@@ -5,8 +5,8 @@ use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The imposed motion of one run: five arrays of one length.
-#[pyclass(frozen, module = "jbf._core")]
+/// The imposed motion of one run: five arrays of one length. Python may hang attributes on it.
+#[pyclass(frozen, dict, module = "jbf._core")]
 pub struct Motion {
     time_s: Vec<f64>,
     velocity_m_s: Vec<f64>,

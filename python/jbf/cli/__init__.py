@@ -79,6 +79,8 @@ def _dispatch(arguments: list[str]) -> int:
     except InputError as error:
         return _refuse(error)
     try:
+        for file in getattr(chosen, "effects_from", []):
+            import_module("jbf.own_effects").load_effects(file)
         code: int = run(chosen)
     except InputError as error:
         return _refuse(error)

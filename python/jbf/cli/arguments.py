@@ -49,6 +49,17 @@ def add_law_name(parser: Parser, default: str | None, does: str) -> None:
     parser.add_argument("--law", metavar="NAME", default=default, help=does)
 
 
+def add_own(parser: Parser) -> None:
+    """--effects-from."""
+    parser.add_argument(
+        "--effects-from",
+        metavar="FILE.py",
+        action="append",
+        default=[],
+        help="run this Python file first, which registers effects of your own; may be repeated",
+    )
+
+
 def add_json(parser: Parser) -> None:
     """--json."""
     parser.add_argument(

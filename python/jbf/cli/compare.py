@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from jbf.cli import inputs, outputs
-from jbf.cli.arguments import Commands, add_json, add_report, add_runs, command
+from jbf.cli.arguments import Commands, add_json, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 
 
@@ -17,6 +17,7 @@ def add(commands: Commands) -> None:
     add_runs(parser)
     add_json(parser)
     add_report(parser)
+    add_own(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

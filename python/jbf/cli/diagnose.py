@@ -6,7 +6,7 @@ import argparse
 
 from jbf.catalogue import find_law
 from jbf.cli import inputs, outputs
-from jbf.cli.arguments import Commands, add_json, add_law, add_report, add_runs, command
+from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 
 
@@ -20,6 +20,7 @@ def add(commands: Commands) -> None:
     add_json(parser)
     add_report(parser)
     add_law(parser)
+    add_own(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

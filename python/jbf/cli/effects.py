@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import asdict
+from dataclasses import asdict, fields
+from typing import Any
 
-from jbf.catalogue import effects, find_effect, find_law
+from jbf.catalogue import Effect, effects, find_effect, find_law
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, add_json, add_law_name, command
+from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
 
 
 def add(commands: Commands) -> None:
@@ -17,6 +18,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
     add_law_name(parser, None, "say which effects go with this law, and why the others do not")
     add_json(parser)
+    add_own(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -35,6 +37,12 @@ def run(arguments: argparse.Namespace) -> int:
         if law is not None and law in pages[0].refused:
             text += f"\n\nDoes not apply: the law {law} {pages[0].refused[law]}"
     if arguments.json:
-        outputs.write({arguments.json: outputs.json_text({"effects": list(map(asdict, pages))})})
+        outputs.write({arguments.json: outputs.json_text({"effects": list(map(_plain, pages))})})
     outputs.say(text, wanted)
     return 0
+
+
+def _plain(page: Effect) -> dict[str, Any]:
+    """A page as data: of one's own effects without the function."""
+    kept = {f.name: getattr(page, f.name) for f in fields(Effect)}
+    return kept | {"parameters": [asdict(p) for p in page.parameters]}

@@ -6,7 +6,7 @@ import argparse
 
 from jbf.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
 from jbf.cli import inputs, outputs
-from jbf.cli.arguments import Commands, add_law, add_runs, command
+from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError, quoted
 
@@ -32,6 +32,7 @@ def add(commands: Commands) -> None:
         help="hold a parameter at a value, SI units; may be repeated",
     )
     parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
+    add_own(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

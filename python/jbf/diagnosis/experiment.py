@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jbf.catalogue import find_effect
 from jbf.model import chain
+from jbf.own_effects import ALWAYS
 from jbf.record import Run
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ Array = npt.NDArray[np.float64]
 
 STEP_S = 0.02
 DURATION_S = 60.0
+SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
 
 
 def _motions(top: float) -> dict[str, Array]:
@@ -52,6 +55,9 @@ def propose(
     radius = 1.0 if rig.bearing is None else rig.bearing.radius_m
     linear = any(p.run.position_m is not None for p in search.campaign.prepared)
     rivals = [present] + [(*rest, other) for other in others]
+    strange = {c for rival in rivals for e in rival for c in find_effect(e).columns} - SIMULATED
+    if strange:
+        return f"no run can be proposed: nobody knows what {', '.join(sorted(strange))} would be"
     best, separation = "", 0.0
     for words, velocity in _motions(top).items():
         time = np.arange(len(velocity)) * STEP_S

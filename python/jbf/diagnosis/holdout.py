@@ -23,6 +23,7 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
     value): what only the left-out run could know must not leak into its prediction. With one run
     there is nothing to leave out, and the halves of the run take turns.
     """
+    problem = problem.on(solution.campaign)
     campaign = problem.campaign
     count = len(campaign.prepared)
     if count == 1:
@@ -74,7 +75,7 @@ def _halves_rms(problem: Problem, solution: Solution) -> float:
     first = np.arange(len(only.run)) < len(only.run) // 2
     total, samples = 0.0, 0
     for half in (first, ~first):
-        masked = replace(only, trusted=only.trusted & half)
+        masked = replace(only, trusted=only.trusted & half, weight=only.weight * half)
         part = Problem(
             Campaign(problem.campaign.rig, (masked,)), problem.law, problem.clock, problem.effects
         )

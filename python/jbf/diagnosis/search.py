@@ -23,7 +23,7 @@ from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
+from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_mean_square
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -74,8 +74,15 @@ class Search:
         return [
             e.name
             for e in catalogue().values()
-            if self.law not in e.refused and self.campaign.shows(e.needs)
+            if self.law not in e.refused and self.campaign.shows(e)
         ]
+
+    @property
+    def not_tried(self) -> dict[str, str]:
+        """Effects that go with the law but that these records cannot show, and why."""
+        pages = [e for e in catalogue().values() if self.law not in e.refused]
+        reasons = {e.name: self.campaign.lacking(e) for e in pages}
+        return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
         """The fitting problem of some effects."""
@@ -132,13 +139,15 @@ class Search:
 
     def evidence(self, richer: Solution, simpler: Solution) -> float:
         """Evidence for the richer of two models."""
-        return simpler.cost - richer.cost - self.price(richer.free - simpler.free)
+        gain = np.subtract(*costs(simpler, richer))
+        return float(gain) - self.price(richer.free - simpler.free)
 
     def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
         """How much evidence is lost when these effects stand in place of those of `whole`."""
 
         def of(solution: Solution) -> float:
-            return solution.cost + self.price(solution.free) - whole.cost - self.price(whole.free)
+            lost = np.subtract(*costs(solution, whole))
+            return float(lost) + self.price(solution.free) - self.price(whole.free)
 
         if self.blind(effects, near):
             return of(near)
@@ -191,10 +200,10 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
         found.append((max(search.evidence(solution, base), least), name, solution))
     found.sort(key=lambda t: -t[0])
     leader, best, ties, trials = None, 0.0, [], []
-    bare = root_mean_square(base.residuals, search.campaign)
+    bare = root_mean_square(base.residuals, base.campaign)
     before = search.hold_out(frozenset(present)) if found and found[0][0] > 0 else np.nan
     for evidence, name, solution in found:
-        rms = min(root_mean_square(solution.residuals, search.campaign), bare)
+        rms = min(root_mean_square(solution.residuals, solution.campaign), bare)
         outcome, reason = "useless", "gains no more than chance would"
         if evidence > 0 and leader is None:
             after = search.hold_out(frozenset((*present, name)))
@@ -301,7 +310,7 @@ def diagnose(
         solution = search.solve(frozenset(effects))
         return Step(
             effects,
-            root_mean_square(solution.residuals, campaign),
+            root_mean_square(solution.residuals, solution.campaign),
             search.hold_out(frozenset(effects)),
             noise,
             tuple(trials),
@@ -348,6 +357,7 @@ def diagnose(
         before=before,
         after=after,
         elapsed_s=time.monotonic() - begun,
+        not_tried=search.not_tried,
     )
 
 
@@ -365,11 +375,11 @@ def _refused(search: Search, base: Solution) -> list[Remainder]:
             continue
         (name,) = effects - here
         if search.evidence(solution, base) > DOUBT:
-            found.append((root_mean_square(solution.residuals, search.campaign), name))
+            found.append((root_mean_square(solution.residuals, solution.campaign), name))
     if not found:
         return []
     rms, name = min(found)
-    bare = root_mean_square(base.residuals, search.campaign)
+    bare = root_mean_square(base.residuals, base.campaign)
     where = f"{name} fits {bare:.3g} N down to {rms:.3g} N but predicts runs left out no better"
     return [Remainder("run", where, max(1.0 - (rms / bare) ** 2, 0.0))]
 

@@ -1,0 +1,153 @@
+//! Play in the drive: turning round, the drive crosses a gap before it takes the journal along.
+//!
+//! ```text
+//! th_j stands while th_m crosses the gap; at a flank it follows
+//! ```
+//!
+//! The play operator of hysteresis (Brokate & Sprekels 1996). While the gap is crossed nothing
+//! turns the journal: it stands, and the load cell sees no friction at all, for nothing but the
+//! drive could hold a friction up. The film feels a journal at rest.
+//!
+//! The first motion of a run finds its flank closed. The friction comes up on a ramp that is one
+//! step long and has its middle where the flank closes: the reading is then continuous in the gap,
+//! and so has a slope for an optimiser.
+
+use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A gap between the drive's flanks.
+#[derive(Clone, Copy, Debug)]
+pub struct Backlash<T> {
+    gap_rad: T,
+}
+
+/// Where in the gap the drive stands.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    /// Way from the middle of the gap, m: half the gap at the flank that drives forward.
+    place_m: T,
+    /// The flank that is closed: +1 drives forward, -1 backward; 0 within the gap.
+    closed: i8,
+    /// False before the first motion.
+    begun: bool,
+    /// `place_m` where the run began to move: there the journal's angle was the drive's.
+    first_m: T,
+    /// Speed of the drive at the end of the last step, m/s.
+    speed_m_s: T,
+}
+
+impl<T: Real> State<T> {
+    /// The drive moves by `way_m`, signed; gives how far the journal then is on the ramp from
+    /// standing to following, 0 to 1.
+    #[inline(always)]
+    fn advance(&mut self, way_m: T, half_m: T) -> T {
+        let ahead = if way_m > T::ZERO { 1 } else { -1 };
+        let flank = if way_m > T::ZERO { half_m } else { -half_m };
+        if !self.begun && way_m != T::ZERO {
+            (self.begun, self.closed) = (true, ahead);
+            (self.place_m, self.first_m) = (flank, flank);
+        }
+        if self.closed == ahead || way_m == T::ZERO {
+            return T::ONE;
+        }
+        let there = self.place_m + way_m;
+        let beyond = (there - flank) / way_m;
+        let closes = beyond.value() >= 0.0;
+        self.closed = if closes { ahead } else { 0 };
+        self.place_m = if closes { flank } else { there };
+        // Half a step early, so that the ramp has its middle where the flank closes; a gap that
+        // is smaller than a step has no room for it.
+        let early = (half_m + half_m).min(way_m.abs()) * T::of(0.5) / way_m.abs();
+        let share = beyond + early;
+        if share.value() > 1.0 {
+            T::ONE
+        } else {
+            share.max(T::ZERO)
+        }
+    }
+}
+
+impl<T: Real> Effect<T> for Backlash<T> {
+    const INFO: Info = Info {
+        name: "backlash",
+        stage: Stage::Drive,
+        summary: "a gap in gear, key or coupling: after a turn the journal stands until it is \
+                  crossed",
+        equation: "th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'",
+        source: "Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996",
+        limits: "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
+                 flank closed; beside presliding the bristle keeps its force while the journal \
+                 stands; on a linear axis the gap is in m",
+        parameters: &[Parameter {
+            name: "gap_rad",
+            unit: "rad",
+            meaning: "angle between the flanks",
+            lower: 0.0,
+            upper: 1.0,
+            null: Some(0.0),
+            starts: &[0.0215, 0.0043],
+            log: false,
+            period: None,
+        }],
+        needs: &[Need::NoBristle],
+        longest_step_s: 0.02,
+    };
+    const MOVES_JUMPS: bool = true;
+    type State = State<T>;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            gap_rad: parameters[0],
+        })
+    }
+
+    fn start(&self, motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            place_m: T::ZERO,
+            closed: 0,
+            begun: false,
+            first_m: T::ZERO,
+            speed_m_s: motion.velocity_m_s,
+        }
+    }
+}
+
+impl<T: Real> Drive<T> for Backlash<T> {
+    #[inline(always)]
+    fn step(
+        &self,
+        state: &mut State<T>,
+        to: &JournalMotion<T>,
+        _resistance: &Resistance<T>,
+        rig: &Rig<T>,
+        dt_s: T,
+    ) -> JournalMotion<T> {
+        let half_m = self.gap_rad * rig.radius_m * T::of(0.5);
+        let (v0, v1) = (state.speed_m_s, to.velocity_m_s);
+        state.speed_m_s = v1;
+        let half_s = T::of(0.5) * dt_s;
+        let mut driven = if v0.value() * v1.value() < 0.0 {
+            // The speed crosses zero on a straight line: out, then back.
+            let share = v0 / (v0 - v1);
+            state.advance(v0 * share * half_s, half_m);
+            state.advance(v1 * (T::ONE - share) * half_s, half_m)
+        } else {
+            state.advance((v0 + v1) * half_s, half_m)
+        };
+        // At rest a soft drive may still push, but only through the flank that it leans on.
+        if v1 == T::ZERO && to.direction != T::ZERO {
+            let leans = state.closed == if to.direction > T::ZERO { 1 } else { -1 };
+            driven = if leans { T::ONE } else { T::ZERO };
+        }
+        JournalMotion {
+            velocity_m_s: v1 * driven,
+            acceleration_m_s2: to.acceleration_m_s2 * driven,
+            angle_rad: to.angle_rad - (state.place_m - state.first_m) / rig.radius_m,
+            direction: to.direction * driven,
+            time_s: to.time_s,
+        }
+    }
+}

@@ -1,0 +1,59 @@
+"""Samples next to a jump whose instant is itself fitted.
+
+Friction jumps where the motion turns round. Of those samples a record does not tell the sign, and
+`conditioning` distrusts them. An effect that moves the jump elsewhere (a late record, a gap to
+be crossed first) moves the doubt with it: there the model has a ramp over a sample where the record
+has a jump somewhere within it. What that costs is known: some half of the change over the sample.
+A fit weighs the sample by it, and no verdict looks at it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.campaign import Campaign, Prepared
+from jbf.catalogue import find_effect
+
+Array = npt.NDArray[np.float64]
+
+JUMP = 0.1
+"""A change within a sample by more than this share of the run's largest friction is a jump."""
+
+
+def moves_jumps(effects: Iterable[str]) -> bool:
+    """True where one of the effects moves the instants of jumps."""
+    return any(find_effect(name).moves_jumps for name in effects)
+
+
+def jumps(prediction: Array) -> Array:
+    """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
+    change = np.abs(np.diff(prediction))
+    steep = np.where(change > JUMP * np.max(np.abs(prediction), initial=0.0), change, 0.0)
+    found: Array = np.maximum(np.append(steep, 0.0), np.append(0.0, steep))
+    return found
+
+
+def without_jumps(
+    campaign: Campaign, effects: Iterable[str], predictions: Sequence[Array]
+) -> Campaign:
+    """The campaign with the doubt that a model with these effects casts on its samples."""
+    if not moves_jumps(effects):
+        return campaign
+    return Campaign(
+        campaign.rig,
+        tuple(_doubted(p, f) for p, f in zip(campaign.prepared, predictions, strict=True)),
+    )
+
+
+def _doubted(p: Prepared, prediction: Array) -> Prepared:
+    change = jumps(prediction)
+    sure = p.trusted & (change == 0.0)
+    noise = float(np.sqrt(np.mean((prediction - p.friction_n)[sure] ** 2))) if sure.any() else 0.0
+    error = 0.5 * change
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(error > 0.0, noise / np.hypot(noise, error), 1.0)
+    return replace(p, trusted=sure, weight=p.weight * share)

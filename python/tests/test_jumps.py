@@ -1,0 +1,68 @@
+"""Effects that move the instants of jumps: what is doubted, and that fits find their way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from campaigns import campaign
+from jbf import InputError, Model, compare, fit
+from jbf.doubt import jumps, moves_jumps, without_jumps
+
+
+def test_only_a_jump_is_in_doubt() -> None:
+    t = np.arange(0.0, 10.0, 0.02)
+    smooth = 20.0 * np.cos(t)
+    assert not jumps(smooth).any()
+    jumped = np.where(t < 5.0, smooth + 20.0, smooth - 20.0)
+    assert np.flatnonzero(jumps(jumped)).tolist() == [249, 250]
+    assert jumps(jumped)[250] == pytest.approx(40.0, rel=0.02)
+    assert not jumps(np.zeros(20)).any()
+
+
+def test_only_effects_that_move_jumps_cast_doubt() -> None:
+    assert moves_jumps(["sensor_lag", "time_delay"])
+    assert not moves_jumps(["sensor_lag", "drive_compliance"])
+
+
+@pytest.mark.parametrize("name", ["time_delay", "backlash"])
+def test_recovers_what_moves_a_jump(name: str) -> None:
+    rig, runs, truth = campaign(5, (name,))
+    fitted = fit(rig, runs, [name])
+    assert fitted.rms_n < 1.03 * truth["noise_n"]
+    (short, value), *_ = truth["effects"][name].items()
+    full = next(n for n in fitted.parameters if n.startswith(f"{name}.{short}"))
+    found = fitted.parameters[full]
+    assert found.stderr is not None
+    assert abs(found.value - value) < 3.5 * found.stderr
+    assert found.stderr < 0.3 * value
+    # The samples next to the moved jumps are left out, and few others.
+    bare = compare(Model(rig), runs)
+    assert 0.97 * bare.campaign.samples < fitted.samples < bare.campaign.samples
+    after = compare(fitted.model, runs)
+    assert after.rms_n < 1.03 * truth["noise_n"]
+    assert without_jumps(bare.campaign, [], bare.predictions) is bare.campaign
+
+
+def test_the_delay_of_the_start_does_not_matter() -> None:
+    rig, runs, truth = campaign(6, ("time_delay",))
+    tau = truth["effects"]["time_delay"]["tau"]
+    for start in (0.5 * tau, 2.0 * tau, 0.004):
+        fitted = fit(rig, runs, ["time_delay"], start={"time_delay.tau_s": start})
+        assert fitted.parameters["time_delay.tau_s"].value == pytest.approx(tau, abs=0.003)
+
+
+def test_load_dependence_needs_several_loads() -> None:
+    rig, runs, _ = campaign(7)
+    with pytest.raises(InputError, match="all runs have one load"):
+        fit(rig, runs, ["load_dependence"])
+
+
+def test_load_dependence_is_recovered() -> None:
+    loads = (("two_way_0.25", 0.7), ("stop_and_go", 0.7), ("two_way_2", 1.35))
+    rig, runs, truth = campaign(8, ("load_dependence",), loads=loads)
+    fitted = fit(rig, runs, ["load_dependence"])
+    assert fitted.rms_n < 1.03 * truth["noise_n"]
+    for short, value in truth["effects"]["load_dependence"].items():
+        found = fitted.parameters[f"load_dependence.{short}"]
+        assert found.stderr is not None
+        assert abs(found.value - value) < 3.5 * found.stderr < value

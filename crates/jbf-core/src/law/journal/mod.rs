@@ -33,7 +33,7 @@ use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use film_motion::{within, Film};
+use film_motion::{within, Film, Gap};
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -94,13 +94,15 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Friction at an eccentricity ratio, `d = 1 - eps^2` and a speed, (3.14).
+    /// Friction at an eccentricity ratio, given with its square, and a speed, (3.14).
     #[inline(always)]
-    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
-        let load = self.asperity_load(eps, loaded.eps_tr);
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Sliding<T> {
+        let gap = Gap::at(e2);
+        let load = self.asperity_load(gap.e, loaded.eps_tr);
+        let viscous = self.viscous_s_m * loaded.inverse_load_number * velocity_m_s;
         Sliding {
             level: self.f_m * loaded.inverse_load_number * load,
-            viscous: self.viscous_s_m * loaded.inverse_load_number * velocity_m_s / d.sqrt(),
+            viscous: viscous * gap.inverse_root(),
         }
     }
 
@@ -242,9 +244,9 @@ impl<T: Real> Law<T> for Journal<T> {
 
     #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        // As the slope forms them, so that a step and its friction share both roots.
-        let d = T::ONE - state.e2;
-        self.sliding(&state.loaded, state.e2.sqrt(), d, velocity_m_s)
+        // Of the same number as the slope, so that a step and its friction share roots and
+        // division.
+        self.sliding(&state.loaded, state.e2, velocity_m_s)
     }
 
     #[inline(always)]

@@ -164,9 +164,9 @@ impl<T: Real> Law<T> for JournalFull<T> {
 
     #[inline]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        let eps = state.eps();
-        let d = (T::ONE - eps) * (T::ONE + eps);
-        self.film.sliding(&state.loaded, eps, d, velocity_m_s)
+        let [x, y] = state.xy;
+        self.film
+            .sliding(&state.loaded, x * x + y * y, velocity_m_s)
     }
 
     #[inline]

@@ -28,6 +28,7 @@ mod readme {}
 pub mod bearing;
 pub mod chain;
 pub mod clock;
+mod delay_line;
 pub mod driver;
 pub mod dual;
 pub mod effect;

@@ -30,6 +30,7 @@ TONE_CHANCE = 1e-7
 
 def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...]:
     """What remains in the residuals of a solution, strongest first."""
+    problem = problem.on(solution.campaign)
     campaign = problem.campaign
     innovations = [
         problem_innovations(r, p.trusted, p.step_s, solution)

@@ -23,7 +23,7 @@ from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
+from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_mean_square
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -76,6 +76,13 @@ class Search:
             for e in catalogue().values()
             if self.law not in e.refused and self.campaign.shows(e.needs)
         ]
+
+    @property
+    def not_tried(self) -> dict[str, str]:
+        """Effects that go with the law but that these records cannot show, and why."""
+        pages = [e for e in catalogue().values() if self.law not in e.refused]
+        reasons = {e.name: self.campaign.lacking(e.needs) for e in pages}
+        return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
         """The fitting problem of some effects."""
@@ -132,13 +139,15 @@ class Search:
 
     def evidence(self, richer: Solution, simpler: Solution) -> float:
         """Evidence for the richer of two models."""
-        return simpler.cost - richer.cost - self.price(richer.free - simpler.free)
+        gain = np.subtract(*costs(simpler, richer))
+        return float(gain) - self.price(richer.free - simpler.free)
 
     def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
         """How much evidence is lost when these effects stand in place of those of `whole`."""
 
         def of(solution: Solution) -> float:
-            return solution.cost + self.price(solution.free) - whole.cost - self.price(whole.free)
+            lost = np.subtract(*costs(solution, whole))
+            return float(lost) + self.price(solution.free) - self.price(whole.free)
 
         if self.blind(effects, near):
             return of(near)
@@ -348,6 +357,7 @@ def diagnose(
         before=before,
         after=after,
         elapsed_s=time.monotonic() - begun,
+        not_tried=search.not_tried,
     )
 
 

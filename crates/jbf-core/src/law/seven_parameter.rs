@@ -17,11 +17,11 @@
 //! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
 
 use super::bristle::{legs, Leg};
-use super::delay_line::DelayLine;
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
 use super::{Info, Law, Named, Sliding, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
+use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::real::Real;

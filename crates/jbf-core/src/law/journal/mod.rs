@@ -28,6 +28,8 @@ pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
 use super::{Law, Sliding};
+use crate::clock::Clock;
+use crate::effect::Scales;
 use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
@@ -57,6 +59,7 @@ pub struct Journal<T> {
     pub(crate) rate: T,
     /// The load of the constructor and its eps_tr, so that a start costs nothing.
     nominal: Loaded<T>,
+    clock: Clock,
 }
 
 impl<T: Real> Journal<T> {
@@ -233,6 +236,30 @@ impl<T: Real> Law<T> for Journal<T> {
     #[inline(always)]
     fn pressed_n(&self, load_n: T) -> T {
         load_n.max(self.nominal.load_n * T::of(LIGHTEST_SHARE))
+    }
+
+    #[inline(always)]
+    fn load_share(&self, load_n: T) -> T {
+        self.pressed_n(load_n) / self.nominal.load_n
+    }
+
+    /// The scales belong to one load and are one under the constructor's, so that what that gave
+    /// still holds.
+    #[inline(always)]
+    fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
+        let slower = T::ONE / scales.transition_speed;
+        let rate = match self.clock {
+            Clock::Journal => self.rate * scales.transition_speed,
+            Clock::Thesis => self.rate,
+        };
+        Some(Self {
+            fb_per_n: self.fb_per_n * slower,
+            k0: self.k0 * scales.stiffness,
+            viscous_s_m: self.viscous_s_m * slower,
+            inverse_u_tr: self.inverse_u_tr * slower,
+            rate,
+            ..*self
+        })
     }
 
     #[inline(always)]

@@ -37,6 +37,7 @@ pub use state::State;
 
 use super::journal::{Journal, Loaded, START_PHI_RAD};
 use super::{Law, Sliding};
+use crate::effect::Scales;
 use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
@@ -151,6 +152,20 @@ impl<T: Real> Law<T> for JournalFull<T> {
     #[inline]
     fn pressed_n(&self, load_n: T) -> T {
         self.film.pressed_n(load_n)
+    }
+
+    #[inline]
+    fn load_share(&self, load_n: T) -> T {
+        self.film.load_share(load_n)
+    }
+
+    /// The mass number goes with U_tr.
+    #[inline]
+    fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
+        Some(Self {
+            film: self.film.scaled(scales)?,
+            inverse_mass_number: self.inverse_mass_number / scales.transition_speed,
+        })
     }
 
     #[inline]

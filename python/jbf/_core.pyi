@@ -31,6 +31,7 @@ class EffectPage(TypedDict):
     limits: str
     needs: list[str]
     refused: dict[str, str]
+    moves_jumps: bool
     longest_step_s: float
     parameters: list[ParameterPage]
 

@@ -19,6 +19,9 @@ from jbf.rig import Rig
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+LOADS_DIFFER = 0.05
+"""Loads that differ by less than this share are one load."""
+
 
 @dataclass(frozen=True)
 class Prepared:
@@ -89,10 +92,35 @@ class Campaign:
         """True where every run has the shaft's angle."""
         return all(has_angle(self.rig, p.run) for p in self.prepared)
 
+    @property
+    def has_loads(self) -> bool:
+        """True where the loads differ, within a run or from run to run."""
+        usual = self.rig.load.normal_n if self.rig.load is not None else None
+        means = [
+            usual if p.run.load_n is None else float(np.median(p.run.load_n)) for p in self.prepared
+        ]
+        known = [m for m in means if m is not None]
+        spans = [
+            np.ptp(np.quantile(p.run.load_n, [0.05, 0.95]))
+            for p in self.prepared
+            if p.run.load_n is not None
+        ]
+        span = max([*spans, max(known) - min(known)]) if known else 0.0
+        return bool(known) and span > LOADS_DIFFER * max(known)
+
+    def lacking(self, needs: Sequence[str]) -> str | None:
+        """What these runs do not hold of what an effect needs, in words; None where nothing."""
+        if "angle" in needs and not self.has_angle:
+            return "not every run has the shaft's angle"
+        if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
+            return "not every run has the path of the drive"
+        if "loads" in needs and not self.has_loads:
+            return "all runs have one load, under which it changes nothing"
+        return None
+
     def shows(self, needs: Sequence[str]) -> bool:
         """True where every run holds what an effect needs of the record."""
-        paths = all(has_path(self.rig, p.run) for p in self.prepared)
-        return (self.has_angle or "angle" not in needs) and (paths or "path" not in needs)
+        return self.lacking(needs) is None
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""

@@ -31,7 +31,8 @@ class Effect:
     """The page of one effect.
 
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
-    it does not go with why: "the law ...".
+    it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
+    instants at which friction jumps.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Effect:
     limits: str
     needs: tuple[str, ...]
     refused: Mapping[str, str]
+    moves_jumps: bool
     longest_step_s: float
     parameters: tuple[Parameter, ...]
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jbf.axes import Binned, all_axes
 from jbf.campaign import Campaign
 from jbf.catalogue import transition_speed
+from jbf.doubt import without_jumps
 from jbf.model import Model
 from jbf.noise import noise_floor
 from jbf.record import PathLike, Run
@@ -189,6 +190,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     predictions = core.predict(model.values, motions)
+    campaign = without_jumps(campaign, model.effects, predictions)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign)
     runs = tuple(

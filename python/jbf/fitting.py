@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +15,12 @@ from jbf.campaign import Campaign
 from jbf.catalogue import (
     Parameter,
     check_applies,
+    find_effect,
     find_parameter,
     in_chain_order,
     parameters_of,
 )
+from jbf.doubt import without_jumps
 from jbf.errors import InputError
 from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
@@ -51,6 +54,9 @@ class Solution:
         Derivative of the prediction with respect to each search variable, one (n, k) a run.
     cost
         `n log(mean square innovation)` over trusted samples.
+    campaign
+        The runs with the samples that it trusts: fewer than the problem's where an effect moves
+        the instants of jumps.
     """
 
     effects: tuple[str, ...]
@@ -61,6 +67,7 @@ class Solution:
     cost: float
     converged: bool
     message: str
+    campaign: Campaign
 
     @property
     def free(self) -> int:
@@ -232,16 +239,34 @@ class Problem:
             short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in starts[:FOLLOWED]]
             best = min(short, key=self.square)
         values, converged, message = self.search(best, WHITE, evaluations)
-        noise = self.estimate_noise(self.residuals(values))
-        return self.solution(self._wrapped(values), noise, converged, message)
+        sure = self.without_doubt(values)
+        noise = sure.estimate_noise(sure.residuals(values))
+        return sure.solution(self._wrapped(values), noise, converged, message)
+
+    def without_doubt(self, values: Array) -> Problem:
+        """The problem on samples that the model at these values leaves in no doubt."""
+        sure = without_jumps(self.campaign, self.effects, self.predict(values))
+        return self if sure is self.campaign else self.on(sure)
+
+    def on(self, campaign: Campaign) -> Problem:
+        """The same problem on other samples."""
+        other = copy(self)
+        other.campaign = campaign
+        return other
 
     def settle(self, near: Solution) -> Solution:
         """Converge from a solution, with the colour of its noise."""
         values, noise = near.values, near.noise
         converged, message = near.converged, near.message
+        doubted = near.campaign is not self.campaign
         if not near.converged:
             values, converged, message = self.search(values, WHITE, MAX_EVALUATIONS)
             noise = self.estimate_noise(self.residuals(values))
+        if doubted:
+            # With the jumps the search found its way; without them it finds the place.
+            sure = self.without_doubt(values)
+            again = sure.solution(values, noise, False, message)
+            return sure.settle(again)
         if noise.colour > 0.0:
             again = self.search(values, noise, MAX_EVALUATIONS)
             # A wrong law leaves a residual that no noise is. Taken for its colour, nearly all of
@@ -261,7 +286,17 @@ class Problem:
         """The solution at given values."""
         residuals, jacobian = self.linearise(values)
         cost = self.innovation_cost(residuals, noise)
-        return Solution(self.effects, values, residuals, jacobian, noise, cost, converged, message)
+        return Solution(
+            self.effects,
+            values,
+            residuals,
+            jacobian,
+            noise,
+            cost,
+            converged,
+            message,
+            self.campaign,
+        )
 
     def _wrapped(self, values: Array) -> Array:
         """Angles brought back into (-period/2, period/2]."""
@@ -320,6 +355,21 @@ class Problem:
         return None
 
 
+def costs(a: Solution, b: Solution) -> tuple[float, float]:
+    """The costs of two solutions on the samples that both trust."""
+    if a.campaign is b.campaign:
+        return a.cost, b.cost
+    pairs = zip(a.campaign.prepared, b.campaign.prepared, strict=True)
+    masks = [p.trusted & q.trusted for p, q in pairs]
+    steps = [p.step_s for p in a.campaign.prepared]
+
+    def cost(solution: Solution) -> float:
+        masked = [r * m for r, m in zip(solution.residuals, masks, strict=True)]
+        return innovation_cost(solution.noise, masked, steps, masks)
+
+    return cost(a), cost(b)
+
+
 def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:
     """Gain in twice the log likelihood that one full Gauss-Newton step from `values` promises."""
     r, j = problem.stacked(*problem.linearise(values), noise)
@@ -370,6 +420,13 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
     effects = list(effects)
     for p in campaign.prepared:
         require_record(campaign.rig, p.run, effects)
+    for name in effects:
+        reason = campaign.lacking(find_effect(name).needs)
+        if reason is not None:
+            raise InputError(
+                problem=f"the effect {name} cannot be found in these runs: {reason}",
+                mend="leave it out, or add runs under other loads",
+            )
 
 
 def root_mean_square(residuals: Sequence[Array], campaign: Campaign) -> float:
@@ -382,6 +439,7 @@ def root_mean_square(residuals: Sequence[Array], campaign: Campaign) -> float:
 
 def finish(problem: Problem, solution: Solution) -> Fit:
     """A solution with its errors, as a model."""
+    problem = problem.on(solution.campaign)
     values, correlation = problem.errors(solution)
     named = dict(zip(problem.names, values, strict=True))
     campaign = problem.campaign

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize, signal
+from scipy import optimize, signal, special
 
 from jbf.campaign import Campaign, Prepared
 from jbf.conditioning import noise_of
@@ -77,8 +77,8 @@ def estimate_noise(
     low, high = np.log(shortest), np.log(longest)
 
     def unpack(x: Array) -> Noise:
-        memory = np.exp(low + (high - low) / (1.0 + np.exp(-x[0])))
-        return Noise(float(memory), float(1.0 / (1.0 + np.exp(-x[1]))))
+        memory, colour = special.expit(x)
+        return Noise(float(np.exp(low + (high - low) * memory)), float(colour))
 
     def cost(x: Array) -> float:
         return innovation_cost(unpack(x), residuals, steps, masks)

@@ -149,6 +149,10 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         lines.append(f"{head:<{lead}}why")
         for line, row in zip(table, rows, strict=True):
             lines += _hanging(f"{line:<{lead}}", row[4], 0)
+    if diagnosis.not_tried:
+        lines += ["", "Not tried: these runs cannot show"]
+        for name, reason in diagnosis.not_tried.items():
+            lines += _hanging(f"    {name}: ", reason, 0)
     return lines
 
 
@@ -189,6 +193,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
 _NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
+    "loads": "runs under several loads",
 }
 
 

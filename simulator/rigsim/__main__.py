@@ -23,7 +23,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--strength", type=float, default=1.0, help="0.6 to 1.5 is sensible")
     parser.add_argument("--noise", type=float, help="white sd as a share of f_m times load")
     parser.add_argument("--coloured", action="store_true", help="add noise of 0.2 s correlation")
-    parser.add_argument("--campaign", default="full", help="full, heldout, slow or steady")
+    parser.add_argument("--campaign", default="full", help="full, heldout, loads, slow or steady")
     parser.add_argument("--heldout", type=Path, help="folder for other motions of the same rig")
     parser.add_argument("--truth", type=Path, help="write the truth here, not to stdout")
     return parser

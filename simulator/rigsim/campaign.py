@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +22,14 @@ from .simulate import simulate_run
 
 @dataclass(frozen=True)
 class Campaign:
-    """A named list of motions, one recorded run each."""
+    """A named list of motions, one recorded run each.
+
+    `load_shares` gives a run a load of so many times the rig's, by the name of its motion.
+    """
 
     name: str
     motions: tuple[Motion, ...]
+    load_shares: Mapping[str, float] = field(default_factory=dict)
 
 
 def _one_way(name: str, duration_s: float, omega: float) -> Motion:
@@ -33,7 +37,8 @@ def _one_way(name: str, duration_s: float, omega: float) -> Motion:
 
 
 def standard(name: str) -> Campaign:
-    """One of the standard campaigns: `full`, `heldout`, `slow`, `steady`."""
+    """One of the standard campaigns: `full`, `heldout`, `loads`, `slow`, `steady`."""
+    shares: dict[str, float] = {}
     if name == "full":
         moves = [(1.0, 1), (9.1, -1), (26.2, 1), (32.1, 1), (61.2, -1), (72.3, -1), (78.9, 1)]
         motions = [
@@ -60,6 +65,16 @@ def standard(name: str) -> Campaign:
             sine("bi_w0.0225", 280.0, 0.127, 0.0225),
             sine("bi_w0.045", 140.0, 0.127, 0.045),
         ]
+    elif name == "loads":
+        motions = [
+            sine("bi_w0.25_light", 51.0, 0.127, 0.25),
+            sine("bi_w1.0_light", 26.0, 0.127, 1.0),
+            sine("bi_w0.25", 51.0, 0.127, 0.25),
+            sine("bi_w1.0", 26.0, 0.127, 1.0),
+            sine("bi_w0.25_heavy", 51.0, 0.127, 0.25),
+            stop_and_go("stopgo", [(1.0, 1), (9.0, -1), (22.0, 1)], 0.055, 0.8, 3.5, 30.0),
+        ]
+        shares = {"bi_w0.25_light": 0.7, "bi_w1.0_light": 0.7, "bi_w0.25_heavy": 1.35}
     elif name == "steady":
         speeds = [0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.12]
         motions = [
@@ -67,8 +82,10 @@ def standard(name: str) -> Campaign:
             steps("steps_backward", [-v for v in speeds], 8.0),
         ]
     else:
-        raise ValueError(f"no campaign named {name!r}; there are full, heldout, slow, steady")
-    return Campaign(name, tuple(motions))
+        raise ValueError(
+            f"no campaign named {name!r}; there are full, heldout, loads, slow, steady"
+        )
+    return Campaign(name, tuple(motions), shares)
 
 
 def _stream(seed: int, *words: str) -> np.random.Generator:
@@ -126,12 +143,20 @@ def simulate_campaign(
     for motion in plan.motions:
         rng = _stream(seed, plan.name, motion.name)
         angle = float(rng.uniform(0.0, 2.0 * math.pi))
+        load = base.load_n * plan.load_shares.get(motion.name, 1.0)
         record = simulate_run(
-            base, chosen, motion, start_angle_rad=angle, foreign=strange, noise=meter, rng=rng
+            base,
+            chosen,
+            motion,
+            start_angle_rad=angle,
+            load_n=load,
+            foreign=strange,
+            noise=meter,
+            rng=rng,
         )
         records[motion.name] = record
         if meter.friction_n > 0.0:
-            bare = simulate_run(base, {}, motion) if chosen or strange else record
+            bare = simulate_run(base, {}, motion, load_n=load) if chosen or strange else record
             gap = record.clean_friction_n - bare.clean_friction_n
             weight[motion.name] = float(np.sqrt(np.mean(gap**2))) / meter.friction_n
     rig = {k: v for k, v in asdict(base).items() if k != "bearing"}

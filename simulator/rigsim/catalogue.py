@@ -1,4 +1,4 @@
-"""The sixteen effects by name: their parameters, nulls, and random draws of sensible size.
+"""The effects by name: their parameters, nulls, and random draws of sensible size.
 
 A `Spread` says between which values a parameter is drawn at strength 1 and with which power
 of the strength it scales. At strength 1 an effect's RMS is of the order of the noise, up to a
@@ -42,6 +42,8 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
         "c": Spread(0.04, 0.10, "N m s/rad"),
         "J": Spread(0.002, 0.005, "kg m^2"),
     },
+    "backlash": {"gap": Spread(0.003, 0.01, "rad", 1.0)},
+    "load_dependence": {"p": Spread(0.5, 1.1, "-", 1.0), "q": Spread(0.5, 1.5, "-", 1.0)},
     "thermal_thinning": {
         "beta_q": Spread(0.05, 0.13, "1/J", 1.0),
         "tau": Spread(60.0, 160.0, "s"),
@@ -70,12 +72,15 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
     "quadratic_drag": {"c": Spread(40.0, 100.0, "N s^2/m^2", 1.0)},
     "inertia_leak": {"m_e": Spread(3.0, 7.0, "kg", 1.0)},
     "sensor_lag": {"tau": Spread(0.06, 0.15, "s", 1.0)},
+    "time_delay": {"tau": Spread(0.03, 0.12, "s", 1.0)},
     "sensor_offset": {"b": Spread(0.35, 0.8, "N", 1.0, signed=True)},
     "sensor_drift": {"d": Spread(0.008, 0.02, "N/s", 1.0, signed=True)},
 }
 
 NULLS: dict[str, dict[str, float]] = {
     "drive_compliance": {"k": math.inf},
+    "backlash": {"gap": 0.0},
+    "load_dependence": {"p": 0.0, "q": 0.0},
     "thermal_thinning": {"beta_q": 0.0},
     "shear_thinning": {"U_c": math.inf},
     "film_memory": {"factor": 1.0},
@@ -84,6 +89,7 @@ NULLS: dict[str, dict[str, float]] = {
     "coulomb_drag": {"F_d": 0.0},
     "quadratic_drag": {"c": 0.0},
     "sensor_lag": {"tau": 0.0},
+    "time_delay": {"tau": 0.0},
     "sensor_offset": {"b": 0.0},
     "sensor_drift": {"d": 0.0},
     **{

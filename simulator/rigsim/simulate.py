@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from .motions import Motion
 from .noise import Noise
 from .record import Record, Vector
 from .rigid import run_rigid
+from .slack import behind_gap
 
 
 def _commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
@@ -29,6 +31,15 @@ def _commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
     return speed, position
 
 
+def under_load(base: Base, load_n: float, effects: Parameters) -> Base:
+    """The rig `base` under another load; `load_dependence` changes its parameters, too."""
+    p = effects.get("load_dependence", {"p": 0.0, "q": 0.0})
+    share = load_n / base.load_n
+    return replace(
+        base, load_n=load_n, U_tr=base.U_tr * share ** p["p"], K0=base.K0 * share ** p["q"]
+    )
+
+
 def simulate_run(
     base: Base,
     effects: Parameters,
@@ -36,27 +47,35 @@ def simulate_run(
     *,
     start_angle_rad: float = 0.0,
     rate_hz: float = 50.0,
+    load_n: float | None = None,
     foreign: Sequence[Foreign] = (),
     noise: Noise | None = None,
     rng: np.random.Generator | None = None,
 ) -> Record:
     """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` ones.
 
-    Without `noise` the record is exact; `rng` is needed by noise and some foreign effects.
+    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is exact; `rng` is needed by noise and some foreign effects.
     """
     effects = check(effects)
     rng = rng if rng is not None else np.random.default_rng(0)
     times = np.arange(round(motion.duration_s * rate_hz) + 1) / rate_hz
     times = times[times <= motion.duration_s + 1e-9]
+    if load_n is not None:
+        base = under_load(base, load_n, effects)
     radius = base.bearing.radius_m
+    journal = motion
+    if "backlash" in effects:
+        journal = behind_gap(motion, effects["backlash"]["gap"], radius)
+    # A late record shows at each instant the force of tau before; at first that of the start.
+    seen = np.maximum(times - effects.get("time_delay", {}).get("tau", 0.0), 0.0)
     chain = Chain(base, effects)
     if "drive_compliance" in effects:
         drive = CompliantDrive(
             chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
         )
-        force = drive.run(motion, times)
+        force = drive.run(journal, seen)
     else:
-        force = run_rigid(chain, motion, times, radius, start_angle_rad)
+        force = run_rigid(chain, journal, seen, radius, start_angle_rad)
     clean = read_out(force, times, effects)
     speed, position = _commanded(motion, times)
     angle = start_angle_rad + position / radius

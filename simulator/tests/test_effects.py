@@ -38,7 +38,9 @@ SMALL = {
 }
 
 
-@pytest.mark.parametrize("name", [name for name in CATALOGUE if name != "drive_compliance"])
+@pytest.mark.parametrize(
+    "name", [name for name in CATALOGUE if name not in ("drive_compliance", "backlash")]
+)
 def test_fades_towards_its_null(name):
     small = SMALL.get(name) or dict.fromkeys(NULLS[name], 1e-9)
     plain = simulate_run(BASE, {}, STOP)
@@ -50,7 +52,8 @@ def test_fades_towards_its_null(name):
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_standard_strength_shows(name):
     motion = STOP if name == "dwell_stiction" else SWING
-    gap = force({name: drawn(name)}, motion) - force({}, motion)
+    load = 83.5 if name == "load_dependence" else None
+    gap = force({name: drawn(name)}, motion, load_n=load) - force({}, motion, load_n=load)
     assert np.sqrt(np.mean(gap**2)) > 0.05
 
 
@@ -119,6 +122,32 @@ def test_ripple_and_asymmetry_multiply_the_bearing_friction_only():
     factor *= 1.0 + 0.1 * np.sign(record.velocity_m_s)
     expected = force({}) * factor + 0.5 * np.sign(record.velocity_m_s)
     np.testing.assert_allclose(record.friction_n, expected, atol=1e-9)
+
+
+def test_a_late_record_is_the_record_of_before():
+    late = force({"time_delay": {"tau": 0.1}})
+    np.testing.assert_allclose(late[5:], force({})[:-5], atol=1e-9)
+    assert np.all(late[:5] == late[0])
+
+
+def test_a_gap_holds_the_journal_until_it_is_crossed():
+    gap = 0.2  # rad; the drive turns round at pi
+    record = simulate_run(BASE, {"backlash": {"gap": gap}}, SWING)
+    plain = simulate_run(BASE, {}, SWING)
+    t = record.time_s
+    closes = 2.0 * math.pi - math.acos(gap * BASE.bearing.radius_m / 0.127 - 1.0)
+    np.testing.assert_allclose(record.friction_n[t < 3.14], plain.friction_n[t < 3.14], atol=1e-7)
+    assert np.all(record.friction_n[(t > 3.15) & (t < closes)] == 0.0)
+    assert np.all(record.friction_n[(t > closes) & (t < 6.28)] < 0.0)
+    np.testing.assert_array_equal(record.velocity_m_s, plain.velocity_m_s)
+
+
+def test_load_dependence_turns_one_table_into_the_other():
+    share = math.log(83.5 / 104.0)
+    p = {"p": math.log(0.05 / 0.06) / share, "q": math.log(6.25e5 / 7.5e5) / share}
+    other = simulate_run(Base(load_n=83.5, U_tr=0.05, K0=6.25e5), {}, SWING).friction_n
+    np.testing.assert_allclose(force({"load_dependence": p}, load_n=83.5), other, atol=1e-7)
+    np.testing.assert_array_equal(force({"load_dependence": p}), force({}))
 
 
 def test_wrong_names_are_refused():

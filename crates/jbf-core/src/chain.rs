@@ -1,35 +1,37 @@
 //! The signal chain: a law with effects round it, one step at a time.
 //!
 //! ```text
-//! commanded motion -> drive -> lubricant -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
 //! Each stage takes its input at both ends of the step and gives its output at the end,
 //! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
 //! load on a soft drive) does so from the step before.
 
+use crate::effect::own::{Nothing, Own};
 use crate::effect::{Effects, Resistance, Rig, Signal, States};
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
+use crate::run::Record;
 
 /// A friction law and the effects between it and the record.
 #[derive(Clone, Copy, Debug)]
-pub struct Chain<T: Real, L> {
+pub struct Chain<T: Real, L, O: Own<T> = Nothing> {
     /// The friction law.
     pub law: L,
     /// The effects.
-    pub effects: Effects<T>,
+    pub effects: Effects<T, O>,
     /// The few numbers of the rig that effects need.
     pub rig: Rig<T>,
 }
 
 /// Everything that changes while a chain runs.
 #[derive(Clone, Copy, Debug)]
-pub struct State<T: Real, S> {
+pub struct State<T: Real, S, O: Own<T> = Nothing> {
     /// State of the law.
     pub law: S,
-    effects: States<T>,
+    effects: States<T, O>,
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
@@ -46,7 +48,7 @@ pub struct State<T: Real, S> {
     pub reading_n: T,
 }
 
-impl<T: Real, S> State<T, S> {
+impl<T: Real, S, O: Own<T>> State<T, S, O> {
     /// The journal's own motion, which a soft drive parts from the commanded one.
     pub fn journal(&self) -> &JournalMotion<T> {
         &self.journal
@@ -67,27 +69,34 @@ pub struct Felt<T> {
     pub smooth_n: T,
 }
 
-impl<T: Real, L: Law<T>> Chain<T, L> {
+impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     /// What resists whoever moves the shaft: friction itself, or behind a soft drive its spring.
     #[inline]
-    pub fn felt(&self, state: &State<T, L::State>) -> Felt<T> {
-        match self
+    pub fn felt(&self, state: &State<T, L::State, O>) -> Felt<T> {
+        if let Some(smooth_n) = self
             .effects
             .transmitted_n(&state.effects, &state.motion, &self.rig)
         {
-            Some(smooth_n) => Felt {
+            return Felt {
                 jump_n: T::ZERO,
                 smooth_n,
+            };
+        }
+        let direction = state.journal.direction;
+        // In the gap of a drive nothing of the journal is felt.
+        let loose = self.effects.has_drive() && state.motion.velocity_m_s != T::ZERO;
+        Felt {
+            jump_n: if loose {
+                state.jump_n * direction.abs()
+            } else {
+                state.jump_n
             },
-            None => Felt {
-                jump_n: state.jump_n,
-                smooth_n: state.force_n - state.jump_n * state.journal.direction,
-            },
+            smooth_n: state.force_n - state.jump_n * direction,
         }
     }
 
     /// The state at the first sample of a run.
-    pub fn start(&self, motion: &Motion<T>) -> State<T, L::State> {
+    pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, O> {
         let journal = JournalMotion::from(motion);
         let mut state = State {
             law: self.law.start(motion.load_n),
@@ -107,7 +116,12 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         };
         let factor = self.effects.lubricant(&state.effects, &journal);
         state.film_speed_m_s = journal.velocity_m_s.abs() * factor;
-        self.act(&mut state, journal, factor, T::ZERO);
+        let scaled = self.scaled(&mut state.effects, motion.load_n);
+        let law = scaled.as_ref().unwrap_or(&self.law);
+        if scaled.is_some() {
+            state.law = law.start(motion.load_n);
+        }
+        self.act(law, &mut state, journal, factor, T::ZERO);
         state.reading_n = self
             .effects
             .first_reading(&mut state.effects, state.force_n);
@@ -119,24 +133,21 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
     /// A step of no length, and a sample that is not finite, change nothing: one lost sample
     /// of a sensor must not stay in the state of a filter for ever.
     #[inline(always)]
-    pub fn step(&self, state: &mut State<T, L::State>, to: &Motion<T>, dt_s: T) -> T {
+    pub fn step(&self, state: &mut State<T, L::State, O>, to: &Motion<T>, dt_s: T) -> T {
         if !(dt_s > T::ZERO && dt_s.is_finite() && to.is_finite()) {
             return state.reading_n;
         }
-        self.law.set_load(&mut state.law, to.load_n);
-        let journal = self.effects.drive(
-            &mut state.effects,
-            &state.motion,
-            to,
-            &state.resistance,
-            &self.rig,
-            dt_s,
-        );
+        let scaled = self.scaled(&mut state.effects, to.load_n);
+        let law = scaled.as_ref().unwrap_or(&self.law);
+        law.set_load(&mut state.law, to.load_n);
+        let journal =
+            self.effects
+                .drive(&mut state.effects, to, &state.resistance, &self.rig, dt_s);
         let factor = self.effects.lubricant(&state.effects, &journal);
         let end = journal.velocity_m_s.abs() * factor;
         let middle =
             (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.5) * factor);
-        self.law.advance(
+        law.advance(
             &mut state.law,
             [state.film_speed_m_s, middle, end],
             self.effects.film_rate(&state.effects),
@@ -145,7 +156,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         state.film_speed_m_s = end;
         state.motion = *to;
         let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
-        self.act(state, journal, factor, dt_s);
+        self.act(law, state, journal, factor, dt_s);
         let mean = from.velocity_m_s + journal.velocity_m_s;
         let signal = Signal {
             begin_n: begin_n + jump_n * turn(from.direction, mean),
@@ -158,11 +169,45 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         state.reading_n
     }
 
+    /// The longest step of the law under the lightest and the heaviest load of a run, s.
+    pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
+        let mut longest = self.law.longest_step_s(top_m_s);
+        let Some(first) = record.motion(0) else {
+            return longest;
+        };
+        let mut states = self.effects.start(&first, &self.rig);
+        let loads = record.load_n.iter();
+        let (light, heavy) = loads.fold((f64::INFINITY, 0.0_f64), |(low, high), &n| {
+            (low.min(n), high.max(n))
+        });
+        for load_n in [light, heavy] {
+            if let Some(law) = self.scaled(&mut states, T::of(load_n)) {
+                longest = longest.min(law.longest_step_s(top_m_s));
+            }
+        }
+        longest
+    }
+
+    /// The law as it is under this load, where an effect makes it another.
+    #[inline(always)]
+    fn scaled(&self, states: &mut States<T, O>, load_n: T) -> Option<L> {
+        let share = || self.law.load_share(load_n);
+        let scales = self.effects.scales(states, share)?;
+        self.law.scaled(&scales)
+    }
+
     /// From the film's state to the force: contact, other friction, and what feeds back.
     #[inline(always)]
-    fn act(&self, state: &mut State<T, L::State>, journal: JournalMotion<T>, factor: T, dt_s: T) {
-        let load_n = self.law.pressed_n(state.motion.load_n);
-        let mut sliding = self.law.friction(&state.law, journal.velocity_m_s * factor);
+    fn act(
+        &self,
+        law: &L,
+        state: &mut State<T, L::State, O>,
+        journal: JournalMotion<T>,
+        factor: T,
+        dt_s: T,
+    ) {
+        let load_n = law.pressed_n(state.motion.load_n);
+        let mut sliding = law.friction(&state.law, journal.velocity_m_s * factor);
         self.effects.contact(
             &mut state.effects,
             &state.journal,
@@ -183,9 +228,7 @@ impl<T: Real, L: Law<T>> Chain<T, L> {
         let levels = [before, magnitude];
         // A law's own bristle bends towards the level; one beside a law takes all its friction.
         let bent = if L::HAS_BRISTLE {
-            let bristle = self
-                .law
-                .bend(&mut state.law, &state.journal, &journal, levels, dt_s);
+            let bristle = law.bend(&mut state.law, &state.journal, &journal, levels, dt_s);
             Some(bristle + sliding.viscous)
         } else {
             self.effects

@@ -57,7 +57,7 @@ impl<const N: usize> PartialEq for Dual<N> {
 }
 
 impl<const N: usize> PartialOrd for Dual<N> {
-    #[inline]
+    #[inline(always)]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.value.partial_cmp(&other.value)
     }
@@ -156,47 +156,47 @@ impl<const N: usize> Real for Dual<N> {
         slope: [0.0; N],
     };
 
-    #[inline]
+    #[inline(always)]
     fn of(value: f64) -> Self {
         Self {
             value,
             slope: [0.0; N],
         }
     }
-    #[inline]
+    #[inline(always)]
     fn value(self) -> f64 {
         self.value
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = libm::sqrt(self.value);
         // A square root at zero has no finite slope; zero keeps an optimiser alive there.
         let factor = if root > 0.0 { 0.5 / root } else { 0.0 };
         self.chain(root, factor)
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         let value = libm::exp(self.value);
         self.chain(value, value)
     }
-    #[inline]
+    #[inline(always)]
     fn exp_m1(self) -> Self {
         let value = libm::expm1(self.value);
         self.chain(value, value + 1.0)
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         self.chain(libm::log(self.value), 1.0 / self.value)
     }
-    #[inline]
+    #[inline(always)]
     fn sin(self) -> Self {
         self.chain(libm::sin(self.value), libm::cos(self.value))
     }
-    #[inline]
+    #[inline(always)]
     fn cos(self) -> Self {
         self.chain(libm::cos(self.value), -libm::sin(self.value))
     }
-    #[inline]
+    #[inline(always)]
     fn powf(self, exponent: Self) -> Self {
         let value = libm::pow(self.value, exponent.value);
         if self.value <= 0.0 {
@@ -206,7 +206,7 @@ impl<const N: usize> Real for Dual<N> {
         let by_exponent = value * libm::log(self.value);
         self.combine(exponent, value, by_base, by_exponent)
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         if self.value < 0.0 {
             -self
@@ -214,7 +214,7 @@ impl<const N: usize> Real for Dual<N> {
             self
         }
     }
-    #[inline]
+    #[inline(always)]
     fn implicit(value: f64, residual: Self, slope: f64) -> Self {
         residual.chain(value, -1.0 / slope)
     }

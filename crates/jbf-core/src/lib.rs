@@ -30,6 +30,7 @@ pub mod chain;
 pub mod clock;
 pub mod compensator;
 pub mod controller;
+mod delay_line;
 pub mod driver;
 pub mod dual;
 pub mod effect;

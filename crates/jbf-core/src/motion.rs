@@ -30,7 +30,7 @@ impl<T: Real> Motion<T> {
     }
 
     /// True where every quantity is finite.
-    #[inline]
+    #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.time_s.is_finite()
             && self.velocity_m_s.is_finite()
@@ -85,7 +85,7 @@ pub struct JournalMotion<T> {
 impl<T: Real> JournalMotion<T> {
     /// Distance slid on the way to `to`, m, the speed on a straight line; back and forth both
     /// count.
-    #[inline]
+    #[inline(always)]
     pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
         let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);
         let half = T::of(0.5) * dt_s;

@@ -177,10 +177,17 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         let still = self.attempt(state, T::ZERO, load_n);
         let push = free - self.gain * still.smooth_v;
         let hold = self.gain * still.jump_v;
+        let side = push.sign();
         if push.abs() <= hold {
+            // In the gap of a drive nothing holds: it moves as if there were no friction.
+            if self.chain.effects.has_drive() && side != T::ZERO {
+                let loose = self.attempt(state, push, load_n);
+                if loose.jump_v == T::ZERO {
+                    return loose;
+                }
+            }
             return still;
         }
-        let side = push.sign();
         // A bristle has no jump: nothing keeps the shaft on one side of rest.
         let kept = if hold > T::ZERO { side } else { T::ZERO };
         let end = self.solve(state, free, push - hold * side, kept, load_n);
@@ -229,12 +236,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// What the chain makes of a step that ends with a speed.
     #[inline]
-    fn attempt(
-        &self,
-        state: &State<T, L::State>,
-        speed_rad_s: T,
-        load_n: T,
-    ) -> Trial<T, L::State> {
+    fn attempt(&self, state: &State<T, L::State>, speed_rad_s: T, load_n: T) -> Trial<T, L::State> {
         let radius_m = self.chain.rig.radius_m;
         let h = self.step_s;
         let angle_rad = state.angle_rad + (state.speed_rad_s + speed_rad_s) * (h * T::of(0.5));

@@ -76,7 +76,7 @@ pub trait Real:
     fn implicit(value: f64, residual: Self, slope: f64) -> Self;
 
     /// The larger of two.
-    #[inline]
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other {
             self
@@ -86,7 +86,7 @@ pub trait Real:
     }
 
     /// The smaller of two.
-    #[inline]
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other {
             self
@@ -96,7 +96,7 @@ pub trait Real:
     }
 
     /// -1, 0 or +1 by the sign of the value, without derivative.
-    #[inline]
+    #[inline(always)]
     fn sign(self) -> Self {
         if self > Self::ZERO {
             Self::ONE
@@ -108,7 +108,7 @@ pub trait Real:
     }
 
     /// True for a finite value.
-    #[inline]
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.value().is_finite()
     }
@@ -124,60 +124,60 @@ macro_rules! real {
             const ONE: Self = 1.0;
             const EPS_LIMIT: Self = $limit;
 
-            #[inline]
+            #[inline(always)]
             fn of(value: f64) -> Self {
                 value as $t
             }
-            #[inline]
+            #[inline(always)]
             fn value(self) -> f64 {
                 self as f64
             }
-            #[inline]
+            #[inline(always)]
             fn from_i32(value: i32) -> Self {
                 value as $t
             }
-            #[inline]
+            #[inline(always)]
             fn floor_i32(self) -> i32 {
                 let whole = self as i32;
                 whole.saturating_sub(i32::from((whole as $t) > self))
             }
-            #[inline]
+            #[inline(always)]
             fn is_finite(self) -> bool {
                 <$t>::is_finite(self)
             }
-            #[inline]
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }
-            #[inline]
+            #[inline(always)]
             fn exp(self) -> Self {
                 $exp(self)
             }
-            #[inline]
+            #[inline(always)]
             fn exp_m1(self) -> Self {
                 $exp_m1(self)
             }
-            #[inline]
+            #[inline(always)]
             fn ln(self) -> Self {
                 $ln(self)
             }
-            #[inline]
+            #[inline(always)]
             fn sin(self) -> Self {
                 $sin(self)
             }
-            #[inline]
+            #[inline(always)]
             fn cos(self) -> Self {
                 $cos(self)
             }
-            #[inline]
+            #[inline(always)]
             fn powf(self, exponent: Self) -> Self {
                 $pow(self, exponent)
             }
-            #[inline]
+            #[inline(always)]
             fn abs(self) -> Self {
                 $abs(self)
             }
-            #[inline]
+            #[inline(always)]
             fn implicit(value: f64, _residual: Self, _slope: f64) -> Self {
                 value as $t
             }

@@ -1,6 +1,7 @@
 //! A whole recorded run through a chain: the samples as slices, inner steps between them.
 
 use crate::chain::{Chain, State};
+use crate::effect::own::Own;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -46,8 +47,8 @@ impl Record<'_> {
 /// The whole of it is inlined into its caller, so that a caller who compiles for a wider
 /// instruction set gets all of it there.
 #[inline(always)]
-pub fn predict<T: Real, L: Law<T>>(
-    chain: &Chain<T, L>,
+pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
     record: &Record<'_>,
     max_step_s: f64,
     mut sink: impl FnMut(usize, T),
@@ -59,7 +60,7 @@ pub fn predict<T: Real, L: Law<T>>(
         .velocity_m_s
         .iter()
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
-    let film_s = chain.law.longest_step_s(top) / chain.effects.fastest_film();
+    let film_s = chain.longest_film_step_s(record, top) / chain.effects.fastest_film();
     let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
     let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
@@ -93,9 +94,9 @@ fn crossing(from: &Motion<f64>, to: &Motion<f64>) -> Option<Motion<f64>> {
 /// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
 /// plain numbers until a step takes it.
 #[inline(always)]
-fn between<T: Real, L: Law<T>>(
-    chain: &Chain<T, L>,
-    state: &mut State<T, L::State>,
+fn between<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
+    state: &mut State<T, L::State, O>,
     from: &Motion<f64>,
     to: &Motion<f64>,
     max_step_s: f64,

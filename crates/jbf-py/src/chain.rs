@@ -3,6 +3,7 @@
 use crate::bearing::{refused, Sizes};
 use crate::motion::Motion;
 use crate::share::longest_first;
+use jbf_batch::Simd;
 use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{run, Bearing, Clock, Dual, ParameterError, Real};
@@ -11,8 +12,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// Derivatives carried side by side in one pass.
-const LANES: usize = 4;
+/// Derivatives carried side by side in one pass: a law's own, or those of a law with effects. A
+/// pass of eight costs one and a half of four.
+const FEW: usize = 4;
+const MANY: usize = 8;
 
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
@@ -37,8 +40,14 @@ struct Runs<'a, T: Real, R> {
 /// What becomes of one run's readings.
 trait Reader<T>: Sync {
     type Read: Send;
+    fn simd() -> Simd {
+        Simd::Baseline
+    }
     fn read(&self, samples: usize, predict: impl FnOnce(&mut dyn FnMut(usize, T))) -> Self::Read;
 }
+
+/// Values of a run, and the derivatives of each with respect to some parameters, row by row.
+type Slice = (Vec<f64>, Vec<f64>);
 
 /// Readings alone.
 struct Values;
@@ -55,8 +64,11 @@ impl Reader<f64> for Values {
 /// Readings and their derivatives.
 struct Slopes;
 
-impl Reader<Dual<LANES>> for Slopes {
+impl<const LANES: usize> Reader<Dual<LANES>> for Slopes {
     type Read = (Vec<f64>, Vec<[f64; LANES]>);
+    fn simd() -> Simd {
+        Simd::best()
+    }
     fn read(
         &self,
         samples: usize,
@@ -81,12 +93,16 @@ impl<T: Real, R: Reader<T>> Visitor<T> for Runs<'_, T, R> {
             effects: self.effects,
             rig: self.rig,
         };
+        let simd = R::simd();
         self.motions
             .par_iter()
             .with_max_len(1)
             .map(|motion| {
                 self.run.read(motion.len(), |sink| {
-                    run::predict(&chain, &motion.record(), self.max_step_s, sink);
+                    simd.dispatch(
+                        #[inline(always)]
+                        || run::predict(&chain, &motion.record(), self.max_step_s, sink),
+                    );
                 })
             })
             .collect()
@@ -152,13 +168,21 @@ impl Chain {
         }
     }
 
-    /// Value and `LANES` derivatives, those of the parameters `which`, along one run.
-    fn slopes(
+    /// Values and derivatives with respect to at most `MANY` parameters along one run.
+    fn slopes(&self, p: &[f64], which: &[usize], motion: &Motion) -> Result<Slice, ParameterError> {
+        if which.len() <= FEW {
+            self.slopes_of::<FEW>(p, which, motion)
+        } else {
+            self.slopes_of::<MANY>(p, which, motion)
+        }
+    }
+
+    fn slopes_of<const LANES: usize>(
         &self,
         p: &[f64],
         which: &[usize],
         motion: &Motion,
-    ) -> Result<(Vec<f64>, Vec<[f64; LANES]>), ParameterError> {
+    ) -> Result<Slice, ParameterError> {
         let lifted: Vec<Dual<LANES>> = p
             .iter()
             .enumerate()
@@ -168,7 +192,9 @@ impl Chain {
             })
             .collect();
         let mut runs = self.runs(&lifted, Slopes, &[motion])?;
-        Ok(runs.swap_remove(0))
+        let (values, lanes) = runs.swap_remove(0);
+        let rows = lanes.iter().flat_map(|row| row[..which.len()].iter());
+        Ok((values, rows.copied().collect()))
     }
 }
 
@@ -264,10 +290,9 @@ impl Chain {
         let columns = which.len();
         let runs = py
             .detach(|| {
-                let groups: Vec<&[usize]> = if columns == 0 {
-                    vec![&[]]
-                } else {
-                    which.chunks(LANES).collect()
+                let groups: Vec<&[usize]> = match columns {
+                    0 => vec![&[]],
+                    _ => which.chunks(MANY).collect(),
                 };
                 let jobs: Vec<(usize, usize)> = (0..motions.len())
                     .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
@@ -278,18 +303,12 @@ impl Chain {
                     |&(m, g)| self.slopes(p, groups[g], motions[m]),
                 )?;
                 let mut out = Vec::with_capacity(motions.len());
-                for (m, parts) in done.chunks(groups.len()).enumerate() {
-                    let n = motions[m].len();
-                    let mut matrix = vec![0.0; n * columns];
-                    for (g, (_, slopes)) in parts.iter().enumerate() {
-                        let first = g * LANES;
-                        let width = groups[g].len();
-                        for (i, lanes) in slopes.iter().enumerate() {
-                            let row = i * columns + first;
-                            matrix[row..row + width].copy_from_slice(&lanes[..width]);
-                        }
-                    }
-                    out.push((parts[0].0.clone(), matrix, n));
+                let mut done = done.into_iter();
+                for motion in &motions {
+                    let n = motion.len();
+                    let mut parts: Vec<Slice> = done.by_ref().take(groups.len()).collect();
+                    let matrix = side_by_side(&parts, n, columns);
+                    out.push((parts.swap_remove(0).0, matrix, n));
                 }
                 Ok(out)
             })
@@ -302,6 +321,25 @@ impl Chain {
             })
             .collect()
     }
+}
+
+/// One matrix of `n` rows out of blocks of columns.
+fn side_by_side(parts: &[Slice], n: usize, columns: usize) -> Vec<f64> {
+    if let [(_, only)] = parts {
+        return only.clone();
+    }
+    let mut matrix = vec![0.0; n * columns];
+    let mut first = 0;
+    for (values, slopes) in parts {
+        let width = slopes.len() / values.len().max(1);
+        if width > 0 {
+            for (row, own) in matrix.chunks_mut(columns).zip(slopes.chunks(width)) {
+                row[first..first + width].copy_from_slice(own);
+            }
+        }
+        first += width;
+    }
+    matrix
 }
 
 /// The effect of that name, if it goes with the law.

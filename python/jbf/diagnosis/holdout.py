@@ -23,6 +23,7 @@ def holdout_rms(problem: Problem, solution: Solution) -> float:
     value): what only the left-out run could know must not leak into its prediction. With one run
     there is nothing to leave out, and the halves of the run take turns.
     """
+    problem = problem.on(solution.campaign)
     campaign = problem.campaign
     count = len(campaign.prepared)
     if count == 1:

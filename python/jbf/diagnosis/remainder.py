@@ -1,4 +1,5 @@
-"""Structure that nothing in the catalogue explains: patterns along an axis, tones.
+"""Structure that nothing in the catalogue explains: patterns along an axis, tones, bursts, and what
+comes again with the motion.
 
 Everything is tested on innovations (the residual less what the noise's own memory foretells),
 so that coloured noise is no structure. A pattern must be both beyond chance and large enough to
@@ -14,6 +15,8 @@ from scipy import signal
 from jbf.axes import all_axes
 from jbf.catalogue import transition_speed
 from jbf.comparison import Failure, _failure
+from jbf.diagnosis.bursts import find_bursts
+from jbf.diagnosis.repeats import find_repeats
 from jbf.diagnosis.result import Remainder
 from jbf.fitting import Problem, Solution
 
@@ -27,6 +30,7 @@ TONE_CHANCE = 1e-7
 
 def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...]:
     """What remains in the residuals of a solution, strongest first."""
+    problem = problem.on(solution.campaign)
     campaign = problem.campaign
     innovations = [
         problem_innovations(r, p.trusted, p.step_s, solution)
@@ -34,6 +38,8 @@ def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...
     ]
     found = [Remainder(f.axis, f.where, f.share) for f in _patterns(problem, solution, innovations)]
     found += _tones(problem, innovations, [-r for r in solution.residuals])
+    found += find_repeats(problem, solution)
+    found += find_bursts(problem, innovations)
     return tuple(sorted(found, key=lambda r: -r.share))
 
 

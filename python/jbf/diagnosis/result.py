@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from jbf.comparison import Comparison, Failure
@@ -109,6 +109,8 @@ class Diagnosis:
         The final fit; `model` is its model.
     before, after
         Comparison of the bare law and of the final model with the runs.
+    not_tried
+        Effects that go with the law but that these runs cannot show, and why.
     """
 
     verdict: str
@@ -122,6 +124,7 @@ class Diagnosis:
     before: Comparison
     after: Comparison
     elapsed_s: float
+    not_tried: dict[str, str] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -142,6 +145,7 @@ class Diagnosis:
                 name: {"value": p.value, "stderr": p.stderr, "note": p.note}
                 for name, p in self.fit.parameters.items()
             },
+            "not_tried": dict(self.not_tried),
             "elapsed_s": self.elapsed_s,
         }
 

@@ -23,7 +23,7 @@ from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, first_step_gain, root_mean_square
+from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_mean_square
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -47,6 +47,9 @@ CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
+DOUBT = 60.0
+"""Evidence of a candidate that fits and does not predict from which on something of its kind must
+be there: noise does not reach it."""
 LEAST_EXPLAINED = 0.8
 """Where structure remains, effects that explain less of the excess than this are stand-ins for
 what is really there, and are not named."""
@@ -73,6 +76,13 @@ class Search:
             for e in catalogue().values()
             if self.law not in e.refused and self.campaign.shows(e.needs)
         ]
+
+    @property
+    def not_tried(self) -> dict[str, str]:
+        """Effects that go with the law but that these records cannot show, and why."""
+        pages = [e for e in catalogue().values() if self.law not in e.refused]
+        reasons = {e.name: self.campaign.lacking(e.needs) for e in pages}
+        return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def problem(self, effects: Sequence[str] | frozenset[str]) -> Problem:
         """The fitting problem of some effects."""
@@ -129,13 +139,15 @@ class Search:
 
     def evidence(self, richer: Solution, simpler: Solution) -> float:
         """Evidence for the richer of two models."""
-        return simpler.cost - richer.cost - self.price(richer.free - simpler.free)
+        gain = np.subtract(*costs(simpler, richer))
+        return float(gain) - self.price(richer.free - simpler.free)
 
     def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
         """How much evidence is lost when these effects stand in place of those of `whole`."""
 
         def of(solution: Solution) -> float:
-            return solution.cost + self.price(solution.free) - whole.cost - self.price(whole.free)
+            lost = np.subtract(*costs(solution, whole))
+            return float(lost) + self.price(solution.free) - self.price(whole.free)
 
         if self.blind(effects, near):
             return of(near)
@@ -317,9 +329,11 @@ def diagnose(
         present = grown
 
     remains = _remainder(search, present)
+    if round_.leader is None:
+        remains = (*remains, *_refused(search, search.solve(frozenset(present))))
     if remains and present and _explained(search, present, noise) < LEAST_EXPLAINED:
         present, steps = (), [_withdrawn(steps[0])]
-        remains = _remainder(search, present)
+        remains = _remainder(search, present) or remains
     equal = alternatives(search, present)
     fit = finish(search.problem(present), search.solve(frozenset(present)))
     after = compare_prepared(fit.model, campaign)
@@ -343,12 +357,31 @@ def diagnose(
         before=before,
         after=after,
         elapsed_s=time.monotonic() - begun,
+        not_tried=search.not_tried,
     )
 
 
 def _remainder(search: Search, present: tuple[str, ...]) -> tuple[Remainder, ...]:
-    problem = search.problem(present)
-    return find_remainder(problem, search.solve(frozenset(present)))
+    problem, solution = search.problem(present), search.solve(frozenset(present))
+    return find_remainder(problem, solution)
+
+
+def _refused(search: Search, base: Solution) -> list[Remainder]:
+    """What a candidate saw that helps where it was fitted and not in runs left out."""
+    found: list[tuple[float, str]] = []
+    here = frozenset(base.effects)
+    for effects, solution in search.solved.items():
+        if len(effects) != len(here) + 1 or not here < effects:
+            continue
+        (name,) = effects - here
+        if search.evidence(solution, base) > DOUBT:
+            found.append((root_mean_square(solution.residuals, search.campaign), name))
+    if not found:
+        return []
+    rms, name = min(found)
+    bare = root_mean_square(base.residuals, search.campaign)
+    where = f"{name} fits {bare:.3g} N down to {rms:.3g} N but predicts runs left out no better"
+    return [Remainder("run", where, max(1.0 - (rms / bare) ** 2, 0.0))]
 
 
 def _explained(search: Search, present: tuple[str, ...], noise_n: float) -> float:

@@ -74,9 +74,7 @@ impl<T: Real> BaseLaw<T> {
             Self::Velocity {
                 speed_v_s_rad,
                 forward_v_s_rad,
-            } => {
-                -speed_v_s_rad * (velocity_rad_s - target.value) + forward_v_s_rad * target.value
-            }
+            } => -speed_v_s_rad * (velocity_rad_s - target.value) + forward_v_s_rad * target.value,
         }
     }
 

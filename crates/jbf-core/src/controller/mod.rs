@@ -145,7 +145,9 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         let sample = self.encoder.step(&mut state.encoder, counter);
         status |= self.sight(state, &sample);
         let blind = self.patience_over(state, status);
-        let measured = self.observer.measure(state.velocity_rad_s, sample.moved_rad);
+        let measured = self
+            .observer
+            .measure(state.velocity_rad_s, sample.moved_rad);
         let angle_rad = self.encoder.angle_rad(&state.encoder);
         let v = self.compensator.observe(
             &mut state.compensator,
@@ -188,7 +190,11 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             state.limited = 0;
         }
         let carried = self.observer.carry(measured, base_v);
-        state.velocity_rad_s = if carried.is_finite() { carried } else { T::ZERO };
+        state.velocity_rad_s = if carried.is_finite() {
+            carried
+        } else {
+            T::ZERO
+        };
         state.applied_v = output_v;
         Parts {
             angle_rad,

@@ -122,10 +122,10 @@ fn sine(x: f64) -> f64 {
     let turns = shifted - ROUNDER;
     let r = ((x - turns * PI_PARTS[0]) - turns * PI_PARTS[1]) - turns * PI_PARTS[2];
     let z = r * r;
-    let mut sum = TAYLOR[9];
-    for &c in TAYLOR[..9].iter().rev() {
-        sum = sum * z + c;
-    }
+    // In pairs (Estrin): a third of the waiting of one sum after the other.
+    let (z2, pair) = (z * z, |i: usize| TAYLOR[i] + z * TAYLOR[i + 1]);
+    let z4 = z2 * z2;
+    let sum = (pair(0) + z2 * pair(2)) + z4 * ((pair(4) + z2 * pair(6)) + z4 * pair(8));
     let value = r + r * z * sum;
     f64::from_bits(value.to_bits() ^ (shifted.to_bits() << 63))
 }

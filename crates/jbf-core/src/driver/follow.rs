@@ -101,19 +101,20 @@ where
         let clock = journal.rate.value();
         let u = journal.inverse_u_tr;
         let excitation = self.excitation;
-        let input = |t: f64| T::of(direction * excitation.velocity_m_s(t)) * u;
+        let input = |speed: f64| T::of(direction * speed) * u;
         let rate = |t: f64| {
             T::of(direction * excitation.acceleration_m_s2(t)) * u * (T::ONE / journal.rate)
         };
         let mut system = self.film.system(self.touching);
-        let mut linear = self.linearise(&system, input(self.time_s));
+        let mut speed_here = excitation.velocity_m_s(self.time_s);
+        let mut linear = self.linearise(&system, input(speed_here));
         let mut rate_here = rate(self.time_s);
         let mut stale = false;
         let mut landing_on_touch = None;
         let mut turned = false;
         while self.time_s < end {
             if core::mem::take(&mut stale) {
-                linear = self.linearise(&system, input(self.time_s));
+                linear = self.linearise(&system, input(speed_here));
                 rate_here = rate(self.time_s);
             }
             let room = end - self.time_s;
@@ -131,10 +132,11 @@ where
                 self.time_s + step_s
             };
             let dt = T::of(step_s) * journal.rate;
-            let at = |c: f64| input(self.time_s + c * step_s);
+            let at = |c: f64| input(excitation.velocity_m_s(self.time_s + c * step_s));
+            let speed_there = excitation.velocity_m_s(to);
             let seen = Input {
                 at_nodes: NODES.map(at),
-                at_end: input(to),
+                at_end: input(speed_there),
                 change: rate_here * dt,
             };
             let stages = rodas5p::step(&system, &linear, &self.state, &seen, dt);
@@ -172,13 +174,13 @@ where
                         step_s,
                         to,
                     );
-                    self.time_s = to;
+                    (self.time_s, speed_here) = (to, speed_there);
                     self.step_s = 1e4 * shortest;
                     (stale, landing_on_touch) = (true, None);
                     continue;
                 }
             }
-            if let Some(zero) = self.untold_reversal(to, direction) {
+            if let Some(zero) = self.untold_reversal(to, speed_there, direction) {
                 end = zero;
                 self.cost.rejected += 1;
                 continue;
@@ -206,7 +208,7 @@ where
             }
             self.emit(&along, step_s, to);
             self.cost.steps += 1;
-            self.time_s = to;
+            (self.time_s, speed_here) = (to, speed_there);
             stale = true;
             if landing_on_touch.take().is_some() {
                 self.touching = !self.touching;
@@ -233,12 +235,17 @@ where
     }
 
     /// Where between here and `to` the speed leaves `direction`, if it does.
-    fn untold_reversal(&self, to: f64, direction: f64) -> Option<f64> {
-        let speed = |t: f64| self.excitation.velocity_m_s(t);
-        let at_end = speed(to);
+    #[inline]
+    fn untold_reversal(&self, to: f64, at_end: f64, direction: f64) -> Option<f64> {
         if at_end * direction > 0.0 || at_end == direction {
             return None;
         }
+        self.reversal_before(to, at_end)
+    }
+
+    #[cold]
+    fn reversal_before(&self, to: f64, at_end: f64) -> Option<f64> {
+        let speed = |t: f64| self.excitation.velocity_m_s(t);
         // A kink that was told: landed on, but for rounding.
         let ahead = 1e-3 * (to - self.time_s);
         if libm::fabs(at_end) <= 1e-9 * libm::fabs(speed(to - ahead) - at_end) / 1e-3 {
@@ -294,17 +301,13 @@ where
 
     #[inline]
     fn hand_over(&mut self, xy: [T; 2], time_s: f64) {
-        let eps = (xy[0] * xy[0] + xy[1] * xy[1]).sqrt();
+        let e2 = xy[0] * xy[0] + xy[1] * xy[1];
         let velocity_m_s = self.excitation.velocity_m_s(time_s);
-        let sliding = self.film.journal().sliding(
-            &self.loaded,
-            eps,
-            (T::ONE - eps) * (T::ONE + eps),
-            T::of(velocity_m_s),
-        );
+        let journal = self.film.journal();
+        let sliding = journal.sliding(&self.loaded, e2, T::of(velocity_m_s));
         let sample = Sample {
             xy,
-            eps,
+            eps: e2.sqrt(),
             coefficient: sliding.coefficient(T::of(velocity_m_s.sign())),
         };
         (self.sink)(self.next, &sample);

@@ -4,8 +4,10 @@ use super::Film;
 use crate::law::journal::Loaded;
 use crate::real::Real;
 
-/// Share of the tolerance that one step may err by.
+/// Share of the tolerance that one step may err by: errors mostly die before the next. With
+/// inertia they die later.
 const STEP_SHARE: f64 = 4.0;
+const STEP_SHARE_INERTIA: f64 = 1.5;
 /// An error far from the asperities weighs this much of one where they carry the whole load: it
 /// is forgotten in part before they touch.
 const FREE_WEIGHT: f64 = 0.1;
@@ -43,7 +45,12 @@ impl Goal {
         let f_m = journal.f_m.value().max(1e-3);
         let steepness = 2.0 * f_m * k0 / fb;
         Self {
-            tolerance: tolerance * STEP_SHARE,
+            tolerance: tolerance
+                * if N > 2 {
+                    STEP_SHARE_INERTIA
+                } else {
+                    STEP_SHARE
+                },
             steepness,
             least: FREE_WEIGHT * 2.0 * f_m * libm::sqrt(k0 / fb),
             band: libm::sqrt(0.01 * tolerance * fb / (k0 * f_m)),

@@ -50,7 +50,7 @@ impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
 }
 
 impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
-    #[inline]
+    #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
         // At rest the motion may go either way: the direction that holds the journal decides.
         let way = if journal.velocity_m_s == T::ZERO {
@@ -63,6 +63,6 @@ impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
         sliding.viscous *= factor;
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

@@ -28,11 +28,13 @@ pub struct DriveCompliance<T> {
     inner_step_s: f64,
 }
 
-/// The journal's own angle and speed.
+/// The journal's own angle and speed, and where the encoder side was.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     angle_rad: T,
     speed_rad_s: T,
+    encoder_rad: T,
+    encoder_m_s: T,
 }
 
 impl<T: Real> Effect<T> for DriveCompliance<T> {
@@ -100,6 +102,8 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
         State {
             angle_rad: motion.angle_rad,
             speed_rad_s: motion.velocity_m_s / rig.radius_m,
+            encoder_rad: motion.angle_rad,
+            encoder_m_s: motion.velocity_m_s,
         }
     }
 }
@@ -109,8 +113,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
     fn step(
         &self,
         state: &mut State<T>,
-        from: &Motion<T>,
-        to: &Motion<T>,
+        to: &JournalMotion<T>,
         resistance: &Resistance<T>,
         rig: &Rig<T>,
         dt_s: T,
@@ -128,10 +131,13 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         let mut direction = T::ZERO;
         let mut before = state.speed_rad_s;
         for i in 0..steps as u32 {
-            let middle = from.towards(to, T::of((f64::from(i) + 0.5) / steps));
+            let share = T::of((f64::from(i) + 0.5) / steps);
+            let line = |a: T, b: T| a + (b - a) * share;
+            let encoder_rad = line(state.encoder_rad, to.angle_rad);
+            let encoder_m_s = line(state.encoder_m_s, to.velocity_m_s);
             let push = inertia * state.speed_rad_s
-                + k * (middle.angle_rad - state.angle_rad)
-                + c * (middle.velocity_m_s / rig.radius_m);
+                + k * (encoder_rad - state.angle_rad)
+                + c * (encoder_m_s / rig.radius_m);
             before = state.speed_rad_s;
             if push > hold {
                 direction = T::ONE;
@@ -153,6 +159,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
                 after
             };
         }
+        (state.encoder_rad, state.encoder_m_s) = (to.angle_rad, to.velocity_m_s);
         JournalMotion {
             velocity_m_s: state.speed_rad_s * rig.radius_m,
             acceleration_m_s2: (state.speed_rad_s - before) / h * rig.radius_m,
@@ -163,10 +170,10 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
     }
 
     #[inline]
-    fn transmitted_n(&self, state: &State<T>, motion: &Motion<T>, rig: &Rig<T>) -> T {
+    fn transmitted_n(&self, state: &State<T>, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         let twist = motion.angle_rad - state.angle_rad;
         let slip = motion.velocity_m_s / rig.radius_m - state.speed_rad_s;
-        (self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip)
-            / (rig.count * rig.radius_m)
+        let torque_n_m = self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip;
+        Some(torque_n_m / (rig.count * rig.radius_m))
     }
 }

@@ -105,7 +105,7 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
 }
 
 impl<T: Real> Contact<T> for DwellStiction<T> {
-    #[inline]
+    #[inline(always)]
     fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
         if state.rest_s.value() <= 0.0 {
             return;
@@ -115,7 +115,7 @@ impl<T: Real> Contact<T> for DwellStiction<T> {
         sliding.level += self.height * grown * left;
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, state: &mut State<T>, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
         if from.velocity_m_s == T::ZERO && to.velocity_m_s == T::ZERO {
             if !state.resting {

@@ -50,10 +50,11 @@ impl<T: Real> Effect<T> for FilmMemory<T> {
 }
 
 impl<T: Real> Film<T> for FilmMemory<T> {
-    #[inline]
+    #[inline(always)]
     fn rate(&self, _state: &()) -> T {
         self.factor
     }
+    #[inline(always)]
     fn fastest(&self) -> f64 {
         self.factor.value().max(1.0)
     }

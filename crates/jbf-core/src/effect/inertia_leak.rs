@@ -49,11 +49,11 @@ impl<T: Real> Effect<T> for InertiaLeak<T> {
 }
 
 impl<T: Real> OtherFriction<T> for InertiaLeak<T> {
-    #[inline]
+    #[inline(always)]
     fn level_n(&self) -> T {
         T::ZERO
     }
-    #[inline]
+    #[inline(always)]
     fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
         self.mass_kg * journal.acceleration_m_s2
     }

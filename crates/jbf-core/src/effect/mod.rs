@@ -2,7 +2,7 @@
 //! file, each at one stage of the signal chain:
 //!
 //! ```text
-//! commanded motion -> drive -> lubricant -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
 //! An effect knows its own stage and nothing of the others. To add one: write its file
@@ -10,11 +10,13 @@
 
 pub mod info;
 mod need;
+pub mod own;
 mod registry;
 pub mod relaxation;
 
 pub use info::{Info, Parameter, Stage};
 pub use need::Need;
+use own::{Nothing, Own};
 
 use crate::error::ParameterError;
 use crate::law::Sliding;
@@ -25,6 +27,9 @@ use crate::real::Real;
 pub trait Effect<T: Real>: Copy {
     /// The page in the catalogue.
     const INFO: Info;
+    /// True where a parameter moves the instants at which friction jumps: no fit may lean on the
+    /// samples next to such a jump.
+    const MOVES_JUMPS: bool = false;
     /// What the effect remembers; `()` for most.
     type State: Copy;
 
@@ -58,18 +63,38 @@ pub struct Resistance<T> {
 
 /// Between the encoder and the journal.
 pub trait Drive<T: Real>: Effect<T> {
-    /// Advance over `dt_s` and give the journal's own motion at its end.
+    /// Advance over `dt_s`, the motion that drives going to `to`, and give the motion that is
+    /// passed on.
     fn step(
         &self,
         state: &mut Self::State,
-        from: &Motion<T>,
-        to: &Motion<T>,
+        to: &JournalMotion<T>,
         resistance: &Resistance<T>,
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
-    /// The force that the commanded side feels, as a force on one bearing, N.
-    fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> T;
+    /// The force that the commanded side feels where it is not the journal's friction, as a force
+    /// on one bearing, N.
+    #[inline(always)]
+    fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+        let _ = (state, motion, rig);
+        None
+    }
+}
+
+/// How a law's own parameters stand under a load, against those under the rig's load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales<T> {
+    /// Factor on the transition speed U_tr.
+    pub transition_speed: T,
+    /// Factor on the asperity stiffness K0.
+    pub stiffness: T,
+}
+
+/// Changes the law's own parameters with the load.
+pub trait Loading<T: Real>: Effect<T> {
+    /// Factors under a load of `share` times the rig's; all one where `share` is one.
+    fn scales(&self, state: &mut Self::State, share: T) -> Scales<T>;
 }
 
 /// Changes the speed that the film feels (its viscosity).
@@ -163,8 +188,9 @@ pub trait Instrument<T: Real>: Effect<T> {
 
 // The fixed order of the chain, in one place; inside a stage effects act from left to right.
 registry::signal_chain! {
-    drive: [drive_compliance::DriveCompliance],
+    drive: [drive_compliance::DriveCompliance, backlash::Backlash],
     lubricant: [shear_thinning::ShearThinning, thermal_thinning::ThermalThinning],
+    load: [load_dependence::LoadDependence],
     film: [film_memory::FilmMemory],
     contact: [
         wear_in::WearIn,
@@ -181,6 +207,7 @@ registry::signal_chain! {
     ],
     instrument: [
         sensor_lag::SensorLag,
+        time_delay::TimeDelay,
         sensor_offset::SensorOffset,
         sensor_drift::SensorDrift,
     ],

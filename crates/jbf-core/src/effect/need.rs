@@ -16,6 +16,8 @@ pub enum Need {
     Angle,
     /// Of the record: how far the drive has gone, as an angle or on a line.
     Path,
+    /// Of the record: loads that differ, within a run or from run to run.
+    Loads,
 }
 
 impl Need {
@@ -27,6 +29,7 @@ impl Need {
             Need::NoDryLevel => "no_dry_level",
             Need::Angle => "angle",
             Need::Path => "path",
+            Need::Loads => "loads",
         }
     }
 
@@ -36,7 +39,7 @@ impl Need {
             Need::Film => law.has_film,
             Need::NoBristle => !law.has_bristle,
             Need::NoDryLevel => !law.has_dry_level,
-            Need::Angle | Need::Path => true,
+            Need::Angle | Need::Path | Need::Loads => true,
         }
     }
 
@@ -48,6 +51,7 @@ impl Need {
             Need::NoDryLevel => "already holds a dry friction that does not depend on the load",
             Need::Angle => "needs no angle",
             Need::Path => "needs no path",
+            Need::Loads => "needs no loads",
         }
     }
 }

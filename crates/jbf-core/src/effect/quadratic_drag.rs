@@ -49,11 +49,11 @@ impl<T: Real> Effect<T> for QuadraticDrag<T> {
 }
 
 impl<T: Real> OtherFriction<T> for QuadraticDrag<T> {
-    #[inline]
+    #[inline(always)]
     fn level_n(&self) -> T {
         T::ZERO
     }
-    #[inline]
+    #[inline(always)]
     fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
         self.drag_n_s2_m2 * journal.velocity_m_s * journal.velocity_m_s.abs()
     }

@@ -5,6 +5,7 @@ macro_rules! signal_chain {
     (
         drive: [$($drive:ident::$Drive:ident),* $(,)?],
         lubricant: [$($lubricant:ident::$Lubricant:ident),* $(,)?],
+        load: [$($load:ident::$Load:ident),* $(,)?],
         film: [$($film:ident::$Film:ident),* $(,)?],
         contact: [$($contact:ident::$Contact:ident),* $(,)?],
         bristle: [$($bristle:ident::$Bristle:ident),* $(,)?],
@@ -12,45 +13,74 @@ macro_rules! signal_chain {
         instrument: [$($instrument:ident::$Instrument:ident),* $(,)?],
     ) => {
         $crate::effect::registry::signal_chain!(@types
-            $($drive::$Drive,)* $($lubricant::$Lubricant,)* $($film::$Film,)* $($contact::$Contact,)*
+            $($drive::$Drive,)* $($lubricant::$Lubricant,)* $($load::$Load,)* $($film::$Film,)* $($contact::$Contact,)*
             $($bristle::$Bristle,)* $($other::$Other,)* $($instrument::$Instrument,)*);
 
-        impl<T: Real> Effects<T> {
+        impl<T: Real, O: Own<T>> Effects<T, O> {
             /// The journal's motion at the end of the step.
             #[inline(always)]
             pub(crate) fn drive(
                 &self,
-                states: &mut States<T>,
-                from: &Motion<T>,
+                states: &mut States<T, O>,
                 to: &Motion<T>,
                 resistance: &Resistance<T>,
                 rig: &Rig<T>,
                 dt_s: T,
             ) -> JournalMotion<T> {
-                $(if let Some(e) = &self.$drive {
-                    if let Some(s) = &mut states.$drive {
-                        return e.step(s, from, to, resistance, rig, dt_s);
-                    }
+                let mut journal = JournalMotion::from(to);
+                $(if let (Some(e), Some(s)) = (&self.$drive, &mut states.$drive) {
+                    journal = e.step(s, &journal, resistance, rig, dt_s);
                 })*
-                JournalMotion::from(to)
+                journal
+            }
+
+            /// The law's parameters under a load of `share` times the rig's; none where they
+            /// stay as they are.
+            #[inline(always)]
+            pub(crate) fn scales(
+                &self,
+                states: &mut States<T, O>,
+                share: impl Fn() -> T,
+            ) -> Option<Scales<T>> {
+                let mut found = None;
+                $(if let (Some(e), Some(s)) = (&self.$load, &mut states.$load) {
+                    let own = e.scales(s, share());
+                    let before = found.unwrap_or(Scales {
+                        transition_speed: T::ONE,
+                        stiffness: T::ONE,
+                    });
+                    found = Some(Scales {
+                        transition_speed: before.transition_speed * own.transition_speed,
+                        stiffness: before.stiffness * own.stiffness,
+                    });
+                })*
+                found
             }
 
             /// What a soft drive hands on to the commanded side, N a bearing.
             pub(crate) fn transmitted_n(
                 &self,
-                states: &States<T>,
+                states: &States<T, O>,
                 motion: &Motion<T>,
                 rig: &Rig<T>,
             ) -> Option<T> {
                 $(if let (Some(e), Some(s)) = (&self.$drive, &states.$drive) {
-                    return Some(e.transmitted_n(s, motion, rig));
+                    let force_n = e.transmitted_n(s, motion, rig);
+                    if force_n.is_some() {
+                        return force_n;
+                    }
                 })*
                 None
             }
 
+            /// True where the journal may part from the commanded side.
+            pub(crate) fn has_drive(&self) -> bool {
+                false $(|| self.$drive.is_some())*
+            }
+
             /// Factor on the speed that the film feels.
             #[inline(always)]
-            pub(crate) fn lubricant(&self, states: &States<T>, journal: &JournalMotion<T>) -> T {
+            pub(crate) fn lubricant(&self, states: &States<T, O>, journal: &JournalMotion<T>) -> T {
                 let mut factor = T::ONE;
                 $(if let (Some(e), Some(s)) = (&self.$lubricant, &states.$lubricant) {
                     factor *= e.factor(s, journal);
@@ -59,8 +89,8 @@ macro_rules! signal_chain {
             }
 
             /// Factor on the film's clock.
-            #[inline]
-            pub(crate) fn film_rate(&self, states: &States<T>) -> T {
+            #[inline(always)]
+            pub(crate) fn film_rate(&self, states: &States<T, O>) -> T {
                 let mut rate = T::ONE;
                 $(if let (Some(e), Some(s)) = (&self.$film, &states.$film) {
                     rate *= e.rate(s);
@@ -79,7 +109,7 @@ macro_rules! signal_chain {
 
             /// Let the lubricant take the friction power of the step.
             #[inline(always)]
-            pub(crate) fn warm(&self, states: &mut States<T>, power_w: [T; 2], dt_s: T) {
+            pub(crate) fn warm(&self, states: &mut States<T, O>, power_w: [T; 2], dt_s: T) {
                 $(if let (Some(e), Some(s)) = (&self.$lubricant, &mut states.$lubricant) {
                     e.step(s, power_w, dt_s);
                 })*
@@ -89,7 +119,7 @@ macro_rules! signal_chain {
             #[inline(always)]
             pub(crate) fn contact(
                 &self,
-                states: &mut States<T>,
+                states: &mut States<T, O>,
                 from: &JournalMotion<T>,
                 to: &JournalMotion<T>,
                 sliding: &mut Sliding<T>,
@@ -99,13 +129,14 @@ macro_rules! signal_chain {
                     e.step(s, from, to, dt_s);
                     e.apply(s, to, sliding);
                 })*
+                self.own.contact(&mut states.own, from, to, sliding, dt_s);
             }
 
             /// The contact's coefficient, signed, through the bristle where there is one.
             #[inline(always)]
             pub(crate) fn bristle(
                 &self,
-                states: &mut States<T>,
+                states: &mut States<T, O>,
                 from: &JournalMotion<T>,
                 to: &JournalMotion<T>,
                 magnitude: [T; 2],
@@ -125,10 +156,10 @@ macro_rules! signal_chain {
             #[inline(always)]
             pub(crate) fn other(
                 &self,
-                states: &States<T>,
+                states: &States<T, O>,
                 journal: &JournalMotion<T>,
             ) -> (T, T) {
-                let (mut level_n, mut smooth_n) = (T::ZERO, T::ZERO);
+                let (mut level_n, mut smooth_n) = self.own.other(&states.own, journal);
                 $(if let (Some(e), Some(s)) = (&self.$other, &states.$other) {
                     level_n += e.level_n();
                     smooth_n += e.smooth_n(s, journal);
@@ -137,19 +168,19 @@ macro_rules! signal_chain {
             }
 
             /// The first reading of a run.
-            pub(crate) fn first_reading(&self, states: &mut States<T>, force_n: T) -> T {
+            pub(crate) fn first_reading(&self, states: &mut States<T, O>, force_n: T) -> T {
                 let mut reading = force_n;
                 $(if let (Some(e), Some(s)) = (&self.$instrument, &mut states.$instrument) {
                     reading = e.first(s, reading);
                 })*
-                reading
+                self.own.first(&mut states.own, reading)
             }
 
             /// The reading at the end of the step.
             #[inline(always)]
             pub(crate) fn reading(
                 &self,
-                states: &mut States<T>,
+                states: &mut States<T, O>,
                 force: Signal<T>,
                 time_s: T,
                 dt_s: T,
@@ -158,31 +189,50 @@ macro_rules! signal_chain {
                 $(if let (Some(e), Some(s)) = (&self.$instrument, &mut states.$instrument) {
                     signal = e.step(s, signal, time_s, dt_s);
                 })*
-                signal.now_n
+                self.own.step(&mut states.own, signal, time_s, dt_s).now_n
             }
         }
     };
     (@types $($module:ident::$Type:ident,)*) => {
         $(pub mod $module;)*
 
-        /// Any subset of the catalogue.
+        /// Any subset of the catalogue, and an effect of one's own beside it.
         #[derive(Clone, Copy, Debug)]
-        pub struct Effects<T: Real> {
+        pub struct Effects<T: Real, O: Own<T> = Nothing> {
             $(pub(crate) $module: Option<$module::$Type<T>>,)*
+            own: O,
         }
 
         /// The states of that subset.
         #[derive(Clone, Copy, Debug)]
-        pub struct States<T: Real> {
+        pub struct States<T: Real, O: Own<T> = Nothing> {
             $(pub(crate) $module: Option<<$module::$Type<T> as Effect<T>>::State>,)*
+            own: O::State,
         }
 
         /// Every effect, in the order of the signal chain.
         pub const CATALOGUE: &[Info] = &[$(<$module::$Type<f64> as Effect<f64>>::INFO,)*];
 
+        /// True where a parameter of the effect of that name moves the instants at which
+        /// friction jumps; see [`Effect::MOVES_JUMPS`].
+        pub fn moves_jumps(name: &str) -> bool {
+            match name {
+                $(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::MOVES_JUMPS,)*
+                _ => false,
+            }
+        }
+
         impl<T: Real> Effects<T> {
             /// No effect at all: the bare law.
-            pub const NONE: Self = Self { $($module: None,)* };
+            pub const NONE: Self = Self { $($module: None,)* own: Nothing };
+
+            /// The same effects with one's own beside them; see [`own`].
+            pub fn with<O: Own<T>>(self, own: O) -> Effects<T, O> {
+                Effects { $($module: self.$module,)* own }
+            }
+        }
+
+        impl<T: Real, O: Own<T>> Effects<T, O> {
 
             /// Add (or replace) the effect of that name, or take it out where its
             /// parameters stand at an infinite null.
@@ -220,9 +270,10 @@ macro_rules! signal_chain {
             }
 
             /// States at the start of a run.
-            pub(crate) fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> States<T> {
+            pub(crate) fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> States<T, O> {
                 States {
                     $($module: self.$module.as_ref().map(|e| e.start(motion, rig)),)*
+                    own: self.own.start(motion, rig),
                 }
             }
         }

@@ -52,7 +52,7 @@ impl<T: Real> Instrument<T> for SensorDrift<T> {
         force_n
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _state: &mut (), signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
         let before = signal.begin_n + self.slope_n_s * (time_s - dt_s);
         let mut after = signal.shifted(self.slope_n_s * time_s);

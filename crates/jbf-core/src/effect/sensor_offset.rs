@@ -52,7 +52,7 @@ impl<T: Real> Instrument<T> for SensorOffset<T> {
         force_n + self.offset_n
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _state: &mut (), signal: Signal<T>, _time_s: T, _dt_s: T) -> Signal<T> {
         signal.shifted(self.offset_n)
     }

@@ -64,12 +64,12 @@ impl<T: Real> Effect<T> for ShearThinning<T> {
 }
 
 impl<T: Real> Lubricant<T> for ShearThinning<T> {
-    #[inline]
+    #[inline(always)]
     fn factor(&self, _state: &(), journal: &JournalMotion<T>) -> T {
         let shear = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
         T::ONE / (T::ONE + shear.powf(self.exponent))
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _state: &mut (), _power_w: [T; 2], _dt_s: T) {}
 }

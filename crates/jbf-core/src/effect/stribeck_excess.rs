@@ -78,12 +78,12 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
 }
 
 impl<T: Real> Contact<T> for StribeckExcess<T> {
-    #[inline]
+    #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
         let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
         sliding.level += self.height * (-speed.powf(self.exponent)).exp();
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

@@ -67,13 +67,13 @@ impl<T: Real> Effect<T> for WearIn<T> {
 }
 
 impl<T: Real> Contact<T> for WearIn<T> {
-    #[inline]
+    #[inline(always)]
     fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
         let fresh = (-(*state * self.inverse_distance_1_m)).exp();
         sliding.level *= T::ONE + self.excess * fresh;
     }
 
-    #[inline]
+    #[inline(always)]
     fn step(&self, state: &mut T, from: &JournalMotion<T>, to: &JournalMotion<T>, dt_s: T) {
         *state += from.distance_m(to, dt_s);
     }

@@ -19,7 +19,7 @@ pub(super) struct Leg<T> {
 
 /// The legs of a step during which the speed goes on a straight line: one, or where it
 /// crosses zero two, with `turning_n` the level at the moment of rest between them.
-#[inline]
+#[inline(always)]
 pub(super) fn legs<T: Real>(
     from: &JournalMotion<T>,
     to: &JournalMotion<T>,

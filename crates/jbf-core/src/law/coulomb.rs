@@ -63,7 +63,7 @@ impl<T: Real> Law<T> for Coulomb<T> {
         true
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, resting: &bool, velocity_m_s: T) -> Sliding<T> {
         let held = *resting && velocity_m_s == T::ZERO;
         Sliding {
@@ -76,7 +76,7 @@ impl<T: Real> Law<T> for Coulomb<T> {
         f64::INFINITY
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, resting: &mut bool, speed_m_s: [T; 3], _rate: T, _dt_s: T) {
         *resting = speed_m_s.iter().all(|&v| v == T::ZERO);
     }

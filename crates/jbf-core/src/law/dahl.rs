@@ -31,7 +31,7 @@ pub struct Dahl<T> {
 
 impl<T: Real> Dahl<T> {
     /// The force at the end of a leg that begins with `force_n`.
-    #[inline]
+    #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         if leg.distance_m.value() <= 0.0 {
             return force_n;
@@ -49,7 +49,7 @@ impl<T: Real> Dahl<T> {
     }
 
     /// What remains of `u > 0` after `ratio = k s`.
-    #[inline]
+    #[inline(always)]
     fn decay(&self, u: T, ratio: T) -> T {
         // So close to sliding that powers below one would lose their digits.
         if u.value() < 1e-12 {
@@ -124,7 +124,7 @@ impl<T: Real> Law<T> for Dahl<T> {
         T::ZERO
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
         Sliding {
             level: self.coulomb_n,
@@ -136,10 +136,10 @@ impl<T: Real> Law<T> for Dahl<T> {
         f64::INFINITY
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, _state: &mut T, _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
 
-    #[inline]
+    #[inline(always)]
     fn bend(
         &self,
         state: &mut T,

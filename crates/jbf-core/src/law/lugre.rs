@@ -39,7 +39,7 @@ pub struct LuGre<T> {
 
 impl<T: Real> LuGre<T> {
     /// `sigma_0 g(v)`, N.
-    #[inline]
+    #[inline(always)]
     fn level(&self, velocity_m_s: T) -> T {
         let share = velocity_m_s / self.stribeck_m_s;
         // Two positive parts: a difference could round to zero in single precision.
@@ -48,7 +48,7 @@ impl<T: Real> LuGre<T> {
     }
 
     /// The bristle's force at the end of a leg.
-    #[inline]
+    #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         if leg.distance_m.value() <= 0.0 {
             return force_n;
@@ -59,7 +59,7 @@ impl<T: Real> LuGre<T> {
     }
 
     /// `sigma_1(v) z'`, N, with the bristle at `force_n`.
-    #[inline]
+    #[inline(always)]
     fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
         let share = velocity_m_s / self.damping_speed_m_s;
         let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL_N));
@@ -121,7 +121,7 @@ impl<T: Real> Law<T> for LuGre<T> {
         T::ZERO
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
         Sliding {
             level: self.level(velocity_m_s),
@@ -134,10 +134,10 @@ impl<T: Real> Law<T> for LuGre<T> {
         0.002
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, _state: &mut T, _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
 
-    #[inline]
+    #[inline(always)]
     fn bend(
         &self,
         state: &mut T,

@@ -8,7 +8,6 @@
 //! `laws!` below.
 
 mod bristle;
-mod delay_line;
 pub mod info;
 mod newtons;
 mod registry;
@@ -19,6 +18,7 @@ pub use steady::Steady;
 
 use crate::bearing::Bearing;
 use crate::clock::Clock;
+use crate::effect::Scales;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::real::Real;
@@ -58,6 +58,22 @@ pub trait Law<T: Real> {
     /// may have a lightest one.
     fn pressed_n(&self, load_n: T) -> T {
         load_n.max(T::ZERO)
+    }
+
+    /// A load as a share of the one that the law was built with; one for a law that asks for
+    /// no load.
+    fn load_share(&self, load_n: T) -> T {
+        let _ = load_n;
+        T::ONE
+    }
+
+    /// The same law with its parameters scaled; none of a law that has no such parameters.
+    fn scaled(&self, scales: &Scales<T>) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        let _ = scales;
+        None
     }
 
     /// Take a new load; cheap when it did not change.

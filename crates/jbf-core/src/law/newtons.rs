@@ -111,12 +111,12 @@ pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
 macro_rules! in_newtons {
     () => {
         /// One newton: the coefficient of this law is a force.
-        #[inline]
+        #[inline(always)]
         fn pressed_n(&self, _load_n: T) -> T {
             T::ONE
         }
 
-        #[inline]
+        #[inline(always)]
         fn set_load(&self, _state: &mut Self::State, _load_n: T) {}
     };
 }

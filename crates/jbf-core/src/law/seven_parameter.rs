@@ -17,11 +17,11 @@
 //! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
 
 use super::bristle::{legs, Leg};
-use super::delay_line::DelayLine;
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
 use super::{Info, Law, Named, Sliding, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
+use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::real::Real;
@@ -58,14 +58,14 @@ pub struct State<T> {
 
 impl<T: Real> SevenParameter<T> {
     /// Share of the Stribeck part that is there at a (delayed) speed.
-    #[inline]
+    #[inline(always)]
     fn share(&self, speed_m_s: T) -> T {
         let x = speed_m_s / self.stribeck_m_s;
         T::ONE / (T::ONE + x * x)
     }
 
     /// The contact comes to rest.
-    #[inline]
+    #[inline(always)]
     fn stop(&self, state: &mut State<T>) {
         if state.way != T::ZERO {
             state.way = T::ZERO;
@@ -75,7 +75,7 @@ impl<T: Real> SevenParameter<T> {
     }
 
     /// Along one leg: the spring bends, breaks away, or slides on.
-    #[inline]
+    #[inline(always)]
     fn slide(&self, state: &mut State<T>, leg: &Leg<T>) {
         let (way, level) = (leg.direction, leg.level[1]);
         if way == T::ZERO || way != state.way {
@@ -174,7 +174,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
         // A run has no past yet at its first sample: it went on as it begins.
         let late = if state.line.is_empty() {
@@ -193,7 +193,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         0.002
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, state: &mut State<T>, speed_m_s: [T; 3], _rate: T, dt_s: T) {
         if state.line.is_empty() {
             state.line.push(speed_m_s[0], T::ZERO, self.delay_s);
@@ -207,7 +207,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn bend(
         &self,
         state: &mut State<T>,

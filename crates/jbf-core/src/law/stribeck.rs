@@ -71,7 +71,7 @@ impl<T: Real> Law<T> for Stribeck<T> {
 
     fn start(&self, _load_n: T) {}
 
-    #[inline]
+    #[inline(always)]
     fn friction(&self, _state: &(), velocity_m_s: T) -> Sliding<T> {
         let share = (velocity_m_s.abs() / self.stribeck_m_s).powf(self.delta);
         let still = (-share).exp();
@@ -85,7 +85,7 @@ impl<T: Real> Law<T> for Stribeck<T> {
         f64::INFINITY
     }
 
-    #[inline]
+    #[inline(always)]
     fn advance(&self, _state: &mut (), _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
 }
 

@@ -122,13 +122,7 @@ impl<T: Real> CoulombObserver<T> {
     /// friction that is compensated, `-a v + b u` with u before compensation. The estimate then
     /// follows the friction with the rate `k_F phi' b`.
     #[inline]
-    pub fn learn(
-        &self,
-        state: &mut State<T>,
-        power: &Power<T>,
-        velocity_rad_s: T,
-        free_rad_s2: T,
-    ) {
+    pub fn learn(&self, state: &mut State<T>, power: &Power<T>, velocity_rad_s: T, free_rad_s2: T) {
         state.z_v += self.dt_s * self.gain * power.slope * free_rad_s2 * velocity_rad_s.sign();
         let least = self.gain * power.value;
         state.z_v = state

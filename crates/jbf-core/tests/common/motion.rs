@@ -72,6 +72,14 @@ impl Sines {
         }
     }
 
+    /// The same under another load, N.
+    pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
+        Motion {
+            load_n: T::of(load_n),
+            ..self.at(time_s)
+        }
+    }
+
     pub fn at<T: Real>(&self, time_s: f64) -> Motion<T> {
         let (since, still) = match self.rest_s {
             Some([from, length]) if time_s >= from => {

@@ -7,11 +7,20 @@
 
 use crate::common::motion::Sines;
 use crate::common::{readings, table_4_2, LOAD_N};
-use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
+use jbf_core::effect::{Effects, Info, Need, Rig, CATALOGUE};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
 
 const DT_S: f64 = 0.01;
+
+/// Not the law's own load where an effect needs another to show.
+fn load_n(info: &Info) -> f64 {
+    if info.needs.contains(&Need::Loads) {
+        83.5
+    } else {
+        LOAD_N
+    }
+}
 
 /// Readings with the law's four parameters first, then the effect's.
 fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<T> {
@@ -56,7 +65,7 @@ fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
             }
         })
         .collect();
-    run(info, &lifted, |t| sines.at(t))
+    run(info, &lifted, |t| sines.under(load_n(info), t))
         .iter()
         .map(|f| f.slope[0])
         .collect()
@@ -66,7 +75,7 @@ fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
 fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
     let mut q = p.to_vec();
     q[i] += by;
-    run(info, &q, |t| sines.at(t))
+    run(info, &q, |t| sines.under(load_n(info), t))
 }
 
 /// A difference quotient, the step that made it and the force that it was made from.
@@ -77,9 +86,13 @@ struct Difference {
 }
 
 impl Difference {
-    fn check(&self, label: &str, carried: &[f64]) {
+    /// False where the parameter does nothing.
+    fn check(&self, label: &str, carried: &[f64]) -> bool {
         let largest = carried.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-        assert!(largest > 0.0, "{label}: the parameter does nothing");
+        let nothing = largest == 0.0 && self.slopes.iter().all(|&s| s == 0.0);
+        if nothing {
+            return false;
+        }
         let bound = 1e-6 * largest + 1e-12 * self.peak_n / self.step;
         // Rounding may not be what makes the test pass.
         assert!(
@@ -93,6 +106,7 @@ impl Difference {
                 "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}"
             );
         }
+        true
     }
 }
 
@@ -105,6 +119,7 @@ fn slopes_match_central_differences() {
     for info in CATALOGUE {
         for which in 0..2 {
             let p = start_values(info, which);
+            let mut shows = vec![false; p.len()];
             for sines in [
                 Sines::one_way(1.0).resting(3.0, 1.0),
                 Sines::two_way(1.0).resting(3.0, 1.0),
@@ -120,9 +135,10 @@ fn slopes_match_central_differences() {
                         peak_n: peak(&above),
                     };
                     let label = format!("{} parameter {i} of {p:?}", info.name);
-                    difference.check(&label, &carried(info, &p, i, &sines));
+                    shows[i] |= difference.check(&label, &carried(info, &p, i, &sines));
                 }
             }
+            assert!(shows.iter().all(|&s| s), "{}: {shows:?}", info.name);
         }
     }
 }
@@ -153,7 +169,7 @@ fn slopes_at_a_null_match_one_sided_differences() {
                 step: h,
                 peak_n: peak(&at),
             };
-            difference.check(info.name, &carried(info, &p, 4 + k, &sines));
+            assert!(difference.check(info.name, &carried(info, &p, 4 + k, &sines)));
             seen += 1;
         }
     }

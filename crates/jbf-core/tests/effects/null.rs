@@ -25,10 +25,9 @@ fn check<T: Real>() {
         for _ in 0..20 {
             let motion = Sines::random(&mut random);
             let values = at_null(info, &mut random);
-            let bare = readings(&chain::<T>(&[]), 0.01, 500, |t| motion.at(t));
-            let with = readings(&chain::<T>(&[(info.name, &values)]), 0.01, 500, |t| {
-                motion.at(t)
-            });
+            let swinging = |t: f64| motion.under(104.0 + 30.0 * (2.0 * t).sin(), t);
+            let bare = readings(&chain::<T>(&[]), 0.01, 500, swinging);
+            let with = readings(&chain::<T>(&[(info.name, &values)]), 0.01, 500, swinging);
             assert!(bare.iter().any(|&r| r != T::ZERO));
             for (a, b) in bare.iter().zip(&with) {
                 assert_eq!(
@@ -58,10 +57,9 @@ fn away_from_its_null_every_effect_shows() {
     for info in CATALOGUE {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let motion = Sines::two_way(1.0).resting(3.0, 1.0);
-        let bare = readings(&chain::<f64>(&[]), 0.01, 700, |t| motion.at(t));
-        let with = readings(&chain::<f64>(&[(info.name, &values)]), 0.01, 700, |t| {
-            motion.at(t)
-        });
+        let lighter = |t: f64| motion.under(83.5, t);
+        let bare = readings(&chain::<f64>(&[]), 0.01, 700, lighter);
+        let with = readings(&chain::<f64>(&[(info.name, &values)]), 0.01, 700, lighter);
         let difference = bare
             .iter()
             .zip(&with)

@@ -17,7 +17,7 @@ fn run<T: Real>(which: &[&Info]) -> Vec<T> {
         .map(|(info, v)| (info.name, v.as_slice()))
         .collect();
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
-    readings(&chain::<T>(&effects), 0.01, 700, |t| sines.at(t))
+    readings(&chain::<T>(&effects), 0.01, 700, |t| sines.under(83.5, t))
 }
 
 /// The instrument comes after the drag: a low pass, written here anew, over the force of a

@@ -63,6 +63,7 @@ where
 }
 
 /// A compensator as Python hands it over.
+// What tells one from another is which keys it has; the last has one that means nothing else.
 #[derive(FromPyObject)]
 pub enum Spec {
     Observed(ObservedSpec),
@@ -70,7 +71,7 @@ pub enum Spec {
     Repetitive(RepetitiveSpec),
     Table(TableSpec),
     Coulomb(CoulombSpec),
-    Nothing(NothingSpec),
+    Nothing(#[allow(dead_code)] NothingSpec),
 }
 
 #[derive(FromPyObject)]
@@ -276,8 +277,8 @@ impl Spec {
                     PyValueError::new_err(format!("a table has {ENTRIES} entries here"))
                 })?;
                 let axis = if s.by_angle { Axis::Angle } else { Axis::Speed };
-                let table = Table::new(levels.map(T::of), axis, s.width, s.viscous_v_s)
-                    .map_err(refused)?;
+                let table =
+                    Table::new(levels.map(T::of), axis, s.width, s.viscous_v_s).map_err(refused)?;
                 boxed::<T, _>(settings, table)
             }
             Spec::Repetitive(s) => {

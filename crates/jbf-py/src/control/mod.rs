@@ -10,7 +10,6 @@ use crate::bearing::refused;
 use bench::{Faults, Log, Noise};
 use compensators::Stepping;
 use jbf_core::reference::{Reference, Wave};
-use model::ModelSpec;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -89,10 +88,4 @@ pub fn control_run<'py>(
         ))
     })?;
     log.into_dict(py)
-}
-
-impl ModelSpec {
-    fn refuse(name: &str) -> PyErr {
-        PyValueError::new_err(format!("{name} is missing or of the wrong kind"))
-    }
 }

@@ -52,6 +52,7 @@ impl<T: Real> Journal<T> {
                 inverse_load_number: T::ZERO,
                 eps_tr: T::ZERO,
             },
+            clock,
         };
         law.nominal = law.under(T::of(load_n));
         // Sizes in the wrong unit overflow here, and would step as infinities.

@@ -5,7 +5,7 @@
 //! J     = Q M Q^T,       M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
 //! ```
 
-use super::film_motion::Film;
+use super::film_motion::{slope, Film};
 use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
@@ -135,21 +135,11 @@ impl<T: Real> SmoothFilm<T> {
 impl<T: Real> System<T, 2> for SmoothFilm<T> {
     #[inline]
     fn slope(&self, &[x, y]: &[T; 2], ub: T) -> [T; 2] {
-        let fb = self.load_number;
-        let e2 = x * x + y * y;
-        let e = e2.sqrt();
-        let inverse_e = T::ONE / e;
-        let d = T::ONE - e2;
-        let root = d.sqrt();
-        // With slope = (vr/e) (x, y) + (vt/e) (-y, x) neither sine nor cosine is needed.
-        let touch = e - self.eps_tr;
-        let lean = T::of(FOUR_OVER_PI) / root;
-        let push = fb * (x - lean * e * y) * inverse_e - self.k0 * touch * touch;
-        let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
-        let radial = push * inverse_e * (d * d * root / determinant);
-        let turn = T::of(0.5) * ub + lean * e * radial
-            - fb * T::of(FRAC_2_PI) * y * inverse_e * inverse_e * (d * root);
-        [radial * x - turn * y, radial * y + turn * x]
+        let load = |e: T| {
+            let touch = e - self.eps_tr;
+            self.k0 * touch * touch
+        };
+        slope(self.load_number, [x, y], x * x + y * y, load, ub)
     }
 }
 

@@ -57,8 +57,8 @@ impl<T: Real> Film<'_, T> {
         if outside && !T::SIDE_BY_SIDE {
             return self.edge(x, y, e2, ub);
         }
-        let one = if outside { T::of(f64::NAN) } else { T::ONE };
-        self.inside(x, y, e2, ub, one)
+        let ub = if outside { T::of(f64::NAN) } else { ub };
+        self.inside(x, y, e2, ub)
     }
 
     /// Stages of a coarse step may look outside the bearing: show them the limit, in their own
@@ -69,33 +69,93 @@ impl<T: Real> Film<'_, T> {
         let limit = T::EPS_LIMIT * T::EPS_LIMIT;
         if e2 > limit {
             let shrink = T::EPS_LIMIT / e2.sqrt();
-            self.inside(x * shrink, y * shrink, limit, ub, T::ONE)
+            self.inside(x * shrink, y * shrink, limit, ub)
         } else {
             let near = T::of(CENTRE);
-            self.inside(near, T::ZERO, near * near, ub, T::ONE)
+            self.inside(near, T::ZERO, near * near, ub)
         }
     }
 
-    /// The slope at `e2 = x^2 + y^2`, well between 0 and 1; `one` is one, or no number where the
-    /// slope shall be none.
     #[inline(always)]
-    fn inside(&self, x: T, y: T, e2: T, ub: T, one: T) -> [T; 2] {
-        let fb = self.loaded.load_number;
+    fn inside(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
+        let load = |e| self.law.asperity_load(e, self.loaded.eps_tr);
+        slope(self.loaded.load_number, [x, y], e2, load, ub)
+    }
+}
+
+/// What costs time at a place, and is shared by all that is computed there: two roots, one
+/// division.
+#[derive(Clone, Copy)]
+pub(super) struct Gap<T> {
+    /// `eps^2`.
+    e2: T,
+    /// `1 - eps^2`.
+    d: T,
+    /// Eccentricity ratio.
+    pub(super) e: T,
+    root: T,
+    /// `(J22 - J12^2/J11) d^(5/2)`.
+    determinant: T,
+    /// `1 / (eps^2 d determinant)`, infinite at the centre.
+    inverse: T,
+}
+
+impl<T: Real> Gap<T> {
+    #[inline(always)]
+    pub(super) fn at(e2: T) -> Self {
         let d = T::ONE - e2;
         let (e, root) = (e2.sqrt(), d.sqrt());
         let determinant = T::of(FRAC_PI_2) + e2 * T::of(PI_LESS_8_OVER_PI);
-        let inverse = one / (e2 * (d * determinant));
-        let stiff = d * d * d * inverse;
-        // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
-        let along = (fb * x) * d * determinant * inverse * e;
-        let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
-        let push = along - self.law.asperity_load(e, self.loaded.eps_tr) - across;
-        // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
-        let radial = push * (stiff * e * root);
-        let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
-        let lag =
-            (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
-        let turn = swing - lag;
-        [radial * x - turn * y, radial * y + turn * x]
+        let inverse = T::ONE / (e2 * (d * determinant));
+        Self {
+            e2,
+            d,
+            e,
+            root,
+            determinant,
+            inverse,
+        }
     }
+
+    /// `1 / sqrt(1 - eps^2)`.
+    #[inline(always)]
+    pub(super) fn inverse_root(&self) -> T {
+        let inverse = self.root * (self.e2 * self.determinant * self.inverse);
+        if self.e2 < T::of(CENTRE * CENTRE) {
+            T::ONE
+        } else {
+            inverse
+        }
+    }
+}
+
+/// The slope at `e2 = x^2 + y^2`, well between 0 and 1, of a film whose asperities carry
+/// `asperity_load` at an eccentricity.
+#[inline(always)]
+pub(super) fn slope<T: Real>(
+    fb: T,
+    [x, y]: [T; 2],
+    e2: T,
+    asperity_load: impl FnOnce(T) -> T,
+    ub: T,
+) -> [T; 2] {
+    let Gap {
+        e2,
+        d,
+        e,
+        root,
+        determinant,
+        inverse,
+    } = Gap::at(e2);
+    let stiff = d * d * d * inverse;
+    // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
+    let along = (fb * x) * d * determinant * inverse * e;
+    let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
+    let push = along - asperity_load(e) - across;
+    // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
+    let radial = push * (stiff * e * root);
+    let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
+    let lag = (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
+    let turn = swing - lag;
+    [radial * x - turn * y, radial * y + turn * x]
 }

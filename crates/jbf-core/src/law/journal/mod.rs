@@ -28,12 +28,14 @@ pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
 use super::{Law, Sliding};
+use crate::clock::Clock;
+use crate::effect::Scales;
 use crate::film::PI_LESS_8_OVER_PI;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use film_motion::{within, Film};
+use film_motion::{within, Film, Gap};
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -57,6 +59,7 @@ pub struct Journal<T> {
     pub(crate) rate: T,
     /// The load of the constructor and its eps_tr, so that a start costs nothing.
     nominal: Loaded<T>,
+    clock: Clock,
 }
 
 impl<T: Real> Journal<T> {
@@ -94,13 +97,15 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Friction at an eccentricity ratio, `d = 1 - eps^2` and a speed, (3.14).
+    /// Friction at an eccentricity ratio, given with its square, and a speed, (3.14).
     #[inline(always)]
-    pub(crate) fn sliding(&self, loaded: &Loaded<T>, eps: T, d: T, velocity_m_s: T) -> Sliding<T> {
-        let load = self.asperity_load(eps, loaded.eps_tr);
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Sliding<T> {
+        let gap = Gap::at(e2);
+        let load = self.asperity_load(gap.e, loaded.eps_tr);
+        let viscous = self.viscous_s_m * loaded.inverse_load_number * velocity_m_s;
         Sliding {
             level: self.f_m * loaded.inverse_load_number * load,
-            viscous: self.viscous_s_m * loaded.inverse_load_number * velocity_m_s / d.sqrt(),
+            viscous: viscous * gap.inverse_root(),
         }
     }
 
@@ -234,6 +239,30 @@ impl<T: Real> Law<T> for Journal<T> {
     }
 
     #[inline(always)]
+    fn load_share(&self, load_n: T) -> T {
+        self.pressed_n(load_n) / self.nominal.load_n
+    }
+
+    /// The scales belong to one load and are one under the constructor's, so that what that gave
+    /// still holds.
+    #[inline(always)]
+    fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
+        let slower = T::ONE / scales.transition_speed;
+        let rate = match self.clock {
+            Clock::Journal => self.rate * scales.transition_speed,
+            Clock::Thesis => self.rate,
+        };
+        Some(Self {
+            fb_per_n: self.fb_per_n * slower,
+            k0: self.k0 * scales.stiffness,
+            viscous_s_m: self.viscous_s_m * slower,
+            inverse_u_tr: self.inverse_u_tr * slower,
+            rate,
+            ..*self
+        })
+    }
+
+    #[inline(always)]
     fn set_load(&self, state: &mut State<T>, load_n: T) {
         if load_n.value() != state.loaded.load_n.value() {
             state.loaded = self.under(load_n);
@@ -242,9 +271,9 @@ impl<T: Real> Law<T> for Journal<T> {
 
     #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        // As the slope forms them, so that a step and its friction share both roots.
-        let d = T::ONE - state.e2;
-        self.sliding(&state.loaded, state.e2.sqrt(), d, velocity_m_s)
+        // Of the same number as the slope, so that a step and its friction share roots and
+        // division.
+        self.sliding(&state.loaded, state.e2, velocity_m_s)
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@
 //! ([`Real::SIDE_BY_SIDE`]).
 
 use super::{Journal, Loaded, State};
+use crate::clock::Clock;
 use crate::real::Real;
 
 /// `N` laws and films.
@@ -59,7 +60,8 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Law number `i`; for stepping only, its nominal load is that of the film.
+    /// Law number `i`; for stepping only: its nominal load is that of the film, and its clock is
+    /// in its rate.
     #[inline(always)]
     pub fn law(&self, i: usize) -> Journal<T> {
         Journal {
@@ -70,6 +72,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
             inverse_u_tr: self.inverse_u_tr[i],
             rate: self.rate[i],
             nominal: self.loaded(i),
+            clock: Clock::Journal,
         }
     }
 

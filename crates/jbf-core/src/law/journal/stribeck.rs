@@ -23,7 +23,7 @@ impl Journal<f64> {
             self.asperity_load(eps, loaded.eps_tr)
         });
         let coefficient = self
-            .sliding(loaded, eps, (1.0 - eps) * (1.0 + eps), velocity_m_s)
+            .sliding(loaded, eps * eps, velocity_m_s)
             .coefficient(velocity_m_s.sign());
         Ok(Steady {
             eps,

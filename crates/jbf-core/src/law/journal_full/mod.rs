@@ -37,6 +37,7 @@ pub use state::State;
 
 use super::journal::{Journal, Loaded, START_PHI_RAD};
 use super::{Law, Sliding};
+use crate::effect::Scales;
 use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
@@ -154,6 +155,20 @@ impl<T: Real> Law<T> for JournalFull<T> {
     }
 
     #[inline]
+    fn load_share(&self, load_n: T) -> T {
+        self.film.load_share(load_n)
+    }
+
+    /// The mass number goes with U_tr.
+    #[inline]
+    fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
+        Some(Self {
+            film: self.film.scaled(scales)?,
+            inverse_mass_number: self.inverse_mass_number / scales.transition_speed,
+        })
+    }
+
+    #[inline]
     fn set_load(&self, state: &mut State<T>, load_n: T) {
         let before = state.loaded.load_n;
         if load_n.value() != before.value() {
@@ -164,9 +179,9 @@ impl<T: Real> Law<T> for JournalFull<T> {
 
     #[inline]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
-        let eps = state.eps();
-        let d = (T::ONE - eps) * (T::ONE + eps);
-        self.film.sliding(&state.loaded, eps, d, velocity_m_s)
+        let [x, y] = state.xy;
+        self.film
+            .sliding(&state.loaded, x * x + y * y, velocity_m_s)
     }
 
     #[inline]

@@ -5,12 +5,12 @@ use crate::real::Real;
 
 /// Points on the line. With steps longer than `delay / (POINTS - 4)` every step is a point;
 /// shorter ones share a point, so that the line always reaches back over the whole delay.
-pub(super) const POINTS: usize = 64;
+pub(crate) const POINTS: usize = 64;
 
 /// The line. It fits any step and any delay; what lies before the first point is taken to
 /// have been constant.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DelayLine<T> {
+pub(crate) struct DelayLine<T> {
     value: [T; POINTS],
     /// Time from the point before, s.
     gap_s: [T; POINTS],
@@ -19,7 +19,7 @@ pub(super) struct DelayLine<T> {
 }
 
 impl<T: Real> DelayLine<T> {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             value: [T::ZERO; POINTS],
             gap_s: [T::ZERO; POINTS],
@@ -28,13 +28,13 @@ impl<T: Real> DelayLine<T> {
         }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.filled == 0
     }
 
     /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
-    #[inline]
-    pub(super) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
+    #[inline(always)]
+    pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
         let spacing = delay_s.value() / (POINTS - 4) as f64;
         // The newest point stands for now; it moves on until it is far enough from the last.
         if self.filled > 1 && self.gap_s[self.newest].value() < spacing {
@@ -51,8 +51,8 @@ impl<T: Real> DelayLine<T> {
     }
 
     /// The signal `delay_s` ago; zero of an empty line.
-    #[inline]
-    pub(super) fn back(&self, delay_s: T) -> T {
+    #[inline(always)]
+    pub(crate) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
         let mut at = self.newest;
         for _ in 1..self.filled {

@@ -1,0 +1,65 @@
+"""How often `jbf.diagnose` is right on campaigns that it has never seen.
+
+    .venv/bin/python benches/hidden_effects [--kinds single,none] [--seeds 2] [--rivals]
+
+Simulates campaigns with the independent simulator (`simulator/rigsim`), diagnoses them, and prints
+tables. `--out F` keeps one JSON line a campaign; a second call with the same file goes on from it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "simulator"))
+
+from plan import KINDS, tasks
+from tables import tables
+from work import Row, work
+
+
+def main() -> None:
+    """Run what is missing, then print all of it."""
+    parser = argparse.ArgumentParser(prog="hidden_effects", description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--kinds", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
+    parser.add_argument("--seeds", type=int, default=1, help="rounds of each kind")
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--only", default="", help="only tasks whose name holds this")
+    parser.add_argument("--rivals", action="store_true", help="simpler rules on the same data")
+    parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
+    parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
+    parser.add_argument("--picture", type=Path, help="detection rate against strength, PNG")
+    asked = parser.parse_args()
+    wanted = tuple(asked.kinds.split(","))
+    if unknown := set(wanted) - set(KINDS):
+        parser.error(f"no kind named {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
+    todo = [t for t in tasks(wanted, asked.seeds, asked.first_seed) if asked.only in t.key]
+    rows: list[Row] = []
+    if asked.out is not None and asked.out.exists():
+        rows = [json.loads(line) for line in asked.out.read_text(encoding="utf-8").splitlines()]
+    done = {row["key"] for row in rows}
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        running = [pool.submit(work, t, asked.rivals) for t in todo if t.key not in done]
+        for future in as_completed(running):
+            row = future.result()
+            rows.append(row)
+            print(
+                f"{row['key']:52}{row['verdict']:12}{','.join(row['named']) or '-':32}"
+                f"{row['judged']:10}{row['held_out_over_noise']:8.3f}{row['seconds']:7.1f} s",
+                flush=True,
+            )
+            if asked.out is not None:
+                with asked.out.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(row) + "\n")
+    print(tables(rows))
+    if asked.picture is not None:
+        from picture import detection
+
+        detection(rows, asked.picture)
+
+
+if __name__ == "__main__":
+    main()

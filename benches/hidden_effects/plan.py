@@ -1,0 +1,74 @@
+"""Which campaigns are simulated: every one is a kind, a seed and what is hidden in it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from rigsim import CATALOGUE, FOREIGN
+
+KINDS = ("single", "none", "pair", "foreign", "poor")
+STRENGTHS = (0.6, 1.0, 1.5)
+SLOW = ("drive_compliance", "sensor_lag", "inertia_leak", "film_memory", "presliding")
+"""What slow sweeps show hardly or not at all."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A campaign to be simulated and diagnosed."""
+
+    kind: str
+    seed: int
+    effects: tuple[str, ...] = ()
+    foreign: tuple[str, ...] = ()
+    strength: float = 1.0
+    coloured: bool = False
+
+    @property
+    def campaign(self) -> str:
+        """Standard motions of the simulator."""
+        return "slow" if self.kind == "poor" else "full"
+
+    @property
+    def hidden(self) -> str:
+        """What is hidden, in one word."""
+        return "+".join((*self.effects, *self.foreign)) or "-"
+
+    @property
+    def key(self) -> str:
+        """A name of its own."""
+        colour = "coloured" if self.coloured else "white"
+        return f"{self.kind}/{self.hidden}/{self.strength:g}/{colour}/{self.seed}"
+
+
+def _kind(kind: str, seed: int) -> Iterator[Task]:
+    """One round of a kind: what varies beside the seed goes round with it."""
+    coloured = seed % 2 == 1
+    strength = STRENGTHS[seed % len(STRENGTHS)]
+    names = sorted(CATALOGUE)
+    if kind == "single":
+        for i, name in enumerate(names):
+            strength = STRENGTHS[(seed + i) % len(STRENGTHS)]
+            yield Task(kind, 1000 * seed + i, (name,), (), strength, (seed + i) % 2 == 1)
+    elif kind == "none":
+        for i in range(4):
+            yield Task(kind, 1000 * seed + 100 + i, coloured=i % 2 == 1)
+    elif kind == "pair":
+        pairs = list(itertools.combinations(names, 2))
+        chosen = np.random.default_rng(seed).choice(len(pairs), 8, replace=False)
+        for i, number in enumerate(chosen):
+            yield Task(kind, 1000 * seed + 200 + i, pairs[number], coloured=i % 2 == 1)
+    elif kind == "foreign":
+        for i, name in enumerate(sorted(FOREIGN)):
+            yield Task(kind, 1000 * seed + 300 + i, (), (name,), strength, coloured)
+    elif kind == "poor":
+        for i, name in enumerate(SLOW):
+            yield Task(kind, 1000 * seed + 400 + i, (name,), coloured=coloured)
+
+
+def tasks(kinds: tuple[str, ...], seeds: int, first_seed: int = 1) -> list[Task]:
+    """All campaigns of some kinds, round after round, so that an early stop is a fair sample."""
+    rounds = range(first_seed, first_seed + seeds)
+    return [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]

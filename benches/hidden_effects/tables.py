@@ -1,0 +1,77 @@
+"""The rows of a bench as Markdown tables."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from work import Row
+
+OUTCOMES = ("right", "tied", "abstained", "wrong")
+
+
+def _share(count: int, total: int) -> str:
+    return f"{count} of {total}" if total else "-"
+
+
+def summary(rows: list[Row]) -> str:
+    """Outcomes by kind, with time and held-out error."""
+    lines = [
+        "| hidden | campaigns | right | honest tie | abstained | wrong | held-out / noise, median "
+        "| worst | s, median |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        own = [row for row in rows if row["kind"] == kind]
+        count = Counter(row["judged"] for row in own)
+        ratio = [row["held_out_over_noise"] for row in own]
+        seconds = np.median([row["seconds"] for row in own])
+        cells = " | ".join(_share(count[o], len(own)) for o in OUTCOMES)
+        lines.append(
+            f"| {kind} | {len(own)} | {cells} | {np.median(ratio):.3f} | {max(ratio):.3f} "
+            f"| {seconds:.1f} |"
+        )
+    return "\n".join(lines)
+
+
+def confusion(rows: list[Row]) -> str:
+    """What was said where one thing was hidden."""
+    said: dict[str, Counter[str]] = {}
+    for row in rows:
+        if row["kind"] == "pair":
+            continue
+        name = " + ".join(row["named"]) or row["verdict"]
+        if row["verdict"] == "ambiguous":
+            others = {a for tied in row["alternatives"].values() for a in tied}
+            name += " or " + ", ".join(sorted(others))
+        elif row["named"] and row["verdict"] == "unexplained":
+            name += " + unexplained"
+        said.setdefault(row["hidden"], Counter())[name] += 1
+    lines = ["| hidden | said |", "|---|---|"]
+    for hidden, names in sorted(said.items()):
+        words = ", ".join(f"{name} ({n})" for name, n in names.most_common())
+        lines.append(f"| {hidden} | {words} |")
+    return "\n".join(lines)
+
+
+def rivals(rows: list[Row]) -> str:
+    """Share of right answers of each rule, by kind."""
+    known = [row for row in rows if "rivals" in row]
+    if not known:
+        return ""
+    rules = list(known[0]["rivals"])
+    lines = ["| hidden | jbf | " + " | ".join(rules) + " |", "|---" * (len(rules) + 2) + "|"]
+    for kind in dict.fromkeys(row["kind"] for row in known):
+        own = [row for row in known if row["kind"] == kind]
+        good = ("right", "tied")
+        cells = [_share(sum(row["judged"] in good for row in own), len(own))]
+        for rule in rules:
+            cells.append(_share(sum(row["rivals"][rule] in good for row in own), len(own)))
+        lines.append(f"| {kind} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def tables(rows: list[Row]) -> str:
+    """All tables."""
+    parts = [summary(rows), confusion(rows), rivals(rows)]
+    return "\n\n".join(["", *(part for part in parts if part)])

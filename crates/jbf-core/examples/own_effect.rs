@@ -1,0 +1,104 @@
+//! An effect that is in no catalogue, beside those that are: a wiper that drags harder in one
+//! half of each turn. The crate is not touched.
+//!
+//! ```text
+//! cargo run --example own_effect
+//! ```
+
+use jbf_core::effect::own::Beside;
+use jbf_core::effect::{Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::motion::JournalMotion;
+use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError, Real};
+
+/// `F_w (1 + sin th)/2` against the motion.
+#[derive(Clone, Copy, Debug)]
+struct Wiper<T> {
+    force_n: T,
+}
+
+impl<T: Real> Effect<T> for Wiper<T> {
+    const INFO: Info = Info {
+        name: "wiper",
+        stage: Stage::Other,
+        summary: "a wiper that drags harder in one half of each turn",
+        equation: "+ F_w (1 + sin th)/2 sgn v",
+        source: "this example",
+        limits: "a stiff wiper: it does not bend before it slides",
+        parameters: &[Parameter {
+            name: "F_w_n",
+            unit: "N",
+            meaning: "largest drag",
+            lower: 0.0,
+            upper: 1e3,
+            null: Some(0.0),
+            starts: &[1.0],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            force_n: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> OtherFriction<T> for Wiper<T> {
+    fn level_n(&self) -> T {
+        T::ZERO
+    }
+
+    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        let share = (T::ONE + journal.angle_rad.sin()) * T::of(0.5);
+        self.force_n * share * journal.direction
+    }
+}
+
+fn main() -> Result<(), ParameterError> {
+    let law = Journal::new(
+        &Bearing::THESIS,
+        104.0,
+        &Parameters::TABLE_4_2,
+        Clock::Journal,
+    )?;
+    let rig = Rig {
+        radius_m: Bearing::THESIS.radius_m,
+        count: 4.0,
+    };
+    let mut effects = Effects::NONE;
+    effects.set("sensor_lag", &[0.05])?;
+    let bare = Chain { law, effects, rig };
+    let wiped = Chain {
+        law,
+        effects: effects.with(Beside(Wiper::new(&[2.0])?)),
+        rig,
+    };
+    let motion = |t: f64| Motion {
+        time_s: t,
+        velocity_m_s: 0.127 * t.sin(),
+        acceleration_m_s2: 0.127 * t.cos(),
+        angle_rad: 10.0 * (1.0 - t.cos()),
+        load_n: 104.0,
+    };
+    let (mut a, mut b) = (bare.start(&motion(0.0)), wiped.start(&motion(0.0)));
+    println!("time_s,bare_n,wiped_n");
+    for i in 1..=3000 {
+        let (t, dt) = (0.002 * f64::from(i), 0.002);
+        let (bare_n, wiped_n) = (
+            bare.step(&mut a, &motion(t), dt),
+            wiped.step(&mut b, &motion(t), dt),
+        );
+        if i % 250 == 0 {
+            println!("{t:.1},{bare_n:.3},{wiped_n:.3}");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! `r(t) = F(t - tau)`: the record of the force is late, its shape untouched.
+//!
+//! Source: Hess & Soom (1990) for friction that lags the speed by a fixed time; in the
+//! instrument it is the skew between two channels, a linear-phase filter, or a bus.
+//!
+//! A low pass rounds what it delays; this does not. The force is kept at the ends of the steps,
+//! with straight lines between, so that a delay of any length, less than a sample too, has a
+//! slope: what jumps in the force is in the reading a ramp of one step.
+
+use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
+use crate::delay_line::DelayLine;
+use crate::error::ParameterError;
+use crate::motion::Motion;
+use crate::real::Real;
+
+/// Pure delay of the friction record against the motion record.
+#[derive(Clone, Copy, Debug)]
+pub struct TimeDelay<T> {
+    tau_s: T,
+}
+
+/// The force of the last moments, and the reading.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    line: DelayLine<T>,
+    reading_n: T,
+}
+
+impl<T: Real> Effect<T> for TimeDelay<T> {
+    const INFO: Info = Info {
+        name: "time_delay",
+        stage: Stage::Instrument,
+        summary: "the friction record is late against the motion record",
+        equation: "r(t) = F(t - tau)",
+        source: "Hess & Soom 1990; channel skew of any two-instrument record",
+        limits: "one delay for all frequencies and all runs; what a filter rounds is sensor_lag; \
+                 a clock that runs fast or slow is neither",
+        parameters: &[Parameter {
+            name: "tau_s",
+            unit: "s",
+            meaning: "how late the friction record is",
+            lower: 0.0,
+            upper: 2.0,
+            null: Some(0.0),
+            starts: &[0.025, 0.085, 0.235],
+            log: false,
+            period: None,
+        }],
+        needs: &[],
+        longest_step_s: 0.02,
+    };
+    const MOVES_JUMPS: bool = true;
+    type State = State<T>;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            tau_s: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            line: DelayLine::new(),
+            reading_n: T::ZERO,
+        }
+    }
+}
+
+impl<T: Real> Instrument<T> for TimeDelay<T> {
+    /// Before the run the force is taken to have been what it is at its start.
+    fn first(&self, state: &mut State<T>, force_n: T) -> T {
+        state.line.push(force_n, T::ZERO, self.tau_s);
+        state.reading_n = force_n;
+        force_n
+    }
+
+    #[inline(always)]
+    fn step(&self, state: &mut State<T>, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
+        state.line.push(signal.now_n, dt_s, self.tau_s);
+        let begin_n = state.reading_n;
+        state.reading_n = state.line.back(self.tau_s);
+        if self.tau_s.value() <= 0.0 {
+            // No delay at all leaves the jumps as they are; its slope is that of the ramp.
+            return signal.shifted(state.reading_n - signal.now_n);
+        }
+        Signal {
+            begin_n,
+            end_n: state.reading_n,
+            now_n: state.reading_n,
+        }
+    }
+}

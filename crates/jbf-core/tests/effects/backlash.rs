@@ -1,0 +1,130 @@
+//! A gap in the drive, against what a gap does: after each turn the journal stands for the angle
+//! of the gap, and then follows.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::Sines;
+use crate::common::{chain_round, readings, LOAD_N};
+use jbf_core::run::{predict, Record};
+use jbf_core::{Bearing, Dual, Motion, Real};
+use std::f64::consts::PI;
+
+const F: f64 = 0.1;
+const DT_S: f64 = 0.002;
+
+fn signal(gap_rad: f64, sines: &Sines, steps: u32) -> Vec<f64> {
+    let chain = chain_round(ConstantLaw(F), &[("backlash", &[gap_rad])]);
+    readings(&chain, DT_S, steps, |t| sines.at(t))
+}
+
+/// `U = A sin t` turns round at pi: the drive is then on its way back through the gap until
+/// `A (1 + cos t) = gap R`; and so on after each turn.
+#[test]
+fn nothing_resists_until_the_gap_is_crossed() {
+    let gap = 0.4;
+    let sines = Sines::two_way(1.0);
+    let since = PI - (gap * Bearing::THESIS.radius_m / 0.127 - 1.0).acos();
+    for (i, f) in signal(gap, &sines, 3000).iter().enumerate().skip(1) {
+        let t = DT_S * i as f64;
+        let way = t % PI;
+        let sign = if (t / PI) as i32 % 2 == 0 { 1.0 } else { -1.0 };
+        let expected = if t < PI || way > since + DT_S {
+            sign * F * LOAD_N
+        } else if way < since - DT_S {
+            0.0
+        } else {
+            continue;
+        };
+        assert!((f - expected).abs() < 1e-12, "{t}: {f} {expected}");
+    }
+}
+
+/// A motion that never turns round never meets the gap, and a first motion finds its flank
+/// closed.
+#[test]
+fn one_way_motion_does_not_feel_it() {
+    for sines in [
+        Sines::one_way(1.0),
+        Sines::one_way(1.0).mirrored(),
+        Sines::one_way(1.0).resting(2.0, 1.0),
+    ] {
+        assert_eq!(signal(0.3, &sines, 2000), signal(0.0, &sines, 2000));
+    }
+}
+
+/// A swing shorter than the gap moves the journal no more after its first way.
+#[test]
+fn a_swing_within_the_gap_is_lost() {
+    let omega = 25.0;
+    let sines = Sines {
+        offset_m_s: 0.0,
+        waves: vec![[0.127, omega, 0.0]],
+        sign: 1.0,
+        rest_s: None,
+    };
+    // The swing is 2 x 0.127/25 m, and the first way is the whole of it.
+    let gap = 2.01 * 0.127 / omega / Bearing::THESIS.radius_m;
+    let got = signal(gap, &sines, 400);
+    assert!(got[10] > 1.0);
+    for (i, f) in got.iter().enumerate() {
+        if DT_S * i as f64 > PI / omega + DT_S {
+            assert_eq!(*f, 0.0);
+        }
+    }
+}
+
+/// The reading of a recorded run is continuous in the gap, and its derivative by the gap is that
+/// of the ramp that stands for the jump.
+#[test]
+fn the_reading_has_no_step_in_the_gap() {
+    let sines = Sines::two_way(1.0);
+    let samples: Vec<Motion<f64>> = (0..400).map(|i| sines.at(0.02 * f64::from(i))).collect();
+    let column = |pick: fn(&Motion<f64>) -> f64| samples.iter().map(pick).collect::<Vec<_>>();
+    let columns = [
+        column(|m| m.time_s),
+        column(|m| m.velocity_m_s),
+        column(|m| m.acceleration_m_s2),
+        column(|m| m.angle_rad),
+        column(|m| m.load_n),
+    ];
+    let record = Record {
+        time_s: &columns[0],
+        velocity_m_s: &columns[1],
+        acceleration_m_s2: &columns[2],
+        angle_rad: &columns[3],
+        load_n: &columns[4],
+    };
+    let run = |gap: f64| {
+        let mut out = vec![0.0; 400];
+        let chain = chain_round(ConstantLaw(F), &[("backlash", &[gap])]);
+        predict(&chain, &record, 0.02, |i, f: f64| out[i] = f);
+        out
+    };
+    let mut before = run(0.01);
+    let mut moved = 0.0_f64;
+    for k in 1..2000 {
+        let now = run(0.01 + 2e-5 * f64::from(k));
+        for (a, b) in before.iter().zip(&now) {
+            assert!((a - b).abs() < 0.1 * F * LOAD_N, "{k}: {a} {b}");
+            moved += (a - b).abs();
+        }
+        before = now;
+    }
+    assert!(moved > F * LOAD_N);
+    let mut slope = 0.0_f64;
+    let mut effects = jbf_core::effect::Effects::NONE;
+    effects
+        .set("backlash", &[Dual::<1>::parameter(0.1003, 0)])
+        .expect("valid");
+    let chain = jbf_core::Chain {
+        law: ConstantLaw(F),
+        effects,
+        rig: jbf_core::effect::Rig {
+            radius_m: Dual::of(0.0127),
+            count: Dual::of(4.0),
+        },
+    };
+    predict(&chain, &record, 0.02, |_, f| {
+        slope = slope.max(f.slope[0].abs())
+    });
+    assert!(slope > 1.0, "{slope}");
+}

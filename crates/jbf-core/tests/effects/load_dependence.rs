@@ -1,0 +1,59 @@
+//! U_tr and K0 as powers of the load: the thesis's tables, and the law itself with other numbers.
+
+use crate::common::motion::Sines;
+use crate::common::{chain_round, readings, LOAD_N};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::journal_full::JournalFull;
+use jbf_core::{Bearing, Clock};
+
+/// With the exponents of Tables 4.2 and 4.3 the law of 104 N becomes, under 83.5 N, the law that
+/// the thesis fitted there; on either clock, with and without the journal's inertia.
+#[test]
+fn one_table_becomes_the_other() {
+    let share: f64 = 83.5 / LOAD_N;
+    let exponent = |from: f64, to: f64| (to / from).ln() / share.ln();
+    let (from, to) = (Parameters::TABLE_4_2, Parameters::TABLE_4_3);
+    let powers = [
+        exponent(from.u_tr_m_s, to.u_tr_m_s),
+        exponent(from.k0, to.k0),
+    ];
+    let effects: [(&str, &[f64]); 1] = [("load_dependence", &powers)];
+    let sines = Sines::two_way(1.0);
+    let motion = |t: f64| sines.under::<f64>(83.5, t);
+    for clock in [Clock::Journal, Clock::Thesis] {
+        let [law, own] = [(LOAD_N, from), (83.5, to)]
+            .map(|(n, p)| Journal::new(&Bearing::THESIS, n, &p, clock).expect("valid"));
+        let with = readings(&chain_round(law, &effects), 0.005, 800, motion);
+        let bare = readings(&chain_round(law, &[]), 0.005, 800, motion);
+        let wanted = readings(&chain_round(own, &[]), 0.005, 800, motion);
+        let gap = |a: &[f64]| {
+            let pairs = a.iter().zip(&wanted);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        assert!(gap(&with) < 1e-9, "{clock:?} {}", gap(&with));
+        assert!(gap(&bare) > 0.5, "{clock:?} {}", gap(&bare));
+        let [law, own] = [(LOAD_N, from), (83.5, to)]
+            .map(|(n, p)| JournalFull::new(&Bearing::THESIS, n, &p, clock).expect("valid"));
+        let with = readings(&chain_round(law, &effects), 0.005, 800, motion);
+        let wanted = readings(&chain_round(own, &[]), 0.005, 800, motion);
+        for (a, b) in with.iter().zip(&wanted) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+}
+
+/// Under the rig's own load any exponents change nothing.
+#[test]
+fn one_load_says_nothing() {
+    let law = Journal::new(
+        &Bearing::THESIS,
+        LOAD_N,
+        &Parameters::TABLE_4_2,
+        Clock::Journal,
+    )
+    .expect("valid");
+    let sines = Sines::two_way(1.0);
+    let bare = readings(&chain_round(law, &[]), 0.01, 700, |t| sines.at::<f64>(t));
+    let chain = chain_round(law, &[("load_dependence", &[2.3, -1.7])]);
+    assert_eq!(bare, readings(&chain, 0.01, 700, |t| sines.at::<f64>(t)));
+}

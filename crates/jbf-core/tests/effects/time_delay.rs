@@ -1,0 +1,72 @@
+//! A pure delay, against what it is: the same signal, later.
+
+use crate::common::constant_law::ConstantLaw;
+use crate::common::motion::{constant, Sines};
+use crate::common::{chain, chain_round, readings, LOAD_N};
+
+/// A delay of whole steps gives the bare readings of so many steps before.
+#[test]
+fn whole_steps_shift_the_record() {
+    let sines = Sines::two_way(1.0);
+    let bare = readings(&chain::<f64>(&[]), 0.01, 700, |t| sines.at(t));
+    for steps in [1, 7, 40] {
+        let tau = 0.01 * steps as f64;
+        let late = readings(&chain::<f64>(&[("time_delay", &[tau])]), 0.01, 700, |t| {
+            sines.at(t)
+        });
+        for i in 0..bare.len() {
+            let expected = bare[i.saturating_sub(steps)];
+            assert!((late[i] - expected).abs() < 1e-9, "{steps} {i}");
+        }
+    }
+}
+
+/// Less than a step: between the neighbours, on a straight line.
+#[test]
+fn part_of_a_step_lies_between_the_neighbours() {
+    let sines = Sines::one_way(1.0);
+    let bare = readings(&chain::<f64>(&[]), 0.01, 300, |t| sines.at(t));
+    let late = readings(&chain::<f64>(&[("time_delay", &[0.003])]), 0.01, 300, |t| {
+        sines.at(t)
+    });
+    for i in 1..bare.len() {
+        let expected = 0.7 * bare[i] + 0.3 * bare[i - 1];
+        assert!((late[i] - expected).abs() < 1e-12);
+    }
+}
+
+/// It does not round: a jump stays a jump, where a low pass of the same delay makes a tail.
+#[test]
+fn a_jump_stays_a_jump() {
+    let (f, tau, dt) = (0.1, 0.2, 0.01);
+    let late = chain_round(ConstantLaw(f), &[("time_delay", &[tau])]);
+    let got = readings(&late, dt, 200, |t| {
+        constant::<f64>(if t < 0.4975 { 0.1 } else { -0.1 }, t)
+    });
+    for (i, r) in got.iter().enumerate() {
+        let expected = if dt * (i as f64) < 0.4975 + tau - 0.005 {
+            f
+        } else {
+            -f
+        };
+        assert!((r - expected * LOAD_N).abs() < 1e-9, "{i} {r}");
+    }
+}
+
+/// After the low pass and before the zero of the load cell: a delayed low pass is a low pass
+/// delayed.
+#[test]
+fn delay_and_low_pass_commute() {
+    let sines = Sines::one_way(1.0);
+    let lag: (&str, &[f64]) = ("sensor_lag", &[0.1]);
+    let lagged = readings(&chain::<f64>(&[lag]), 0.01, 400, |t| sines.at(t));
+    let both = readings(
+        &chain::<f64>(&[lag, ("time_delay", &[0.05])]),
+        0.01,
+        400,
+        |t| sines.at(t),
+    );
+    for i in 5..lagged.len() {
+        assert!((both[i] - lagged[i - 5]).abs() < 1e-9, "{i}");
+    }
+}

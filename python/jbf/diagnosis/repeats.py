@@ -1,0 +1,63 @@
+"""Structure seen without any axis: what comes again when the same motion comes again.
+
+Noise of one period knows nothing of the next; an error of the model does. The correlation of the
+residual with itself one period later is therefore the share of its mean square that is no noise
+(a lack-of-fit test with replicates).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.diagnosis.result import Remainder
+from jbf.fitting import Problem, Solution
+from jbf.noise import Noise, period_samples
+
+Array = npt.NDArray[np.float64]
+
+LEAST_SIGMA = 5.0
+"""Standard errors from zero that the correlation must be, over all runs together,"""
+LEAST_SHARE = 0.03
+"""and the least share of the mean square that is worth a word."""
+MIN_PAIRS = 100
+
+
+def find_repeats(problem: Problem, solution: Solution) -> list[Remainder]:
+    """What of the residual comes again with the motion, over all periodic runs."""
+    product, spread, square, names = 0.0, 0.0, 0.0, []
+    for residual, p in zip(solution.residuals, problem.campaign.prepared, strict=True):
+        shift = period_samples(p.motion.velocity_m_s)
+        if shift is None:
+            continue
+        both = p.trusted[shift:] & p.trusted[:-shift]
+        first, second = residual[:-shift][both], residual[shift:][both]
+        if len(first) < MIN_PAIRS:
+            continue
+        level = float(first @ first + second @ second) / (2.0 * len(first))
+        own = float(first @ second)
+        product += own
+        square += level * len(first)
+        spread += level**2 * len(first) * _fewer(solution.noise, p.step_s)
+        if own > LEAST_SHARE * level * len(first):
+            names.append(p.run.name)
+    if spread == 0.0:
+        return []
+    share = product / square
+    if share < LEAST_SHARE or product < LEAST_SIGMA * np.sqrt(spread):
+        return []
+    size = float(np.sqrt(share))
+    where = (
+        f"error that comes again with each period, {100.0 * size:.0f} % of the residual's RMS, in "
+        + ", ".join(names)
+    )
+    return [Remainder("period", where, min(share, 1.0))]
+
+
+def _fewer(noise: Noise, step_s: float) -> float:
+    """How many times fewer independent samples a coloured noise has, for products of two (Bartlett
+    1946): `1 + 2 sum of squared autocorrelations`."""
+    if noise.colour <= 0.0:
+        return 1.0
+    keep = float(np.exp(-2.0 * step_s / noise.memory_s))
+    return 1.0 + 2.0 * noise.colour**2 * keep / (1.0 - keep)

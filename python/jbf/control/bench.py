@@ -39,7 +39,7 @@ class Bench:
 
     damping_1_s: float = 135.0
     input_rad_s2_v: float = 457.0
-    volts_per_n: float = 0.02829
+    volts_per_n: float = 0.02827
     limit_v: float = 10.0
     counts_per_rad: float = 2387.3
     counter_bits: int = 16
@@ -102,9 +102,7 @@ def core_model(model: Model) -> dict[str, Any]:
 
 
 THESIS_RIG = Rig(
-    bearing=Bearing(
-        radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4
-    ),
+    bearing=Bearing(radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4),
     lubricant=Lubricant(viscosity_pa_s=0.002),
     load=Load(normal_n=104.0),
 )
@@ -113,8 +111,8 @@ THESIS_RIG = Rig(
 THESIS_BENCH = Bench()
 """The bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
 
-FITTED = {"U_tr_m_s": 0.06113, "K0": 4.173e6, "gamma": 89.89}
-"""What `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`; f_m = 0.26."""
+FITTED = {"U_tr_m_s": 0.06128, "K0": 4.123e6, "gamma": 90.29}
+"""What `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`."""
 
 BEND_1_M = 0.26 * 2387.3 / 0.0127
 """Contact stiffness (1/m) at which the shaft turns by one encoder count before it slides."""

@@ -95,7 +95,10 @@ class Tables:
 
 
 def _each(
-    tasks: Sequence[tuple[str, Task]], work: Callable[[Task], Result], report: Report | None, what: str
+    tasks: Sequence[tuple[str, Task]],
+    work: Callable[[Task], Result],
+    report: Report | None,
+    what: str,
 ) -> list[Result]:
     """`work` on all tasks, on all cores: the core runs without the interpreter's lock."""
     done = []

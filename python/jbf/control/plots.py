@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -12,6 +13,8 @@ from jbf.control.robustness import Outcome
 from jbf.control.run import FALLBACK, Result
 from jbf.control.thesis_tables import COLUMNS, Tables
 from jbf.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
+
+Array = npt.NDArray[np.float64]
 
 _LEARNED = {
     "learning": ("K0 / 1e5", "gamma / 10", 1e-5, 0.1),
@@ -80,19 +83,21 @@ def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:
             ax.legend(loc="upper right", fontsize="x-small", frameon=False)
 
 
-def _learned(ax: Axes, r: Result, t: np.ndarray, stride: int) -> None:  # type: ignore[type-arg]
+def _learned(ax: Axes, r: Result, t: Array, stride: int) -> None:
     names = _LEARNED.get(r.scheme)
-    if names is not None:
+    if names is None:
+        ax.set_axis_off()
+    else:
         first, second, by_first, by_second = names
         ax.plot(t, by_first * r.learned_0[::stride], color=MODEL, linewidth=0.9, label=first)
         if second is not None:
             ax.plot(t, by_second * r.learned_1[::stride], color=BEFORE, linewidth=0.9, label=second)
-        ax.legend(loc="upper right", fontsize="x-small", frameon=False)
+        ax.legend(loc="best", fontsize="x-small", frameon=False)
     alone = (r.status & FALLBACK) > 0
     if alone.any():
         low, high = ax.get_ylim()
         ax.fill_between(r.time_s, low, high, where=alone.tolist(), color=MEASURED, alpha=0.4)
-    dress(ax, "Learned" if names else "Nothing learned", "Time (s)", "")
+    dress(ax, "Learned", "Time (s)", "")
 
 
 def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:

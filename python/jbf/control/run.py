@@ -179,7 +179,8 @@ def run(
         if isinstance(error, InputError):
             raise
         raise InputError(problem=str(error), mend="correct it") from None
-    return Result(task, chosen.name, np.arange(n) * bench.dt_s, value, **arrays)
+    time_s = np.arange(n, dtype=np.float64) * bench.dt_s
+    return Result(task, chosen.name, time_s, value, **arrays)
 
 
 def _scheme(given: str | Scheme, carried: Model, settings: Settings | None) -> Scheme:

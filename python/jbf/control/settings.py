@@ -1,4 +1,4 @@
-"""Settings of the observed compensator and its loop, as a TOML file that `jbf control tune` writes."""
+"""Settings of the observed compensator and its loop; `jbf control tune` writes them as TOML."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jbf.errors import InputError, write_text
 from jbf.rig import PathLike, number, read_toml, refuse_unknown
 
 _HEADER = """\
-jbf control settings. All in SI units; `jbf control tune MODEL` computes them from a fitted model."""
+jbf control settings, in SI units; `jbf control tune MODEL` computes them from a fitted model."""
 
 _NOTES = {
     "bandwidth_rad_s": "poles of the observer",

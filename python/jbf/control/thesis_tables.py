@@ -94,20 +94,10 @@ class Tables:
         return sum(abs(math.log(r)) <= math.log(factor) for r in ratios)
 
 
-def _each(
-    tasks: Sequence[tuple[str, Task]],
-    work: Callable[[Task], Result],
-    report: Report | None,
-    what: str,
-) -> list[Result]:
-    """`work` on all tasks, on all cores: the core runs without the interpreter's lock."""
-    done = []
+def _each(work: Callable[[Task], Result]) -> list[Result]:
+    """`work` on all rows, on all cores: the core runs without the interpreter's lock."""
     with ThreadPoolExecutor() as pool:
-        for i, result in enumerate(pool.map(work, [task for _, task in tasks])):
-            done.append(result)
-            if report is not None:
-                report(what, i + 1, len(tasks))
-    return done
+        return list(pool.map(work, TASKS.values()))
 
 
 def fit_friction(
@@ -119,7 +109,6 @@ def fit_friction(
     """
     from scipy.optimize import least_squares
 
-    tasks = list(TASKS.items())
     printed = np.array([PRINTED_RMS[row][0] for row in TASKS], dtype=float)
     calls = 0
 
@@ -135,13 +124,17 @@ def fit_friction(
             report(f"fitting the bench's friction, trial {calls}", 0, 0)
         model, drive = built(logs)
         work = partial(_run_cell, model, NoCompensation(), drive)
-        found = np.array([r.rms for r in _each(tasks, work, None, "")])
+        found = np.array([r.rms for r in _each(work)])
         return np.asarray(np.log(found / printed))
 
     start = [bench.volts_per_n, FITTED["U_tr_m_s"], FITTED["K0"], FITTED["gamma"]]
     # The cells are noisy at the 1e-3 level: a difference quotient needs a long step.
-    best = least_squares(misses, np.log(start), diff_step=0.01, xtol=1e-4, ftol=1e-4, max_nfev=20)
+    best = least_squares(misses, np.log(start), diff_step=[0.01], xtol=1e-4, ftol=1e-4, max_nfev=20)
     return built(best.x)
+
+
+def _mean_square_root(values: Sequence[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def _run_cell(model: Model, scheme: Scheme, bench: Bench, task: Task) -> Result:
@@ -155,9 +148,14 @@ def tables(
     learning: Learning | None = None,
     coulomb: Coulomb | None = None,
     observed: bool = False,
+    seeds: int = 5,
     report: Report | None = None,
 ) -> Tables:
-    """Both tables on a bench with a friction; `observed` adds our compensator as a column."""
+    """Both tables on a bench with a friction; `observed` adds our compensator as a column.
+
+    A cell is the root mean square over several seeds of the noise: where the shaft turns round
+    inside one encoder count, noise decides when, and one run is a throw of dice.
+    """
     schemes: dict[str, Scheme] = {
         "none": NoCompensation(),
         "learning": Learning() if learning is None else learning,
@@ -166,19 +164,21 @@ def tables(
     if observed:
         schemes["observed"] = Observed(model)
     cells = {}
-    for column, scheme in schemes.items():
-        work = partial(_run_cell, model, scheme, bench)
-        results = _each(list(TASKS.items()), work, report, f"column {column}")
-        for row, result in zip(TASKS, results, strict=True):
+    for i, (column, scheme) in enumerate(schemes.items()):
+        drives = [replace(bench, seed=seed) for seed in range(1, seeds + 1)]
+        runs = [_each(partial(_run_cell, model, scheme, drive)) for drive in drives]
+        if report is not None:
+            report("the tables", i + 1, len(schemes))
+        for row, *results in zip(TASKS, *runs, strict=True):
             at = COLUMNS.index(column) if column in COLUMNS else None
             cells[row, column] = Cell(
                 row,
                 column,
-                result.rms,
-                result.peak,
+                _mean_square_root([r.rms for r in results]),
+                float(np.mean([r.peak for r in results])),
                 None if at is None else PRINTED_RMS[row][at],
                 None if at is None else PRINTED_PEAK[row][at],
-                result.true_rms,
+                _mean_square_root([r.true_rms for r in results]),
             )
     return Tables(cells, model, bench)
 

@@ -145,7 +145,7 @@ class Repetitive:
         # Half of what the loop's stiffness against a steady disturbance would take.
         g, c = VELOCITY_GAINS
         stiffness = 2.0 if task.is_position else g + c
-        lead = (0.1 if task.is_position else 0.07) if self.lead_s is None else self.lead_s
+        lead = (0.1 if task.is_position else 0.02) if self.lead_s is None else self.lead_s
         return {
             "steps_per_lap": round(task.period_s / bench.dt_s),
             "lap_gain": 0.5 * stiffness if self.gain is None else self.gain,

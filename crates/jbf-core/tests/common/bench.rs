@@ -153,7 +153,7 @@ pub fn table<T: Real>() -> Table<T, 8> {
 
 /// A lap of two seconds.
 pub fn repetitive<T: Real>() -> Repetitive<T, 64> {
-    Repetitive::new(1000, 0.5, 0.1, 0.06, 3.0, DT_S).expect("lap")
+    Repetitive::new(1000, 0.5, 0.1, 0.02, 3.0, DT_S).expect("lap")
 }
 
 /// Do something with a loop round each compensator of the core.

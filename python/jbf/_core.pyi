@@ -1,7 +1,7 @@
 """Types of the extension module."""
 
 from collections.abc import Sequence
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -146,3 +146,17 @@ def trajectories(
     viscosity_pa_s: float,
     load_n: float,
 ) -> list[tuple[Array, Array, Array, int]]: ...
+def control_reference(
+    wave: str, low: float, high: float, frequency_rad_s: float, dt_s: float, samples: int
+) -> tuple[Array, Array]: ...
+def control_run(
+    plant: dict[str, Any],
+    loop_settings: dict[str, Any],
+    compensator: dict[str, Any],
+    reference: Array,
+    rate: Array,
+    load_n: Array,
+    faults: dict[str, Any],
+    *,
+    precision: str,
+) -> dict[str, Any]: ...

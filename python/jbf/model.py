@@ -55,7 +55,7 @@ def check_rig(rig: Rig, law: str) -> None:
             )
 
 
-def _sizes(rig: Rig) -> _core.BearingSizes | None:
+def core_bearing(rig: Rig) -> _core.BearingSizes | None:
     """The rig's bearing as the core takes it; None where the rig has none."""
     b = rig.bearing
     if b is None:
@@ -71,7 +71,8 @@ def _sizes(rig: Rig) -> _core.BearingSizes | None:
     }
 
 
-def _load_n(rig: Rig) -> float | None:
+def core_load_n(rig: Rig) -> float | None:
+    """The load on one bearing, N; None where the rig has none."""
     return None if rig.load is None else rig.load.normal_n
 
 
@@ -89,8 +90,8 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
     own = [page for page in pages if isinstance(page, OwnEffect)]
     core = _core.Chain(
         law=law,
-        bearing=_sizes(rig),
-        load_n=_load_n(rig),
+        bearing=core_bearing(rig),
+        load_n=core_load_n(rig),
         clock=clock,
         effects=[page.name for page in pages if page not in own],
         max_step_s=MAX_STEP_S,
@@ -113,7 +114,7 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
 
 def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
     """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
-    load = run.load_n if run.load_n is not None else np.full(len(run), _load_n(rig) or 1.0)
+    load = run.load_n if run.load_n is not None else np.full(len(run), core_load_n(rig) or 1.0)
     made = _core.Motion(
         np.ascontiguousarray(run.time_s),
         motion.velocity_m_s,
@@ -243,8 +244,8 @@ class Model:
             np.ascontiguousarray(velocity_m_s, dtype=float),
             law=self.law,
             parameters=self.values[:count].tolist(),
-            bearing=_sizes(self.rig),
-            load_n=_load_n(self.rig),
+            bearing=core_bearing(self.rig),
+            load_n=core_load_n(self.rig),
         )
 
     def _file(self) -> ModelFile:

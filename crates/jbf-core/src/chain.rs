@@ -76,18 +76,25 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     /// What resists whoever moves the shaft: friction itself, or behind a soft drive its spring.
     #[inline]
     pub fn felt(&self, state: &State<T, L::State, O>) -> Felt<T> {
-        match self
+        if let Some(smooth_n) = self
             .effects
             .transmitted_n(&state.effects, &state.motion, &self.rig)
         {
-            Some(smooth_n) => Felt {
+            return Felt {
                 jump_n: T::ZERO,
                 smooth_n,
+            };
+        }
+        let direction = state.journal.direction;
+        // In the gap of a drive nothing of the journal is felt.
+        let loose = self.effects.has_drive() && state.motion.velocity_m_s != T::ZERO;
+        Felt {
+            jump_n: if loose {
+                state.jump_n * direction.abs()
+            } else {
+                state.jump_n
             },
-            None => Felt {
-                jump_n: state.jump_n,
-                smooth_n: state.force_n - state.jump_n * state.journal.direction,
-            },
+            smooth_n: state.force_n - state.jump_n * direction,
         }
     }
 

@@ -24,6 +24,14 @@ use crate::real::Real;
 /// Most trials of one step: a bristle takes three or four.
 const MOST_TRIALS: u32 = 24;
 
+/// A step's speed is solved to this, rad/s, and to this share of itself. It is solved anew at every
+/// step, so that errors do not add up.
+const NEAR_RAD_S: f64 = 1e-7;
+const NEAR: f64 = 1e-6;
+
+/// Standing still needs no short steps: the film closes slowly.
+const LONGEST_STANDING_S: f64 = 0.02;
+
 /// Motor and shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
@@ -114,10 +122,14 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State> {
         let mut motion = Motion::at_rest(load_n);
         let mut chain = self.chain.start(&motion);
-        let steps = libm::ceil(stood_s / self.step_s.value()).clamp(0.0, 1e7) as u32;
-        for _ in 0..steps {
-            motion.time_s += self.step_s;
-            self.chain.step(&mut chain, &motion, self.step_s);
+        let longest = LONGEST_STANDING_S
+            .min(self.chain.law.longest_step_s(0.0) / self.chain.effects.fastest_film())
+            .min(self.chain.effects.longest_step_s());
+        let steps = libm::ceil(stood_s / longest).clamp(0.0, 1e7);
+        let step_s = T::of(stood_s / steps.max(1.0));
+        for _ in 0..steps as u32 {
+            motion.time_s += step_s;
+            self.chain.step(&mut chain, &motion, step_s);
         }
         State {
             angle_rad: T::ZERO,
@@ -167,10 +179,17 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         let still = self.attempt(state, T::ZERO, load_n);
         let push = free - self.gain * still.smooth_v;
         let hold = self.gain * still.jump_v;
+        let side = push.sign();
         if push.abs() <= hold {
+            // In the gap of a drive nothing holds: it moves as if there were no friction.
+            if self.chain.effects.has_drive() && side != T::ZERO {
+                let loose = self.attempt(state, push, load_n);
+                if loose.jump_v == T::ZERO {
+                    return loose;
+                }
+            }
             return still;
         }
-        let side = push.sign();
         // A bristle has no jump: nothing keeps the shaft on one side of rest.
         let kept = if hold > T::ZERO { side } else { T::ZERO };
         let end = self.solve(state, free, push - hold * side, kept, load_n);
@@ -201,7 +220,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         let mut miss = missed(&here);
         let mut slope = T::ONE;
         for _ in 0..MOST_TRIALS {
-            if miss.abs() <= T::of(1e-9) + T::of(1e-7) * here.speed_rad_s.abs() {
+            if miss.abs() <= T::of(NEAR_RAD_S) + T::of(NEAR) * here.speed_rad_s.abs() {
                 break;
             }
             let next = self.attempt(state, here.speed_rad_s - miss / slope, load_n);

@@ -76,6 +76,14 @@ pub trait Compensator<T: Real> {
         velocity_rad_s
     }
 
+    /// True where a compensator that knows rest from motion has seen the shaft turn without a
+    /// count: the encoder is then not to be believed.
+    #[inline]
+    fn doubts(&self, state: &Self::State) -> bool {
+        let _ = state;
+        false
+    }
+
     /// One step.
     fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
 }

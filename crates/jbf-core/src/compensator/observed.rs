@@ -23,6 +23,11 @@ use super::{Answer, Compensator, Sense};
 use crate::error::{check, positive, ParameterError};
 use crate::real::Real;
 
+/// Time constants of the observer that a wrong friction may need to be found out. A shaft that
+/// turns for longer without a count, at the speed that the largest correction makes, makes the
+/// encoder doubtful.
+const FINDING_OUT: f64 = 3.0;
+
 /// Settings of [`Observed`], in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -84,6 +89,7 @@ pub struct Observed<T, M> {
     stiffer_v_s_rad: T,
     speed_v_s_rad: T,
     acceleration_v_s2_rad: T,
+    doubtful_rad: T,
     dt_s: T,
     begin: Learned<T>,
 }
@@ -95,7 +101,8 @@ pub struct State<T, S> {
     friction: Friction<T>,
     velocity_rad_s: T,
     slip_rad: T,
-    direction: T,
+    /// How far the shaft has turned since the last count, as far as the observer knows, rad.
+    turned_rad: T,
     /// What has been learned.
     pub learned: Learned<T>,
 }
@@ -140,6 +147,9 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         )?;
         let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
         let gain = s.input_rad_s2_v / s.damping_1_s * fall;
+        let wrong_rad_s =
+            (s.level_limit_v + s.rest_limit_v) * s.input_rad_s2_v / s.damping_1_s + s.slow_rad_s;
+        let doubtful_rad = FINDING_OUT * wrong_rad_s / s.bandwidth_rad_s;
         let correct = poles(
             1.0 - fall,
             gain,
@@ -168,6 +178,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
             stiffer_v_s_rad: T::of(s.stiffer_v_s_rad),
             speed_v_s_rad: T::of(s.damping_1_s / s.input_rad_s2_v - s.law_forward_v_s_rad),
             acceleration_v_s2_rad: T::of(1.0 / s.input_rad_s2_v),
+            doubtful_rad: T::of(doubtful_rad),
             dt_s: T::of(s.dt_s),
             begin: Learned {
                 level_v: T::ZERO,
@@ -253,7 +264,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
             model,
             velocity_rad_s: T::ZERO,
             slip_rad: T::ZERO,
-            direction: T::ZERO,
+            turned_rad: T::ZERO,
             learned: self.begin,
         }
     }
@@ -273,16 +284,17 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         let hold = self.gain * self.level_v(state);
         // The proximal step of the plant: friction takes what it can hold, and no more.
         let predicted = if push > hold {
-            state.direction = T::ONE;
             push - hold
         } else if push < -hold {
-            state.direction = -T::ONE;
             push + hold
         } else {
-            // Stuck, and so is what a correction would make of it.
-            state.direction = push.sign();
             T::ZERO
         };
+        if blind || moved_rad != T::ZERO {
+            state.turned_rad = T::ZERO;
+        } else if predicted.abs() > self.slow_rad_s {
+            state.turned_rad += predicted * self.dt_s;
+        }
         if blind {
             state.velocity_rad_s = predicted;
             state.slip_rad = T::ZERO;
@@ -295,6 +307,11 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         state.velocity_rad_s = predicted + speed * slip;
         state.learned.rest_v += rest * slip;
         state.velocity_rad_s
+    }
+
+    #[inline]
+    fn doubts(&self, state: &Self::State) -> bool {
+        state.turned_rad.abs() > self.doubtful_rad
     }
 
     #[inline]

@@ -18,6 +18,12 @@ use crate::observer::VelocityObserver;
 use crate::real::Real;
 use crate::reference::Target;
 
+/// Longest patience, in steps: room for doubts that double.
+const MOST_STEPS: f64 = 1e7;
+
+/// A doubt lasts at most `2^this` times the patience.
+const LONGEST_DOUBT: u32 = 7;
+
 /// When a loop stops believing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -53,6 +59,8 @@ pub struct State<T, S> {
     target: Target<T>,
     applied_v: T,
     pushed: u32,
+    doubt: u32,
+    doubts: u32,
     limited: u32,
     blind: u32,
 }
@@ -105,7 +113,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             law,
             limit_v: T::of(limits.output_v),
             moving_v: T::of(limits.moving_v),
-            patience: libm::ceil(limits.patience_s / dt_s).max(1.0) as u32,
+            patience: libm::ceil(limits.patience_s / dt_s).clamp(1.0, MOST_STEPS) as u32,
         })
     }
 
@@ -122,6 +130,8 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             },
             applied_v: T::ZERO,
             pushed: 0,
+            doubt: 0,
+            doubts: 0,
             limited: 0,
             blind: 0,
         }
@@ -222,7 +232,17 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
             // Once frozen, only a count shows that the encoder lives again.
             state.pushed = 0;
         }
-        if state.pushed >= self.patience {
+        if sample.still == 0 {
+            (state.doubt, state.doubts) = (0, 0);
+        } else if self.compensator.doubts(&state.compensator) {
+            // A doubt may be wrong, and the control law alone too weak to show it: compensation is
+            // tried again, after a time that doubles.
+            state.doubt = self.patience << state.doubts.min(LONGEST_DOUBT);
+            state.doubts = state.doubts.saturating_add(1);
+        } else {
+            state.doubt = state.doubt.saturating_sub(1);
+        }
+        if state.pushed >= self.patience || state.doubt > 0 {
             status |= Status::FROZEN;
         }
         status

@@ -173,7 +173,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
     fn transmitted_n(&self, state: &State<T>, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         let twist = motion.angle_rad - state.angle_rad;
         let slip = motion.velocity_m_s / rig.radius_m - state.speed_rad_s;
-        let torque = self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip;
-        Some(torque / (rig.count * rig.radius_m))
+        let torque_n_m = self.stiffness_n_m_rad * twist + self.damping_n_m_s_rad * slip;
+        Some(torque_n_m / (rig.count * rig.radius_m))
     }
 }

@@ -73,15 +73,11 @@ pub trait Drive<T: Real>: Effect<T> {
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
-    /// The force that the commanded side feels, as a force on one bearing, N; `None` where it
-    /// feels the friction itself.
-    #[inline]
-    fn transmitted_n(
-        &self,
-        _state: &Self::State,
-        _motion: &Motion<T>,
-        _rig: &Rig<T>,
-    ) -> Option<T> {
+    /// The force that the commanded side feels where it is not the journal's friction, as a force
+    /// on one bearing, N.
+    #[inline(always)]
+    fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+        let _ = (state, motion, rig);
         None
     }
 }

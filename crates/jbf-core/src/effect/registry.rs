@@ -65,12 +65,17 @@ macro_rules! signal_chain {
                 rig: &Rig<T>,
             ) -> Option<T> {
                 $(if let (Some(e), Some(s)) = (&self.$drive, &states.$drive) {
-                    let transmitted = e.transmitted_n(s, motion, rig);
-                    if transmitted.is_some() {
-                        return transmitted;
+                    let force_n = e.transmitted_n(s, motion, rig);
+                    if force_n.is_some() {
+                        return force_n;
                     }
                 })*
                 None
+            }
+
+            /// True where the journal may part from the commanded side.
+            pub(crate) fn has_drive(&self) -> bool {
+                false $(|| self.$drive.is_some())*
             }
 
             /// Factor on the speed that the film feels.

@@ -105,6 +105,12 @@ impl<T: Real> CoulombObserver<T> {
                 slope: self.edge_slope,
             };
         }
+        if !(w > T::ZERO) {
+            return Power {
+                value: T::ZERO,
+                slope: T::ZERO,
+            };
+        }
         let value = w.powf(self.exponent);
         Power {
             value,

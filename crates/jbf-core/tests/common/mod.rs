@@ -2,6 +2,7 @@
 //! uses all of it.
 #![allow(dead_code)]
 
+pub mod bench;
 pub mod constant_law;
 pub mod drive;
 pub mod motion;

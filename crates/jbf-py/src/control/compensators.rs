@@ -63,6 +63,7 @@ where
 }
 
 /// A compensator as Python hands it over.
+// What tells one from another is which keys it has; the last has one that means nothing else.
 #[derive(FromPyObject)]
 pub enum Spec {
     Observed(ObservedSpec),
@@ -70,8 +71,7 @@ pub enum Spec {
     Repetitive(RepetitiveSpec),
     Table(TableSpec),
     Coulomb(CoulombSpec),
-    #[allow(dead_code)]
-    Nothing(NothingSpec),
+    Nothing(#[allow(dead_code)] NothingSpec),
 }
 
 #[derive(FromPyObject)]

@@ -1,0 +1,237 @@
+//! A loop on the simulated bench, without noise, for tests of controllers.
+
+use super::{chain_round, law};
+use jbf_core::compensator::carried::Whole;
+use jbf_core::compensator::learning::{Learned, Rule};
+use jbf_core::compensator::observed::Settings;
+use jbf_core::compensator::table::Axis;
+use jbf_core::compensator::{
+    Bare, Compensator, Coulomb, Learning, NoCompensation, Observed, Repetitive, Table,
+};
+use jbf_core::controller::{BaseLaw, Controller, Limits, Parts, State};
+use jbf_core::encoder::Encoder;
+use jbf_core::law::journal::Journal;
+use jbf_core::observer::{CoulombObserver, VelocityObserver};
+use jbf_core::plant::{Drive, Plant, State as PlantState};
+use jbf_core::reference::Target;
+use jbf_core::{Chain, Clock, Real};
+
+/// Step of the loop, s.
+pub const DT_S: f64 = 0.002;
+/// Counts of the encoder.
+pub const COUNTS_PER_RAD: f64 = 2387.3;
+/// Load, N.
+pub const LOAD_N: f64 = 104.0;
+
+/// The plant of the bench: Table 4.2's friction with effects, 1 ms steps.
+pub fn plant(effects: &[(&str, &[f64])]) -> Plant<f64, Journal<f64>> {
+    let chain: Chain<f64, Journal<f64>> = chain_round(law(Clock::Journal), effects);
+    Plant::new(chain, Drive::THESIS, DT_S / 2.0).expect("the thesis's drive")
+}
+
+/// Which quantity is controlled.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Control {
+    Position,
+    Velocity,
+}
+
+/// The loop round a compensator, guarded.
+pub fn controller<T: Real, C: Compensator<T>>(
+    control: Control,
+    compensator: C,
+) -> Controller<T, C> {
+    let encoder = Encoder::new(COUNTS_PER_RAD, 16, 68.0, DT_S).expect("encoder");
+    let (observer, base) = match control {
+        Control::Position => (
+            VelocityObserver::fed_forward(15.0, 135.0, 457.0, DT_S),
+            BaseLaw::thesis_position(),
+        ),
+        Control::Velocity => (
+            VelocityObserver::plain(15.0, DT_S),
+            BaseLaw::thesis_velocity(),
+        ),
+    };
+    let limits = Limits {
+        output_v: 10.0,
+        moving_v: 3.0,
+        patience_s: 0.1,
+    };
+    Controller::new(
+        encoder,
+        observer.expect("observer"),
+        base,
+        compensator,
+        limits,
+        DT_S,
+    )
+    .expect("limits")
+}
+
+/// The Coulomb observer's compensator.
+pub fn coulomb<T: Real>() -> Coulomb<T> {
+    Coulomb {
+        observer: CoulombObserver::new(0.01, 1.0, 457.0, 3.0, DT_S).expect("gains"),
+        damping_1_s: T::of(135.0),
+        input_rad_s2_v: T::of(457.0),
+        start_v: T::ZERO,
+    }
+}
+
+/// The thesis's learning compensator.
+pub fn learning<T: Real>(control: Control) -> Learning<T> {
+    let rule = match control {
+        Control::Position => Rule::Position {
+            gate_rad: T::of(0.8),
+            clip_rad: T::of(0.3),
+        },
+        Control::Velocity => Rule::Velocity,
+    };
+    let l = |k0, gamma| Learned { k0, gamma };
+    Learning::new(
+        law(Clock::Thesis),
+        33.0,
+        rule,
+        l(12_500.0, 0.5),
+        [l(1.0, 1e-3), l(1e7, 1e3)],
+        5.1,
+        0.0127,
+        DT_S,
+    )
+    .expect("gains")
+}
+
+/// The observed compensator's settings on this bench.
+pub fn settings(control: Control) -> Settings {
+    let position = control == Control::Position;
+    Settings {
+        damping_1_s: 135.0,
+        input_rad_s2_v: 457.0,
+        bandwidth_rad_s: 60.0,
+        learning_1_s: 2.0,
+        level_limit_v: 0.8,
+        rest_limit_v: 0.8,
+        slow_rad_s: 0.05,
+        approach_1_s: if position { 10.0 } else { 0.0 },
+        breakaway: 1.0,
+        stiffer_v_rad: if position { 1.53 } else { 0.0 },
+        stiffer_v_s_rad: if position { 0.049 } else { 0.0 },
+        law_forward_v_s_rad: if position { 0.25164 } else { 0.295 },
+        dt_s: DT_S,
+    }
+}
+
+/// The observed compensator round a bare law.
+pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
+    let model = Bare {
+        law: law(Clock::Journal),
+        radius_m: T::of(0.0127),
+        volts_per_n: T::of(Drive::THESIS.volts_per_n),
+        load_n: T::of(LOAD_N),
+    };
+    Observed::new(model, &settings(control)).expect("settings")
+}
+
+/// The observed compensator round a chain with effects.
+pub fn observed_with<T: Real>(
+    control: Control,
+    effects: &[(&str, &[f64])],
+) -> Observed<T, Whole<T, Journal<T>>> {
+    let model = Whole {
+        chain: chain_round(law(Clock::Journal), effects),
+        volts_per_n: T::of(Drive::THESIS.volts_per_n),
+        load_n: T::of(LOAD_N),
+    };
+    Observed::new(model, &settings(control)).expect("settings")
+}
+
+/// A table against speed.
+pub fn table<T: Real>() -> Table<T, 8> {
+    let levels = [0.8, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.25];
+    Table::new(levels.map(T::of), Axis::Speed, 0.5, 0.0).expect("table")
+}
+
+/// A lap of two seconds.
+pub fn repetitive<T: Real>() -> Repetitive<T, 64> {
+    Repetitive::new(1000, 0.5, 0.1, 0.02, 3.0, DT_S).expect("lap")
+}
+
+/// Do something with a loop round each compensator of the core.
+#[macro_export]
+macro_rules! with_each_compensator {
+    ($t:ty, $control:expr, |$name:ident, $controller:ident| $body:block) => {{
+        use $crate::common::bench;
+        macro_rules! one {
+            ($label:expr, $compensator:expr) => {{
+                let $name = $label;
+                let $controller = bench::controller::<$t, _>($control, $compensator);
+                $body
+            }};
+        }
+        one!("none", jbf_core::compensator::NoCompensation);
+        one!("coulomb", bench::coulomb::<$t>());
+        one!("learning", bench::learning::<$t>($control));
+        one!("table", bench::table::<$t>());
+        one!("repetitive", bench::repetitive::<$t>());
+        one!("observed", bench::observed::<$t>($control));
+        one!(
+            "observed, with effects",
+            bench::observed_with::<$t>($control, &[("presliding", &[5e4]), ("coulomb_drag", &[2.0])])
+        );
+    }};
+}
+
+/// Plant and loop together.
+pub struct Bench<T: Real, C: Compensator<T>> {
+    pub plant: Plant<f64, Journal<f64>>,
+    pub shaft: PlantState<f64, jbf_core::law::journal::State<f64>>,
+    pub controller: Controller<T, C>,
+    pub state: State<T, C::State>,
+    pub load_n: f64,
+    pub frozen: bool,
+    pub shift: i64,
+    counter: u32,
+}
+
+impl<T: Real, C: Compensator<T>> Bench<T, C> {
+    pub fn new(plant: Plant<f64, Journal<f64>>, controller: Controller<T, C>) -> Self {
+        Self {
+            shaft: plant.start(LOAD_N, 30.0),
+            plant,
+            state: controller.start(),
+            controller,
+            load_n: LOAD_N,
+            frozen: false,
+            shift: 0,
+            counter: 0,
+        }
+    }
+
+    /// One step of the loop, and of the plant under its output.
+    pub fn step(&mut self, value: f64, rate: f64) -> Parts<T> {
+        if !self.frozen {
+            let counts = (self.shaft.angle_rad * COUNTS_PER_RAD).floor() as i64 + self.shift;
+            self.counter = counts as u32 & 0xffff;
+        }
+        let target = Target {
+            value: T::of(value),
+            rate: T::of(rate),
+        };
+        let parts = self
+            .controller
+            .step(&mut self.state, self.counter, &target);
+        assert!(
+            parts.output_v.is_finite() && parts.output_v.abs() <= T::of(10.0),
+            "{:?}",
+            parts.output_v
+        );
+        for _ in 0..2 {
+            self.plant
+                .step(&mut self.shaft, parts.output_v.value(), self.load_n);
+        }
+        parts
+    }
+}
+
+/// The bare control law, for its type.
+pub type Plain = NoCompensation;

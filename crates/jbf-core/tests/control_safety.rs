@@ -1,0 +1,282 @@
+//! Whatever a loop meets, its output stays a finite voltage within the limit, it says what is
+//! wrong, learns nothing meanwhile, falls back to its control law, and comes back.
+
+#[macro_use]
+mod common;
+
+use common::bench::{learning, observed, plant, Bench, Control, DT_S};
+use common::random::Random;
+use jbf_core::compensator::learning::Learned;
+use jbf_core::compensator::Compensator;
+use jbf_core::controller::{Controller, Status};
+use jbf_core::reference::Target;
+use jbf_core::Real;
+
+/// A step of 10 rad: the position comes there, whatever compensates, and stays.
+#[test]
+fn a_step_of_ten_radians() {
+    with_each_compensator!(f64, Control::Position, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        let mut last = 0.0_f64;
+        for i in 0..10_000 {
+            bench.step(10.0, 0.0);
+            if i > 8_000 {
+                last = last.max((bench.shaft.angle_rad - 10.0).abs());
+            }
+        }
+        // Friction alone holds the bare law 0.43 rad off (its stuck observer gives 1.88 V/rad).
+        let bound = if name == "none" { 0.6 } else { 0.3 };
+        assert!(last < bound, "{name}: {last} rad off");
+    });
+}
+
+/// The load doubles in full run, and falls to half: speed comes back.
+#[test]
+fn the_load_doubles() {
+    with_each_compensator!(f64, Control::Velocity, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        let mut late = 0.0_f64;
+        for i in 0..15_000_u32 {
+            bench.load_n = match i {
+                0..=4_999 => 104.0,
+                5_000..=9_999 => 208.0,
+                _ => 52.0,
+            };
+            let parts = bench.step(1.0, 0.0);
+            if i % 5_000 > 4_000 {
+                late = late.max((bench.shaft.speed_rad_s - 1.0).abs());
+            }
+            assert!(parts.output_v.abs() < 10.0, "{name}");
+        }
+        // Without compensation twice the friction, 1.2 V, is 0.93 rad/s; laps of another load
+        // must first be forgotten.
+        let bound = match name {
+            "none" | "table" => 1.1,
+            "repetitive" => 1.5,
+            _ => 0.15,
+        };
+        assert!(late < bound, "{name}: {late} rad/s off");
+    });
+}
+
+/// A counter that stands still under a voltage that moves the shaft: told within the patience,
+/// nothing is learned, the control law acts alone; and back when the counter lives.
+#[test]
+fn a_frozen_encoder() {
+    with_each_compensator!(f64, Control::Velocity, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        for _ in 0..3_000 {
+            bench.step(3.0, 0.0);
+        }
+        bench.frozen = true;
+        let mut told = 0_u32;
+        for i in 0..4_000_u32 {
+            let parts = bench.step(3.0, 0.0);
+            if parts.status.has(Status::FROZEN) {
+                told += 1;
+                assert!(parts.status.has(Status::FALLBACK), "{name}");
+                assert_eq!(parts.output_v, parts.base_v, "{name}");
+            } else {
+                assert!(told > 0 || i < 400, "{name}: not told after {i} steps");
+            }
+        }
+        // All the time but for the first moments, and for the trials of a doubtful observer.
+        let share = if name.starts_with("observed") { 0.75 } else { 0.9 };
+        assert!(f64::from(told) > share * 4_000.0, "{name}: told for {told} steps");
+        bench.frozen = false;
+        for _ in 0..3_000 {
+            bench.step(3.0, 0.0);
+        }
+        let parts = bench.step(3.0, 0.0);
+        assert_eq!(parts.status, Status::OK, "{name}");
+    });
+}
+
+/// Blind steps teach nothing.
+#[test]
+fn nothing_is_learned_in_the_dark() {
+    let mut bench = Bench::new(
+        plant(&[]),
+        common::bench::controller::<f64, _>(
+            Control::Velocity,
+            learning(Control::Velocity),
+        ),
+    );
+    for _ in 0..2_000 {
+        bench.step(3.0, 0.0);
+    }
+    bench.frozen = true;
+    while !bench.step(3.0, 0.0).status.has(Status::FALLBACK) {}
+    let kept = bench.state.compensator.learned;
+    for _ in 0..5_000 {
+        bench.step(3.0, 0.0);
+    }
+    assert_eq!(bench.state.compensator.learned, kept);
+}
+
+/// A counter that jumps: one step is not believed, and the loop goes on from where it was.
+#[test]
+fn a_jumping_encoder() {
+    with_each_compensator!(f64, Control::Velocity, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        for _ in 0..3_000 {
+            bench.step(2.0, 0.0);
+        }
+        let before = bench.step(2.0, 0.0).velocity_rad_s;
+        bench.shift = 9_000;
+        let parts = bench.step(2.0, 0.0);
+        assert!(parts.status.has(Status::JUMPED) && parts.status.has(Status::FALLBACK));
+        assert!((parts.velocity_rad_s - before).abs() < 0.3, "{name}");
+        for _ in 0..2_000 {
+            bench.step(2.0, 0.0);
+        }
+        assert_eq!(bench.step(2.0, 0.0).status, Status::OK, "{name}");
+    });
+}
+
+/// A reference that is no number: the last one holds.
+#[test]
+fn a_reference_that_is_no_number() {
+    with_each_compensator!(f32, Control::Position, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        for _ in 0..1_000 {
+            bench.step(0.5, 0.0);
+        }
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let parts = bench.step(bad, 0.0);
+            assert!(parts.status.has(Status::NOT_FINITE), "{name}");
+            assert!(parts.error.is_finite());
+            let parts = bench.step(0.5, bad);
+            assert!(parts.status.has(Status::NOT_FINITE), "{name}");
+        }
+        for _ in 0..2_000 {
+            bench.step(0.5, 0.0);
+        }
+        assert_eq!(bench.step(0.5, 0.0).status, Status::OK, "{name}");
+    });
+}
+
+/// A reference beyond what the drive can do: saturated is said, nothing is learned, and the loop
+/// follows again.
+#[test]
+fn saturated() {
+    with_each_compensator!(f64, Control::Velocity, |name, controller| {
+        let mut bench = Bench::new(plant(&[]), controller);
+        let mut said = 0_u32;
+        for _ in 0..2_000 {
+            let parts = bench.step(60.0, 0.0);
+            said += u32::from(parts.status.has(Status::SATURATED));
+        }
+        assert!(said > 1_900, "{name}: {said}");
+        for _ in 0..8_000 {
+            bench.step(2.0, 0.0);
+        }
+        let off = (bench.shaft.speed_rad_s - 2.0).abs();
+        assert!(off < 0.7, "{name}: {off}");
+    });
+}
+
+/// Random counters, random references, from the smallest to the largest numbers.
+fn torture<T: Real, C: Compensator<T>>(name: &str, controller: &Controller<T, C>) {
+    let mut random = Random::new(7);
+    for _ in 0..20 {
+        let mut state = controller.start();
+        let mut counter = 0_u32;
+        for _ in 0..3_000 {
+            if random.chance(0.1) {
+                counter = (random.unit() * 65_536.0) as u32;
+            } else {
+                counter = counter.wrapping_add((random.unit() * 60.0) as u32);
+            }
+            let mut number = || {
+                let size = random.log_uniform(1e-30, 1e30);
+                match (random.unit() * 6.0) as u32 {
+                    0 => 0.0,
+                    1 => -size,
+                    2 => f64::NAN,
+                    3 => 1.0,
+                    _ => size,
+                }
+            };
+            let target = Target {
+                value: T::of(number()),
+                rate: T::of(number()),
+            };
+            let parts = controller.step(&mut state, counter & 0xffff, &target);
+            let v = parts.output_v;
+            assert!(v.is_finite() && v.abs() <= T::of(10.0), "{name}: {v:?}");
+            assert!(parts.velocity_rad_s.is_finite(), "{name}");
+        }
+        // And with a calm target it is as good as new.
+        for _ in 0..20_000 {
+            let target = Target {
+                value: T::ZERO,
+                rate: T::ZERO,
+            };
+            let parts = controller.step(&mut state, counter & 0xffff, &target);
+            assert!(parts.output_v.is_finite(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn torture_in_double() {
+    with_each_compensator!(f64, Control::Position, |name, c| { torture(name, &c) });
+    with_each_compensator!(f64, Control::Velocity, |name, c| { torture(name, &c) });
+}
+
+#[test]
+fn torture_in_single() {
+    with_each_compensator!(f32, Control::Position, |name, c| { torture(name, &c) });
+    with_each_compensator!(f32, Control::Velocity, |name, c| { torture(name, &c) });
+}
+
+/// Learned numbers survive a power cycle; those that are none, or beyond the limits, do no harm.
+#[test]
+fn what_was_learned_can_be_kept() {
+    let control = Control::Velocity;
+    let mut bench = Bench::new(
+        plant(&[]),
+        common::bench::controller::<f64, _>(control, learning(control)),
+    );
+    for i in 0..10_000_u32 {
+        bench.step((f64::from(i) * DT_S).sin(), 0.0);
+    }
+    let kept = bench.state.compensator.learned;
+    let again = learning::<f64>(control).resumed(kept);
+    assert_eq!(again.start().learned, kept);
+    let wild = Learned {
+        k0: f64::NAN,
+        gamma: 1.0,
+    };
+    let fresh = learning::<f64>(control).start().learned;
+    assert_eq!(learning::<f64>(control).resumed(wild).start().learned, fresh);
+    let large = Learned {
+        k0: 1e30,
+        gamma: -5.0,
+    };
+    let held = learning::<f64>(control).resumed(large).start().learned;
+    assert!(held.k0 <= 1e7 && held.gamma > 0.0);
+}
+
+/// Single precision does what double precision does.
+#[test]
+fn single_precision_follows_double() {
+    fn rms<T: Real>() -> f64 {
+        let control = Control::Velocity;
+        let mut bench = Bench::new(
+            plant(&[]),
+            common::bench::controller::<T, _>(control, observed::<T>(control)),
+        );
+        let (mut sum, n) = (0.0, 15_000_u32);
+        for i in 0..n {
+            let t = f64::from(i) * DT_S;
+            bench.step((0.5 * t).sin(), 0.5 * (0.5 * t).cos());
+            let error = bench.shaft.speed_rad_s - (0.5 * t).sin();
+            sum += error * error;
+        }
+        (sum / f64::from(n)).sqrt()
+    }
+    let (double, single) = (rms::<f64>(), rms::<f32>());
+    assert!((single / double - 1.0).abs() < 0.1, "{double} {single}");
+}

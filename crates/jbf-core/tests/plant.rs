@@ -1,0 +1,180 @@
+//! The bench's plant against closed forms: free motion, stopping, sticking, symmetry.
+
+mod common;
+
+use common::bench::{plant, DT_S, LOAD_N};
+use common::constant_law::ConstantLaw;
+use jbf_core::effect::{Effects, Rig};
+use jbf_core::law::{with_law, Named, Visitor};
+use jbf_core::plant::{Drive, Plant};
+use jbf_core::{Bearing, Chain, Clock};
+
+const H: f64 = 0.001;
+
+fn chain<L>(law: L) -> Chain<f64, L> {
+    Chain {
+        law,
+        effects: Effects::NONE,
+        rig: Rig {
+            radius_m: 0.0127,
+            count: 4.0,
+        },
+    }
+}
+
+/// A constant friction of `volts` on the thesis's drive.
+fn dry(volts: f64) -> Plant<f64, ConstantLaw> {
+    let coefficient = volts / (LOAD_N * Drive::THESIS.volts_per_n);
+    Plant::new(chain(ConstantLaw(coefficient)), Drive::THESIS, H).unwrap()
+}
+
+/// Without friction a step is the exact solution for a constant input.
+#[test]
+fn without_friction_it_is_exact() {
+    let plant = dry(0.0);
+    let mut state = plant.start(LOAD_N, 0.0);
+    for i in 1..=500 {
+        plant.step(&mut state, 2.0, LOAD_N);
+        let t = f64::from(i) * H;
+        let exact = 457.0 / 135.0 * 2.0 * -(-135.0 * t).exp_m1();
+        assert!((state.speed_rad_s / exact - 1.0).abs() < 1e-6, "{t} s");
+    }
+}
+
+/// With a constant level L the speed from V falls to zero at t = ln(1 + aV/(bL))/a, and stays.
+#[test]
+fn dry_friction_stops_it_in_the_exact_time() {
+    let (a, b, level) = (135.0, 457.0, 0.8);
+    let plant = dry(level);
+    let mut state = plant.start(LOAD_N, 0.0);
+    for _ in 0..2000 {
+        plant.step(&mut state, 10.0, LOAD_N);
+    }
+    let top = state.speed_rad_s;
+    assert!((top / (b / a * (10.0 - level)) - 1.0).abs() < 1e-6);
+    let expected = (1.0 + a * top / (b * level)).ln() / a;
+    let mut steps = 0;
+    while state.speed_rad_s > 0.0 {
+        plant.step(&mut state, 0.0, LOAD_N);
+        steps += 1;
+        assert!(steps < 1000);
+    }
+    assert!((f64::from(steps) * H - expected).abs() <= H, "{steps} steps, {expected} s");
+    for _ in 0..1000 {
+        plant.step(&mut state, 0.0, LOAD_N);
+        assert_eq!(state.speed_rad_s, 0.0);
+        assert_eq!(state.friction_v, 0.0);
+    }
+}
+
+/// An hour under nine tenths of the level: not a bit of motion, and friction equals the push.
+#[test]
+fn it_sticks_for_an_hour() {
+    let plant = plant(&[]);
+    let mut state = plant.start(LOAD_N, 600.0);
+    // The journal at rest holds f_m of its load.
+    let push = 0.9 * 0.26 * LOAD_N * Drive::THESIS.volts_per_n;
+    let steps = (3600.0 / (DT_S / 2.0)) as u32;
+    for _ in 0..steps {
+        plant.step(&mut state, push, LOAD_N);
+    }
+    assert_eq!(state.angle_rad, 0.0);
+    assert_eq!(state.speed_rad_s, 0.0);
+    assert!((state.friction_v / push - 1.0).abs() < 1e-12);
+    // And a push above it moves the shaft at once.
+    for _ in 0..10 {
+        plant.step(&mut state, push / 0.9 * 1.02, LOAD_N);
+    }
+    assert!(state.speed_rad_s > 0.0);
+}
+
+/// `v' = -a v + b (u - F)` holds over every step for the friction that is reported.
+#[test]
+fn the_reported_friction_is_what_acted() {
+    let plant = plant(&[("stribeck_excess", &[0.1, 0.005, 1.0])]);
+    let mut state = plant.start(LOAD_N, 10.0);
+    let fall = -(-135.0 * DT_S / 2.0).exp_m1();
+    for i in 0..20_000_u32 {
+        let u = 1.5 * (f64::from(i) * 1e-3).sin();
+        let before = state.speed_rad_s;
+        plant.step(&mut state, u, LOAD_N);
+        let expected = before * (1.0 - fall) + 457.0 / 135.0 * fall * (u - state.friction_v);
+        assert!((state.speed_rad_s - expected).abs() < 1e-9, "step {i}");
+    }
+}
+
+struct Symmetric;
+
+impl Visitor<f64> for Symmetric {
+    type Output = f64;
+
+    fn visit<L: Named<f64>>(self, law: L) -> f64 {
+        let plant = Plant::new(chain(law), Drive::THESIS, H).unwrap();
+        let mut there = plant.start(LOAD_N, 1.0);
+        let mut back = there;
+        let mut worst = 0.0_f64;
+        let mut travelled = 0.0_f64;
+        for i in 0..10_000_u32 {
+            let u = 3.0 * (f64::from(i) * 2e-3).sin();
+            plant.step(&mut there, u, LOAD_N);
+            plant.step(&mut back, -u, LOAD_N);
+            worst = worst.max((there.angle_rad + back.angle_rad).abs());
+            travelled = travelled.max(there.angle_rad.abs());
+            assert!(there.speed_rad_s.is_finite());
+        }
+        assert!(travelled > 0.1, "{} never moved", L::INFO.name);
+        worst
+    }
+}
+
+/// Every law of the catalogue, and u -> -u gives x -> -x.
+#[test]
+fn every_law_is_symmetric() {
+    for info in jbf_core::law::CATALOGUE {
+        let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        let worst = with_law(
+            info.name,
+            Some(&Bearing::THESIS),
+            Some(LOAD_N),
+            &values,
+            Clock::Journal,
+            Symmetric,
+        )
+        .unwrap();
+        assert!(worst < 1e-9, "{}: {worst}", info.name);
+    }
+}
+
+/// Every effect of the catalogue can be hidden in the plant: finite, and at rest again at the end.
+#[test]
+fn every_effect_runs_and_comes_to_rest() {
+    for info in jbf_core::effect::CATALOGUE {
+        let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        let plant = plant(&[(info.name, &values)]);
+        let mut state = plant.start(LOAD_N, 5.0);
+        for i in 0..10_000_u32 {
+            plant.step(&mut state, 2.0 * (f64::from(i) * 2e-3).sin(), LOAD_N);
+            assert!(state.speed_rad_s.is_finite() && state.friction_v.is_finite());
+            assert!(state.speed_rad_s.abs() < 7.0, "{}", info.name);
+        }
+        for _ in 0..5_000 {
+            plant.step(&mut state, 0.0, LOAD_N);
+        }
+        assert!(state.speed_rad_s.abs() < 1e-3, "{}: {}", info.name, state.speed_rad_s);
+    }
+}
+
+/// A soft drive: the shaft moves before the journal does, by the twist under the push.
+#[test]
+fn a_soft_drive_gives_way() {
+    let plant = plant(&[("drive_compliance", &[60.0, 0.5, 1e-3])]);
+    let mut state = plant.start(LOAD_N, 60.0);
+    let push_v = 0.3;
+    for _ in 0..5_000 {
+        plant.step(&mut state, push_v, LOAD_N);
+    }
+    // Twist = torque / stiffness; a volt is 1/volts_per_n newtons on each of four bearings.
+    let torque_n_m = push_v / Drive::THESIS.volts_per_n * 4.0 * 0.0127;
+    let twist = torque_n_m / 60.0;
+    assert!((state.angle_rad / twist - 1.0).abs() < 0.01, "{} {twist}", state.angle_rad);
+}

@@ -1,0 +1,45 @@
+"""Friction compensation in the loop: a simulated bench, the compensators, and their settings.
+
+>>> from jbf import control
+>>> result = control.run(scheme="observed", task=control.TASKS["velocity sine"])
+>>> result.rms < 0.005
+True
+"""
+
+from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
+from jbf.control.run import Result, run
+from jbf.control.schemes import (
+    SCHEMES,
+    Coulomb,
+    Learning,
+    NoCompensation,
+    Observed,
+    Repetitive,
+    Scheme,
+    Table,
+    scheme,
+)
+from jbf.control.settings import Settings
+from jbf.control.task import TASKS, Task
+from jbf.control.tuning import tune
+
+__all__ = [
+    "SCHEMES",
+    "TASKS",
+    "THESIS_BENCH",
+    "Bench",
+    "Coulomb",
+    "Learning",
+    "NoCompensation",
+    "Observed",
+    "Repetitive",
+    "Result",
+    "Scheme",
+    "Settings",
+    "Table",
+    "Task",
+    "run",
+    "scheme",
+    "thesis_model",
+    "tune",
+]

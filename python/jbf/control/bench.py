@@ -1,0 +1,148 @@
+"""The simulated bench: motor, shaft, encoder, noise. Its friction is a `jbf.Model`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from jbf.errors import InputError
+from jbf.model import Model, core_bearing, core_load_n
+from jbf.rig import Bearing, Load, Lubricant, Rig
+
+if TYPE_CHECKING:
+    from jbf import _core
+
+
+@dataclass(frozen=True)
+class Bench:
+    """`v' = -a v + b (u - F)`, an encoder with a counter that rolls over, and noise.
+
+    Attributes
+    ----------
+    damping_1_s, input_rad_s2_v : float
+        The plant's a and b.
+    volts_per_n : float
+        What one newton of friction on one bearing is in volts.
+    limit_v : float
+        Largest input, V, either way.
+    counts_per_rad, counter_bits
+        The encoder and its counter.
+    input_noise_v, encoder_noise_counts : float
+        Standard deviations of white noise, one value a step; the encoder's counting comes on top.
+    seed : int
+        Of the noise.
+    stood_s : float
+        How long the shaft has stood before the run, s: its film has been squeezed out.
+    dt_s : float
+        Step of the loop, s; the plant takes `inner_steps` steps in each.
+    """
+
+    damping_1_s: float = 135.0
+    input_rad_s2_v: float = 457.0
+    volts_per_n: float = 0.02827
+    limit_v: float = 10.0
+    counts_per_rad: float = 2387.3
+    counter_bits: int = 16
+    input_noise_v: float = 0.005
+    encoder_noise_counts: float = 0.0
+    seed: int = 1
+    stood_s: float = 60.0
+    dt_s: float = 0.002
+    inner_steps: int = 2
+
+    def __post_init__(self) -> None:
+        positive = ("damping_1_s", "input_rad_s2_v", "volts_per_n", "limit_v", "counts_per_rad")
+        for name in (*positive, "dt_s", "inner_steps"):
+            if not 0.0 < getattr(self, name) < float("inf"):
+                raise _wrong(name, getattr(self, name), "above zero and finite")
+        for name in ("input_noise_v", "encoder_noise_counts", "stood_s"):
+            if not 0.0 <= getattr(self, name) < float("inf"):
+                raise _wrong(name, getattr(self, name), "zero or above, and finite")
+
+    def core(self, model: Model) -> dict[str, Any]:
+        """What the core's bench is built from."""
+        names = (
+            "damping_1_s",
+            "input_rad_s2_v",
+            "volts_per_n",
+            "limit_v",
+            "counts_per_rad",
+            "counter_bits",
+            "input_noise_v",
+            "encoder_noise_counts",
+            "seed",
+            "stood_s",
+            "inner_steps",
+        )
+        return {"model": core_model(model), **{name: getattr(self, name) for name in names}}
+
+
+def _wrong(name: str, value: float, rule: str) -> InputError:
+    return InputError(key=name, problem=f"{value} is not {rule}", mend="correct the value")
+
+
+def core_model(model: Model) -> dict[str, Any]:
+    """A model as the core's bench and compensators take it."""
+    values = [p.value for p in model.parameters.values()]  # type: ignore[union-attr]
+    names = list(model.parameters)
+    own = [v for n, v in zip(names, values, strict=True) if "." not in n]
+    effects = [
+        (e, [v for n, v in zip(names, values, strict=True) if n.startswith(f"{e}.")])
+        for e in model.effects
+    ]
+    bearing: _core.BearingSizes | None = core_bearing(model.rig)
+    return {
+        "law": model.law,
+        "bearing": bearing,
+        "load_n": core_load_n(model.rig) or 1.0,
+        "clock": model.clock,
+        "parameters": own,
+        "effects": effects,
+    }
+
+
+THESIS_RIG = Rig(
+    bearing=Bearing(radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4),
+    lubricant=Lubricant(viscosity_pa_s=0.002),
+    load=Load(normal_n=104.0),
+)
+"""The rig of Cohn's thesis."""
+
+THESIS_BENCH = Bench()
+"""The bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
+
+FITTED = {"U_tr_m_s": 0.06128, "K0": 4.123e6, "gamma": 90.29}
+"""What `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`."""
+
+BEND_1_M = 0.26 * 2387.3 / 0.0127
+"""Contact stiffness (1/m) at which the shaft turns by one encoder count before it slides."""
+
+
+def thesis_model(*, elastic: bool = True, **parameters: float) -> Model:
+    """The friction of the thesis's bench, on the thesis's clock.
+
+    Parameters
+    ----------
+    elastic
+        With the contact that bends by one encoder count before it slides.
+    parameters
+        Values in place of the fitted ones.
+    """
+    bend = {"presliding.sigma_1_m": BEND_1_M} if elastic else {}
+    return Model(
+        THESIS_RIG,
+        effects=("presliding",) if elastic else (),
+        parameters={"f_m": 0.26, **FITTED, **bend, **parameters},
+        clock="thesis",
+    )
+
+
+def with_noise(bench: Bench, times: float) -> Bench:
+    """The bench with all its noise so many times as strong, the encoder's counting included."""
+    counting = (1.0 / 12.0) ** 0.5
+    total = times * (counting**2 + bench.encoder_noise_counts**2) ** 0.5
+    return replace(
+        bench,
+        input_noise_v=times * bench.input_noise_v,
+        encoder_noise_counts=max(total**2 - counting**2, 0.0) ** 0.5,
+    )

@@ -1,0 +1,145 @@
+"""Pictures of loops: response, error, friction and what was learned, schemes side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from jbf.control.robustness import Outcome
+from jbf.control.run import FALLBACK, Result
+from jbf.control.thesis_tables import COLUMNS, Tables
+from jbf.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
+
+Array = npt.NDArray[np.float64]
+
+_LEARNED = {
+    "learning": ("K0 / 1e5", "gamma / 10", 1e-5, 0.1),
+    "coulomb": ("level (V)", None, 1.0, 1.0),
+    "observed": ("level correction (V)", "rest (V)", 1.0, 1.0),
+    "table": ("table (V)", None, 1.0, 1.0),
+    "repetitive": ("memory (V)", None, 1.0, 1.0),
+}
+_MOST_POINTS = 6000
+
+
+def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure:
+    """One column a scheme: response, error, friction against speed, friction in time, learned."""
+    n = len(results)
+    made = Figure(figsize=(4.2 * n, 12.5), layout="constrained") if figure is None else figure
+    grid = made.subplots(5, n, squeeze=False)
+    for column, result in enumerate(results):
+        _column([grid[row][column] for row in range(5)], result, first=column == 0)
+    return made
+
+
+def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:
+    unit = r.task.unit
+    what = "Angle" if r.task.is_position else "Speed"
+    stride = max(len(r.time_s) // _MOST_POINTS, 1)
+    t = r.time_s[::stride]
+    top, error, loop, friction, learned = axes
+    top.plot(t, r.reference[::stride], color=MEASURED, linewidth=2.2, label="reference")
+    top.plot(t, r.response[::stride], color=MODEL, linewidth=0.9, label="response")
+    dress(top, r.scheme, "", f"{what} ({unit})" if first else "")
+    error.plot(t, r.error[::stride], color=BEFORE, linewidth=0.8)
+    dress(error, f"RMS {r.rms:.3g}, peak {r.peak:.3g}", "", f"Error ({unit})" if first else "")
+    counted = r.error[r.time_s >= max(r.task.skip_s, 1.0)]
+    limit = 1.3 * float(np.max(np.abs(counted))) if len(counted) else 1.0
+    error.set_ylim(-limit, limit)
+    loop.plot(
+        r.velocity_rad_s[::stride],
+        r.friction_v[::stride],
+        ".",
+        color=MEASURED,
+        markersize=1.5,
+        rasterized=True,
+        label="true",
+    )
+    dress(loop, "Friction against speed", "Speed (rad/s)", "Friction (V)" if first else "")
+    friction.plot(t, r.friction_v[::stride], color=MEASURED, linewidth=1.8, label="true")
+    if r.scheme != "none":
+        estimated = r.estimated_friction_v[::stride]
+        friction.plot(t, estimated, color=NOISE, linewidth=0.8, label="estimated")
+        loop.plot(
+            r.velocity_rad_s[::stride],
+            estimated,
+            ".",
+            color=NOISE,
+            markersize=1.0,
+            rasterized=True,
+            label="estimated",
+        )
+        span = 2.5 * float(np.max(np.abs(r.friction_v)))
+        for ax in (friction, loop):
+            ax.set_ylim(-span, span)
+    dress(friction, "Friction", "", "Friction (V)" if first else "")
+    _learned(learned, r, t, stride)
+    if first:
+        for ax in (top, friction):
+            ax.legend(loc="upper right", fontsize="x-small", frameon=False)
+
+
+def _learned(ax: Axes, r: Result, t: Array, stride: int) -> None:
+    names = _LEARNED.get(r.scheme)
+    if names is None:
+        ax.set_axis_off()
+    else:
+        first, second, by_first, by_second = names
+        ax.plot(t, by_first * r.learned_0[::stride], color=MODEL, linewidth=0.9, label=first)
+        if second is not None:
+            ax.plot(t, by_second * r.learned_1[::stride], color=BEFORE, linewidth=0.9, label=second)
+        ax.legend(loc="best", fontsize="x-small", frameon=False)
+    alone = (r.status & FALLBACK) > 0
+    if alone.any():
+        low, high = ax.get_ylim()
+        ax.fill_between(r.time_s, low, high, where=alone.tolist(), color=MEASURED, alpha=0.4)
+    dress(ax, "Learned", "Time (s)", "")
+
+
+def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
+    """Bench beside thesis for every cell, and our compensator where it was run."""
+    made = Figure(figsize=(10.0, 4.6), layout="constrained") if figure is None else figure
+    ax = made.subplots()
+    rows = list({key[0]: None for key in tables.cells})
+    there = list({key[1]: None for key in tables.cells})
+    colours = {"none": MEASURED, "learning": MODEL, "coulomb": BEFORE, "observed": NOISE}
+    for i, column in enumerate(there):
+        at = np.arange(len(rows)) + (i - (len(there) - 1) / 2.0) * 0.2
+        cells = [tables[row, column] for row in rows]
+        label = f"{column}, bench"
+        ax.bar(at, [c.rms for c in cells], 0.17, color=colours[column], alpha=0.85, label=label)
+        if column in COLUMNS:
+            known = [(x, c.printed_rms) for x, c in zip(at, cells, strict=True) if c.printed_rms]
+            ax.plot(
+                [x for x, _ in known],
+                [y for _, y in known],
+                "D",
+                color="black",
+                markersize=5,
+                label="thesis" if i == 0 else None,
+            )
+    ax.set_yscale("log")
+    ax.set_xticks(range(len(rows)), [row.replace(" ", "\n", 1) for row in rows])
+    dress(ax, "RMS error: bench (bars) and thesis (diamonds)", "", "rad or rad/s")
+    ax.legend(ncols=3, fontsize="small", frameon=False, loc="upper right")
+    return made
+
+
+def plot_robustness(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
+    """Ratio of error with and without compensation: all rows as dots, the worst marked."""
+    made = Figure(figsize=(8.0, 7.0), layout="constrained") if figure is None else figure
+    ax = made.subplots()
+    for i, outcome in enumerate(reversed(outcomes)):
+        values = list(outcome.ratios.values())
+        ax.plot(values, [i] * len(values), "o", color=MODEL, alpha=0.5, markersize=4)
+        ax.plot(outcome.worst, i, "D", color=BEFORE, markersize=5)
+    ax.axvline(1.0, color="black", linewidth=1.0)
+    ax.set_xscale("log")
+    ax.set_yticks(range(len(outcomes)), [o.name for o in reversed(outcomes)], fontsize="small")
+    title = "Error with the observed compensator over that without; left of 1 it helps"
+    dress(ax, title, "Ratio of true RMS errors, worst row marked", "")
+    return made

@@ -1,0 +1,218 @@
+"""One run of a loop on the bench."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
+from jbf.control.schemes import Scheme, core_loop, scheme
+from jbf.control.settings import Settings
+from jbf.control.task import TASKS, Task
+from jbf.errors import InputError
+from jbf.model import Model, core_load_n
+
+Array = npt.NDArray[np.float64]
+
+SATURATED, FROZEN, JUMPED, NOT_FINITE, FALLBACK = 1, 2, 4, 8, 16
+"""Flags of `Result.status`."""
+
+_NEVER = 2**62
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """Arrays of shape (n,), one value a step of the loop.
+
+    Attributes
+    ----------
+    time_s, reference : ndarray
+        The reference is in rad or rad/s, as `task.control` says.
+    angle_rad, velocity_rad_s, friction_v : ndarray
+        What the shaft really did, and its true friction.
+    measured_angle_rad, estimated_velocity_rad_s : ndarray
+        What the loop knew.
+    error : ndarray
+        Measured angle, or estimated speed, minus reference: what the thesis's tables are of.
+    base_v, compensation_v, output_v : ndarray
+        The control law, the compensator, and what went to the amplifier.
+    estimated_friction_v, correction_v, forward_v : ndarray
+        Parts of the compensation.
+    learned_0, learned_1 : ndarray
+        K0 and gamma (learning), the level (Coulomb), level and rest corrections in V (observed).
+    status : ndarray of uint8
+        Flags: 1 saturated, 2 encoder frozen, 4 jumped, 8 reference not finite, 16 fallback.
+    """
+
+    task: Task
+    scheme: str
+    time_s: Array
+    reference: Array
+    angle_rad: Array
+    velocity_rad_s: Array
+    friction_v: Array
+    measured_angle_rad: Array
+    estimated_velocity_rad_s: Array
+    error: Array
+    base_v: Array
+    compensation_v: Array
+    estimated_friction_v: Array
+    correction_v: Array
+    forward_v: Array
+    output_v: Array
+    learned_0: Array
+    learned_1: Array
+    status: npt.NDArray[np.uint8]
+
+    def __repr__(self) -> str:
+        return (
+            f"Result({self.scheme} on {self.task.control} {self.task.wave}: "
+            f"RMS error {self.rms:.4g} {self.task.unit})"
+        )
+
+    @property
+    def response(self) -> Array:
+        """The true angle (rad) or speed (rad/s), whichever is controlled."""
+        return self.angle_rad if self.task.is_position else self.velocity_rad_s
+
+    @property
+    def true_error(self) -> Array:
+        """Response minus reference."""
+        return self.response - self.reference
+
+    def _counting(self, error: Array) -> Array:
+        return error[self.time_s >= self.task.skip_s - 1e-9]
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of `error` over the seconds that count."""
+        return float(np.sqrt(np.mean(self._counting(self.error) ** 2)))
+
+    @property
+    def peak(self) -> float:
+        """Largest |error| in the seconds that count."""
+        return float(np.max(np.abs(self._counting(self.error))))
+
+    @property
+    def true_rms(self) -> float:
+        """Root mean square of `true_error` over the seconds that count."""
+        return float(np.sqrt(np.mean(self._counting(self.true_error) ** 2)))
+
+
+def run(
+    model: Model | None = None,
+    scheme: str | Scheme = "observed",
+    task: Task = TASKS["velocity sine"],
+    *,
+    bench: Bench = THESIS_BENCH,
+    carried: Model | None = None,
+    settings: Settings | None = None,
+    guard: Settings | None = None,
+    load_n: float | npt.ArrayLike | None = None,
+    reference: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    frozen_s: tuple[float, float] | None = None,
+    jump: tuple[float, int] | None = None,
+    precision: str = "f64",
+) -> Result:
+    """Run a loop on the simulated bench.
+
+    Parameters
+    ----------
+    model
+        The bench's true friction; `thesis_model()` by default.
+    scheme
+        A name of `SCHEMES`, or a scheme of your own settings.
+    task
+        Reference, control law and length.
+    bench
+        Motor, shaft, encoder, noise.
+    carried
+        The model that the compensator carries; the true one by default.
+    settings
+        Of the observed compensator; from `tune(carried, bench)` by default.
+    guard
+        Settings whose `moving_v` and `patience_s` guard the loop; `settings` by default, and none
+        at all for the thesis's schemes.
+    load_n
+        Load on one bearing, N: a number, or one value a step; the model's own by default.
+    reference
+        Values and rates of change, one a step, in place of the task's wave.
+    frozen_s
+        From when to when the encoder's counter stands still, s.
+    jump
+        When (s) the counter jumps, and by how many counts.
+    precision
+        `f64`, or `f32` as on a microcontroller; the plant is always `f64`.
+
+    Raises
+    ------
+    InputError
+        Something is out of range, or of the wrong length.
+    """
+    truth = thesis_model() if model is None else model
+    chosen = _scheme(scheme, truth if carried is None else carried, settings)
+    n = max(round(task.seconds / bench.dt_s), 1)
+    value, rate = _reference(task, bench, n, reference)
+    n = len(value)
+    load = _load(truth, load_n, n)
+    faults = {
+        "frozen": _steps(frozen_s, bench),
+        "jump_at": _NEVER if jump is None else round(jump[0] / bench.dt_s),
+        "jump_counts": 0 if jump is None else jump[1],
+    }
+    try:
+        arrays: dict[str, Any] = _core.control_run(
+            bench.core(truth),
+            core_loop(task, bench, settings if guard is None else guard),
+            chosen.core(task, bench),
+            value,
+            rate,
+            load,
+            faults,
+            precision=precision,
+        )
+    except (ValueError, OverflowError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(problem=str(error), mend="correct it") from None
+    time_s = np.arange(n, dtype=np.float64) * bench.dt_s
+    return Result(task, chosen.name, time_s, value, **arrays)
+
+
+def _scheme(given: str | Scheme, carried: Model, settings: Settings | None) -> Scheme:
+    return scheme(given, carried, settings) if isinstance(given, str) else given
+
+
+def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
+    if span_s is None:
+        return _NEVER, _NEVER
+    first, last = (round(t / bench.dt_s) for t in span_s)
+    return max(first, 0), max(last, 0)
+
+
+def _reference(
+    task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
+) -> tuple[Array, Array]:
+    if given is None:
+        return _core.control_reference(
+            task.wave, task.low, task.high, task.frequency_rad_s, bench.dt_s, n
+        )
+    value, rate = (np.ascontiguousarray(a, dtype=float) for a in given)
+    if value.ndim != 1 or value.shape != rate.shape or not len(value):
+        raise InputError(
+            problem=f"the reference has shapes {value.shape} and {rate.shape}",
+            mend="give two arrays of one length",
+        )
+    return value, rate
+
+
+def _load(model: Model, given: float | npt.ArrayLike | None, n: int) -> Array:
+    own = core_load_n(model.rig) or 1.0
+    load = np.full(n, own) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
+    if not np.all(np.isfinite(load)):
+        raise InputError(problem="a load is not finite", mend="give newtons")
+    return load

@@ -1,0 +1,82 @@
+"""Settings of the observed compensator and its loop; `jbf control tune` writes them as TOML."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+
+import tomlkit
+
+from jbf.errors import InputError, write_text
+from jbf.rig import PathLike, number, read_toml, refuse_unknown
+
+_HEADER = """\
+jbf control settings, in SI units; `jbf control tune MODEL` computes them from a fitted model."""
+
+_NOTES = {
+    "bandwidth_rad_s": "poles of the observer",
+    "learning_1_s": "rate at which a lasting correction is taken for friction",
+    "level_limit_v": "most that the friction level may be corrected by",
+    "rest_limit_v": "most that anything else may be",
+    "slow_rad_s": "below this the shaft counts as slow",
+    "loop_rad_s": "natural frequency of the stiffened position loop",
+    "breakaway": "share of the level sent out where the shaft is slow",
+    "moving_v": "a voltage that surely moves the shaft",
+    "patience_s": "time after which a still counter is frozen, a saturated loop gives up",
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What `Observed` and the safety of its loop need beside model and bench."""
+
+    bandwidth_rad_s: float
+    learning_1_s: float
+    level_limit_v: float
+    rest_limit_v: float
+    slow_rad_s: float
+    loop_rad_s: float
+    breakaway: float
+    moving_v: float
+    patience_s: float
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if not 0.0 <= number(value, name) < float("inf"):
+                raise InputError(
+                    key=name,
+                    problem=f"{value} is not zero or above, and finite",
+                    mend="correct the value",
+                )
+
+    def to_toml(self) -> str:
+        """The text that `save` writes."""
+        document = tomlkit.document()
+        document.add(tomlkit.comment(_HEADER))
+        for name, value in asdict(self).items():
+            item = tomlkit.item(float(f"{value:.6g}"))
+            document[name] = item.comment(_NOTES[name])
+        return tomlkit.dumps(document)
+
+    def save(self, path: PathLike) -> None:
+        """Write them as TOML."""
+        write_text(path, self.to_toml())
+
+    @classmethod
+    def load(cls, path: PathLike) -> Settings:
+        """Read a settings file.
+
+        Raises
+        ------
+        InputError
+            Names the file, the key and the mend.
+        """
+        content = read_toml(path)
+        names = [f.name for f in fields(cls)]
+        try:
+            refuse_unknown(content, names)
+            for name in names:
+                if name not in content:
+                    raise InputError(key=name, problem="is missing", mend="add it, or tune again")
+            return cls(**{name: number(content[name], name) for name in names})
+        except InputError as error:
+            raise error.within(file=path) from None

@@ -1,0 +1,82 @@
+"""Settings of a compensator from a fitted model: no trial and error.
+
+Everything follows from four numbers: the step of the loop, the encoder's resolution, and the
+friction at rest and at the start of sliding that the model predicts.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from jbf.control.bench import THESIS_BENCH, Bench
+from jbf.control.settings import Settings
+from jbf.errors import InputError
+from jbf.model import Model
+from jbf.record import Run
+
+_SHARE_OF_SAMPLING = 0.12
+"""Observer's bandwidth times the step: its delay of half a step then costs 3.4 degrees."""
+
+_NOISE_SHARE = 0.01
+"""Share of the friction level that noise may make of the output."""
+
+
+def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
+    """The largest friction (V) that a model has in slow motion, effects included."""
+    radius_m = 1.0 if model.rig.bearing is None else model.rig.bearing.radius_m
+    time_s = np.arange(0.0, 30.0, 0.02)
+    rate, top_m_s = 0.6, 0.005
+    velocity = top_m_s * np.sin(rate * time_s)
+    way = top_m_s / rate * (1.0 - np.cos(rate * time_s))
+    linear = model.rig.bearing is None
+    run = Run(
+        "slow motion",
+        time_s,
+        velocity,
+        angle_rad=None if linear else way / radius_m,
+        position_m=way if linear else None,
+    )
+    return float(np.max(np.abs(model.predict(run)))) * bench.volts_per_n
+
+
+def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
+    """Settings of the observed compensator for a model on a drive.
+
+    Parameters
+    ----------
+    model
+        The fitted model.
+    bench
+        The drive: its a, b, volts a newton, encoder and step are used.
+
+    Raises
+    ------
+    InputError
+        The model's friction is more than the drive's voltage.
+    """
+    level_v = friction_level_v(model, bench)
+    if not 0.0 < level_v < bench.limit_v:
+        raise InputError(
+            problem=f"the model's friction is {level_v:.3g} V, the drive has {bench.limit_v:g} V",
+            mend="correct --volts-per-n",
+        )
+    count_rad = 1.0 / bench.counts_per_rad
+    noise_rad = count_rad * math.sqrt(1.0 / 12.0 + bench.encoder_noise_counts**2)
+    # The estimate's noise is noise_rad w sqrt(w dt); a volt a rad/s makes an output of it.
+    quiet = (_NOISE_SHARE * level_v / (noise_rad * math.sqrt(bench.dt_s))) ** (2.0 / 3.0)
+    bandwidth = min(_SHARE_OF_SAMPLING / bench.dt_s, quiet)
+    speed_noise = noise_rad * bandwidth * math.sqrt(bandwidth * bench.dt_s)
+    return Settings(
+        bandwidth_rad_s=bandwidth,
+        learning_1_s=bandwidth / 30.0,
+        # Friction may be nothing or twice what the model says; so may whatever else there is.
+        level_limit_v=level_v,
+        rest_limit_v=level_v,
+        slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
+        loop_rad_s=bandwidth / 2.0,
+        breakaway=1.0,
+        moving_v=min(2.5 * level_v, bench.limit_v),
+        patience_s=50.0 * bench.dt_s,
+    )

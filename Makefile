@@ -61,7 +61,7 @@ format: $(BUILT)
 	$(VENV)/bin/ruff format python simulator benches docs
 
 bench:
-	cargo bench -p jbf-benches
+	cargo bench -p jbf-benches --bench '*'
 
 # Instructions of every step against the committed baseline; needs valgrind.
 counts:

@@ -64,7 +64,11 @@ fn the_missing_effect_is_worth_having() {
         ("position_ripple", &[0.3, 0.5][..]),
     ] {
         let hidden = [effect];
-        let bare = rms(controller(control, observed::<f64>(control)), &hidden, control);
+        let bare = rms(
+            controller(control, observed::<f64>(control)),
+            &hidden,
+            control,
+        );
         let told = controller(control, observed_with::<f64>(control, &hidden));
         let told = rms(told, &hidden, control);
         assert!(told < 0.97 * bare, "{}: {told} against {bare}", effect.0);
@@ -118,14 +122,19 @@ fn endless<T: Real, C: Compensator<T>>(name: &str, control: Control, c: Controll
         }
     }
     let (early, late) = (early.sqrt(), late.sqrt());
-    assert!(late.is_finite() && late < 1.3 * early + 0.5, "{name}: {early} then {late}");
+    assert!(
+        late.is_finite() && late < 1.3 * early + 0.5,
+        "{name}: {early} then {late}"
+    );
 }
 
 /// A million steps, in single precision.
 #[test]
 fn a_million_steps_change_nothing() {
     for control in [Control::Velocity, Control::Position] {
-        with_each_compensator!(f32, control, |name, c| { endless(name, control, c, 300_000) });
+        with_each_compensator!(f32, control, |name, c| {
+            endless(name, control, c, 300_000)
+        });
     }
 }
 
@@ -135,7 +144,12 @@ fn a_million_steps_change_nothing() {
 fn a_hundred_million_steps_change_nothing() {
     let n = 100_000_000;
     let control = Control::Velocity;
-    endless("observed f32", control, controller(control, observed::<f32>(control)), n);
+    endless(
+        "observed f32",
+        control,
+        controller(control, observed::<f32>(control)),
+        n,
+    );
     let coulomb = controller(control, common::bench::coulomb::<f32>());
     endless("coulomb f32", control, coulomb, n);
     let learning = controller(control, common::bench::learning::<f32>(control));

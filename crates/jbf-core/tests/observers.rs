@@ -89,8 +89,7 @@ fn the_coulomb_observer_learns_at_its_rate() {
         let level = observer.level_v(&state, &observer.power(v));
         let t = f64::from(i) * DT_S;
         // It begins at -k_F v, and each of its Euler steps takes (1 - k_F b dt) of the way.
-        let exact = friction
-            + (-gain * 50.0 - friction) * (1.0 - gain * b * DT_S).powi(i as i32);
+        let exact = friction + (-gain * 50.0 - friction) * (1.0 - gain * b * DT_S).powi(i as i32);
         assert!((level - exact).abs() < 1e-9, "{t}: {level} {exact}");
         observer.learn(&mut state, &observer.power(v), v, 0.0);
         v += DT_S * b * (level - friction);

@@ -59,7 +59,10 @@ fn dry_friction_stops_it_in_the_exact_time() {
         steps += 1;
         assert!(steps < 1000);
     }
-    assert!((f64::from(steps) * H - expected).abs() <= H, "{steps} steps, {expected} s");
+    assert!(
+        (f64::from(steps) * H - expected).abs() <= H,
+        "{steps} steps, {expected} s"
+    );
     for _ in 0..1000 {
         plant.step(&mut state, 0.0, LOAD_N);
         assert_eq!(state.speed_rad_s, 0.0);
@@ -160,7 +163,12 @@ fn every_effect_runs_and_comes_to_rest() {
         for _ in 0..5_000 {
             plant.step(&mut state, 0.0, LOAD_N);
         }
-        assert!(state.speed_rad_s.abs() < 1e-3, "{}: {}", info.name, state.speed_rad_s);
+        assert!(
+            state.speed_rad_s.abs() < 1e-3,
+            "{}: {}",
+            info.name,
+            state.speed_rad_s
+        );
     }
 }
 
@@ -176,5 +184,9 @@ fn a_soft_drive_gives_way() {
     // Twist = torque / stiffness; a volt is 1/volts_per_n newtons on each of four bearings.
     let torque_n_m = push_v / Drive::THESIS.volts_per_n * 4.0 * 0.0127;
     let twist = torque_n_m / 60.0;
-    assert!((state.angle_rad / twist - 1.0).abs() < 0.01, "{} {twist}", state.angle_rad);
+    assert!(
+        (state.angle_rad / twist - 1.0).abs() < 0.01,
+        "{} {twist}",
+        state.angle_rad
+    );
 }

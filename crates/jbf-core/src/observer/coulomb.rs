@@ -105,7 +105,7 @@ impl<T: Real> CoulombObserver<T> {
                 slope: self.edge_slope,
             };
         }
-        if !(w > T::ZERO) {
+        if w <= T::ZERO || !w.is_finite() {
             return Power {
                 value: T::ZERO,
                 slope: T::ZERO,

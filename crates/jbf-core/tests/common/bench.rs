@@ -176,7 +176,10 @@ macro_rules! with_each_compensator {
         one!("observed", bench::observed::<$t>($control));
         one!(
             "observed, with effects",
-            bench::observed_with::<$t>($control, &[("presliding", &[5e4]), ("coulomb_drag", &[2.0])])
+            bench::observed_with::<$t>(
+                $control,
+                &[("presliding", &[5e4]), ("coulomb_drag", &[2.0])]
+            )
         );
     }};
 }
@@ -217,9 +220,7 @@ impl<T: Real, C: Compensator<T>> Bench<T, C> {
             value: T::of(value),
             rate: T::of(rate),
         };
-        let parts = self
-            .controller
-            .step(&mut self.state, self.counter, &target);
+        let parts = self.controller.step(&mut self.state, self.counter, &target);
         assert!(
             parts.output_v.is_finite() && parts.output_v.abs() <= T::of(10.0),
             "{:?}",

@@ -29,7 +29,10 @@ class Task:
     @property
     def campaign(self) -> str:
         """Standard motions of the simulator."""
-        return "slow" if self.kind == "poor" else "full"
+        if self.kind == "poor":
+            return "slow"
+        # What a load changes shows only under several loads.
+        return "loads" if "load_dependence" in self.effects else "full"
 
     @property
     def hidden(self) -> str:

@@ -3,8 +3,8 @@ may drive a fit or a verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -44,10 +44,15 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Campaign:
-    """A rig and its runs, ready."""
+    """A rig and its runs, ready.
+
+    `most_noise_n` is the most that the noise on the friction can be, N, by what comes again in
+    the records; None where nothing does.
+    """
 
     rig: Rig
     prepared: tuple[Prepared, ...]
+    most_noise_n: float | None = None
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
@@ -83,7 +88,10 @@ class Campaign:
                     weight=motion.trusted.astype(float),
                 )
             )
-        return cls(rig, tuple(prepared))
+        from jbf.noise import most_noise
+
+        campaign = cls(rig, tuple(prepared))
+        return replace(campaign, most_noise_n=most_noise(campaign))
 
     @property
     def motions(self) -> list[_core.Motion]:
@@ -136,4 +144,8 @@ class Campaign:
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""
-        return Campaign(self.rig, tuple(self.prepared[i] for i in indices))
+        return self.of([self.prepared[i] for i in indices])
+
+    def of(self, prepared: Iterable[Prepared]) -> Campaign:
+        """The campaign with other samples, or fewer runs, of the same rig and instruments."""
+        return replace(self, prepared=tuple(prepared))

@@ -177,7 +177,8 @@ class Problem:
         """The noise description that fits these residuals."""
         prepared = self.campaign.prepared
         masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
-        return estimate_noise(masked, [p.step_s for p in prepared], [p.trusted for p in prepared])
+        steps, trusted = [p.step_s for p in prepared], [p.trusted for p in prepared]
+        return estimate_noise(masked, steps, trusted, self.campaign.most_noise_n)
 
     def search(self, start: Array, noise: Noise, evaluations: int) -> tuple[Array, bool, str]:
         """Least squares on innovations from one start."""

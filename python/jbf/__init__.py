@@ -23,7 +23,7 @@ from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
     from jbf.comparison import Comparison, compare
-    from jbf.diagnosis import Diagnosis, diagnose
+    from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
     from jbf.fitting import Fit, fit
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
@@ -32,7 +32,10 @@ _LATER = {
     "Comparison": "jbf.comparison",
     "compare": "jbf.comparison",
     "Diagnosis": "jbf.diagnosis",
+    "Experiment": "jbf.diagnosis",
+    "Limits": "jbf.diagnosis",
     "diagnose": "jbf.diagnosis",
+    "diagnose_many": "jbf.diagnosis",
     "Fit": "jbf.fitting",
     "fit": "jbf.fitting",
 }
@@ -41,9 +44,11 @@ __all__ = [
     "Bearing",
     "Comparison",
     "Diagnosis",
+    "Experiment",
     "Fit",
     "InputError",
     "JbfError",
+    "Limits",
     "Load",
     "Lubricant",
     "Model",
@@ -56,6 +61,7 @@ __all__ = [
     "batch",
     "compare",
     "diagnose",
+    "diagnose_many",
     "effects",
     "fit",
     "forget_effect",

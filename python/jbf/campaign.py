@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -33,13 +35,22 @@ class Prepared:
     a trusted one is 1, and one next to a jump that is itself fitted has little.
     """
 
+    rig: Rig
     run: Run
     motion: ImposedMotion
-    core: _core.Motion
     friction_n: Array
     trusted: Mask
     step_s: float
     weight: Array
+
+    @cached_property
+    def core(self) -> _core.Motion:
+        """The core's copy of the motion."""
+        return core_motion(self.rig, self.run, self.motion)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What goes to another process: the core's copy is made again there."""
+        return {name: value for name, value in vars(self).items() if name != "core"}
 
 
 @dataclass(frozen=True)
@@ -79,9 +90,9 @@ class Campaign:
                 )
             prepared.append(
                 Prepared(
+                    rig=rig,
                     run=run,
                     motion=motion,
-                    core=core_motion(rig, run, motion),
                     friction_n=run.friction_n,
                     trusted=motion.trusted,
                     step_s=float(np.median(np.diff(run.time_s))),

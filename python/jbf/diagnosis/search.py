@@ -19,7 +19,8 @@ import numpy.typing as npt
 from jbf.campaign import Campaign
 from jbf.catalogue import effects as catalogue
 from jbf.comparison import compare_prepared
-from jbf.diagnosis.experiment import propose
+from jbf.diagnosis.excitations import Limits
+from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
@@ -270,6 +271,7 @@ def diagnose(
     *,
     law: str = "journal",
     clock: str = "journal",
+    limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which effect of the catalogue a law lacks to explain the runs; add it; repeat.
@@ -282,6 +284,8 @@ def diagnose(
         Recorded runs with friction; several different motions tell effects apart.
     law, clock
         Base law and its clock.
+    limits
+        What the rig may be asked to do in the next experiment; from the runs where not given.
     progress
         Called with a message, and how many of how many trials of the round are done.
 
@@ -344,7 +348,9 @@ def diagnose(
         verdict = "ambiguous"
     else:
         verdict = "missing" if present else "adequate"
-    proposal = propose(search, present, tied, noise) if tied else None
+    proposal: Experiment | str | None = None
+    if tied:
+        proposal = propose(search, [_rivals(present, n, tied[n]) for n in tied], limits)
     return Diagnosis(
         verdict=verdict,
         effects=present,
@@ -352,13 +358,22 @@ def diagnose(
         steps=tuple(steps),
         failures=before.failures,
         unexplained=remains,
-        next_experiment=proposal,
+        next_experiment=proposal.words if isinstance(proposal, Experiment) else proposal,
+        experiment=proposal if isinstance(proposal, Experiment) else None,
         fit=fit,
         before=before,
         after=after,
         elapsed_s=time.monotonic() - begun,
         not_tried=search.not_tried,
     )
+
+
+def _rivals(
+    present: tuple[str, ...], name: str, others: tuple[str, ...]
+) -> list[tuple[str, ...]]:
+    """The models that fit equally well: with this effect, or another in its place."""
+    rest = tuple(e for e in present if e != name)
+    return [present, *((*rest, other) for other in others)]
 
 
 def _remainder(search: Search, present: tuple[str, ...]) -> tuple[Remainder, ...]:

@@ -1,8 +1,9 @@
 """jbf beside the best peers, in one run: `python benches/peers.py FOLDER`.
 
-FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1 and numbalsoda
-(`solvers.py`, `common.py`) for T2 and T3. They are not ours to ship: without FOLDER, a compiler or
-a package, the task is skipped and says so. The folder is copied to `target/peers` and built there.
+FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1, numbalsoda
+(`solvers.py`, `common.py`) for T2 and T3, `t4.py` for T4. They are not ours to ship: without
+FOLDER, a compiler or a package, the task is skipped and says so. The folder is copied to
+`target/peers` and built there.
 
 Peers and jbf take turns, so that a busy machine is busy for both: read ratios, not times.
 """
@@ -24,10 +25,11 @@ from types import ModuleType
 
 import jbf
 import numpy as np
+from peers_t4 import fit_task
 
 HERE = Path(__file__).resolve().parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", HERE.parent / "target"))
-TASKS = ["T1", "batch", "T2", "T3"]
+TASKS = ["T1", "batch", "T2", "T3", "T4"]
 RIG = jbf.Rig.thesis()
 TABLE = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
 STEPS, DT_S, SETS = 50_000, 0.002, 1024
@@ -278,6 +280,9 @@ def main() -> None:
             batch(copy, asked.rounds)
     if "T2" in asked.tasks or "T3" in asked.tasks:
         solvers(copy, asked.rounds, asked.tasks)
+    if "T4" in asked.tasks:
+        sys.path.insert(0, str(copy))
+        fit_task(asked.rounds)
 
 
 if __name__ == "__main__":

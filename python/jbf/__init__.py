@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from jbf.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
     from jbf.fitting import Fit, fit
+    from jbf.trajectory_fit import TrajectoryFit, fit_trajectories
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.
@@ -38,6 +39,8 @@ _LATER = {
     "diagnose_many": "jbf.diagnosis",
     "Fit": "jbf.fitting",
     "fit": "jbf.fitting",
+    "TrajectoryFit": "jbf.trajectory_fit",
+    "fit_trajectories": "jbf.trajectory_fit",
 }
 
 __all__ = [
@@ -57,6 +60,7 @@ __all__ = [
     "Rig",
     "Run",
     "Trajectory",
+    "TrajectoryFit",
     "__version__",
     "batch",
     "compare",
@@ -64,6 +68,7 @@ __all__ = [
     "diagnose_many",
     "effects",
     "fit",
+    "fit_trajectories",
     "forget_effect",
     "laws",
     "load_effects",

@@ -145,7 +145,8 @@ def trajectories(
     count: int,
     viscosity_pa_s: float,
     load_n: float,
-) -> list[tuple[Array, Array, Array, int]]: ...
+    derivatives: bool = False,
+) -> list[tuple[Array, Array, Array, int, Array | None]]: ...
 def control_reference(
     wave: str, low: float, high: float, frequency_rad_s: float, dt_s: float, samples: int
 ) -> tuple[Array, Array]: ...

@@ -187,26 +187,47 @@ def _local_fit(
     index = first[:, None] + np.arange(width)[None, :]
     t = time[index] - time[:, None]
     scale = max(float(np.max(np.abs(t))), 1e-30)
-    u = t / scale
     # A long window sees more of a bend: give it more terms than a short one can carry.
     order = 3 if half < 4 else 5
-    powers = np.stack([u**k for k in range(order + 1)], axis=-1)
-    slopes = np.stack([k * u ** max(k - 1, 0) for k in range(order + 1)], axis=-1) / scale
-    origin = path[:, None]
-    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((1, 1), sd_speed)
-    design = np.concatenate([powers / sd_path, slopes / sd[..., None]], axis=1)
-    target = np.concatenate([(path[index] - origin) / sd_path, speed[index] / sd], axis=1)
-    normal = np.einsum("nij,nik->njk", design, design)
-    right = np.einsum("nij,ni->nj", design, target)
-    inverse = np.linalg.pinv(normal, hermitian=True)
-    coefficients = np.einsum("njk,nk->nj", inverse, right)
+    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((n, 1), sd_speed)
+    target = np.concatenate([(path[index] - path[:, None]) / sd_path, speed[index] / sd], axis=1)
+    if _even(time) and not isinstance(sd_speed, np.ndarray):
+        # All windows that lie alike round their sample are one.
+        place = np.arange(n) - first
+        coefficients, variance = np.empty((n, order + 1)), np.empty((n, 2))
+        for p in np.unique(place):
+            here = place == p
+            one = int(np.argmax(here))
+            design = _design(t[one : one + 1] / scale, order, scale, sd_path, sd[:1])
+            inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
+            coefficients[here] = target[here] @ (design[0] @ inverse[0])
+            variance[here] = np.diagonal(inverse[0])[1:3]
+    else:
+        design = _design(t / scale, order, scale, sd_path, sd)
+        inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
+        right = np.einsum("nij,ni->nj", design, target)
+        coefficients = np.einsum("njk,nk->nj", inverse, right)
+        variance = np.diagonal(inverse, axis1=1, axis2=2)[:, 1:3]
     return (
         coefficients[:, 0] + path,
         coefficients[:, 1] / scale,
         2.0 * coefficients[:, 2] / scale**2,
-        np.sqrt(np.maximum(inverse[:, 1, 1], 0.0)) / scale,
-        2.0 * np.sqrt(np.maximum(inverse[:, 2, 2], 0.0)) / scale**2,
+        np.sqrt(np.maximum(variance[:, 0], 0.0)) / scale,
+        2.0 * np.sqrt(np.maximum(variance[:, 1], 0.0)) / scale**2,
     )
+
+
+def _even(time: Array) -> bool:
+    """True where the samples are evenly spaced, but for rounding."""
+    steps = np.diff(time)
+    return bool(np.ptp(steps) <= 1e-6 * np.median(steps))
+
+
+def _design(u: Array, order: int, scale: float, sd_path: float, sd: Array) -> Array:
+    """Powers of scaled times for path and speed, each over its error, (n, 2 width, order + 1)."""
+    powers = np.stack([u**k for k in range(order + 1)], axis=-1)
+    slopes = np.stack([k * u ** max(k - 1, 0) for k in range(order + 1)], axis=-1) / scale
+    return np.concatenate([powers / sd_path, slopes / sd[..., None]], axis=1)
 
 
 def _smooth(

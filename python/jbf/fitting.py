@@ -28,6 +28,7 @@ from jbf.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.record import Run
 from jbf.rig import Rig
 from jbf.starts import with_starts
+from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
 
@@ -116,7 +117,8 @@ class Problem:
         """Search variables to parameter values; fixed ones from `base`."""
         values: Array = base.copy()
         log = self.log[self.open]
-        there = np.where(log, np.exp(np.where(log, x, 0.0)), x)
+        there = x.copy()
+        there[log] = np.exp(x[log])
         # A logarithm and back may land a rounding error outside.
         values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
         return values
@@ -469,6 +471,7 @@ def finish(problem: Problem, solution: Solution) -> Fit:
     )
 
 
+@one_blas_thread
 def fit(
     rig: Rig,
     runs: Sequence[Run],

@@ -35,6 +35,9 @@ class Trajectory:
         ``eps cos(phi)`` and ``eps sin(phi)``.
     steps : int
         Steps that the driver took.
+    derivatives : array, shape (n, 4), or None
+        Of the friction coefficient by ``f_m``, ``U_tr_m_s`` (through eps_tr, too), ``K0`` and
+        ``gamma``, where they were asked for.
     """
 
     time_s: Array
@@ -42,6 +45,7 @@ class Trajectory:
     x: Array
     y: Array
     steps: int
+    derivatives: Array | None = None
 
     @property
     def eps(self) -> Array:
@@ -66,6 +70,7 @@ def trajectory(
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
+    derivatives: bool = False,
 ) -> Trajectory:
     """Follow the law along one motion.
 
@@ -91,6 +96,9 @@ def trajectory(
         Error of the friction coefficient. Any positive one works.
     eps, phi_rad
         Where the film starts: by default at eps_tr, 0.15 rad.
+    derivatives
+        True to have those of the friction coefficient by the parameters: exact ones of the steps
+        taken (dual numbers, not differences), so a fit that uses them converges.
 
     Raises
     ------
@@ -116,6 +124,7 @@ def trajectory(
         tolerance=tolerance,
         eps=eps,
         phi_rad=phi_rad,
+        derivatives=derivatives,
     )[0]
 
 
@@ -129,6 +138,7 @@ def trajectories(
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
+    derivatives: bool = False,
 ) -> list[Trajectory]:
     """Follow the law along many motions, on all cores.
 
@@ -156,7 +166,7 @@ def trajectories(
         if name not in parameters:
             raise InputError(problem=f"the parameter {name} is missing", mend="give its value")
     times = [np.ascontiguousarray(time, dtype=np.float64) for time, _ in runs]
-    starts = [time[0] for (_, motion), time in zip(runs, times, strict=True) if _is_record(motion)]
+    starts = [time[0] for (_, motion), time in zip(runs, times, strict=True) if is_record(motion)]
     if len(set(starts)) > 1 or (starts and len(starts) < len(runs) and starts[0] != 0.0):
         raise InputError(
             problem="the runs start at different times", mend="shift them to start at zero"
@@ -179,13 +189,15 @@ def trajectories(
             count=b.count,
             viscosity_pa_s=rig.lubricant.viscosity_pa_s,
             load_n=rig.load.normal_n,
+            derivatives=derivatives,
         )
     except ValueError as error:
         raise InputError(problem=str(error), mend="correct the value") from None
     return [Trajectory(time, *columns) for time, columns in zip(times, done, strict=True)]
 
 
-def _is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
+def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
+    """True of an array of speeds, False of the three numbers of a sine."""
     return not (isinstance(motion, tuple) and len(motion) == 3)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import Run
+from jbf import Run, conditioning
 from jbf.conditioning import impose, noise_of
 
 RADIUS_M = 0.0127
@@ -157,3 +157,17 @@ def test_an_angle_without_a_radius_leaves_the_speed_alone() -> None:
     m = impose(Run.from_arrays(t, v, angle_rad=angle), None)
     assert np.max(np.abs(m.velocity_m_s - v)) < 1e-5
     np.testing.assert_array_equal(m.angle_rad, np.unwrap(angle))
+
+
+@pytest.mark.parametrize("half", [1, 4, 16])
+def test_even_samples_share_their_windows(half: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(5)
+    time = np.round(0.02 * np.arange(120), 3)
+    speed = np.sin(time) + 1e-3 * random.standard_normal(120)
+    path = 1.0 - np.cos(time) + 1e-4 * random.standard_normal(120)
+    short = conditioning._local_fit(time, path, speed, 1e-4, 1e-3, half)
+    monkeypatch.setattr(conditioning, "_even", lambda time: False)
+    for got, expected in zip(
+        short, conditioning._local_fit(time, path, speed, 1e-4, 1e-3, half), strict=True
+    ):
+        np.testing.assert_allclose(got, expected, rtol=1e-7, atol=1e-9)

@@ -78,3 +78,55 @@ def test_refusals_name_what_is_wrong(change: dict[str, object], words: str) -> N
     good: dict[str, object] = {"parameters": TABLE_4_2, "time_s": [0.5, 1.0], "sine": (0.1, 1.0)}
     with pytest.raises(jbf.InputError, match=words):
         jbf.trajectory(RIG, **{**good, **change})  # type: ignore[arg-type]
+
+
+SWINGS: list[tuple[np.ndarray, tuple[float, float, float]]] = [
+    (np.linspace(2.0 * np.pi / w, 4.0 * np.pi / w, 200)[1:-1], (0.127, w, 0.0))
+    for w in (0.0225, 0.25, 2.0)
+]
+
+
+@pytest.mark.parametrize("model", ["journal", "journal_full"])
+@pytest.mark.parametrize("name", list(TABLE_4_2))
+def test_derivatives_are_those_of_the_friction(name: str, model: str) -> None:
+    h = 1e-4 * TABLE_4_2[name]
+
+    def at(shift: float) -> np.ndarray:
+        moved = TABLE_4_2 | {name: TABLE_4_2[name] + shift * h}
+        done = jbf.trajectories(RIG, moved, SWINGS, model=model, tolerance=1e-11)
+        return np.concatenate([d.friction_coefficient for d in done])
+
+    # Differences of the fourth order, of trajectories at the finest tolerance.
+    expected = (at(-2) - 8.0 * at(-1) + 8.0 * at(1) - at(2)) / (12.0 * h)
+    done = jbf.trajectories(RIG, TABLE_4_2, SWINGS, model=model, tolerance=1e-9, derivatives=True)
+    got = np.concatenate([d.derivatives for d in done if d.derivatives is not None])
+    column = got[:, list(TABLE_4_2).index(name)]
+    assert np.max(np.abs(column - expected)) < 2e-6 * np.max(np.abs(expected))
+
+
+def test_a_fit_along_known_motions_covers_the_truth() -> None:
+    clean = [d.friction_coefficient for d in jbf.trajectories(RIG, TABLE_4_2, SWINGS)]
+    random = np.random.default_rng(42)
+    data = [f + 0.002 * random.standard_normal(len(f)) for f in clean]
+    data[1][:20] = np.nan
+    start = {"f_m": 0.34, "U_tr": 0.042, "K0": 9.7e5, "gamma": 23.0}
+    found = jbf.fit_trajectories(RIG, SWINGS, data, start=start)
+    assert found.converged
+    assert found.evaluations < 15
+    assert found.samples == 3 * 198 - 20
+    assert found.sum_of_squares == pytest.approx(0.002**2 * found.samples, rel=0.2)
+    for name, value in found.parameters.items():
+        assert value.stderr is not None
+        assert abs(value.value - TABLE_4_2[name]) < 4.0 * value.stderr
+        assert value.stderr < 0.1 * value.value
+
+
+def test_a_wrong_call_of_a_fit_says_what_to_mend() -> None:
+    with pytest.raises(jbf.InputError, match="one array of friction coefficients a run"):
+        jbf.fit_trajectories(RIG, SWINGS, [])
+    with pytest.raises(jbf.InputError, match="run 0: friction of shape"):
+        jbf.fit_trajectories(RIG, SWINGS[:1], [np.zeros(7)])
+    with pytest.raises(jbf.InputError, match="too few"):
+        jbf.fit_trajectories(RIG, SWINGS[:1], [np.full(198, np.nan)])
+    with pytest.raises(jbf.InputError, match="gama"):
+        jbf.fit_trajectories(RIG, SWINGS[:1], [np.zeros(198)], start={"gama": 3.0})

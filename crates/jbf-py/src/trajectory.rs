@@ -3,8 +3,9 @@
 use jbf_core::driver::{follow, Cost, Film, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters, START_PHI_RAD};
 use jbf_core::law::journal_full::JournalFull;
-use jbf_core::{Bearing, Clock, ParameterError};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use jbf_core::{Bearing, Clock, Dual, ParameterError, Real};
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -20,7 +21,23 @@ pub enum Imposed {
 struct Run {
     time_s: Vec<f64>,
     imposed: Imposed,
-    start: Start<f64>,
+}
+
+/// A number whose derivatives are wanted, if it has any.
+trait Number: Real + Send + Sync {
+    fn slopes(&self) -> &[f64];
+}
+
+impl Number for f64 {
+    fn slopes(&self) -> &[f64] {
+        &[]
+    }
+}
+
+impl<const N: usize> Number for Dual<N> {
+    fn slopes(&self) -> &[f64] {
+        &self.slope
+    }
 }
 
 /// What one run gives.
@@ -28,34 +45,41 @@ struct Result1 {
     coefficient: Vec<f64>,
     x: Vec<f64>,
     y: Vec<f64>,
+    /// Derivatives of the coefficient, row by row.
+    slopes: Vec<f64>,
     cost: Cost,
 }
 
-/// Friction coefficient, eps cos(phi), eps sin(phi), steps.
+/// Friction coefficient, eps cos(phi), eps sin(phi), steps, and derivatives by f_m, U_tr, K0 and
+/// gamma where they were wanted.
 type Columns<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     u32,
+    Option<Bound<'py, PyArray2<f64>>>,
 );
 
 fn refused(error: ParameterError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-fn one<F: Film<f64, N>, const N: usize>(
+fn one<T: Number, F: Film<T, N>, const N: usize>(
     film: &F,
     run: &Run,
+    start: &Start<T>,
     tolerance: f64,
 ) -> Result<Result1, ParameterError> {
     let n = run.time_s.len();
     let mut coefficient = vec![0.0; n];
     let (mut x, mut y) = (vec![0.0; n], vec![0.0; n]);
-    let sink = |i: usize, sample: &Sample<f64>| {
-        coefficient[i] = sample.coefficient;
-        [x[i], y[i]] = sample.xy;
+    let mut slopes = Vec::new();
+    let sink = |i: usize, sample: &Sample<T>| {
+        coefficient[i] = sample.coefficient.value();
+        [x[i], y[i]] = sample.xy.map(T::value);
+        slopes.extend_from_slice(sample.coefficient.slopes());
     };
-    let (start, times) = (&run.start, &run.time_s);
+    let times = &run.time_s;
     let cost = match &run.imposed {
         &Imposed::Sine((amplitude, omega, bias)) => {
             let motion = Sine::with_bias(amplitude, omega, bias)?;
@@ -70,26 +94,63 @@ fn one<F: Film<f64, N>, const N: usize>(
         coefficient,
         x,
         y,
+        slopes,
         cost,
     })
 }
 
-fn all<F: Film<f64, N> + Sync, const N: usize>(
+fn all<T: Number, F: Film<T, N> + Sync, const N: usize>(
     film: &F,
     runs: &[Run],
+    start: &Start<T>,
     tolerance: f64,
 ) -> Result<Vec<Result1>, ParameterError> {
     runs.par_iter()
         .with_max_len(1)
-        .map(|run| one(film, run, tolerance))
+        .map(|run| one(film, run, start, tolerance))
         .collect()
 }
 
-/// Follow each of `runs`, `(sample times, motion)`, to about `tolerance` in friction.
+/// The law's parameters and what else a run needs.
+struct Asked {
+    bearing: Bearing,
+    load_n: f64,
+    clock: Clock,
+    with_inertia: bool,
+    start_time_s: f64,
+    start_eps: Option<f64>,
+    start_phi_rad: f64,
+    tolerance: f64,
+}
+
+impl Asked {
+    fn follow<T: Number>(
+        &self,
+        parameters: &Parameters<T>,
+        runs: &[Run],
+    ) -> Result<Vec<Result1>, ParameterError> {
+        let (load_n, clock) = (self.load_n, self.clock);
+        let start = Start {
+            time_s: self.start_time_s,
+            eps: self.start_eps.map(T::of),
+            phi_rad: T::of(self.start_phi_rad),
+        };
+        if self.with_inertia {
+            let film = JournalFull::new(&self.bearing, load_n, parameters, clock)?;
+            all(&film, runs, &start, self.tolerance)
+        } else {
+            let film = Journal::new(&self.bearing, load_n, parameters, clock)?;
+            all(&film, runs, &start, self.tolerance)
+        }
+    }
+}
+
+/// Follow each of `runs`, `(sample times, motion)`, to about `tolerance` in friction; with
+/// `derivatives` also those of the friction by f_m, U_tr, K0 and gamma, exact of the steps taken.
 #[pyfunction]
 #[pyo3(signature = (runs, *, model, clock, tolerance, start_time_s, start_eps, start_phi_rad, f_m,
                     u_tr_m_s, k0, gamma, radius_m, length_m, clearance_m, mass_kg, count,
-                    viscosity_pa_s, load_n))]
+                    viscosity_pa_s, load_n, derivatives=false))]
 #[allow(clippy::too_many_arguments)]
 pub fn trajectories<'py>(
     py: Python<'py>,
@@ -111,6 +172,7 @@ pub fn trajectories<'py>(
     count: u32,
     viscosity_pa_s: f64,
     load_n: f64,
+    derivatives: bool,
 ) -> PyResult<Vec<Columns<'py>>> {
     let bearing = Bearing {
         radius_m,
@@ -120,53 +182,67 @@ pub fn trajectories<'py>(
         count,
         viscosity_pa_s,
     };
-    let parameters = Parameters {
-        f_m,
-        u_tr_m_s,
-        k0,
-        gamma,
-    };
     let clock = Clock::from_name(clock).ok_or_else(|| {
         PyValueError::new_err(format!("clock {clock:?} is neither journal nor thesis"))
     })?;
-    let start = Start {
-        time_s: start_time_s.unwrap_or(0.0),
-        eps: start_eps,
-        phi_rad: start_phi_rad.unwrap_or(START_PHI_RAD),
+    if !["journal", "journal_full"].contains(&model) {
+        return Err(PyValueError::new_err(format!(
+            "model {model:?} is neither journal nor journal_full"
+        )));
+    }
+    let asked = Asked {
+        bearing,
+        load_n,
+        clock,
+        with_inertia: model == "journal_full",
+        start_time_s: start_time_s.unwrap_or(0.0),
+        start_eps,
+        start_phi_rad: start_phi_rad.unwrap_or(START_PHI_RAD),
+        tolerance,
     };
     let runs: Vec<Run> = runs
         .into_iter()
         .map(|(time_s, imposed)| Run {
             time_s: time_s.as_array().iter().copied().collect(),
             imposed,
-            start,
         })
         .collect();
-    let done = match model {
-        "journal" => {
-            let film = Journal::new(&bearing, load_n, &parameters, clock).map_err(refused)?;
-            py.detach(|| all(&film, &runs, tolerance))
+    let values = [f_m, u_tr_m_s, k0, gamma];
+    let done = py.detach(|| {
+        if derivatives {
+            let lifted = |i: usize| Dual::<LANES>::parameter(values[i], i);
+            asked.follow(&named([lifted(0), lifted(1), lifted(2), lifted(3)]), &runs)
+        } else {
+            asked.follow(&named(values), &runs)
         }
-        "journal_full" => {
-            let film = JournalFull::new(&bearing, load_n, &parameters, clock).map_err(refused)?;
-            py.detach(|| all(&film, &runs, tolerance))
-        }
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "model {model:?} is neither journal nor journal_full"
-            )))
-        }
-    };
-    Ok(done
-        .map_err(refused)?
+    });
+    done.map_err(refused)?
         .into_iter()
         .map(|run| {
-            (
+            let n = run.coefficient.len();
+            let slopes = derivatives
+                .then(|| Array2::from_shape_vec((n, LANES), run.slopes))
+                .transpose()
+                .map_err(|e| PyValueError::new_err(e.to_string()))?;
+            Ok((
                 run.coefficient.into_pyarray(py),
                 run.x.into_pyarray(py),
                 run.y.into_pyarray(py),
                 run.cost.steps,
-            )
+                slopes.map(|m| m.into_pyarray(py)),
+            ))
         })
-        .collect())
+        .collect()
+}
+
+/// The law has so many parameters.
+const LANES: usize = 4;
+
+fn named<T>([f_m, u_tr_m_s, k0, gamma]: [T; LANES]) -> Parameters<T> {
+    Parameters {
+        f_m,
+        u_tr_m_s,
+        k0,
+        gamma,
+    }
 }

@@ -28,6 +28,7 @@ from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
+from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -265,6 +266,7 @@ def alternatives(search: Search, present: tuple[str, ...]) -> dict[str, tuple[st
     return found
 
 
+@one_blas_thread
 def diagnose(
     rig: Rig,
     runs: Sequence[Run],

@@ -1,0 +1,211 @@
+"""Do the intervals of a fit cover the truth? `python benches/coverage.py [EFFECT...]`.
+
+For every effect of the catalogue: a few rigs of the project's own simulator, drawn at random, each
+recorded many times with fresh noise; every record is fitted with the right structure, and its 95 %
+intervals are held against the truth. Everything follows from `--seed`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+import zlib
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import jbf
+import numpy as np
+from jbf.catalogue import find_parameter, parameters_of
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
+
+import rigsim
+from rigsim.campaign import draw_base
+from rigsim.motions import Motion
+
+NOISE_SHARE = 0.0175
+WIDTH = 1.959964
+"""Half of a 95 % interval, in standard errors."""
+WANTED = (0.90, 0.98)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A rig with one effect, and its exact records: name to record."""
+
+    base: rigsim.Base
+    effects: dict[str, dict[str, float]]
+    records: dict[str, rigsim.Record]
+
+    def values(self) -> dict[str, float]:
+        """Full parameter name to value."""
+        known = parameters_of("journal", tuple(self.effects))
+        b = self.base
+        found = {"f_m": b.f_m, "U_tr_m_s": b.U_tr, "K0": b.K0, "gamma": b.gamma}
+        for effect, parameters in self.effects.items():
+            for name, value in parameters.items():
+                found[find_parameter(f"{effect}.{name}", known)] = value
+        return found
+
+
+def motions_for(effect: str) -> rigsim.Campaign:
+    """The campaign that shows an effect: several loads where it needs them."""
+    return rigsim.standard("loads" if effect == "load_dependence" else "full")
+
+
+def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
+    """A rig drawn at random, with an effect of usual strength, recorded without noise."""
+    base = draw_base(seed)
+    random = np.random.default_rng([seed, zlib.crc32((effect or "").encode())])
+    effects = {} if effect is None else {effect: rigsim.draw(effect, random)}
+
+    def record(motion: Motion) -> rigsim.Record:
+        return rigsim.simulate_run(
+            base,
+            effects,
+            motion,
+            start_angle_rad=float(random.uniform(0.0, 2.0 * math.pi)),
+            load_n=base.load_n * plan.load_shares.get(motion.name, 1.0),
+        )
+
+    return Truth(base, effects, {m.name: record(m) for m in plan.motions})
+
+
+def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[jbf.Run]:
+    """The records as instruments show them."""
+    base = truth.base
+    meter = rigsim.Noise(NOISE_SHARE * base.f_m * base.load_n, 0.5 if coloured else 0.0)
+    return [
+        jbf.Run.from_arrays(
+            r.time_s,
+            meter.velocity(r.velocity_m_s, random),
+            meter.friction(r.friction_n, float(r.time_s[1]), random),
+            angle_rad=meter.angle(r.angle_rad),
+            load_n=r.load_n,
+            name=name,
+        )
+        for name, r in truth.records.items()
+    ]
+
+
+def errors_of(truth: Truth, seed: Iterable[int], coloured: bool) -> dict[str, float]:
+    """Estimate less truth in standard errors, by name; NaN where a fit gives no interval."""
+    rig = jbf.Rig.thesis("4.2" if truth.base.load_n == 104.0 else "4.3")
+    runs = measured(truth, np.random.default_rng(list(seed)), coloured)
+    found = jbf.fit(rig, runs, list(truth.effects)).parameters
+    pages = parameters_of("journal", tuple(truth.effects))
+    errors = {}
+    for name, value in truth.values().items():
+        off, period = found[name].value - value, pages[name].period
+        if period is not None:
+            off -= period * round(off / period)
+        stderr = found[name].stderr
+        errors[name] = off / stderr if stderr else math.nan
+    return errors
+
+
+def repeat(
+    effect: str | None, rig: int, repeats: int, seed: int, coloured: bool
+) -> list[dict[str, float]]:
+    """All repeats on one rig."""
+    truth = make_truth(effect, 1000 * seed + rig, motions_for(effect or ""))
+    return [errors_of(truth, (seed, rig, k), coloured) for k in range(repeats)]
+
+
+def study(
+    effect: str | None, repeats: int, rigs: int, seed: int, coloured: bool, jobs: int
+) -> dict[str, list[float]]:
+    """Errors in standard errors, one list a parameter."""
+    share = [repeats // rigs + (i < repeats % rigs) for i in range(rigs)]
+    work = partial(_one_rig, effect, share, seed, coloured)
+    rows: Iterator[list[dict[str, float]]]
+    if jobs == 1:
+        rows = map(work, range(rigs))
+        found = [row for part in rows for row in part]
+    else:
+        with ProcessPoolExecutor(jobs) as pool:
+            found = [row for part in pool.map(work, range(rigs)) for row in part]
+    return {name: [row[name] for row in found] for name in found[0]}
+
+
+def _one_rig(
+    effect: str | None, share: list[int], seed: int, coloured: bool, rig: int
+) -> list[dict[str, float]]:
+    return repeat(effect, rig, share[rig], seed, coloured)
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a parameter's errors amount to.
+
+    `bias` is their median and `spread` their standard deviation, robust, both in standard errors:
+    right intervals have 0 and 1. `none` counts fits without an interval.
+    """
+
+    covered: float
+    bias: float
+    spread: float
+    none: int
+    count: int
+
+    @classmethod
+    def of(cls, errors: list[float]) -> Row:
+        """The row of one parameter's errors."""
+        z = np.array(errors)
+        known = z[np.isfinite(z)]
+        if not len(known):
+            return cls(math.nan, math.nan, math.nan, len(z), len(z))
+        low, high = np.quantile(known, [0.15866, 0.84134])
+        return cls(
+            covered=float(np.mean(np.abs(known) < WIDTH)),
+            bias=float(np.median(known)),
+            spread=float(0.5 * (high - low)),
+            none=len(z) - len(known),
+            count=len(z),
+        )
+
+
+HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no interval |
+|---|---|---|---|---|---|"""
+
+
+def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
+    """The table's rows of one effect."""
+    for name, z in errors.items():
+        row = Row.of(z)
+        mark = "" if WANTED[0] <= row.covered <= WANTED[1] else " (!)"
+        yield (
+            f"| {effect} | {name.removeprefix(effect + '.')} | {100 * row.covered:.1f} %{mark} "
+            f"| {row.bias:+.2f} | {row.spread:.2f} | {row.none or ''} |"
+        )
+
+
+def main() -> None:
+    """Run the study and print its table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("effects", nargs="*", metavar="EFFECT", help="all, and none, by default")
+    parser.add_argument("--repeats", type=int, default=200, help="fits an effect")
+    parser.add_argument("--rigs", type=int, default=8, help="rigs among which they are shared")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--coloured", action="store_true", help="noise with a coloured part")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    parser.add_argument("--json", type=Path, help="write every error here, effect by effect")
+    asked = parser.parse_args()
+    kept: dict[str, dict[str, list[float]]] = {}
+    print(f"{asked.repeats} fits an effect, {asked.rigs} rigs, seed {asked.seed}\n\n{HEADER}")
+    for effect in asked.effects or [None, *rigsim.CATALOGUE]:
+        name = None if effect in (None, "none") else effect
+        errors = study(name, asked.repeats, asked.rigs, asked.seed, asked.coloured, asked.jobs)
+        kept[name or "none"] = errors
+        print("\n".join(lines(name or "none", errors)), flush=True)
+        if asked.json is not None:
+            asked.json.write_text(json.dumps(kept), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

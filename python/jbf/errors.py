@@ -62,10 +62,6 @@ class InputError(JbfError, ValueError):
         self.mend = mend
         super().__init__(str(self))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Errors come back whole from other processes."""
-        return partial(type(self), **vars(self)), ()
-
     def __str__(self) -> str:
         place = [
             self.file,

@@ -6,4 +6,13 @@ from jbf.diagnosis.many import diagnose_many
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
 from jbf.diagnosis.search import diagnose
 
-__all__ = ["Diagnosis", "Experiment", "Limits", "Remainder", "Step", "Trial", "diagnose", "diagnose_many"]
+__all__ = [
+    "Diagnosis",
+    "Experiment",
+    "Limits",
+    "Remainder",
+    "Step",
+    "Trial",
+    "diagnose",
+    "diagnose_many",
+]

@@ -1,9 +1,9 @@
 """The run that would part models that fit equally well.
 
 Each motion that the rig can make is simulated with the rival models. What counts is what is left
-of their difference after the one that is wrong has been fitted again, to the old runs and the new one
-together (T-optimality, Atkinson & Fedorov 1975; here to first order): parameters that make up for a
-wrong effect must not be counted as evidence.
+of their difference after the one that is wrong has been fitted again, to the old runs and the new
+one together (T-optimality, Atkinson & Fedorov 1975; here to first order): parameters that make up
+for a wrong effect must not be counted as evidence.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ class _Model:
             self.solution.residuals, self.solution.jacobian, self.solution.noise
         )
         self.noise_n = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
-        self.known: Array = np.linalg.qr(j, mode="r")
+        self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
 
     def at(self, motion: _core.Motion) -> tuple[Array, Array]:
         """Friction, N, and its derivatives by the search's variables, under a motion."""

@@ -370,9 +370,7 @@ def diagnose(
     )
 
 
-def _rivals(
-    present: tuple[str, ...], name: str, others: tuple[str, ...]
-) -> list[tuple[str, ...]]:
+def _rivals(present: tuple[str, ...], name: str, others: tuple[str, ...]) -> list[tuple[str, ...]]:
     """The models that fit equally well: with this effect, or another in its place."""
     rest = tuple(e for e in present if e != name)
     return [present, *((*rest, other) for other in others)]

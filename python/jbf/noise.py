@@ -85,6 +85,29 @@ def innovation_cost(
     return count * float(np.log(max(total, 1e-300) / max(count, 1)))
 
 
+def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:
+    """How many independent samples one sample of these innovations is worth, 0 to 1.
+
+    Innovations of noise alone are white. Those of a wrong model are not, and n samples of them tell
+    less than n (Bartlett 1946): the autocorrelations are summed until they sink into chance, or
+    are older than any noise.
+    """
+    count = max(sum(len(e) for e in innovations), 1)
+    longest = int(LONGEST_MEMORY_S / min(steps)) + 1
+    total = np.zeros(longest + 1)
+    middle = sum(float(np.sum(e)) for e in innovations) / count
+    for e in innovations:
+        n = len(e)
+        power = np.fft.irfft(np.abs(np.fft.rfft(e - middle, 2 * n)) ** 2)[: min(n, len(total))]
+        total[: len(power)] += power
+    if total[0] <= 0.0:
+        return 1.0
+    rho = total[1:] / total[0]
+    sunk = np.flatnonzero(rho < 2.0 / np.sqrt(count))
+    end = int(sunk[0]) if len(sunk) else len(rho)
+    return float(1.0 / (1.0 + 2.0 * np.sum(rho[:end])))
+
+
 def estimate_noise(
     residuals: Sequence[Array],
     steps: Sequence[float],

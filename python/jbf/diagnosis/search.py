@@ -24,7 +24,15 @@ from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_mean_square
+from jbf.fitting import (
+    Problem,
+    Solution,
+    costs,
+    finish,
+    first_step_gain,
+    independent,
+    root_mean_square,
+)
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -140,9 +148,12 @@ class Search:
         return MARGIN + float(parameters * np.log(self.campaign.samples) + tried)
 
     def evidence(self, richer: Solution, simpler: Solution) -> float:
-        """Evidence for the richer of two models."""
-        gain = np.subtract(*costs(simpler, richer))
-        return float(gain) - self.price(richer.free - simpler.free)
+        """Evidence for the richer of two models.
+
+        Where even the richer one leaves an error that is smooth, samples count for less.
+        """
+        gain = float(np.subtract(*costs(simpler, richer))) * independent(richer)
+        return gain - self.price(richer.free - simpler.free)
 
     def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
         """How much evidence is lost when these effects stand in place of those of `whole`."""

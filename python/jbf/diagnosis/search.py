@@ -57,6 +57,10 @@ CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
+LEAST_FORESEEN = 0.5
+"""Share of what a candidate gains where it is fitted that it must gain on runs left out, if its
+evidence is weak; any gain will do where it is strong: one run alone may hold the rests, or the
+reversals, that an effect needs."""
 DOUBT = 60.0
 """Evidence of a candidate that fits and does not predict from which on something of its kind must
 be there: noise does not reach it."""
@@ -220,7 +224,8 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
         outcome, reason = "useless", "gains no more than chance would"
         if evidence > 0 and leader is None:
             after = search.hold_out(frozenset((*present, name)))
-            if after < before:
+            gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
+            if gained > (0.0 if evidence > DOUBT else LEAST_FORESEEN):
                 leader, best = name, evidence
                 outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
             else:

@@ -188,7 +188,7 @@ macro_rules! real {
 real!(
     f32,
     1.0 - 1e-6,
-    libm::sqrtf,
+    crate::root::sqrtf,
     libm::expf,
     libm::expm1f,
     libm::logf,

@@ -2,6 +2,8 @@
 #![no_std]
 
 pub mod board;
+pub mod measure;
+pub mod plain;
 
 use core::panic::PanicInfo;
 

@@ -16,7 +16,12 @@ fn main() -> ! {
         }
     });
     let (same, different, unknown) = (found.same, found.different, found.unknown);
-    hprintln!("bits: {} as the table has them, {} differ, {} not in the table", same, different, unknown);
+    hprintln!(
+        "bits: {} as the table has them, {} differ, {} not in the table",
+        same,
+        different,
+        unknown
+    );
     debug::exit(if different == 0 && unknown == 0 {
         debug::EXIT_SUCCESS
     } else {

@@ -60,6 +60,19 @@ pub struct Found {
 
 /// All fingerprints in one kind of number, handed to `visit` as they are computed.
 pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
+    steps::<T>(kind, visit);
+    drivers::drivers::<T>(&mut |group, name, hash: Hash| {
+        visit(&Trace {
+            group,
+            name,
+            kind,
+            hash: hash.0,
+        });
+    });
+}
+
+/// Those of everything that a control loop may step: all but the driver, which is for analysis.
+pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     let mut named = |group, name, hash: Hash| {
         visit(&Trace {
             group,
@@ -72,7 +85,6 @@ pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     steppers::steppers::<T>(&mut named);
     chains::effects::<T>(&mut named);
     chains::together::<T>(&mut named);
-    drivers::drivers::<T>(&mut named);
     loops::loops::<T>(&mut named);
 }
 

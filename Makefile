@@ -30,7 +30,7 @@ help:
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
-	@echo "make bits    the same bits in debug, release and native builds"
+	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
 	@echo "make clean   removes $(VENV), target and the built extension"
@@ -72,6 +72,7 @@ counts:
 bits:
 	cargo run --quiet -p jbf-trace --example table | tail -n 1
 	cargo run --quiet --release -p jbf-trace --example table | tail -n 1
+	cargo run --quiet --release -p jbf-trace --features std --example table | tail -n 1
 	RUSTFLAGS="-C target-cpu=native" cargo run --quiet --release --target-dir target/native \
 		-p jbf-trace --example table | tail -n 1
 

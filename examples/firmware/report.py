@@ -7,6 +7,7 @@ budget, where a bit differs from a laptop's, where the loop could panic, or wher
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -174,6 +175,35 @@ def every_step(tools: tuple[list[str], dict[str, str]]) -> list[str]:
     return [f"a step could panic: {', '.join(found)}"] if found else []
 
 
+def c_library(tools: tuple[list[str], dict[str, str]]) -> list[str]:
+    """Print whether anything that C may call could panic; what is wrong."""
+    cargo, environment = tools
+    crate = HERE.parents[1] / "crates" / "jbf-c"
+    # Its own folder: the flags of this one's configuration are for programs.
+    target = OUT.parents[1] / "c"
+    options = ["--release", "--quiet", "--no-default-features", "--target", TRIPLE]
+    options += ["--crate-type", "staticlib", "--target-dir", str(target)]
+    subprocess.run([*cargo, "rustc", *options], check=True, cwd=crate, env=environment)
+    header = (crate / "include" / "jbf.h").read_text(encoding="utf-8")
+    declared = re.findall(r"^JBF_DECLARE\((\w+), (\w+),", header, re.MULTILINE)
+    names = ("init", "effect", "start", "step", "predict")
+    wanted = [f"jbf_{law}_{kind}_{name}" for law, kind in declared for name in names]
+    library, linked = target / TRIPLE / "release" / "libjbf_c.a", target / "all.elf"
+    linker = shutil.which("ld.lld") or next(
+        Path((quiet("rustc", "--print", "sysroot") or "").strip()).rglob("rust-lld"), None
+    )
+    if linker is None:
+        return ["no linker for the C library: apt-get install lld"]
+    flavor = [] if str(linker).endswith("ld.lld") else ["-flavor", "gnu"]
+    undefined = [f"--undefined={name}" for name in wanted]
+    command = [str(linker), *flavor, "-m", "armelf", "--gc-sections", "--entry", wanted[0]]
+    subprocess.run([*command, *undefined, str(library), "-o", str(linked)], check=True)
+    with linked.open("rb") as file:
+        found = panics(ELFFile(file))
+    print(f"libjbf_c.a, all {len(wanted)} functions: {len(found)} symbols of panics")
+    return [f"the C library could panic: {', '.join(found)}"] if found else []
+
+
 def flight(tools: tuple[list[str], dict[str, str]]) -> list[str]:
     """Print the table of the programs that would be flashed; what is wrong with them."""
     print("| `control` with | flash, B | static RAM, B | stack, B | symbols of panics |")
@@ -204,6 +234,7 @@ def main() -> None:
     wrong += flight(tools)
     print()
     wrong += every_step(tools)
+    wrong += c_library(tools)
     print(run(build("bits", "observed", tools)).strip())
     if wrong:
         print("\n".join(wrong), file=sys.stderr)

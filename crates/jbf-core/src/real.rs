@@ -200,7 +200,7 @@ real!(
 real!(
     f64,
     1.0 - 1e-9,
-    libm::sqrt,
+    crate::root::sqrt,
     libm::exp,
     libm::expm1,
     libm::log,

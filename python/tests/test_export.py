@@ -54,7 +54,11 @@ fn step<T: Real, L: Named<T>>(chain: &Chain<T, L>, c: &[Vec<f64>; 5], dt_s: f64)
     out
 }
 
-fn run<L: Named<f64>, S: Named<f32>>(model: Chain<f64, L>, small: Chain<f32, S>, c: &[Vec<f64>; 5]) {
+fn run<L, S>(model: Chain<f64, L>, small: Chain<f32, S>, c: &[Vec<f64>; 5])
+where
+    L: Named<f64>,
+    S: Named<f32>,
+{
     let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] = c;
     let record = Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n };
     let mut whole = vec![0.0; time_s.len()];

@@ -121,7 +121,8 @@ pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
             Some(null) => value == null,
             None => false,
         };
-        if !at_null && !(value >= page.lower && value <= page.upper) {
+        let within = at_null || (value >= page.lower && value <= page.upper);
+        if !within {
             return false;
         }
         i += 1;

@@ -67,6 +67,7 @@ pub struct State<T, S> {
 
 /// Everything about one step, for logging.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Parts<T> {
     /// Angle since the start, rad.
     pub angle_rad: T,

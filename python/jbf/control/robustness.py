@@ -129,7 +129,7 @@ def robustness(
     `scheme` puts another compensator in place of the observed one; it too is only told the
     undisturbed bench.
     """
-    model = thesis_model(elastic=False) if base is None else base
+    model = thesis_model(elastic="nothing") if base is None else base
     given = Observed(model, tune(model, bench)) if scheme is None else scheme
     told = _Told(given, bench)
     todo = list(cases(model, bench))

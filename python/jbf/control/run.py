@@ -154,7 +154,7 @@ def run(
         Something is out of range, or of the wrong length.
     """
     truth = thesis_model() if model is None else model
-    chosen = _scheme(scheme, truth if carried is None else carried, settings)
+    chosen = _scheme(scheme, model if carried is None else carried, settings)
     n = max(round(task.seconds / bench.dt_s), 1)
     value, rate = _reference(task, bench, n, reference)
     n = len(value)
@@ -183,7 +183,7 @@ def run(
     return Result(task, chosen.name, time_s, value, **arrays)
 
 
-def _scheme(given: str | Scheme, carried: Model, settings: Settings | None) -> Scheme:
+def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | None) -> Scheme:
     return scheme(given, carried, settings) if isinstance(given, str) else given
 
 

@@ -8,16 +8,21 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from jbf.control.bench import THESIS_RIG, Bench, core_model
+from jbf.control.bench import THESIS_RIG, Bench, core_model, thesis_model
 from jbf.control.settings import Settings
 from jbf.control.task import Task
 from jbf.control.tuning import friction_level_v, tune
 from jbf.errors import InputError, did_you_mean
-from jbf.model import Model, core_bearing
+from jbf.model import Model, core_bearing, core_load_n
+from jbf.rig import Rig
 
 POSITION_GAINS = (0.43764, -0.25164)
 VELOCITY_GAINS = (1.0, 0.295)
 """k1 (V/rad), k2 (V s/rad) and g, C (V s/rad) of the thesis's control laws."""
+
+LISTED_VOLTS = 0.5 * 104.0 * 0.2245 * 4.0 * 0.547
+"""What a friction coefficient of 1 is in volts in the thesis's listings: 25.5 V, if radius and
+load are in inches and pounds. Newton metres make 2.89 V of the same factors."""
 
 _TABLE_ENTRIES = 64
 
@@ -72,11 +77,16 @@ class Coulomb:
 class Learning:
     """The thesis's learning compensator with the numbers of its programs.
 
-    `volts` is what a friction coefficient of 1 is in volts: 0.5 x 104 x 0.2245 x 4 x 0.547 in the
-    listings. Gains are per step of 2 ms; those left None are the listings'.
+    `volts` is what a friction coefficient of 1 is in volts, by default the bench's own scale; the
+    thesis's listings have `LISTED_VOLTS`. Gains are per step of 2 ms; those left None are the
+    listings', in proportion to the parameters that learning starts from.
     """
 
-    volts: float = 0.5 * 104.0 * 0.2245 * 4.0 * 0.547
+    rig: Rig = THESIS_RIG
+    f_m: float = 0.26
+    u_tr_m_s: float = 0.05
+    eps_tr: float | None = 0.9747
+    volts: float | None = None
     k0: float = 650_000.0
     gamma: float = 33.0
     k0_gain: float | None = None
@@ -86,19 +96,48 @@ class Learning:
     clock: str = "thesis"
     name: str = "learning"
 
+    @classmethod
+    def of(cls, model: Model) -> Learning:
+        """It starts from a fitted model's parameters, effects left out.
+
+        Raises
+        ------
+        InputError
+            The model's law is not the journal's.
+        """
+        if model.law != "journal":
+            raise InputError(
+                problem=f"the learning scheme runs a journal's film, the model's law is {model.law}",
+                mend="choose another scheme",
+            )
+        values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+        return cls(
+            rig=model.rig,
+            f_m=values["f_m"],
+            u_tr_m_s=values["U_tr_m_s"],
+            eps_tr=None,
+            k0=values["K0"],
+            gamma=values["gamma"],
+            k0_bounds=(1e-4 * values["K0"], 1e2 * values["K0"]),
+            gamma_bounds=(1e-4 * values["gamma"], 1e2 * values["gamma"]),
+            clock=model.clock,
+        )
+
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
         """See `Scheme`."""
         k0_gain, gamma_gain = (12_500.0, 0.5) if task.is_position else (15_000.0, 2.0)
+        load_n = core_load_n(self.rig) or 1.0
+        k0_gain, gamma_gain = k0_gain / 650_000.0 * self.k0, gamma_gain / 33.0 * self.gamma
         return {
-            "bearing": {**(core_bearing(THESIS_RIG) or {}), "mass_kg": 2.2727},
-            "load_n": 104.0,
+            "bearing": core_bearing(self.rig) or {},
+            "load_n": load_n,
             "clock": self.clock,
-            "f_m": 0.26,
-            "u_tr_m_s": 0.05,
+            "f_m": self.f_m,
+            "u_tr_m_s": self.u_tr_m_s,
             "k0": self.k0,
             "gamma": self.gamma,
-            "eps_tr": 0.9747,
-            "volts": self.volts,
+            "eps_tr": self.eps_tr,
+            "volts": bench.volts_per_n * load_n if self.volts is None else self.volts,
             "k0_gain": k0_gain if self.k0_gain is None else self.k0_gain,
             "gamma_gain": gamma_gain if self.gamma_gain is None else self.gamma_gain,
             "k0_bounds": self.k0_bounds,
@@ -195,21 +234,25 @@ SCHEMES = ("none", "learning", "coulomb", "table", "repetitive", "observed")
 """Names that `scheme` knows."""
 
 
-def scheme(name: str, model: Model, settings: Settings | None = None) -> Scheme:
-    """The scheme of that name; `model` is the one that a table or the observed compensator carries.
+def scheme(name: str, model: Model | None = None, settings: Settings | None = None) -> Scheme:
+    """The scheme of that name; `model` is what it knows of friction, where it knows any.
+
+    Without a model the learning scheme has the thesis's own numbers, a table and the observed
+    compensator the friction that fits the thesis's bench.
 
     Raises
     ------
     InputError
-        The name is not known.
+        The name is not known, or the scheme does not go with the model's law.
     """
     if name == "table":
-        return Table(model)
+        return Table(thesis_model() if model is None else model)
     if name == "observed":
-        return Observed(model, settings)
-    plain: dict[str, type[NoCompensation | Learning | Coulomb | Repetitive]] = {
+        return Observed(thesis_model() if model is None else model, settings)
+    if name == "learning":
+        return Learning() if model is None else Learning.of(model)
+    plain: dict[str, type[NoCompensation | Coulomb | Repetitive]] = {
         "none": NoCompensation,
-        "learning": Learning,
         "coulomb": Coulomb,
         "repetitive": Repetitive,
     }
@@ -241,6 +284,7 @@ def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any
 
 
 __all__ = [
+    "LISTED_VOLTS",
     "SCHEMES",
     "Coulomb",
     "Learning",

@@ -107,7 +107,7 @@ class Learning:
         """
         if model.law != "journal":
             raise InputError(
-                problem=f"the learning scheme runs a journal's film, the model's law is {model.law}",
+                problem=f"the learning scheme runs the journal's film, this is {model.law}",
                 mend="choose another scheme",
             )
         values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]

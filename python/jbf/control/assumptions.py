@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from jbf.control.bench import ELASTIC, thesis_model
+from jbf.control.bench import thesis_model
 from jbf.control.schemes import LISTED_VOLTS, Coulomb, Learning
 from jbf.control.task import TASKS
 from jbf.control.thesis_tables import Tables, fit_friction, standard_schemes, tables
@@ -68,10 +68,6 @@ def on_the_journal_clock(report: Report | None = None) -> float:
 
 
 def _with_elastic(model: Model, what: str) -> Model:
-    bend = {name for names in ELASTIC.values() for name in names}
-    own = {
-        n: p.value  # type: ignore[union-attr]
-        for n, p in model.parameters.items()
-        if n not in bend and n != "f_m" and "." not in n
-    }
-    return thesis_model(elastic=what, **own)
+    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    u_tr, k0, gamma = (values[n] for n in ("U_tr_m_s", "K0", "gamma"))
+    return thesis_model(elastic=what, U_tr_m_s=u_tr, K0=k0, gamma=gamma)

@@ -79,8 +79,9 @@ def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:
     dress(friction, "Friction", "", "Friction (V)" if first else "")
     _learned(learned, r, t, stride)
     if first:
-        for ax in (top, friction):
-            ax.legend(loc="upper right", fontsize="x-small", frameon=False)
+        top.legend(loc="upper right", fontsize="x-small", frameon=False)
+    if r.scheme != "none":
+        friction.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
 
 
 def _learned(ax: Axes, r: Result, t: Array, stride: int) -> None:
@@ -110,8 +111,10 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
     for i, column in enumerate(there):
         at = np.arange(len(rows)) + (i - (len(there) - 1) / 2.0) * 0.2
         cells = [tables[row, column] for row in rows]
-        label = f"{column}, bench"
-        ax.bar(at, [c.rms for c in cells], 0.17, color=colours[column], alpha=0.85, label=label)
+        ours = column not in COLUMNS
+        label = f"{column}, true error" if ours else f"{column}, bench"
+        heights = [c.true_rms if ours else c.rms for c in cells]
+        ax.bar(at, heights, 0.17, color=colours[column], alpha=0.85, label=label)
         if column in COLUMNS:
             known = [(x, c.printed_rms) for x, c in zip(at, cells, strict=True) if c.printed_rms]
             ax.plot(
@@ -125,7 +128,7 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
     ax.set_yscale("log")
     ax.set_xticks(range(len(rows)), [row.replace(" ", "\n", 1) for row in rows])
     dress(ax, "RMS error: bench (bars) and thesis (diamonds)", "", "rad or rad/s")
-    ax.legend(ncols=3, fontsize="small", frameon=False, loc="upper right")
+    made.legend(ncols=5, fontsize="small", frameon=False, loc="outside lower center")
     return made
 
 

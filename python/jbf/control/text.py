@@ -97,7 +97,6 @@ def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
         coulomb = " ".join(_ratio(c) for c in tables.column("coulomb"))
         rows.append((name, learning, coulomb, str(tables.within(2.0)), str(tables.within(1.5))))
     head = "Other assumptions: ratios of the RMS, row by row, and cells within a factor"
-    )
     return "\n".join([head, "", *columns(rows, "<<<>>")])
 
 

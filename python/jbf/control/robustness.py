@@ -14,6 +14,7 @@ from jbf.catalogue import effects, laws
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model, with_noise
 from jbf.control.run import run
 from jbf.control.schemes import NoCompensation, Observed, Scheme
+from jbf.control.settings import Settings
 from jbf.control.task import TASKS, Task
 from jbf.control.tuning import tune
 from jbf.model import Model
@@ -114,6 +115,9 @@ class _Told:
 
     def core(self, task: Task, bench: Bench) -> dict[str, object]:
         return self._scheme.core(task, self._bench)
+
+    def guard(self, bench: Bench) -> Settings | None:
+        return self._scheme.guard(self._bench)
 
 
 def robustness(

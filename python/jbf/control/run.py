@@ -135,8 +135,8 @@ def run(
     settings
         Of the observed compensator; from `tune(carried, bench)` by default.
     guard
-        Settings whose `moving_v` and `patience_s` guard the loop; `settings` by default, and none
-        at all for the thesis's schemes.
+        Settings whose `moving_v` and `patience_s` guard the loop; the observed compensator's own
+        by default, none at all for the thesis's schemes.
     load_n
         Load on one bearing, N: a number, or one value a step; the model's own by default.
     reference
@@ -167,7 +167,7 @@ def run(
     try:
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
-            core_loop(task, bench, settings if guard is None else guard),
+            core_loop(task, bench, chosen.guard(bench) if guard is None else guard),
             chosen.core(task, bench),
             value,
             rate,

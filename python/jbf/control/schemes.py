@@ -39,9 +39,21 @@ class Scheme(Protocol):
         """What the core's compensator is built from."""
         ...
 
+    def guard(self, bench: Bench) -> Settings | None:
+        """Settings whose `moving_v` and `patience_s` guard the loop; None for no guard."""
+        ...
+
+
+class _Unguarded:
+    """Nothing but a jump of the counter stops it, as in the thesis."""
+
+    def guard(self, bench: Bench) -> Settings | None:
+        """See `Scheme`."""
+        return None
+
 
 @dataclass(frozen=True)
-class NoCompensation:
+class NoCompensation(_Unguarded):
     """The control law alone."""
 
     name: str = "none"
@@ -52,7 +64,7 @@ class NoCompensation:
 
 
 @dataclass(frozen=True)
-class Coulomb:
+class Coulomb(_Unguarded):
     """The Coulomb friction observer, (6.1): gain k_F, exponent p, the most it may learn."""
 
     gain: float = 0.01
@@ -74,7 +86,7 @@ class Coulomb:
 
 
 @dataclass(frozen=True)
-class Learning:
+class Learning(_Unguarded):
     """The thesis's learning compensator with the numbers of its programs.
 
     `volts` is what a friction coefficient of 1 is in volts, by default the bench's own scale; the
@@ -148,7 +160,7 @@ class Learning:
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(_Unguarded):
     """A look-up table of the model's steady friction against speed."""
 
     model: Model
@@ -170,7 +182,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Repetitive:
+class Repetitive(_Unguarded):
     """Learning from lap to lap: gain in volts per unit of error, smoothing, lead, limit."""
 
     gain: float | None = None
@@ -203,9 +215,13 @@ class Observed:
     start: tuple[float, float] = (0.0, 0.0)
     name: str = "observed"
 
+    def guard(self, bench: Bench) -> Settings:
+        """See `Scheme`."""
+        return tune(self.model, bench) if self.settings is None else self.settings
+
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
         """See `Scheme`."""
-        s = tune(self.model, bench) if self.settings is None else self.settings
+        s = self.guard(bench)
         w, b = s.loop_rad_s, bench.input_rad_s2_v
         stiffer = (0.0, 0.0)
         if task.is_position:

@@ -51,14 +51,14 @@ lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-	$(VENV)/bin/ruff check python simulator benches docs
-	$(VENV)/bin/ruff format --check python simulator benches docs
+	$(VENV)/bin/ruff check python simulator benches docs examples
+	$(VENV)/bin/ruff format --check python simulator benches docs examples
 	$(VENV)/bin/mypy
 
 format: $(BUILT)
 	$(RUSTFMT) $$($(RUST_FILES))
-	$(VENV)/bin/ruff check --fix python simulator benches docs
-	$(VENV)/bin/ruff format python simulator benches docs
+	$(VENV)/bin/ruff check --fix python simulator benches docs examples
+	$(VENV)/bin/ruff format python simulator benches docs examples
 
 bench:
 	cargo bench -p jbf-benches --bench '*'

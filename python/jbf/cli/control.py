@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from jbf.control.thesis_tables import Tables
     from jbf.model import Model
 
+_DEFAULT = "none,learning,coulomb,observed"
+
 
 def add(commands: Commands) -> None:
     """Put the commands on the command line."""
@@ -49,9 +51,8 @@ def _add_run(actions: Commands) -> None:
     parser.add_argument(
         "--scheme",
         metavar="A,B",
-        default="none,learning,coulomb,observed",
         help="of none, learning, coulomb, table, repetitive, observed; all but table and "
-        "repetitive by default",
+        "repetitive by default, and learning only for the journal law",
     )
     parser.add_argument(
         "--carried", metavar="MODEL", help="what the compensator believes; the true model"
@@ -75,6 +76,19 @@ def _model(path: str | None) -> Model:
     return thesis_model() if path is None else inputs.model(path)
 
 
+def _check_picture(path: str | None) -> None:
+    """Before the work: can such a picture be written?"""
+    if path is None:
+        return
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    kind = path.rpartition(".")[2].lower()
+    if kind not in FigureCanvasBase.get_supported_filetypes():
+        raise InputError(
+            file=f"--plot {path}", problem="is no picture", mend="name a png, svg or pdf file"
+        )
+
+
 def _save(figure: Any, path: str | None) -> None:
     if path is None:
         return
@@ -92,8 +106,17 @@ def _run(arguments: argparse.Namespace) -> int:
     from jbf.control.text import runs_text
 
     wanted = {"--plot": arguments.plot, "--out": arguments.out}
-    outputs.check(wanted, [p for p in (arguments.model, arguments.carried) if p])
-    names = [name.strip() for name in arguments.scheme.split(",") if name.strip()]
+    inputs = (arguments.model, arguments.carried, arguments.settings)
+    outputs.check(wanted, [p for p in inputs if p])
+    _check_picture(arguments.plot)
+    asked = arguments.scheme
+    if asked is None:
+        asked = _DEFAULT
+        if arguments.model and _model(arguments.carried or arguments.model).law != "journal":
+            asked = asked.replace("learning,", "")
+    names = [name.strip() for name in asked.split(",") if name.strip()]
+    if not names:
+        raise InputError(problem="--scheme names none", mend="name one: --scheme observed")
     if arguments.out and len(names) != 1:
         raise InputError(
             problem=f"--out takes one scheme, not {len(names)}", mend="name one: --scheme observed"
@@ -146,6 +169,7 @@ def _tables(arguments: argparse.Namespace) -> int:
 
     wanted = {"--json": arguments.json, "--plot": arguments.plot}
     outputs.check(wanted)
+    _check_picture(arguments.plot)
     with shown("the bench's friction") as report:
         model, bench = fit_friction(report=report)
         both = tables(model, bench, report=report)
@@ -207,6 +231,7 @@ def _robustness(arguments: argparse.Namespace) -> int:
 
     wanted = {"--json": arguments.json, "--plot": arguments.plot}
     outputs.check(wanted, [arguments.model] if arguments.model else [])
+    _check_picture(arguments.plot)
     base = thesis_model(elastic="nothing") if arguments.model is None else _model(arguments.model)
     with shown("robustness") as report:
         found = robustness(base, bench_of(arguments), report=report)

@@ -59,6 +59,10 @@ class Bench:
         for name in ("input_noise_v", "encoder_noise_counts", "stood_s"):
             if not 0.0 <= getattr(self, name) < float("inf"):
                 raise _wrong(name, getattr(self, name), "zero or above, and finite")
+        if not 0 <= self.seed < 2**64:
+            raise _wrong("seed", self.seed, "between 0 and 2^64 - 1")
+        if not 8 <= self.counter_bits <= 32:
+            raise _wrong("counter_bits", self.counter_bits, "between 8 and 32")
 
     def core(self, model: Model) -> dict[str, Any]:
         """What the core's bench is built from."""

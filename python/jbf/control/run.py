@@ -178,7 +178,10 @@ def run(
     except (ValueError, OverflowError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(problem=str(error), mend="correct it") from None
+        mend = "correct it"
+        if str(error).startswith("top_speed_rad_s"):
+            mend = "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
+        raise InputError(problem=str(error), mend=mend) from None
     time_s = np.arange(n, dtype=np.float64) * bench.dt_s
     return Result(task, chosen.name, time_s, value, **arrays)
 

@@ -19,6 +19,9 @@ from jbf.record import Run
 _SHARE_OF_SAMPLING = 0.12
 """Observer's bandwidth times the step: its delay of half a step then costs 3.4 degrees."""
 
+_MOTOR_SHARE = 0.1
+"""Share of the largest voltage by which a motor may be another than it is said to be."""
+
 _NOISE_SHARE = 0.01
 """Share of the friction level that noise may make of the output."""
 
@@ -71,9 +74,10 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
     return Settings(
         bandwidth_rad_s=bandwidth,
         learning_1_s=bandwidth / 30.0,
-        # Friction may be nothing or twice what the model says; so may whatever else there is.
+        # Friction may be nothing or twice what the model says. Whatever else there is may be as
+        # much, and what a motor lacks or has over that is not the one of the data sheet.
         level_limit_v=level_v,
-        rest_limit_v=level_v,
+        rest_limit_v=level_v + _MOTOR_SHARE * bench.limit_v,
         slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
         loop_rad_s=bandwidth / 2.0,
         breakaway=1.0,

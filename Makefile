@@ -41,6 +41,7 @@ demo: $(BUILT)
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py
+	cargo test -p jbf-core --features serde --test serde_state
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 test-slow: $(BUILT)

@@ -1,4 +1,4 @@
-"""Time of `jbf.control.run` for 100 s of loop at 2 ms, 50,000 steps, plant and log included.
+"""Processor time of `jbf.control.run` for 100 s of loop at 2 ms (50,000 steps), plant and log too.
 
 `python benches/control_runs.py` prints the middle and the least of several runs by scheme. The
 task is the velocity sine of Table 6.2, the bench the thesis's with its elastic belt; `rigid` has
@@ -40,9 +40,9 @@ def main() -> None:
         for model in benches.values():
             times = []
             for _ in range(RUNS):
-                begin = time.perf_counter()
+                begin = time.process_time()
                 control.run(model, scheme, TASK)
-                times.append(1e3 * (time.perf_counter() - begin))
+                times.append(1e3 * (time.process_time() - begin))
             cells.append(f"{statistics.median(times):.1f} ({min(times):.1f})")
         print(f"| `{scheme}` | " + " | ".join(cells) + " |")
 

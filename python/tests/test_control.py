@@ -11,6 +11,7 @@ from jbf import InputError, Model, Rig, control
 from jbf.control import TASKS, THESIS_BENCH, Learning, Observed, run, thesis_model
 from jbf.control.bench import with_noise
 from jbf.control.run import FALLBACK, FROZEN, JUMPED
+from jbf.control.schemes import gains
 
 QUIET = replace(THESIS_BENCH, input_noise_v=0.0)
 SHORT = replace(TASKS["velocity sine"], seconds=27.0)
@@ -64,6 +65,26 @@ def test_ours_is_better_than_both_of_the_thesis(row: str) -> None:
         run(None, s, TASKS[row]).true_rms for s in ("learning", "coulomb", "observed")
     )
     assert min(learning, coulomb) / ours > (1.3 if row == "position square" else 2.0)
+
+
+def test_another_drive_has_the_same_poles() -> None:
+    drive = replace(THESIS_BENCH, damping_1_s=10.0, input_rad_s2_v=100.0)
+    k1, k2 = gains(TASKS["position sine"], drive)
+    a, b = drive.damping_1_s, drive.input_rad_s2_v
+    poles = np.sort_complex(np.roots([1.0, a + b * k2, b * k1]))
+    assert np.allclose(poles, [-10.0 - 10.0j, -10.0 + 10.0j])
+    errors = [run(None, s, SHORT, bench=drive).true_rms for s in ("none", "observed")]
+    assert errors[1] < 0.1 * errors[0]
+
+
+def test_a_loop_may_be_told_of_another_drive() -> None:
+    weak = replace(THESIS_BENCH, input_rad_s2_v=380.0)
+    knows = run(None, "observed", SHORT, bench=weak)
+    told = run(None, "observed", SHORT, bench=weak, told=THESIS_BENCH)
+    assert not np.array_equal(knows.output_v, told.output_v)
+    assert told.true_rms < 0.1 * run(None, "none", SHORT, bench=weak, told=THESIS_BENCH).true_rms
+    with pytest.raises(InputError, match="steps"):
+        run(None, "none", SHORT, told=replace(THESIS_BENCH, dt_s=0.001))
 
 
 def test_in_single_precision_too() -> None:

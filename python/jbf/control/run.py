@@ -109,6 +109,7 @@ def run(
     task: Task = TASKS["velocity sine"],
     *,
     bench: Bench = THESIS_BENCH,
+    told: Bench | None = None,
     carried: Model | None = None,
     settings: Settings | None = None,
     guard: Settings | None = None,
@@ -130,10 +131,12 @@ def run(
         Reference, control law and length.
     bench
         Motor, shaft, encoder, noise.
+    told
+        The bench that control law, observer and compensator believe in; the true one by default.
     carried
         The model that the compensator carries; the true one by default.
     settings
-        Of the observed compensator; from `tune(carried, bench)` by default.
+        Of the observed compensator; from `tune(carried, told)` by default.
     guard
         Settings whose `moving_v` and `patience_s` guard the loop; the observed compensator's own
         by default, none at all for the thesis's schemes.
@@ -155,6 +158,9 @@ def run(
     """
     truth = thesis_model() if model is None else model
     chosen = _scheme(scheme, model if carried is None else carried, settings)
+    believed = bench if told is None else told
+    if believed.dt_s != bench.dt_s:
+        raise InputError(problem="the two benches have different steps", mend="give both one dt_s")
     n = max(round(task.seconds / bench.dt_s), 1)
     value, rate = _reference(task, bench, n, reference)
     n = len(value)
@@ -167,8 +173,8 @@ def run(
     try:
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
-            core_loop(task, bench, chosen.guard(bench) if guard is None else guard),
-            chosen.core(task, bench),
+            core_loop(task, believed, chosen.guard(believed) if guard is None else guard),
+            chosen.core(task, believed),
             value,
             rate,
             load,

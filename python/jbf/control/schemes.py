@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from jbf.control.bench import THESIS_RIG, Bench, core_model, thesis_model
+from jbf.control.bench import THESIS_BENCH, THESIS_RIG, Bench, core_model, thesis_model
 from jbf.control.settings import Settings
 from jbf.control.task import Task
 from jbf.control.tuning import friction_level_v, tune
@@ -19,6 +19,11 @@ from jbf.rig import Rig
 POSITION_GAINS = (0.43764, -0.25164)
 VELOCITY_GAINS = (1.0, 0.295)
 """k1 (V/rad), k2 (V s/rad) and g, C (V s/rad) of the thesis's control laws."""
+
+OBSERVER_1_S = 15.0
+"""Gain of the thesis's velocity observer."""
+
+_THESIS_DRIVE = (THESIS_BENCH.damping_1_s, THESIS_BENCH.input_rad_s2_v)
 
 LISTED_VOLTS = 0.5 * 104.0 * 0.2245 * 4.0 * 0.547
 """What a friction coefficient of 1 is in volts in the thesis's listings: 25.5 V, if radius and
@@ -194,8 +199,9 @@ class Repetitive(_Unguarded):
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
         """See `Scheme`."""
         # Half of what the loop's stiffness against a steady disturbance would take.
-        g, c = VELOCITY_GAINS
-        stiffness = 2.0 if task.is_position else g + c
+        g, c = gains(task, bench)
+        stuck = bench.input_rad_s2_v / (bench.damping_1_s + OBSERVER_1_S)
+        stiffness = g / (1.0 + c * stuck) if task.is_position else g + c
         lead = (0.1 if task.is_position else 0.02) if self.lead_s is None else self.lead_s
         return {
             "steps_per_lap": round(task.period_s / bench.dt_s),
@@ -223,10 +229,11 @@ class Observed:
         """See `Scheme`."""
         s = self.guard(bench)
         w, b = s.loop_rad_s, bench.input_rad_s2_v
+        law = gains(task, bench)
         stiffer = (0.0, 0.0)
         if task.is_position:
             wanted = (w * w / b, (w * math.sqrt(2.0) - bench.damping_1_s) / b)
-            stiffer = (wanted[0] - POSITION_GAINS[0], wanted[1] - POSITION_GAINS[1])
+            stiffer = (wanted[0] - law[0], wanted[1] - law[1])
         return {
             "model": core_model(self.model),
             "volts_per_n": bench.volts_per_n,
@@ -241,7 +248,7 @@ class Observed:
             "breakaway": s.breakaway,
             "stiffer_v_rad": stiffer[0],
             "stiffer_v_s_rad": stiffer[1],
-            "law_forward_v_s_rad": -POSITION_GAINS[1] if task.is_position else VELOCITY_GAINS[1],
+            "law_forward_v_s_rad": -law[1] if task.is_position else law[1],
             "start": self.start,
         }
 
@@ -277,6 +284,16 @@ def scheme(name: str, model: Model | None = None, settings: Settings | None = No
     return plain[name]()
 
 
+def gains(task: Task, bench: Bench) -> tuple[float, float]:
+    """Gains of the control law: the thesis's, on another drive those with the same poles."""
+    a, b = bench.damping_1_s, bench.input_rad_s2_v
+    if (a, b) == _THESIS_DRIVE:
+        return POSITION_GAINS if task.is_position else VELOCITY_GAINS
+    if task.is_position:
+        return 200.0 / b, (20.0 - a) / b
+    return _THESIS_DRIVE[1] / b, a / b
+
+
 def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any]:
     """Encoder, velocity observer, control law and limits of the loop.
 
@@ -286,8 +303,8 @@ def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any
     return {
         "dt_s": bench.dt_s,
         "position": position,
-        "gains": POSITION_GAINS if position else VELOCITY_GAINS,
-        "observer_1_s": 15.0,
+        "gains": gains(task, bench),
+        "observer_1_s": OBSERVER_1_S,
         "observer_damping_1_s": bench.damping_1_s if position else 0.0,
         "observer_input_rad_s2_v": bench.input_rad_s2_v if position else 0.0,
         "counts_per_rad": bench.counts_per_rad,

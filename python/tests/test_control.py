@@ -67,6 +67,13 @@ def test_ours_is_better_than_both_of_the_thesis(row: str) -> None:
     assert min(learning, coulomb) / ours > (1.3 if row == "position square" else 2.0)
 
 
+@pytest.mark.parametrize("row", ["position sine", "velocity sine", "velocity triangle"])
+def test_a_table_does_not_hunt(row: str) -> None:
+    model = Model(Rig.thesis("4.2"))
+    none, table = (run(model, s, TASKS[row]).true_rms for s in ("none", "table"))
+    assert table < 0.5 * none
+
+
 def test_another_drive_has_the_same_poles() -> None:
     drive = replace(THESIS_BENCH, damping_1_s=10.0, input_rad_s2_v=100.0)
     k1, k2 = gains(TASKS["position sine"], drive)

@@ -166,7 +166,7 @@ class Learning(_Unguarded):
 
 @dataclass(frozen=True)
 class Table(_Unguarded):
-    """A look-up table of the model's steady friction against speed."""
+    """A look-up table of the model's steady friction against speed, from zero at rest."""
 
     model: Model
     name: str = "table"
@@ -178,6 +178,8 @@ class Table(_Unguarded):
         width = max(task.top_speed_rad_s, 1.0) / (_TABLE_ENTRIES - 1)
         speeds = np.maximum(np.arange(_TABLE_ENTRIES) * width, 1e-3 * width) * radius_m
         levels = self.model.steady_friction(speeds) * bench.volts_per_n
+        # A ramp through rest: the full level with the sign of an estimate would hunt there.
+        levels[0] = 0.0
         return {
             "levels_v": levels.tolist(),
             "by_angle": False,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -71,6 +73,21 @@ def test_tables(capsys: pytest.CaptureFixture[str]) -> None:
     out = capsys.readouterr().out
     assert "of 13 cells" in out
     assert "in 7 of 7 rows" in out
+
+
+def _documented() -> list[str]:
+    """The commands of docs/control.md, but for the tables, which take their time."""
+    page = Path(__file__).resolve().parents[2] / "docs" / "control.md"
+    text = page.read_text(encoding="utf-8").replace("\n--counts", " --counts")
+    found = re.findall(r"^jbf (control (?:run|tune|robustness)[^#\n]*)", text, re.MULTILINE)
+    return found + re.findall(r"`jbf (control run model.toml --damping[^`]*)`", text)
+
+
+@pytest.mark.parametrize("command", _documented())
+def test_the_commands_of_the_docs(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Model(Rig.thesis("4.2")).save("bare.toml")
+    assert main(shlex.split(command)) == 0
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize(

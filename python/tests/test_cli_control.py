@@ -70,6 +70,8 @@ def test_tables(capsys: pytest.CaptureFixture[str]) -> None:
     told = json.loads(Path("t.json").read_text())
     assert told["within_2"] >= 12
     assert len(told["cells"]) == 28
+    assert min(told["times_better"].values()) > 1.3
+    assert {"scale 3.5 V", "scale 25.5 V, as listed"} <= {a["name"] for a in told["assumptions"]}
     out = capsys.readouterr().out
     assert "of 13 cells" in out
     assert "in 7 of 7 rows" in out

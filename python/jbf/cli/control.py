@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -191,7 +192,7 @@ def _tables(arguments: argparse.Namespace) -> int:
         "cells that are off are off.",
     ]
     if arguments.json:
-        outputs.write({arguments.json: outputs.json_text(_json(both))})
+        outputs.write({arguments.json: outputs.json_text(_json(both, others))})
     if arguments.plot:
         from jbf.control.plots import plot_tables
 
@@ -200,13 +201,23 @@ def _tables(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _json(tables: Tables) -> dict[str, Any]:
+def _json(tables: Tables, others: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
     values = {n: p.value for n, p in tables.model.parameters.items()}  # type: ignore[union-attr]
     return {
         "friction": {"volts_per_n": tables.bench.volts_per_n, **values},
         "cells": [{**asdict(cell), "ratio": cell.ratio} for cell in tables.cells.values()],
         "within_2": tables.within(2.0),
         "within_1.5": tables.within(1.5),
+        "times_better": tables.gains(),
+        "assumptions": [
+            {
+                "name": name,
+                "ratios": {f"{c.row}, {c.column}": c.ratio for c in other.predicted},
+                "within_2": other.within(2.0),
+                "within_1.5": other.within(1.5),
+            }
+            for name, other in others
+        ],
     }
 
 

@@ -22,6 +22,7 @@ from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
+    from jbf import control
     from jbf.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, diagnose
     from jbf.fitting import Fit, fit
@@ -55,6 +56,7 @@ __all__ = [
     "__version__",
     "batch",
     "compare",
+    "control",
     "diagnose",
     "effects",
     "fit",
@@ -71,6 +73,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "control":
+        return import_module("jbf.control")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")
     value = getattr(import_module(_LATER[name]), name)

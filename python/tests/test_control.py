@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +17,12 @@ from jbf.control.schemes import gains
 
 QUIET = replace(THESIS_BENCH, input_noise_v=0.0)
 SHORT = replace(TASKS["velocity sine"], seconds=27.0)
+
+
+def test_a_user_needs_one_import() -> None:
+    code = "import jbf; print(jbf.control.run(scheme='none').rms > 0.1)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout == "True\n"
 
 
 def test_the_same_seed_gives_the_same_run_and_another_seed_another() -> None:

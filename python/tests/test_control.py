@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jbf import InputError, Model, Rig, control
+from jbf import InputError, Model, Parameter, Rig, control, forget_effect, register_effect
 from jbf.control import TASKS, THESIS_BENCH, Learning, Observed, run, thesis_model
 from jbf.control.bench import with_noise
+from jbf.control.robustness import cases
 from jbf.control.run import FALLBACK, FROZEN, JUMPED
 from jbf.control.schemes import gains
 
@@ -215,6 +216,18 @@ def test_what_was_learned_can_be_started_from() -> None:
 def test_a_bench_that_is_none(change: dict[str, float], word: str) -> None:
     with pytest.raises(InputError, match=word):
         replace(THESIS_BENCH, **change)  # type: ignore[arg-type]
+
+
+def test_an_effect_of_ones_own_is_no_loops() -> None:
+    drag = Parameter("c", "N s/m", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
+    register_effect(lambda velocity_m_s, c: c * velocity_m_s, name="my_drag", parameters=[drag])
+    try:
+        model = Model(Rig.thesis(), effects=["my_drag"])
+        with pytest.raises(InputError, match="my_drag is an effect of your own"):
+            run(model, "none", SHORT)
+        assert all("my_drag" not in case.name for case in cases(Model(Rig.thesis())))
+    finally:
+        forget_effect("my_drag")
 
 
 def test_references_and_loads_of_the_wrong_length_or_kind() -> None:

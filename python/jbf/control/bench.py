@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
+from jbf import catalogue
 from jbf.errors import InputError
 from jbf.model import Model, core_bearing, core_load_n
+from jbf.own_effects import OwnEffect
 from jbf.rig import Bearing, Load, Lubricant, Rig
 
 if TYPE_CHECKING:
@@ -87,7 +89,20 @@ def _wrong(name: str, value: float, rule: str) -> InputError:
 
 
 def core_model(model: Model) -> dict[str, Any]:
-    """A model as the core's bench and compensators take it."""
+    """A model as the core's bench and compensators take it.
+
+    Raises
+    ------
+    InputError
+        It has an effect of one's own, which is Python and cannot run in a loop.
+    """
+    pages = catalogue.effects()
+    own_effects = [name for name in model.effects if isinstance(pages.get(name), OwnEffect)]
+    if own_effects:
+        raise InputError(
+            problem=f"{own_effects[0]} is an effect of your own: it runs in Python, not in a loop",
+            mend="fit a model without it, or write it for the core (ARCHITECTURE.md)",
+        )
     values = [p.value for p in model.parameters.values()]  # type: ignore[union-attr]
     names = list(model.parameters)
     own = [v for n, v in zip(names, values, strict=True) if "." not in n]

@@ -21,6 +21,7 @@ from jbf.control.task import TASKS, Task
 from jbf.control.tuning import tune
 from jbf.fitting import fit
 from jbf.model import Model
+from jbf.own_effects import OwnEffect
 from jbf.record import Run
 from jbf.rig import Lubricant
 
@@ -86,7 +87,8 @@ class Outcome:
 def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     """Every way in which the model is made wrong."""
     for name, page in effects().items():
-        if base.law in page.refused or name in base.effects:
+        own = isinstance(page, OwnEffect)
+        if own or base.law in page.refused or name in base.effects:
             continue
         strong = STRONG.get(name, {})
         known = {p.name for p in page.parameters}

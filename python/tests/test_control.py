@@ -160,6 +160,14 @@ def test_no_effect_harms_at_four_times_the_noise() -> None:
     assert {o.name for o in found if o.worst > HARM} == set()
 
 
+@pytest.mark.parametrize("counts_per_rad", [652.0, 100.0, 30.0])
+def test_a_coarse_encoder_does_no_harm(counts_per_rad: float) -> None:
+    bench = replace(THESIS_BENCH, counts_per_rad=counts_per_rad)
+    for row in ("position square", "position sine", "velocity triangle"):
+        none, ours = (run(None, s, TASKS[row], bench=bench).true_rms for s in ("none", "observed"))
+        assert ours < none, row
+
+
 def test_the_learning_scheme_takes_a_fitted_model() -> None:
     model = Model(Rig.thesis("4.2"))
     errors = [run(model, s, SHORT).true_rms for s in ("none", "learning")]

@@ -23,6 +23,9 @@ _SHARE_OF_SAMPLING = 0.12
 _MOTOR_SHARE = 0.1
 """Share of the largest voltage by which a motor may be another than it is said to be."""
 
+LAW_RAD_S = math.sqrt(200.0)
+"""Natural frequency of the position law, whose poles are at -10 +- 10i."""
+
 _MOST_LEVELS = 256
 
 _NOISE_SHARE = 0.01
@@ -97,7 +100,8 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
         level_limit_v=level_v,
         rest_limit_v=level_v + _MOTOR_SHARE * bench.limit_v,
         slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
-        loop_rad_s=bandwidth / 2.0,
+        # An encoder too coarse for a stiffer loop is no reason for a softer one.
+        loop_rad_s=max(bandwidth / 2.0, LAW_RAD_S),
         breakaway=1.0,
         moving_v=min(2.5 * level_v, bench.limit_v),
         patience_s=50.0 * bench.dt_s,

@@ -28,7 +28,7 @@ def measure(truth: jbf.Model, rng: np.random.Generator) -> list[jbf.Run]:
     """Four records at 50 samples/s with 1.5 % of noise on friction: what a rig would give."""
     runs = []
     for i, (frequency, middle) in enumerate([(0.1, 0.0), (0.25, 0.0), (1.0, 0.0), (0.25, 0.03)]):
-        time_s = np.arange(0.0, min(2.0 * 2.0 * np.pi / frequency, 60.0), 0.02)
+        time_s = np.arange(0.0, min(4.0 * np.pi / frequency, 40.0), 0.02)
         speed = middle + 0.1 * np.sin(frequency * time_s)
         way = middle * time_s + 0.1 / frequency * (1.0 - np.cos(frequency * time_s))
         name, radius = f"run{i + 1}", 0.0127

@@ -57,7 +57,7 @@ def test_tuned_settings_go_back_into_a_run(capsys: pytest.CaptureFixture[str]) -
 
 
 def test_robustness_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["control", "robustness", "lugre.toml", "--json", "r.json"]) == 0
+    assert main(["control", "robustness", "model.toml", "--json", "r.json"]) == 0
     cases = json.loads(Path("r.json").read_text())["cases"]
     assert {"name", "ratios", "worst", "verdict"} <= set(cases[0])
     assert {c["verdict"] for c in cases} <= {"help", "neutral"}
@@ -78,10 +78,10 @@ def test_tables(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def _documented() -> list[str]:
-    """The commands of docs/control.md, but for the tables, which take their time."""
+    """The commands of docs/control.md, but for those that take their time."""
     page = Path(__file__).resolve().parents[2] / "docs" / "control.md"
     text = page.read_text(encoding="utf-8").replace("\n--counts", " --counts")
-    found = re.findall(r"^jbf (control (?:run|tune|robustness)[^#\n]*)", text, re.MULTILINE)
+    found = re.findall(r"^jbf (control (?:run|tune)[^#\n]*)", text, re.MULTILINE)
     return found + re.findall(r"`jbf (control run model.toml --damping[^`]*)`", text)
 
 

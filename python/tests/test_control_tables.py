@@ -13,7 +13,7 @@ from jbf.control.thesis_tables import Tables, fit_friction, standard_schemes, ta
 
 @pytest.fixture(scope="module")
 def both() -> Tables:
-    return tables(thesis_model(), THESIS_BENCH, seeds=2)
+    return tables(thesis_model(), THESIS_BENCH, seeds=1)
 
 
 def test_the_fitted_column(both: Tables) -> None:

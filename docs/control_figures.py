@@ -23,7 +23,7 @@ def ablation() -> None:
     """What each part of the observed compensator is worth."""
     model, rigid = thesis_model(), thesis_model(elastic="nothing")
     settings = tune(model)
-    unlimited = {
+    variants = {
         "observed": Observed(model),
         "with the thesis's position gains": Observed(
             model, replace(settings, loop_rad_s=LAW_RAD_S)
@@ -32,14 +32,14 @@ def ablation() -> None:
         "the observer without a model": Observed(
             thesis_model(elastic="nothing", f_m=1e-4, gamma=1e-3), settings
         ),
-        "the model without the observer": Observed(
+        "the model, no disturbance learned": Observed(
             model, replace(settings, level_limit_v=0.0, rest_limit_v=0.0)
         ),
     }
     best = [min(run(None, s, t).true_rms for s in ("learning", "coulomb")) for t in TASKS.values()]
     print("| | " + " | ".join(TASKS) + " |")
     print("| better of the thesis's two | " + " | ".join(f"{e:.3g}" for e in best) + " |")
-    for name, scheme in unlimited.items():
+    for name, scheme in variants.items():
         errors = (run(None, scheme, task).true_rms for task in TASKS.values())
         print(f"| {name} | " + " | ".join(f"{e:.3g}" for e in errors) + " |")
 

@@ -42,9 +42,11 @@ demo: $(BUILT)
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py
+	cargo test -p jbf-core --features serde --test serde_state
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 test-slow: $(BUILT)
+	cargo test --release -p jbf-core --test control_tracking -- --ignored
 	$(VENV)/bin/python -m pytest -n auto -m slow
 
 # rustfmt does not follow the macro that declares the effects, so it is given every file.

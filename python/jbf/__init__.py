@@ -22,6 +22,7 @@ from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
+    from jbf import control
     from jbf.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
     from jbf.fitting import Fit, fit
@@ -64,6 +65,7 @@ __all__ = [
     "__version__",
     "batch",
     "compare",
+    "control",
     "diagnose",
     "diagnose_many",
     "effects",
@@ -82,6 +84,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "control":
+        return import_module("jbf.control")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")
     value = getattr(import_module(_LATER[name]), name)

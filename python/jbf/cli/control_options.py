@@ -35,8 +35,6 @@ def bench_of(arguments: argparse.Namespace) -> Bench:
 
     names = ("volts_per_n", "damping_1_s", "input_rad_s2_v", "counts_per_rad", "limit_v", "seed")
     given = {n: getattr(arguments, n) for n in names if getattr(arguments, n) is not None}
-    if given.get("seed", 0) < 0:
-        raise InputError(problem="--seed is negative", mend="give zero or more")
     bench = replace(THESIS_BENCH, **given)
     times = arguments.noise_times
     if times is None:

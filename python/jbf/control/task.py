@@ -10,6 +10,8 @@ from jbf.errors import InputError, did_you_mean
 
 WAVES = ("sine", "triangle", "square")
 
+_FARTHEST = 1e6
+
 
 @dataclass(frozen=True)
 class Task:
@@ -36,9 +38,10 @@ class Task:
             raise InputError(
                 problem=f'there is no wave "{self.wave}"', mend=did_you_mean(self.wave, WAVES)
             )
-        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+        if not -_FARTHEST <= self.low < self.high <= _FARTHEST:
             raise InputError(
-                problem=f"low {self.low} is not below high {self.high}", mend="give both, finite"
+                problem=f"low {self.low} and high {self.high} are no range",
+                mend="give low below high, within a million either way",
             )
         if not 0.0 < self.frequency_rad_s < math.inf:
             raise InputError(

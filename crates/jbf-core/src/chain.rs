@@ -41,7 +41,10 @@ pub struct State<T: Real, S, O: Own<T> = Nothing> {
     /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
     /// friction of any other, unsigned.
     magnitude: T,
+    /// What holds the journal now, and what did a step ago; how long that step was, s.
     resistance: Resistance<T>,
+    resistance_before: Resistance<T>,
+    step_before_s: f64,
     power_w: T,
     /// The part of the force that jumps when a rigid journal turns round, N, unsigned.
     jump_n: T,
@@ -108,10 +111,9 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             journal,
             film_speed_m_s: T::ZERO,
             magnitude: T::ZERO,
-            resistance: Resistance {
-                level_n: T::ZERO,
-                slope_n_s_m: T::ZERO,
-            },
+            resistance: Resistance::NONE,
+            resistance_before: Resistance::NONE,
+            step_before_s: 0.0,
             power_w: T::ZERO,
             jump_n: T::ZERO,
             force_n: T::ZERO,
@@ -143,9 +145,17 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         let scaled = self.scaled(&mut state.effects, to.load_n);
         let law = scaled.as_ref().unwrap_or(&self.law);
         law.set_load(&mut state.law, to.load_n);
-        let journal =
+        let journal = if self.effects.has_drive() {
+            // What holds the journal follows from how it moves: it is looked for ahead.
+            let share = (dt_s.value() / state.step_before_s).min(1.0);
+            let ahead = |s: f64| state.resistance.ahead(&state.resistance_before, s);
+            let resistance = [ahead(0.5 * share), ahead(share)];
+            let effects = &mut state.effects;
             self.effects
-                .drive(&mut state.effects, to, &state.resistance, &self.rig, dt_s);
+                .drive(effects, to, &resistance, &self.rig, dt_s)
+        } else {
+            JournalMotion::from(to)
+        };
         let factor = self.effects.lubricant(&state.effects, &journal);
         let end = journal.velocity_m_s.abs() * factor;
         let middle =
@@ -254,10 +264,18 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         } else {
             (sliding.viscous * load_n / speed).max(T::ZERO)
         };
-        state.resistance = Resistance {
+        let resistance = Resistance {
             level_n: sliding.level * load_n + level_n,
             slope_n_s_m: slope,
         };
+        // A run begins with a resistance that has not changed.
+        state.resistance_before = if dt_s > T::ZERO {
+            state.resistance
+        } else {
+            resistance
+        };
+        state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
+        state.resistance = resistance;
         // Only the film's own friction warms the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
         self.effects

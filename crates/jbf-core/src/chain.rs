@@ -38,6 +38,8 @@ pub struct State<T: Real, S, O: Own<T> = Nothing> {
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
+    /// What the lubricant makes of a speed.
+    film_factor: T,
     /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
     /// friction of any other, unsigned.
     magnitude: T,
@@ -110,6 +112,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             motion: *motion,
             journal,
             film_speed_m_s: T::ZERO,
+            film_factor: T::ONE,
             magnitude: T::ZERO,
             resistance: Resistance::NONE,
             resistance_before: Resistance::NONE,
@@ -121,6 +124,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         };
         let factor = self.effects.lubricant(&state.effects, &journal);
         state.film_speed_m_s = journal.velocity_m_s.abs() * factor;
+        state.film_factor = factor;
         let scaled = self.scaled(&mut state.effects, motion.load_n);
         let law = scaled.as_ref().unwrap_or(&self.law);
         if scaled.is_some() {
@@ -158,15 +162,16 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         };
         let factor = self.effects.lubricant(&state.effects, &journal);
         let end = journal.velocity_m_s.abs() * factor;
+        let factors = state.film_factor + factor;
         let middle =
-            (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.5) * factor);
+            (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.25) * factors);
         law.advance(
             &mut state.law,
             [state.film_speed_m_s, middle, end],
             self.effects.film_rate(&state.effects),
             dt_s,
         );
-        state.film_speed_m_s = end;
+        (state.film_speed_m_s, state.film_factor) = (end, factor);
         state.motion = *to;
         let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
         self.act(law, state, journal, factor, dt_s);

@@ -183,37 +183,69 @@ def _local_fit(
     """
     n = len(time)
     width = min(2 * half + 1, n)
-    first = np.clip(np.arange(n) - half, 0, n - width)
-    index = first[:, None] + np.arange(width)[None, :]
-    t = time[index] - time[:, None]
-    scale = max(float(np.max(np.abs(t))), 1e-30)
     # A long window sees more of a bend: give it more terms than a short one can carry.
     order = 3 if half < 4 else 5
-    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((n, 1), sd_speed)
-    target = np.concatenate([(path[index] - path[:, None]) / sd_path, speed[index] / sd], axis=1)
-    if _even(time) and not isinstance(sd_speed, np.ndarray):
-        # All windows that lie alike round their sample are one.
-        place = np.arange(n) - first
-        coefficients, variance = np.empty((n, order + 1)), np.empty((n, 2))
-        for p in np.unique(place):
-            here = place == p
-            one = int(np.argmax(here))
-            design = _design(t[one : one + 1] / scale, order, scale, sd_path, sd[:1])
-            inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
-            coefficients[here] = target[here] @ (design[0] @ inverse[0])
-            variance[here] = np.diagonal(inverse[0])[1:3]
-    else:
-        design = _design(t / scale, order, scale, sd_path, sd)
-        inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
-        right = np.einsum("nij,ni->nj", design, target)
-        coefficients = np.einsum("njk,nk->nj", inverse, right)
-        variance = np.diagonal(inverse, axis1=1, axis2=2)[:, 1:3]
+    if isinstance(sd_speed, np.ndarray) or not _even(time):
+        return _windows(np.arange(n), time, path, speed, sd_path, sd_speed, width, order)
+    # The windows of evenly spaced samples are one, but for those at the ends.
+    ends = np.r_[: min(half, n), max(n - half, half) : n]
+    found = [np.empty(n) for _ in range(5)]
+    for whole, part in zip(
+        found,
+        _windows(ends, time, path, speed, sd_path, sd_speed, width, order),
+        strict=True,
+    ):
+        whole[ends] = part
+    if n > 2 * half:
+        inside = slice(half, n - half)
+        t = (np.arange(width) - half) * float(np.median(np.diff(time)))
+        scale = float(t[-1])
+        design = _design(t[None, :] / scale, order, scale, sd_path, np.array([[sd_speed]]))[0]
+        inverse = np.linalg.pinv(design.T @ design, hermitian=True)
+        weights = design @ inverse
+        for_path, for_speed = weights[:width] / sd_path, weights[width:] / sd_speed
+        level = path - path[n // 2]
+        terms = [
+            np.correlate(level, for_path[:, k])
+            - np.sum(for_path[:, k]) * level[inside]
+            + np.correlate(speed, for_speed[:, k])
+            for k in range(3)
+        ]
+        found[0][inside] = terms[0] + path[inside]
+        found[1][inside] = terms[1] / scale
+        found[2][inside] = 2.0 * terms[2] / scale**2
+        found[3][inside] = np.sqrt(max(float(inverse[1, 1]), 0.0)) / scale
+        found[4][inside] = 2.0 * np.sqrt(max(float(inverse[2, 2]), 0.0)) / scale**2
+    return found[0], found[1], found[2], found[3], found[4]
+
+
+def _windows(
+    which: npt.NDArray[np.intp],
+    time: Array,
+    path: Array,
+    speed: Array,
+    sd_path: float,
+    sd_speed: Array | float,
+    width: int,
+    order: int,
+) -> tuple[Array, Array, Array, Array, Array]:
+    """`_local_fit` at the samples `which`, each in a window of its own."""
+    first = np.clip(which - width // 2, 0, len(time) - width)
+    index = first[:, None] + np.arange(width)[None, :]
+    t = time[index] - time[which, None]
+    scale = max(float(np.max(np.abs(t), initial=0.0)), 1e-30)
+    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((1, 1), sd_speed)
+    design = _design(t / scale, order, scale, sd_path, sd)
+    target = np.concatenate([(path[index] - path[which, None]) / sd_path, speed[index] / sd], 1)
+    inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
+    right = np.einsum("nij,ni->nj", design, target)
+    coefficients = np.einsum("njk,nk->nj", inverse, right)
     return (
-        coefficients[:, 0] + path,
+        coefficients[:, 0] + path[which],
         coefficients[:, 1] / scale,
         2.0 * coefficients[:, 2] / scale**2,
-        np.sqrt(np.maximum(variance[:, 0], 0.0)) / scale,
-        2.0 * np.sqrt(np.maximum(variance[:, 1], 0.0)) / scale**2,
+        np.sqrt(np.maximum(inverse[:, 1, 1], 0.0)) / scale,
+        2.0 * np.sqrt(np.maximum(inverse[:, 2, 2], 0.0)) / scale**2,
     )
 
 

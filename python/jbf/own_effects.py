@@ -53,7 +53,7 @@ class OwnEffect(Effect):
         InputError
             The function fails, or gives something else than n finite numbers.
         """
-        return self._checked(self._call(columns, values), len(columns["time_s"]))
+        return self._checked(self._call(columns, values), len(columns["time_s"]), values)
 
     def slope(self, columns: Mapping[str, Array], values: Sequence[float], which: int) -> Array:
         """Derivative of the force with respect to parameter number `which`, shape (n,).
@@ -132,7 +132,7 @@ class OwnEffect(Effect):
                 mend="correct its function",
             ) from error
 
-    def _checked(self, found: Any, n: int) -> Array:
+    def _checked(self, found: Any, n: int, values: Sequence[float]) -> Array:
         def wrong(problem: str) -> InputError:
             return InputError(
                 problem=f"the effect {self.name} {problem}",
@@ -147,7 +147,9 @@ class OwnEffect(Effect):
         force: Array = np.ascontiguousarray(np.broadcast_to(array.astype(float), (n,)))
         bad = np.flatnonzero(~np.isfinite(force))
         if bad.size:
-            raise wrong(f"gives {force[bad[0]]} at sample {bad[0]}")
+            named = zip(self.parameters, values, strict=True)
+            where = ", ".join(f"{p.name} = {v:g}" for p, v in named)
+            raise wrong(f"gives {force[bad[0]]} at sample {bad[0]} with {where}")
         return force
 
 

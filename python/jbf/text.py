@@ -190,7 +190,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
 # ---- the catalogue --------------------------------------------------------------------------
 
 
-_NEEDS = {
+NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "loads": "runs under several loads",
@@ -240,7 +240,7 @@ def effect_page(effect: Effect) -> str:
         ("source", effect.source),
         ("limits", effect.limits),
     ]
-    for need, words in _NEEDS.items():
+    for need, words in NEEDS.items():
         if need in effect.needs:
             facts.append(("needs", words))
     if effect.columns:

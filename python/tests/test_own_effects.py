@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -188,7 +189,7 @@ def test_a_wrong_registration_is_refused(change: dict[str, object], message: str
     ("body", "message"),
     [
         (lambda time_s, a: a * time_s[:-1], "gives shape"),
-        (lambda time_s, a: a / (time_s * 0.0), "gives (nan|inf|-inf) at sample 0"),
+        (lambda time_s, a: a / (time_s * 0.0), "gives (nan|inf|-inf) at sample 0 with a = 0.5"),
         (lambda time_s, a: str(a), "gives <U"),
         (lambda time_s, a: {}[a], "the effect bad fails: KeyError"),
     ],
@@ -279,3 +280,22 @@ def test_columns_of_the_record_reach_the_function() -> None:
     np.testing.assert_array_equal(seen["load_n"], np.full(len(run), 104.0))
     assert run.angle_rad is not None
     assert np.max(np.abs(seen["angle_rad"] - run.angle_rad)) < 1e-3
+
+
+def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = Path(__file__).resolve().parents[2] / "docs" / "own_effects.md"
+    snippets = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(snippets) == 1
+    Rig.thesis().write(tmp_path / "rig.toml")
+    (tmp_path / "runs").mkdir()
+    for i, run in enumerate(make_runs({"coulomb_drag": {"F_d_n": 2.0}})):
+        warm(run, i).write_csv(tmp_path / "runs" / f"{run.name}.csv")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    exec(compile(snippets[0], page.name, "exec"), names)
+    found = names["again"]
+    assert isinstance(found, Model)
+    value = found.parameters["warm_seal.k_n_k"]
+    assert isinstance(value, jbf.ParameterValue)
+    assert value.stderr is not None
+    assert abs(value.value - TRUTH) < 4.0 * value.stderr

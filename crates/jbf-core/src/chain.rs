@@ -38,10 +38,15 @@ pub struct State<T: Real, S, O: Own<T> = Nothing> {
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
+    /// What the lubricant makes of a speed.
+    film_factor: T,
     /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
     /// friction of any other, unsigned.
     magnitude: T,
+    /// What holds the journal now, and what did a step ago; how long that step was, s.
     resistance: Resistance<T>,
+    resistance_before: Resistance<T>,
+    step_before_s: f64,
     power_w: T,
     /// The part of the force that jumps when a rigid journal turns round, N, unsigned.
     jump_n: T,
@@ -107,11 +112,11 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             motion: *motion,
             journal,
             film_speed_m_s: T::ZERO,
+            film_factor: T::ONE,
             magnitude: T::ZERO,
-            resistance: Resistance {
-                level_n: T::ZERO,
-                slope_n_s_m: T::ZERO,
-            },
+            resistance: Resistance::NONE,
+            resistance_before: Resistance::NONE,
+            step_before_s: 0.0,
             power_w: T::ZERO,
             jump_n: T::ZERO,
             force_n: T::ZERO,
@@ -119,6 +124,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         };
         let factor = self.effects.lubricant(&state.effects, &journal);
         state.film_speed_m_s = journal.velocity_m_s.abs() * factor;
+        state.film_factor = factor;
         let scaled = self.scaled(&mut state.effects, motion.load_n);
         let law = scaled.as_ref().unwrap_or(&self.law);
         if scaled.is_some() {
@@ -143,20 +149,29 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         let scaled = self.scaled(&mut state.effects, to.load_n);
         let law = scaled.as_ref().unwrap_or(&self.law);
         law.set_load(&mut state.law, to.load_n);
-        let journal =
+        let journal = if self.effects.has_drive() {
+            // What holds the journal follows from how it moves: it is looked for ahead.
+            let share = (dt_s.value() / state.step_before_s).min(1.0);
+            let ahead = |s: f64| state.resistance.ahead(&state.resistance_before, s);
+            let resistance = [ahead(0.5 * share), ahead(share)];
+            let effects = &mut state.effects;
             self.effects
-                .drive(&mut state.effects, to, &state.resistance, &self.rig, dt_s);
+                .drive(effects, to, &resistance, &self.rig, dt_s)
+        } else {
+            JournalMotion::from(to)
+        };
         let factor = self.effects.lubricant(&state.effects, &journal);
         let end = journal.velocity_m_s.abs() * factor;
+        let factors = state.film_factor + factor;
         let middle =
-            (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.5) * factor);
+            (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.25) * factors);
         law.advance(
             &mut state.law,
             [state.film_speed_m_s, middle, end],
             self.effects.film_rate(&state.effects),
             dt_s,
         );
-        state.film_speed_m_s = end;
+        (state.film_speed_m_s, state.film_factor) = (end, factor);
         state.motion = *to;
         let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
         self.act(law, state, journal, factor, dt_s);
@@ -254,10 +269,18 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         } else {
             (sliding.viscous * load_n / speed).max(T::ZERO)
         };
-        state.resistance = Resistance {
+        let resistance = Resistance {
             level_n: sliding.level * load_n + level_n,
             slope_n_s_m: slope,
         };
+        // A run begins with a resistance that has not changed.
+        state.resistance_before = if dt_s > T::ZERO {
+            state.resistance
+        } else {
+            resistance
+        };
+        state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
+        state.resistance = resistance;
         // Only the film's own friction warms the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
         self.effects

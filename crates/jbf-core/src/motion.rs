@@ -53,18 +53,28 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// The motion a `fraction` of the way to `other`: every quantity on a straight line.
+    /// The motion a `fraction` of the way to `other`: every quantity on a straight line but the
+    /// angle, which a speed on a straight line carries along a parabola. (Over a sample of 20 ms
+    /// the chord errs by an encoder's step: a stiff drive makes a force of it.)
     #[inline(always)]
-    pub fn towards(&self, other: &Self, fraction: T) -> Self {
+    pub fn towards(&self, other: &Self, fraction: T, radius_m: T) -> Self {
         let line = |a: T, b: T| a + (b - a) * fraction;
+        let dt_s = other.time_s - self.time_s;
+        let bend = (other.velocity_m_s - self.velocity_m_s) * dt_s / radius_m;
         Self {
             time_s: line(self.time_s, other.time_s),
             velocity_m_s: line(self.velocity_m_s, other.velocity_m_s),
             acceleration_m_s2: line(self.acceleration_m_s2, other.acceleration_m_s2),
-            angle_rad: line(self.angle_rad, other.angle_rad),
+            angle_rad: line(self.angle_rad, other.angle_rad) - sag(fraction) * bend,
             load_n: line(self.load_n, other.load_n),
         }
     }
+}
+
+/// How far a parabola lies below its chord at a share of the way, over its change of slope.
+#[inline(always)]
+pub(crate) fn sag<T: Real>(share: T) -> T {
+    T::of(0.5) * share * (T::ONE - share)
 }
 
 /// The journal's own motion, behind the drive.

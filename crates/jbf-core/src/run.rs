@@ -63,12 +63,13 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
         .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
     let film_s = chain.longest_film_step_s(record, top) / chain.effects.fastest_film();
     let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
+    let radius_m = chain.rig.radius_m.value();
     let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
         // To the reversal first, where there is one; from there no sign changes.
-        let zero = crossing(&from, &sample);
+        let zero = crossing(&from, &sample, radius_m);
         let to = zero.unwrap_or(sample);
         between(chain, &mut state, &from, &to, max_step_s);
         if zero.is_none() {
@@ -120,12 +121,12 @@ pub fn read_force<T: Real>(
 /// The instant between two samples at which the speed is zero, if it changes sign there:
 /// friction jumps at it, so a step must land on it.
 #[inline(always)]
-fn crossing(from: &Motion<f64>, to: &Motion<f64>) -> Option<Motion<f64>> {
+fn crossing(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
     let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
     if v0 * v1 >= 0.0 {
         return None;
     }
-    let mut zero = from.towards(to, v0 / (v0 - v1));
+    let mut zero = from.towards(to, v0 / (v0 - v1), radius_m);
     zero.velocity_m_s = 0.0;
     Some(zero)
 }
@@ -143,8 +144,9 @@ fn between<T: Real, L: Law<T>, O: Own<T>>(
     let dt = to.time_s - from.time_s;
     let steps = libm::ceil(dt / max_step_s - 1e-9).clamp(1.0, 1e6);
     let inner = T::of(dt / steps);
+    let radius_m = chain.rig.radius_m.value();
     for k in 1..=steps as u32 {
-        let motion = from.towards(to, f64::from(k) / steps);
+        let motion = from.towards(to, f64::from(k) / steps, radius_m);
         chain.step(state, &motion.lift(), inner);
     }
 }

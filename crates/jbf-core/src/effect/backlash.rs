@@ -121,7 +121,7 @@ impl<T: Real> Drive<T> for Backlash<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        _resistance: &Resistance<T>,
+        _resistance: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {

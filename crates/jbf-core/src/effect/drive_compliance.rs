@@ -15,7 +15,7 @@
 
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
-use crate::motion::{JournalMotion, Motion};
+use crate::motion::{sag, JournalMotion, Motion};
 use crate::real::Real;
 
 /// A spring and a damper between encoder and journal.
@@ -114,13 +114,13 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        resistance: &Resistance<T>,
+        [middle, end]: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {
         let arm = rig.count * rig.radius_m;
-        let hold = arm * resistance.level_n;
-        let slope = arm * rig.radius_m * resistance.slope_n_s_m;
+        let hold = arm * middle.level_n;
+        let slope = arm * rig.radius_m * middle.slope_n_s_m;
         let steps = libm::ceil(dt_s.value() / self.inner_step_s).clamp(1.0, 64.0);
         let h = dt_s * T::of(1.0 / steps);
         let half = h * T::of(0.5);
@@ -128,12 +128,13 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         // Everything that multiplies the midpoint speed.
         let inertia = T::of(2.0) * self.inertia_kg_m2 / h;
         let drag = inertia + k * half + c + slope;
+        let bend = (to.velocity_m_s - state.encoder_m_s) * dt_s / rig.radius_m;
         let mut direction = T::ZERO;
         let mut before = state.speed_rad_s;
         for i in 0..steps as u32 {
             let share = T::of((f64::from(i) + 0.5) / steps);
             let line = |a: T, b: T| a + (b - a) * share;
-            let encoder_rad = line(state.encoder_rad, to.angle_rad);
+            let encoder_rad = line(state.encoder_rad, to.angle_rad) - sag(share) * bend;
             let encoder_m_s = line(state.encoder_m_s, to.velocity_m_s);
             let push = inertia * state.speed_rad_s
                 + k * (encoder_rad - state.angle_rad)
@@ -144,20 +145,31 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             } else if push < -hold {
                 direction = -T::ONE;
             } else {
-                // Stuck: the friction is whatever holds the journal.
-                direction = if hold > T::ZERO { push / hold } else { T::ZERO };
+                direction = T::ZERO;
                 state.speed_rad_s = T::ZERO;
                 continue;
             }
             let speed = (push - hold * direction) / drag;
-            state.angle_rad += speed * h;
             let after = speed + speed - state.speed_rad_s;
-            // A midpoint step must not carry the journal through rest: it stops there first.
-            state.speed_rad_s = if after.value() * direction.value() < 0.0 {
-                T::ZERO
+            // A midpoint step must not carry the journal through rest: braking evenly, it stops
+            // there on the way. Stiff springs make a force of where.
+            if after.value() * direction.value() < 0.0 {
+                let from = state.speed_rad_s;
+                state.angle_rad += from * from * half / (from - after);
+                state.speed_rad_s = T::ZERO;
             } else {
-                after
-            };
+                state.angle_rad += speed * h;
+                state.speed_rad_s = after;
+            }
+        }
+        if direction == T::ZERO {
+            // Stuck: the friction is whatever holds the journal.
+            let torque =
+                k * (to.angle_rad - state.angle_rad) + c * (to.velocity_m_s / rig.radius_m);
+            let hold = arm * end.level_n;
+            if hold > T::ZERO {
+                direction = (torque / hold).max(-T::ONE).min(T::ONE);
+            }
         }
         (state.encoder_rad, state.encoder_m_s) = (to.angle_rad, to.velocity_m_s);
         JournalMotion {

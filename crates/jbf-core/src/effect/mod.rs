@@ -61,15 +61,33 @@ pub struct Resistance<T> {
     pub slope_n_s_m: T,
 }
 
+impl<T: Real> Resistance<T> {
+    /// No resistance.
+    pub(crate) const NONE: Self = Self {
+        level_n: T::ZERO,
+        slope_n_s_m: T::ZERO,
+    };
+
+    /// On a straight line through `before` and this, `share` of a step further.
+    #[inline(always)]
+    pub(crate) fn ahead(&self, before: &Self, share: f64) -> Self {
+        let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);
+        Self {
+            level_n: on(before.level_n, self.level_n),
+            slope_n_s_m: on(before.slope_n_s_m, self.slope_n_s_m),
+        }
+    }
+}
+
 /// Between the encoder and the journal.
 pub trait Drive<T: Real>: Effect<T> {
     /// Advance over `dt_s`, the motion that drives going to `to`, and give the motion that is
-    /// passed on.
+    /// passed on. `resistance` is that in the middle of the step and at its end.
     fn step(
         &self,
         state: &mut Self::State,
         to: &JournalMotion<T>,
-        resistance: &Resistance<T>,
+        resistance: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;

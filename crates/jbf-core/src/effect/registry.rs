@@ -23,7 +23,7 @@ macro_rules! signal_chain {
                 &self,
                 states: &mut States<T, O>,
                 to: &Motion<T>,
-                resistance: &Resistance<T>,
+                resistance: &[Resistance<T>; 2],
                 rig: &Rig<T>,
                 dt_s: T,
             ) -> JournalMotion<T> {

@@ -1,0 +1,236 @@
+"""Write the page and the picture of every effect: `.venv/bin/python docs/effects.py [NAME...]`.
+
+The words are the catalogue's (`jbf.effects()`), the curves the library's: nothing is said twice.
+`--check` writes nothing, and exits with 1 where a page is not what the catalogue would write.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import jbf
+import numpy as np
+from jbf.catalogue import Effect, Parameter
+from jbf.text import NEEDS, refused_words
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+FOLDER = Path(__file__).resolve().parent / "effects"
+RIG = jbf.Rig.thesis()
+LAW = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
+RATE_HZ = 200.0
+PLAIN, WITH = "0.3", "tab:red"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a picture shows: an effect's parameters, and under which motion."""
+
+    values: Mapping[str, float] = field(default_factory=dict)
+    motion: str = "a sine of 1 rad/s"
+    load_share: float = 1.0
+
+
+SHOWN = {
+    "drive_compliance": Shown({"k": 12.0, "c": 0.1, "J": 2e-3}, "a sine of 2 rad/s"),
+    "backlash": Shown({"gap": 0.15}, "a sine of 2 rad/s"),
+    "shear_thinning": Shown({"U_c": 0.08, "n": 1.2}),
+    "thermal_thinning": Shown({"beta_q": 0.15, "tau": 60.0}, "eight periods of 1 rad/s"),
+    "load_dependence": Shown({"p": 0.8, "q": 1.0}, load_share=0.6),
+    "film_memory": Shown({"factor": 0.35}),
+    "wear_in": Shown({"a": 0.6, "s_0": 1.0}, "eight periods of 1 rad/s"),
+    "dwell_stiction": Shown(
+        {"a": 0.15, "t_0": 3.0, "m": 0.7, "s_0": 3e-3}, "starts after rests of 1, 3 and 9 s"
+    ),
+    "stribeck_excess": Shown({"a": 0.1, "v_s": 0.012, "n": 1.5}),
+    "direction_asymmetry": Shown({"a": 0.2}),
+    "position_ripple": Shown({"a": 0.25, "theta_0": 0.5}, "a sine of 0.1 rad/s"),
+    "presliding": Shown({"sigma": 300.0}),
+    "coulomb_drag": Shown({"F_d": 4.0}),
+    "quadratic_drag": Shown({"c": 500.0}),
+    "inertia_leak": Shown({"m_e": 30.0}),
+    "sensor_lag": Shown({"tau": 0.15}),
+    "time_delay": Shown({"tau": 0.12}),
+    "sensor_offset": Shown({"b": 4.0}),
+    "sensor_drift": Shown({"d": 0.2}, "eight periods of 1 rad/s"),
+}
+"""Large enough to see. An effect without an entry is shown at its starting values."""
+
+
+def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) and surface speeds (m/s) of a motion by its name."""
+    if motion.startswith("starts"):
+        knots = [(0.0, 0.0)]
+        for rest in (1.0, 3.0, 9.0):
+            t = knots[-1][0] + rest
+            knots += [(t, 0.0), (t + 0.5, 0.05), (t + 1.5, 0.05), (t + 2.0, 0.0)]
+        time = np.arange(0.0, knots[-1][0] + 0.5, 1.0 / RATE_HZ)
+        speed = np.interp(time, *np.array(knots).T)
+        return time, speed
+    omega = float(motion.split()[-2])
+    periods = 8.0 if motion.startswith("eight") else 2.0
+    time = np.arange(0.0, 2.0 * np.pi / omega * periods, 1.0 / RATE_HZ)
+    return time, 0.127 * np.sin(omega * time)
+
+
+def shown(effect: Effect) -> Shown:
+    """What the picture of an effect shows."""
+    if effect.name in SHOWN:
+        return SHOWN[effect.name]
+    return Shown({p.name: p.starts[0] for p in effect.parameters})
+
+
+def draw(effect: Effect) -> Figure:
+    """Friction against speed and along time, without the effect and with it."""
+    what = shown(effect)
+    time, speed = speed_of(what.motion)
+    assert RIG.bearing is not None
+    assert RIG.load is not None
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) / RATE_HZ)))
+    load = np.full(len(time), what.load_share * RIG.load.normal_n)
+    run = jbf.Run.from_arrays(time, speed, angle_rad=angle / RIG.bearing.radius_m, load_n=load)
+    own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
+    plain = jbf.Model(RIG, parameters=LAW).predict(run)
+    model = jbf.Model(RIG, effects=[effect.name], parameters=LAW | own)
+    changed = model.predict(run)
+    figure = Figure(figsize=(9.0, 3.4), layout="constrained")
+    plane, along = figure.subplots(1, 2)
+    _curves(plane, speed, plain, changed)
+    plane.set(xlabel="speed, m/s", ylabel="friction, N")
+    _curves(along, time, plain, changed)
+    along.set(xlabel="time, s")
+    figure.legend(*along.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _curves(axes: Axes, x: np.ndarray, plain: np.ndarray, changed: np.ndarray) -> None:
+    axes.plot(x, changed, color=WITH, linewidth=1.0, label="with the effect")
+    axes.plot(x, plain, color=PLAIN, linewidth=1.0, label="law alone")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def page(effect: Effect) -> str:
+    """The page of an effect, as Markdown."""
+    what = shown(effect)
+    units = {p.name: p.unit for p in effect.parameters}
+    values = ", ".join(f"{n} = {v:g} {_unit(units, n)}".strip() for n, v in what.values.items())
+    under = f"under {what.motion}"
+    if what.load_share != 1.0:
+        under += f" and {what.load_share:g} of the rig's load"
+    lines = [
+        f"# {effect.name}",
+        "",
+        f"{effect.summary[0].upper()}{effect.summary[1:]}. Stage: {effect.stage}.",
+        "",
+        "```text",
+        effect.equation,
+        "```",
+        "",
+        f"![Friction against speed and along time, without and with {effect.name}]"
+        f"({effect.name}.png)",
+        "",
+        f"Dark: the law alone (`journal`, Table 4.2). Red: with {values}, {under}.",
+        "",
+        "| parameter | unit | from | to | vanishes at | meaning |",
+        "| --- | --- | --- | --- | --- | --- |",
+        *(_row(p) for p in effect.parameters),
+        "",
+        f"**Source.** {effect.source}.",
+        "",
+        f"**Where this form stops being true.** {effect.limits}.",
+    ]
+    if effect.needs:
+        needs = [words for need, words in NEEDS.items() if need in effect.needs]
+        lines += ["", f"**Needs.** {'; '.join(needs)}."]
+    if effect.refused:
+        lines += ["", f"**Not with these laws.** {refused_words(effect)}."]
+    lines += [
+        "",
+        "```sh",
+        f"jbf fit rig.toml runs/ --effects {effect.name} --out model.toml",
+        "```",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _unit(units: Mapping[str, str], name: str) -> str:
+    found = [unit for full, unit in units.items() if full == name or full.startswith(f"{name}_")]
+    return "" if not found or found[0] == "-" else found[0]
+
+
+def _row(p: Parameter) -> str:
+    null = "" if p.null is None else f"{p.null:g}"
+    return f"| {p.name} | {p.unit} | {p.lower:g} | {p.upper:g} | {null} | {p.meaning} |"
+
+
+def index() -> str:
+    """The list of all pages, in the order of the signal chain."""
+    lines = [
+        "# Effects",
+        "",
+        "What a law may lack, in the order in which the signal travels: from the commanded motion",
+        "to the record. `jbf effects` prints the same catalogue, `jbf effects NAME` one page of",
+        "it; pages and pictures here are made from it by `docs/effects.py`. Effects of your own:",
+        "[own_effects.md](../own_effects.md). How well a fit recovers each:",
+        "[coverage.md](../coverage.md).",
+        "",
+        "| stage | effect | what it is |",
+        "| --- | --- | --- |",
+    ]
+    for e in catalogue().values():
+        lines.append(f"| {e.stage} | [{e.name}]({e.name}.md) | {e.summary} |")
+    return "\n".join([*lines, ""])
+
+
+def catalogue() -> dict[str, Effect]:
+    """The library's own effects."""
+    return jbf.catalogue.built_in()
+
+
+def texts() -> dict[Path, str]:
+    """Every page by its path."""
+    pages = {FOLDER / f"{e.name}.md": page(e) for e in catalogue().values()}
+    return {FOLDER / "README.md": index(), **pages}
+
+
+def stale() -> list[str]:
+    """Pages and pictures that are missing, not what the catalogue writes, or of no effect."""
+    expected = texts()
+    wrong = [
+        p.name
+        for p, text in expected.items()
+        if not p.is_file() or p.read_text(encoding="utf-8") != text
+    ]
+    pictures = {FOLDER / f"{name}.png" for name in catalogue()}
+    wrong += [p.name for p in pictures if not p.is_file()]
+    wrong += [p.name for p in FOLDER.iterdir() if p not in expected and p not in pictures]
+    return sorted(wrong)
+
+
+def main() -> int:
+    """Write, or check."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="pictures of these; all by default"
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    asked = parser.parse_args()
+    if asked.check:
+        wrong = stale()
+        print("\n".join(f"stale: {name}" for name in wrong) or "all pages are in step")
+        return 1 if wrong else 0
+    FOLDER.mkdir(exist_ok=True)
+    for path, text in texts().items():
+        path.write_text(text, encoding="utf-8")
+    for name in asked.names or catalogue():
+        draw(catalogue()[name]).savefig(FOLDER / f"{name}.png", dpi=80)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -198,9 +198,11 @@ def _local_fit(
         whole[ends] = part
     if n > 2 * half:
         inside = slice(half, n - half)
-        t = (np.arange(width) - half) * float(np.median(np.diff(time)))
+        step_s = float(np.median(np.diff(time)))
+        t = np.arange(-half, width - half, dtype=np.float64) * step_s
         scale = float(t[-1])
-        design = _design(t[None, :] / scale, order, scale, sd_path, np.array([[sd_speed]]))[0]
+        sd = np.array([[sd_speed]], dtype=np.float64)
+        design = _design(t[None, :] / scale, order, scale, sd_path, sd)[0]
         inverse = np.linalg.pinv(design.T @ design, hermitian=True)
         weights = design @ inverse
         for_path, for_speed = weights[:width] / sd_path, weights[width:] / sd_speed

@@ -41,7 +41,7 @@ BUDGET = {
     "model/full/rodas5p/f32": 100_000,
 }
 PRECISION = 1e-3
-LOOPS = ["none", "coulomb", "learning", "observed", "observed_full"]
+LOOPS = ["none", "coulomb", "table", "repetitive", "learning", "observed", "observed_full"]
 
 
 def stop(reason: str) -> NoReturn:

@@ -19,6 +19,10 @@ fn chosen() -> Result<Controller<f32, impl Compensator<f32>>, ParameterError> {
     let compensator = jbf_core::compensator::NoCompensation;
     #[cfg(feature = "coulomb")]
     let compensator = loops::coulomb(0.01, 1.0)?;
+    #[cfg(feature = "table")]
+    let compensator = loops::table()?;
+    #[cfg(feature = "repetitive")]
+    let compensator = loops::repetitive()?;
     #[cfg(feature = "learning")]
     let compensator = loops::learning(false)?;
     #[cfg(feature = "observed")]

@@ -1,4 +1,4 @@
-"""Do the intervals of a fit cover the truth? `python benches/coverage.py [EFFECT...]`.
+"""Do the intervals of a fit cover the truth? `python benches/recovery.py [EFFECT...]`.
 
 For every effect of the catalogue: a few rigs of the project's own simulator, drawn at random, each
 recorded many times with fresh noise; every record is fitted with the right structure, and its 95 %

@@ -170,8 +170,8 @@ class Row:
         )
 
 
-HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no interval |
-|---|---|---|---|---|---|"""
+HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no interval | fits |
+|---|---|---|---|---|---|---|"""
 
 
 def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
@@ -181,7 +181,7 @@ def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
         mark = "" if WANTED[0] <= row.covered <= WANTED[1] else " (!)"
         yield (
             f"| {effect} | {name.removeprefix(effect + '.')} | {100 * row.covered:.1f} %{mark} "
-            f"| {row.bias:+.2f} | {row.spread:.2f} | {row.none or ''} |"
+            f"| {row.bias:+.2f} | {row.spread:.2f} | {row.none or ''} | {row.count} |"
         )
 
 

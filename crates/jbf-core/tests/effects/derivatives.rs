@@ -125,16 +125,14 @@ fn slopes_match_central_differences() {
                 Sines::two_way(1.0).resting(3.0, 1.0),
             ] {
                 for i in 0..p.len() {
-                    let h = 5e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
-                    // Of the fourth order: the place where a drive stops bends too much for less.
-                    let [two, one, ahead, after] =
-                        [-2.0, -1.0, 1.0, 2.0].map(|by| moved(info, &p, i, by * h, &sines));
-                    let slope =
-                        |k: usize| (8.0 * (ahead[k] - one[k]) - (after[k] - two[k])) / (12.0 * h);
+                    let h = 2e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
+                    let above = moved(info, &p, i, h, &sines);
+                    let below = moved(info, &p, i, -h, &sines);
+                    let pairs = above.iter().zip(&below);
                     let difference = Difference {
-                        slopes: (0..one.len()).map(slope).collect(),
+                        slopes: pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect(),
                         step: h,
-                        peak_n: peak(&ahead),
+                        peak_n: peak(&above),
                     };
                     let label = format!("{} parameter {i} of {p:?}", info.name);
                     shows[i] |= difference.check(&label, &carried(info, &p, i, &sines));

@@ -33,7 +33,10 @@ def jbf(*words: str | Path) -> None:
 def held_out_rms(model: Path, folder: Path, work: Path) -> float:
     """RMS of record minus `jbf predict` over the runs of a folder, N."""
     total, count = 0.0, 0
-    for path in sorted(folder.glob("*.csv")):
+    paths = sorted(folder.glob("*.csv"))
+    if not paths:
+        raise SystemExit(f"{folder}: no runs here; give the folder that holds the held-out runs")
+    for path in paths:
         jbf("predict", model, path, "--out", work / "p.csv")
         predicted = np.loadtxt(work / "p.csv", delimiter=",", skiprows=1)[:, 1]
         run = read_run(path)

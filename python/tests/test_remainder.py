@@ -1,0 +1,110 @@
+"""Tests of what remains: residuals of known make, put in place of a solution's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from campaigns import campaign
+from jbf import diagnose
+from jbf.campaign import Campaign
+from jbf.diagnosis.bursts import find_bursts
+from jbf.diagnosis.remainder import find_remainder
+from jbf.diagnosis.repeats import find_repeats
+from jbf.fitting import Problem, Solution
+from jbf.noise import Noise
+
+Array = npt.NDArray[np.float64]
+SIGMA_N = 0.3
+
+
+@cache
+def _solved() -> tuple[Problem, Solution]:
+    rig, runs, _ = campaign(7)
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ())
+    return problem, problem.settle(problem.approach([{}], 8))
+
+
+def _with(
+    make: Callable[[np.random.Generator, int], Array], seed: int, noise: Noise | None = None
+) -> tuple[Problem, Solution]:
+    problem, solution = _solved()
+    random = np.random.default_rng(seed)
+    residuals = [make(random, i) for i in range(len(solution.residuals))]
+    return problem, replace(solution, residuals=residuals, noise=noise or Noise())
+
+
+def _white(random: np.random.Generator, run: int) -> Array:
+    return random.normal(0.0, SIGMA_N, len(_solved()[1].residuals[run]))
+
+
+def _phase(run: int) -> Array:
+    prepared = _solved()[0].campaign.prepared[run]
+    return 6.0 * prepared.motion.velocity_m_s / np.ptp(prepared.motion.velocity_m_s)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_white_noise_has_no_structure(seed: int) -> None:
+    assert find_remainder(*_with(_white, seed)) == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_coloured_noise_does_not_come_again(seed: int) -> None:
+    """Slow noise of half the white's size and 0.2 s: long, but not tied to the motion."""
+
+    def coloured(random: np.random.Generator, run: int) -> Array:
+        white = _white(random, run)
+        keep = np.exp(-_solved()[0].campaign.prepared[run].step_s / 0.2)
+        slow = np.zeros_like(white)
+        kicks = random.normal(0.0, 0.5 * SIGMA_N * np.sqrt(1.0 - keep**2), len(white))
+        for k in range(1, len(slow)):
+            slow[k] = keep * slow[k - 1] + kicks[k]
+        return white + slow
+
+    # What the noise model finds of it: about a fifth of the mean square, remembered 0.2 s.
+    assert find_repeats(*_with(coloured, seed, Noise(0.2, 0.5))) == []
+
+
+def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:
+    size_n = 0.4 * SIGMA_N
+
+    def with_wave(random: np.random.Generator, run: int) -> Array:
+        wave = np.sign(np.sin(5.0 * _phase(run)))
+        return _white(random, run) + size_n * wave
+
+    (found,) = find_repeats(*_with(with_wave, 3))
+    assert found.axis == "period"
+    assert found.share == pytest.approx(0.4**2 / (1.0 + 0.4**2), rel=0.25)
+    assert "two_way_1" in found.where
+
+
+def test_bursts_are_told_with_their_times_and_two_outliers_are_not() -> None:
+    problem, solution = _with(_white, 4)
+    innovations = [-r for r in solution.residuals]
+    assert find_bursts(problem, innovations) == []
+
+    time = problem.campaign.prepared[0].run.time_s
+    at = [int(np.searchsorted(time, t)) for t in (11.0, 23.0, 37.0, 44.0)]
+    for k in at[:2]:
+        innovations[0][k] += 12.0 * SIGMA_N
+    assert find_bursts(problem, innovations) == []
+
+    for k in at:
+        innovations[0][k : k + 3] += 9.0 * SIGMA_N
+    (found,) = find_bursts(problem, innovations)
+    assert found.axis == "time"
+    assert found.where.startswith("4 bursts")
+    assert "11.0 s in two_way_0.25" in found.where
+
+
+@pytest.mark.slow
+def test_what_fits_but_does_not_predict_is_no_adequate_model() -> None:
+    """The level of the friction differs from run to run: nothing in a catalogue foretells it."""
+    rig, runs, _ = campaign(21, foreign=("level_step",), strength=1.5)
+    found = diagnose(rig, runs)
+    assert found.verdict == "unexplained"
+    assert found.effects == ()

@@ -177,7 +177,7 @@ def index() -> str:
         "to the record. `jbf effects` prints the same catalogue, `jbf effects NAME` one page of",
         "it; pages and pictures here are made from it by `docs/effects.py`. Effects of your own:",
         "[own_effects.md](../own_effects.md). How well a fit recovers each:",
-        "[coverage.md](../coverage.md).",
+        "[recovery.md](../recovery.md).",
         "",
         "| stage | effect | what it is |",
         "| --- | --- | --- |",

@@ -150,17 +150,14 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
                 continue;
             }
             let speed = (push - hold * direction) / drag;
+            state.angle_rad += speed * h;
             let after = speed + speed - state.speed_rad_s;
-            // A midpoint step must not carry the journal through rest: braking evenly, it stops
-            // there on the way. Stiff springs make a force of where.
-            if after.value() * direction.value() < 0.0 {
-                let from = state.speed_rad_s;
-                state.angle_rad += from * from * half / (from - after);
-                state.speed_rad_s = T::ZERO;
+            // A midpoint step must not carry the journal through rest: it stops there first.
+            state.speed_rad_s = if after.value() * direction.value() < 0.0 {
+                T::ZERO
             } else {
-                state.angle_rad += speed * h;
-                state.speed_rad_s = after;
-            }
+                after
+            };
         }
         if direction == T::ZERO {
             // Stuck: the friction is whatever holds the journal.

@@ -81,6 +81,8 @@ fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
 /// A difference quotient, the step that made it and the force that it was made from.
 struct Difference {
     slopes: Vec<f64>,
+    /// Half of what the slopes ahead and behind differ by.
+    bends: Vec<f64>,
     step: f64,
     peak_n: f64,
 }
@@ -99,13 +101,21 @@ impl Difference {
             bound < 1e-3 * largest,
             "{label}: {bound:e} against slopes of {largest:e}"
         );
+        let mut kinks = 0;
         for (i, (a, b)) in carried.iter().zip(&self.slopes).enumerate() {
             let error = (a - b).abs();
+            // Where a kink (a touch, a break-away) lies within the difference, the slope is that of
+            // one of its sides, and stays so for some samples. That is chance, and rare.
+            if error >= bound && error < bound + self.bends[i].abs() {
+                kinks += 1;
+                continue;
+            }
             assert!(
                 error < bound,
                 "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}"
             );
         }
+        assert!(kinks * 100 <= carried.len(), "{label}: {kinks} kinks");
         true
     }
 }
@@ -128,9 +138,14 @@ fn slopes_match_central_differences() {
                     let h = 5e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
                     let above = moved(info, &p, i, h, &sines);
                     let below = moved(info, &p, i, -h, &sines);
+                    let at = moved(info, &p, i, 0.0, &sines);
                     let pairs = above.iter().zip(&below);
+                    let bends = pairs.clone().zip(&at);
                     let difference = Difference {
                         slopes: pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect(),
+                        bends: bends
+                            .map(|((a, b), f)| (a + b - 2.0 * f) / (2.0 * h))
+                            .collect(),
                         step: h,
                         peak_n: peak(&above),
                     };
@@ -166,6 +181,7 @@ fn slopes_at_a_null_match_one_sided_differences() {
             let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * h);
             let difference = Difference {
                 slopes: (0..at.len()).map(slope).collect(),
+                bends: vec![0.0; at.len()],
                 step: h,
                 peak_n: peak(&at),
             };

@@ -1,4 +1,4 @@
-"""Intervals of fits to the independent simulator's records cover the truth: `benches/coverage.py`.
+"""Intervals of fits to the independent simulator's records cover the truth: `benches/recovery.py`.
 
 Here a few repeats, judged so loosely that chance fails one run in thousands, and a bias of two
 standard errors or errors twice too small or large fail it nearly always. The whole study is the
@@ -17,17 +17,17 @@ import pytest
 import rigsim
 from campaigns import SHORT
 
-BENCH = Path(__file__).resolve().parents[2] / "benches" / "coverage.py"
+BENCH = Path(__file__).resolve().parents[2] / "benches" / "recovery.py"
 REPEATS = 8
 
 KNOWN_SHORT = {"drive_compliance"}
-"""Its ringing is faster than the samples: see docs/coverage.md."""
+"""Its ringing is faster than the samples: see docs/recovery.md."""
 
 
 @pytest.fixture(scope="module")
-def coverage() -> ModuleType:
+def recovery() -> ModuleType:
     """The bench."""
-    spec = importlib.util.spec_from_file_location("coverage_bench", BENCH)
+    spec = importlib.util.spec_from_file_location("recovery_bench", BENCH)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -36,21 +36,21 @@ def coverage() -> ModuleType:
     return module
 
 
-def test_a_row_tells_bias_and_width_apart(coverage: ModuleType) -> None:
+def test_a_row_tells_bias_and_width_apart(recovery: ModuleType) -> None:
     z = np.random.default_rng(3).standard_normal(4000)
-    good = coverage.Row.of([*z, float("nan")])
+    good = recovery.Row.of([*z, float("nan")])
     assert good.none == 1
     assert 0.93 < good.covered < 0.97
     assert abs(good.bias) < 0.06
     assert 0.94 < good.spread < 1.06
-    assert coverage.Row.of(list(z + 1.0)).covered < 0.86
-    assert coverage.Row.of(list(2.0 * z)).spread > 1.9
+    assert recovery.Row.of(list(z + 1.0)).covered < 0.86
+    assert recovery.Row.of(list(2.0 * z)).spread > 1.9
 
 
 @pytest.mark.parametrize("effect", ["coulomb_drag", "sensor_lag", "shear_thinning", "backlash"])
-def test_a_few_repeats(coverage: ModuleType, effect: str) -> None:
-    truth = coverage.make_truth(effect, 7, SHORT)
-    errors = [coverage.errors_of(truth, (7, k), False) for k in range(REPEATS)]
+def test_a_few_repeats(recovery: ModuleType, effect: str) -> None:
+    truth = recovery.make_truth(effect, 7, SHORT)
+    errors = [recovery.errors_of(truth, (7, k), False) for k in range(REPEATS)]
     for name in errors[0]:
         z = np.array([row[name] for row in errors])
         assert np.isfinite(z).all(), name
@@ -62,11 +62,11 @@ def test_a_few_repeats(coverage: ModuleType, effect: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", [None, *rigsim.CATALOGUE])
-def test_many_repeats(coverage: ModuleType, effect: str | None) -> None:
+def test_many_repeats(recovery: ModuleType, effect: str | None) -> None:
     if effect in KNOWN_SHORT:
-        pytest.xfail("its ringing is faster than the samples: see docs/coverage.md")
-    for name, z in coverage.study(effect, 48, 8, 1, False, 1).items():
-        row = coverage.Row.of(z)
+        pytest.xfail("its ringing is faster than the samples: see docs/recovery.md")
+    for name, z in recovery.study(effect, 48, 8, 1, False, 1).items():
+        row = recovery.Row.of(z)
         # 48 of 95 % cover 42 or more but for one in 60, 39 or more but for one in 5000.
         assert row.covered * row.count >= 39, (name, row)
         assert row.none <= 5, (name, row)

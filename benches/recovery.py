@@ -1,4 +1,4 @@
-"""Do the intervals of a fit cover the truth? `python benches/coverage.py [EFFECT...]`.
+"""Do the intervals of a fit cover the truth? `python benches/recovery.py [EFFECT...]`.
 
 For every effect of the catalogue: a few rigs of the project's own simulator, drawn at random, each
 recorded many times with fresh noise; every record is fitted with the right structure, and its 95 %
@@ -170,8 +170,8 @@ class Row:
         )
 
 
-HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no interval |
-|---|---|---|---|---|---|"""
+HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no interval | fits |
+|---|---|---|---|---|---|---|"""
 
 
 def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
@@ -181,7 +181,7 @@ def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
         mark = "" if WANTED[0] <= row.covered <= WANTED[1] else " (!)"
         yield (
             f"| {effect} | {name.removeprefix(effect + '.')} | {100 * row.covered:.1f} %{mark} "
-            f"| {row.bias:+.2f} | {row.spread:.2f} | {row.none or ''} |"
+            f"| {row.bias:+.2f} | {row.spread:.2f} | {row.none or ''} | {row.count} |"
         )
 
 

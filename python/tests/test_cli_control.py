@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 import shlex
 from pathlib import Path
@@ -19,6 +20,9 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Model(Rig.thesis("4.2")).save("model.toml")
     Model(Rig.thesis("4.2"), law="lugre").save("lugre.toml")
     Path("wrong.toml").write_text("bandwidth = 3\n")
+    speed = [0.02 * math.sin(0.02 * i) for i in range(300)]
+    rows = [f"{0.02 * i:.2f},{v:.6f}" for i, v in enumerate(speed)]
+    Path("run.csv").write_text("\n".join(["time_s,velocity_m_s", *rows]) + "\n")
 
 
 def test_run_prints_each_scheme_and_draws(capsys: pytest.CaptureFixture[str]) -> None:
@@ -37,6 +41,11 @@ def test_run_writes_a_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert len(rows) == 2000
     assert float(rows[-1]["time_s"]) == pytest.approx(3.998)
     assert {"estimated_friction_v", "friction_v", "status"} <= set(rows[0])
+
+
+def test_a_recorded_motion_is_followed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "run", "model.toml", "--motion", "run.csv"]) == 0
+    assert "recorded -1.57 to 1.57 rad/s, 5.98 s" in capsys.readouterr().out
 
 
 def test_a_law_without_a_film_leaves_the_learning_scheme_out(
@@ -108,6 +117,9 @@ def test_the_commands_of_the_docs(command: str, capsys: pytest.CaptureFixture[st
         ("run --out x.csv", ["--out", "one scheme"]),
         ("run --scheme none --out gone/x.csv", ["gone"]),
         ("run model.toml --scheme none --out model.toml", ["model.toml", "input"]),
+        ("run --motion run.csv --high 2", ["--high", "--motion"]),
+        ("run --motion run.csv --control position", ["run.csv", "angle_rad"]),
+        ("run --motion none.csv", ["none.csv"]),
         ("run --plot x.doc", ["x.doc", "png"]),
         ("run --seed 99999999999999999999", ["seed"]),
         ("run --counts-per-rad 1e12", ["roll-over", "counts_per_rad"]),

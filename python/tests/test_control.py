@@ -9,7 +9,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jbf import InputError, Model, Parameter, Rig, control, forget_effect, register_effect
+from jbf import (
+    InputError,
+    Model,
+    Parameter,
+    Rig,
+    Run,
+    control,
+    forget_effect,
+    register_effect,
+)
 from jbf.control import TASKS, THESIS_BENCH, Learning, Observed, run, thesis_model
 from jbf.control.bench import with_noise
 from jbf.control.robustness import cases
@@ -236,6 +245,36 @@ def test_an_effect_of_ones_own_is_no_loops() -> None:
         assert all("my_drag" not in case.name for case in cases(Model(Rig.thesis())))
     finally:
         forget_effect("my_drag")
+
+
+def test_a_recorded_motion_is_the_reference() -> None:
+    time_s = np.arange(0.0, 20.0, 0.02)
+    speed = 0.02 * np.sin(time_s)
+    angle = 3.0 + 0.02 * (1.0 - np.cos(time_s)) / 0.0127
+    load = np.where(time_s < 10.0, 104.0, 150.0)
+    recorded = Run.from_arrays(time_s, speed, angle_rad=angle, load_n=load)
+    for what, wanted, rate in (
+        ("velocity", np.sin, np.cos),
+        ("position", lambda t: 1.0 - np.cos(t), np.sin),
+    ):
+        task, reference, load_n = control.follow(recorded, Rig.thesis(), what)
+        assert reference is not None
+        t = np.arange(len(reference[0])) * THESIS_BENCH.dt_s
+        assert np.allclose(reference[0], 0.02 / 0.0127 * wanted(t), atol=2e-4)
+        assert np.allclose(reference[1][20:-20], 0.02 / 0.0127 * rate(t)[20:-20], atol=2e-3)
+        assert load_n is not None
+        r = run(None, "observed", task, reference=reference, load_n=load_n)
+        assert r.true_rms < 0.1 * float(np.std(reference[0]))
+
+
+def test_a_recorded_motion_that_is_none() -> None:
+    still = Run.from_arrays(np.arange(12.0), np.zeros(12))
+    with pytest.raises(InputError, match="does not move"):
+        control.follow(still, Rig.thesis())
+    with pytest.raises(InputError, match="angle"):
+        control.follow(still, Rig.thesis(), "position")
+    with pytest.raises(InputError, match="reference"):
+        run(task=replace(SHORT, wave="recorded"))
 
 
 def test_references_and_loads_of_the_wrong_length_or_kind() -> None:

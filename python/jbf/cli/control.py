@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from jbf.cli import outputs
@@ -15,6 +15,7 @@ from jbf.errors import InputError
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
+    from jbf.control import Bench, Motion
     from jbf.control.thesis_tables import Tables
     from jbf.model import Model
 
@@ -107,7 +108,7 @@ def _run(arguments: argparse.Namespace) -> int:
     from jbf.control.text import runs_text
 
     wanted = {"--plot": arguments.plot, "--out": arguments.out}
-    inputs = (arguments.model, arguments.carried, arguments.settings)
+    inputs = (arguments.model, arguments.carried, arguments.settings, arguments.motion)
     outputs.check(wanted, [p for p in inputs if p])
     _check_picture(arguments.plot)
     asked = arguments.scheme
@@ -125,13 +126,16 @@ def _run(arguments: argparse.Namespace) -> int:
     truth = None if arguments.model is None else _model(arguments.model)
     carried = truth if arguments.carried is None else _model(arguments.carried)
     settings = None if arguments.settings is None else Settings.load(arguments.settings)
-    task, bench = task_of(arguments), bench_of(arguments)
+    bench = bench_of(arguments)
+    task, reference, load_n = _asked(arguments, truth, bench)
     results = [
         run(
             truth,
             name,
             task,
             bench=bench,
+            reference=reference,
+            load_n=load_n,
             carried=carried,
             settings=settings,
             precision=arguments.precision,
@@ -146,6 +150,25 @@ def _run(arguments: argparse.Namespace) -> int:
         outputs.write({arguments.out: _csv(results[0])})
     outputs.say(runs_text(results), wanted)
     return 0
+
+
+def _asked(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
+    """The task, and what else a recorded motion brings."""
+    from jbf.control import Motion, follow, thesis_model
+    from jbf.record import read_run
+
+    if arguments.motion is None:
+        return Motion(task_of(arguments), None, None)
+    wave = ("wave", "low", "high", "frequency_rad_s", "seconds")
+    given = [n for n in wave if getattr(arguments, n) is not None]
+    if given:
+        option = f"--{given[0].replace('_', '-')}"
+        raise InputError(problem=f"{option} means nothing beside --motion", mend="drop one")
+    recorded = read_run(arguments.motion, need_friction=False)
+    rig = (thesis_model() if truth is None else truth).rig
+    motion = follow(recorded, rig, arguments.control or "velocity", bench)
+    skip_s = arguments.skip_s or 0.0
+    return motion._replace(task=replace(motion.task, skip_s=skip_s))
 
 
 def _csv(result: Any) -> str:

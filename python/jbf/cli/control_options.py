@@ -50,6 +50,9 @@ def add_task(parser: Parser) -> None:
         "task", "a row of the thesis's tables (--task), changed by whatever else is given"
     )
     group.add_argument("--task", metavar="NAME", default="velocity sine", help="velocity sine")
+    group.add_argument(
+        "--motion", metavar="RUN", help="follow the speed (or angle) of a recorded run, CSV"
+    )
     group.add_argument("--control", choices=("position", "velocity"), help="what is controlled")
     group.add_argument("--wave", choices=("sine", "triangle", "square"), help="its reference")
     for name, does in (

@@ -12,7 +12,7 @@ from jbf import _core
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.schemes import Scheme, core_loop, scheme
 from jbf.control.settings import Settings
-from jbf.control.task import TASKS, Task
+from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
 from jbf.model import Model, core_load_n
 
@@ -206,6 +206,8 @@ def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
 def _reference(
     task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
 ) -> tuple[Array, Array]:
+    if given is None and task.wave == RECORDED:
+        raise InputError(problem="a recorded task has no wave", mend="give its reference")
     if given is None:
         return _core.control_reference(
             task.wave, task.low, task.high, task.frequency_rad_s, bench.dt_s, n

@@ -9,6 +9,8 @@ from typing import Literal
 from jbf.errors import InputError, did_you_mean
 
 WAVES = ("sine", "triangle", "square")
+RECORDED = "recorded"
+"""The wave of a task whose reference is given sample by sample."""
 
 _FARTHEST = 1e6
 
@@ -34,7 +36,7 @@ class Task:
                 problem=f'control "{self.control}" is not known',
                 mend="write position or velocity",
             )
-        if self.wave not in WAVES:
+        if self.wave not in (*WAVES, RECORDED):
             raise InputError(
                 problem=f'there is no wave "{self.wave}"', mend=did_you_mean(self.wave, WAVES)
             )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from jbf.control.robustness import HARM, HELP, Outcome
 from jbf.control.run import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED, Result
+from jbf.control.task import RECORDED
 from jbf.control.thesis_tables import COLUMNS, Cell, Tables
 from jbf.model import Model
 from jbf.text import columns
@@ -132,8 +133,10 @@ def status_words(result: Result) -> str:
 def runs_text(results: Sequence[Result]) -> str:
     """RMS and peak of several schemes on one task."""
     task = results[0].task
-    head = f"{task.control} control, {task.wave} {task.low:g} to {task.high:g} {task.unit} at "
-    head += f"{task.frequency_rad_s:g} rad/s, {task.seconds:g} s"
+    head = f"{task.control} control, {task.wave} {task.low:.3g} to {task.high:.3g} {task.unit}"
+    if task.wave != RECORDED:
+        head += f" at {task.frequency_rad_s:g} rad/s"
+    head += f", {task.seconds:g} s"
     if task.skip_s:
         head += f", the first {task.skip_s:g} s left out"
     rows = [("scheme", f"RMS, {task.unit}", "peak", "true RMS", "status")]

@@ -106,13 +106,14 @@ impl Difference {
             let error = (a - b).abs();
             // Where a kink (a touch, a break-away) lies within the difference, the slope is that of
             // one of its sides, and stays so for some samples. That is chance, and rare.
-            if error >= bound && error < bound + self.bends[i].abs() {
+            if error >= bound && error < bound + 1.5 * self.bends[i].abs() {
                 kinks += 1;
                 continue;
             }
             assert!(
                 error < bound,
-                "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}"
+                "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}, bend {:e}",
+                self.bends[i]
             );
         }
         assert!(kinks * 100 <= carried.len(), "{label}: {kinks} kinks");

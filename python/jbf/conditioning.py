@@ -168,7 +168,7 @@ def _local_fit(
         whole[ends] = part
     if n > 2 * half:
         inside = slice(half, n - half)
-        t = (np.arange(width) - half) * float(np.median(np.diff(time)))
+        t: Array = (np.arange(width, dtype=float) - half) * float(np.median(np.diff(time)))
         scale = float(t[-1])
         design = _design(t[None, :] / scale, order, scale, sd_path, np.array([[sd_speed]]))[0]
         inverse = np.linalg.pinv(design.T @ design, hermitian=True)

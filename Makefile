@@ -19,7 +19,7 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv demo test test-slow lint format bench counts bits bits-table fuzz clean
+.PHONY: help venv demo test test-slow lint format bench counts bits bits-table fuzz firmware clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -30,7 +30,8 @@ help:
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
-	@echo "make bits    the same bits in debug, release and native builds"
+	@echo "make bits    the same bits in debug, release, std and native builds"
+	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
 	@echo "make clean   removes $(VENV), target and the built extension"
 
@@ -41,9 +42,11 @@ demo: $(BUILT)
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py
+	cargo test -p jbf-core --features serde --test serde_state
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 test-slow: $(BUILT)
+	cargo test --release -p jbf-core --test control_tracking -- --ignored
 	$(VENV)/bin/python -m pytest -n auto -m slow
 
 # rustfmt does not follow the macro that declares the effects, so it is given every file.
@@ -51,14 +54,14 @@ lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-	$(VENV)/bin/ruff check python simulator benches docs
-	$(VENV)/bin/ruff format --check python simulator benches docs
+	$(VENV)/bin/ruff check python simulator benches docs examples
+	$(VENV)/bin/ruff format --check python simulator benches docs examples
 	$(VENV)/bin/mypy
 
 format: $(BUILT)
 	$(RUSTFMT) $$($(RUST_FILES))
-	$(VENV)/bin/ruff check --fix python simulator benches docs
-	$(VENV)/bin/ruff format python simulator benches docs
+	$(VENV)/bin/ruff check --fix python simulator benches docs examples
+	$(VENV)/bin/ruff format python simulator benches docs examples
 
 bench:
 	cargo bench -p jbf-benches --bench '*'
@@ -71,6 +74,7 @@ counts:
 bits:
 	cargo run --quiet -p jbf-trace --example table | tail -n 1
 	cargo run --quiet --release -p jbf-trace --example table | tail -n 1
+	cargo run --quiet --release -p jbf-trace --features std --example table | tail -n 1
 	RUSTFLAGS="-C target-cpu=native" cargo run --quiet --release --target-dir target/native \
 		-p jbf-trace --example table | tail -n 1
 
@@ -83,8 +87,12 @@ fuzz:
 	cd crates/jbf-core && for target in film chain driver; do \
 		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
 
+# Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
+firmware: $(BUILT)
+	$(VENV)/bin/python examples/firmware/report.py
+
 clean:
-	rm -rf $(VENV) target python/jbf/_core*.so
+	rm -rf $(VENV) target examples/firmware/target python/jbf/_core*.so
 
 $(MADE):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \

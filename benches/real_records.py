@@ -1,4 +1,5 @@
-"""Every law in newtons on recordings of real machines: `python benches/real_records.py FOLDER`.
+"""Every law in newtons, and the diagnosis, on recordings of real machines:
+`python benches/real_records.py FOLDER`.
 
 FOLDER holds `emps/run.csv` (a ball-screw axis; its friction is the whole drive force) and
 `tribometer/run.csv` (reciprocating sliding); columns time_s, position_m, velocity_m_s,
@@ -42,6 +43,15 @@ def table(title: str, run: jbf.Run) -> None:
         print(f"  {law.name:16}{fit.rms_n:8.3f} N  {took:5.1f} s  {values}", flush=True)
 
 
+def diagnosed(title: str, run: jbf.Run) -> None:
+    """What `jbf diagnose --law coulomb` adds, and the error falling."""
+    found = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    print(f"{title}: diagnosed beside coulomb in {found.elapsed_s:.0f} s: {found.verdict}")
+    for step in found.steps:
+        names = ", ".join(step.effects) or "the law alone"
+        print(f"  {step.rms_n:8.3f} N, left-out half {step.holdout_rms_n:8.3f} N  {names}")
+
+
 def main() -> int:
     """Do it."""
     if len(sys.argv) != 2:
@@ -54,6 +64,7 @@ def main() -> int:
             continue
         run = jbf.read_run(path)
         table(name, run)
+        diagnosed(name, run)
         if name == "emps":
             table(f"{name}, inertia and offset taken off", without_inertia(run))
     return 0

@@ -17,26 +17,31 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "simulator"))
 
 from plan import KINDS, tasks
-from tables import tables
+from tables import shares, tables
 from work import Row, work
 
 
-def main() -> None:
+def main() -> int:
     """Run what is missing, then print all of it."""
     parser = argparse.ArgumentParser(prog="hidden_effects", description=__doc__.split("\n", 1)[0])
     parser.add_argument("--kinds", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
     parser.add_argument("--seeds", type=int, default=1, help="rounds of each kind")
     parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--only", default="", help="only tasks whose name holds this")
+    parser.add_argument("--only", default="", help="only tasks whose name holds one of these")
     parser.add_argument("--rivals", action="store_true", help="simpler rules on the same data")
     parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
+    parser.add_argument("--short", action="store_true", help="campaigns of 150 s, not of 420 s")
+    parser.add_argument(
+        "--least", type=float, metavar="SHARE", help="fail where fewer answers of a kind are good"
+    )
     parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
     parser.add_argument("--picture", type=Path, help="detection rate against strength, PNG")
     asked = parser.parse_args()
     wanted = tuple(asked.kinds.split(","))
     if unknown := set(wanted) - set(KINDS):
         parser.error(f"no kind named {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
-    todo = [t for t in tasks(wanted, asked.seeds, asked.first_seed) if asked.only in t.key]
+    planned = tasks(wanted, asked.seeds, asked.first_seed, short=asked.short)
+    todo = [t for t in planned if any(part in t.key for part in asked.only.split(","))]
     rows: list[Row] = []
     if asked.out is not None and asked.out.exists():
         rows = [json.loads(line) for line in asked.out.read_text(encoding="utf-8").splitlines()]
@@ -59,7 +64,8 @@ def main() -> None:
         from picture import detection
 
         detection(rows, asked.picture)
+    return 0 if asked.least is None or shares(rows, asked.least) else 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from rigsim import CATALOGUE, FOREIGN
@@ -25,11 +25,17 @@ class Task:
     foreign: tuple[str, ...] = ()
     strength: float = 1.0
     coloured: bool = False
+    short: bool = False
 
     @property
     def campaign(self) -> str:
         """Standard motions of the simulator."""
-        return "slow" if self.kind == "poor" else "full"
+        if self.kind == "poor":
+            return "slow"
+        # What a load changes shows only under several loads.
+        if "load_dependence" in self.effects:
+            return "loads"
+        return "short" if self.short else "full"
 
     @property
     def hidden(self) -> str:
@@ -68,7 +74,10 @@ def _kind(kind: str, seed: int) -> Iterator[Task]:
             yield Task(kind, 1000 * seed + 400 + i, (name,), coloured=coloured)
 
 
-def tasks(kinds: tuple[str, ...], seeds: int, first_seed: int = 1) -> list[Task]:
+def tasks(
+    kinds: tuple[str, ...], seeds: int, first_seed: int = 1, *, short: bool = False
+) -> list[Task]:
     """All campaigns of some kinds, round after round, so that an early stop is a fair sample."""
     rounds = range(first_seed, first_seed + seeds)
-    return [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
+    found = [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
+    return [replace(task, short=short) for task in found]

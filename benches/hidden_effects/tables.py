@@ -71,6 +71,17 @@ def rivals(rows: list[Row]) -> str:
     return "\n".join(lines)
 
 
+def shares(rows: list[Row], least: float) -> bool:
+    """Whether so large a share of each kind's answers is good; says where not."""
+    good = True
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        own = [row["judged"] in ("right", "tied") for row in rows if row["kind"] == kind]
+        if np.mean(own) < least:
+            print(f"{kind}: {sum(own)} of {len(own)} good answers, fewer than {least:g}")
+            good = False
+    return good
+
+
 def tables(rows: list[Row]) -> str:
     """All tables."""
     parts = [summary(rows), confusion(rows), rivals(rows)]

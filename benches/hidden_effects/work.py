@@ -7,12 +7,12 @@ import time
 from typing import Any
 
 import jbf
-import numpy as np
+from motion_errors import held_out
 from plan import Task
 from rigsim import Record, simulate_campaign
+from rivals import RULES, Rivals
 from score import judge
 
-SLOWEST_M_S = 5e-4
 Row = dict[str, Any]
 
 
@@ -36,17 +36,6 @@ def rig_of(truth: dict[str, Any]) -> jbf.Rig:
     return jbf.Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3")
 
 
-def held_out(model: jbf.Model, runs: list[jbf.Run]) -> dict[str, float]:
-    """RMS and mean absolute error of a model on runs, N, where the sign of the speed is known."""
-    errors = []
-    for run in runs:
-        assert run.friction_n is not None
-        kept = np.abs(run.velocity_m_s) >= SLOWEST_M_S
-        errors.append((run.friction_n - model.predict(run))[kept])
-    all_ = np.concatenate(errors)
-    return {"rms_n": float(np.sqrt(np.mean(all_**2))), "mae_n": float(np.mean(np.abs(all_)))}
-
-
 def simulate(task: Task, campaign: str) -> tuple[list[jbf.Run], dict[str, Any]]:
     """Runs of a task and the truth behind them."""
     records, truth = simulate_campaign(
@@ -58,43 +47,6 @@ def simulate(task: Task, campaign: str) -> tuple[list[jbf.Run], dict[str, Any]]:
         foreign=task.foreign,
     )
     return read(records), truth
-
-
-def rivals(rig: jbf.Rig, runs: list[jbf.Run], others: list[jbf.Run]) -> dict[str, list[str]]:
-    """What simpler rules name on the same runs.
-
-    `lowest_mae`: the single effect (or none) that predicts other runs best, as whole models are
-    ranked elsewhere. `bic`: effects added one by one while the Bayesian information criterion of
-    a white residual falls.
-    """
-
-    def bic(fit: jbf.Fit) -> float:
-        return fit.samples * 2.0 * math.log(fit.rms_n) + len(fit.parameters) * math.log(fit.samples)
-
-    names = [e.name for e in jbf.effects().values()]
-    bare = jbf.fit(rig, runs)
-    best, lowest = [], held_out(bare.model, others)["mae_n"]
-    chosen: list[str] = []
-    score = bic(bare)
-    while len(chosen) < 3:
-        found = None
-        for name in names:
-            if name in chosen:
-                continue
-            try:
-                fit = jbf.fit(rig, runs, effects=[*chosen, name])
-            except jbf.InputError:
-                continue
-            if not chosen:
-                error = held_out(fit.model, others)["mae_n"]
-                if error < lowest:
-                    best, lowest = [name], error
-            if bic(fit) < score:
-                score, found = bic(fit), name
-        if found is None:
-            break
-        chosen.append(found)
-    return {"lowest_mae": best, "bic": chosen, "always_adequate": []}
 
 
 def work(task: Task, with_rivals: bool) -> Row:
@@ -120,15 +72,16 @@ def work(task: Task, with_rivals: bool) -> Row:
         "judged": judge(task.effects, found.verdict, found.effects, alternatives, foreign=foreign),
         "held_out_over_noise": held_out(found.model, others)["rms_n"] / (truth["noise_n"] * colour),
         "effect_over_noise": max(truth["effect_to_noise"].values(), default=0.0) / colour,
-        "unexplained": [str(r.description) for r in found.unexplained],
+        "unexplained": [str(r.where) for r in found.unexplained],
+        "rms_over_floor": found.steps[-1].rms_n / found.steps[-1].noise_n,
+        "holdout_over_rms": found.steps[-1].holdout_rms_n / found.steps[-1].rms_n,
         "seconds": seconds,
     }
     if with_rivals:
-        named = rivals(rig, runs, others)
-        row["rivals"] = {
-            rule: judge(task.effects, "missing" if names else "adequate", names, {})
-            if not foreign
-            else ("wrong" if names else "abstained")
-            for rule, names in named.items()
-        }
+        rivals = Rivals(rig, runs, others)
+        row["rivals"] = {}
+        for rule, choose in RULES.items():
+            names = choose(rivals)
+            said = "missing" if names else "adequate"
+            row["rivals"][rule] = judge(task.effects, said, names, {}, foreign=foreign)
     return row

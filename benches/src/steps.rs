@@ -6,6 +6,8 @@
 //! film come in their due shares.
 
 use crate::{chain, law, period, LOAD_N, LOOP_STEP_S};
+use jbf_core::compensator::Compensator;
+use jbf_core::controller::Controller;
 use jbf_core::effect::CATALOGUE;
 use jbf_core::law::journal::Parameters;
 use jbf_core::law::journal_full::JournalFull;
@@ -13,6 +15,8 @@ use jbf_core::law::{self, with_law, Law, Named, Visitor};
 use jbf_core::motion::JournalMotion;
 use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
 use jbf_core::{Bearing, Clock, Dual, Motion, Real};
+use jbf_trace::loops::{coulomb_observer, each, velocity_observer, LoopVisitor};
+use jbf_trace::{asked, Shaft, LOOP_STEPS};
 use std::hint::black_box;
 
 /// Steps in a period of the motion.
@@ -31,6 +35,8 @@ pub fn all(watch: &mut impl Watch) {
     steppers::<f64>(watch, "f64");
     steppers::<f32>(watch, "f32");
     chains(watch);
+    loops::<f64>(watch, "f64");
+    loops::<f32>(watch, "f32");
 }
 
 /// Call `step` with the ends of each step of the motion in turn.
@@ -160,4 +166,65 @@ fn chains(watch: &mut impl Watch) {
     let dual = |i, v| Dual::<4>::parameter(v, i);
     one_chain(watch, "chain/none/dual4", &[], dual);
     one_chain(watch, "chain/all/dual4", &all, dual);
+}
+
+struct Looped<'a, W> {
+    watch: &'a mut W,
+    kind: &'a str,
+}
+
+impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
+    /// A whole loop, counter to voltage, along what its encoder showed once: a closed loop would
+    /// measure the shaft too.
+    fn visit<C: Compensator<T>>(
+        &mut self,
+        name: &'static str,
+        controller: &Controller<T, C>,
+        position: bool,
+    ) {
+        let (mut state, mut shaft) = (controller.start(), Shaft::default());
+        let seen: Vec<_> = (0..LOOP_STEPS)
+            .map(|step| {
+                let (target, level_v) = asked(step, position);
+                let counter = shaft.counter(step);
+                let parts = controller.step(&mut state, counter, &target);
+                shaft.push(parts.output_v, level_v);
+                (counter, target)
+            })
+            .collect();
+        let (mut state, mut at) = (controller.start(), 0);
+        let name = format!("loop/{name}/{}", self.kind);
+        self.watch.watch(&name, &mut |n| {
+            for _ in 0..n {
+                let (counter, target) = &seen[at];
+                black_box(controller.step(&mut state, *counter, target));
+                at = (at + 1) % seen.len();
+            }
+        });
+    }
+}
+
+/// Observers by themselves, and every loop round a compensator.
+fn loops<T: Real>(watch: &mut impl Watch, kind: &str) {
+    let observer = velocity_observer::<T>().expect("valid");
+    let mut velocity = T::ZERO;
+    let name = format!("observer/velocity/{kind}");
+    along(watch, &name, |from: &Motion<T>, to| {
+        velocity = observer.measure(velocity, to.angle_rad - from.angle_rad);
+        velocity = observer.carry(velocity, T::ONE);
+        velocity
+    });
+    for exponent in [1.0, 0.5] {
+        let observer = coulomb_observer::<T>(0.01, exponent).expect("valid");
+        let mut state = observer.learned(T::ZERO);
+        let name = format!("observer/coulomb/p={exponent}/{kind}");
+        along(watch, &name, |_: &Motion<T>, to| {
+            let v = to.velocity_m_s * T::of(100.0);
+            let power = observer.power(v);
+            let level = observer.level_v(&state, &power);
+            observer.learn(&mut state, &power, v, level);
+            level
+        });
+    }
+    each::<T>(&mut Looped { watch, kind }).expect("every loop is valid");
 }

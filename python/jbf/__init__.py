@@ -22,8 +22,9 @@ from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
+    from jbf import control
     from jbf.comparison import Comparison, compare
-    from jbf.diagnosis import Diagnosis, diagnose
+    from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
     from jbf.fitting import Fit, fit
     from jbf.trajectory_fit import TrajectoryFit, fit_trajectories
 
@@ -33,7 +34,10 @@ _LATER = {
     "Comparison": "jbf.comparison",
     "compare": "jbf.comparison",
     "Diagnosis": "jbf.diagnosis",
+    "Experiment": "jbf.diagnosis",
+    "Limits": "jbf.diagnosis",
     "diagnose": "jbf.diagnosis",
+    "diagnose_many": "jbf.diagnosis",
     "Fit": "jbf.fitting",
     "fit": "jbf.fitting",
     "TrajectoryFit": "jbf.trajectory_fit",
@@ -44,9 +48,11 @@ __all__ = [
     "Bearing",
     "Comparison",
     "Diagnosis",
+    "Experiment",
     "Fit",
     "InputError",
     "JbfError",
+    "Limits",
     "Load",
     "Lubricant",
     "Model",
@@ -59,7 +65,9 @@ __all__ = [
     "__version__",
     "batch",
     "compare",
+    "control",
     "diagnose",
+    "diagnose_many",
     "effects",
     "fit",
     "fit_trajectories",
@@ -76,6 +84,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "control":
+        return import_module("jbf.control")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")
     value = getattr(import_module(_LATER[name]), name)

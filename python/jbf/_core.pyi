@@ -44,6 +44,7 @@ class LawPage(TypedDict):
     needs_bearing: bool
     has_film: bool
     has_bristle: bool
+    rust_type: str
     parameters: list[ParameterPage]
 
 class BearingSizes(TypedDict):

@@ -3,8 +3,10 @@ may drive a fit or a verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -33,21 +35,35 @@ class Prepared:
     a trusted one is 1, and one next to a jump that is itself fitted has little.
     """
 
+    rig: Rig
     run: Run
     motion: ImposedMotion
-    core: _core.Motion
     friction_n: Array
     trusted: Mask
     step_s: float
     weight: Array
 
+    @cached_property
+    def core(self) -> _core.Motion:
+        """The core's copy of the motion."""
+        return core_motion(self.rig, self.run, self.motion)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What goes to another process: the core's copy is made again there."""
+        return {name: value for name, value in vars(self).items() if name != "core"}
+
 
 @dataclass(frozen=True)
 class Campaign:
-    """A rig and its runs, ready."""
+    """A rig and its runs, ready.
+
+    `most_noise_n` is the most that the noise on the friction can be, N, by what comes again in
+    the records; None where nothing does.
+    """
 
     rig: Rig
     prepared: tuple[Prepared, ...]
+    most_noise_n: float | None = None
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
@@ -74,16 +90,19 @@ class Campaign:
                 )
             prepared.append(
                 Prepared(
+                    rig=rig,
                     run=run,
                     motion=motion,
-                    core=core_motion(rig, run, motion),
                     friction_n=run.friction_n,
                     trusted=motion.trusted,
                     step_s=float(np.median(np.diff(run.time_s))),
                     weight=motion.trusted.astype(float),
                 )
             )
-        return cls(rig, tuple(prepared))
+        from jbf.noise import most_noise
+
+        campaign = cls(rig, tuple(prepared))
+        return replace(campaign, most_noise_n=most_noise(campaign))
 
     @property
     def motions(self) -> list[_core.Motion]:
@@ -136,4 +155,8 @@ class Campaign:
 
     def only(self, indices: Sequence[int]) -> Campaign:
         """The campaign of some of the runs."""
-        return Campaign(self.rig, tuple(self.prepared[i] for i in indices))
+        return self.of([self.prepared[i] for i in indices])
+
+    def of(self, prepared: Iterable[Prepared]) -> Campaign:
+        """The campaign with other samples, or fewer runs, of the same rig and instruments."""
+        return replace(self, prepared=tuple(prepared))

@@ -69,7 +69,8 @@ class Effect:
 class Law:
     """The page of one base law.
 
-    A law that does not need a bearing gives newtons and needs no load either.
+    A law that does not need a bearing gives newtons and needs no load either. `rust_type` is the
+    name of its type in the core.
     """
 
     name: str
@@ -80,6 +81,7 @@ class Law:
     needs_bearing: bool
     has_film: bool
     has_bristle: bool
+    rust_type: str
     parameters: tuple[Parameter, ...]
 
 

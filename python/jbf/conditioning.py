@@ -38,6 +38,12 @@ UNEVEN = 3.0
 """Noise so many times its usual size is uneven: locally it counts as it is."""
 UNEVEN_SAMPLES = 101
 """Samples over which local noise is taken."""
+CONTRADICTION = 10.0
+"""Standard errors by which path and speed must differ to contradict one another,"""
+CONTRADICTION_REACH = 3
+"""and samples to each side whose acceleration that spoils."""
+RARE = 0.01
+"""Largest share of the samples that may be contradictions."""
 SIGN_SIGMA = 4.0
 """A speed closer to zero than this many standard errors has no sign to rely on."""
 
@@ -55,7 +61,8 @@ class ImposedMotion:
     resting
         True where the shaft was at rest.
     trusted
-        False where the sign of the motion, and so of the friction, cannot be known.
+        False where the sign of the motion, and so of the friction, cannot be known, and where the
+        records of path and speed contradict one another.
     """
 
     velocity_m_s: Array
@@ -137,6 +144,28 @@ def _disagreement(time: Array, path: Array, speed: Array, sd_path: float, sd_spe
     return float(np.sqrt(seen**2 - 2.0 * sd_path**2) / step)
 
 
+def _contradiction(
+    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
+) -> Array:
+    """How far speed and path contradict one another round each sample, m/s: a filter that settles,
+    a glitch. Zero where they agree.
+
+    Zero everywhere, if that is the way of the whole record: then its errors are larger than they
+    look.
+    """
+    dt = np.diff(time)
+    gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt)
+    usual = float(np.median(gap) / 0.6745)
+    expected = np.sqrt(2.0 * sd_path**2 + 0.5 * (sd_speed * dt) ** 2)
+    apart = gap > CONTRADICTION * np.maximum(usual, expected)
+    if not 0 < apart.sum() <= RARE * len(apart):
+        return np.zeros(len(time))
+    wide = np.pad(np.where(apart, gap / dt, 0.0), CONTRADICTION_REACH)
+    windows = np.lib.stride_tricks.sliding_window_view(wide, 2 * CONTRADICTION_REACH)
+    found: Array = windows.max(axis=1)
+    return found
+
+
 def _step_of(angle: Array) -> float:
     """The encoder's step: the smallest change of angle on record."""
     steps = np.abs(np.diff(angle))
@@ -146,10 +175,11 @@ def _step_of(angle: Array) -> float:
 
 def _local_fit(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float, half: int
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array, Array]:
     """Fit a polynomial path to path and speed in windows of `2 half + 1` samples.
 
-    Returns path, speed, acceleration and the standard error of the speed at each sample.
+    Returns path, speed, acceleration and the standard errors of the speed and of the acceleration
+    at each sample.
     """
     n = len(time)
     width = min(2 * half + 1, n)
@@ -159,7 +189,7 @@ def _local_fit(
         return _windows(np.arange(n), time, path, speed, sd_path, sd_speed, width, order)
     # The windows of evenly spaced samples are one, but for those at the ends.
     ends = np.r_[: min(half, n), max(n - half, half) : n]
-    found = [np.empty(n) for _ in range(4)]
+    found = [np.empty(n) for _ in range(5)]
     for whole, part in zip(
         found,
         _windows(ends, time, path, speed, sd_path, sd_speed, width, order),
@@ -168,9 +198,11 @@ def _local_fit(
         whole[ends] = part
     if n > 2 * half:
         inside = slice(half, n - half)
-        t: Array = (np.arange(width, dtype=float) - half) * float(np.median(np.diff(time)))
+        step_s = float(np.median(np.diff(time)))
+        t = np.arange(-half, width - half, dtype=np.float64) * step_s
         scale = float(t[-1])
-        design = _design(t[None, :] / scale, order, scale, sd_path, np.array([[sd_speed]]))[0]
+        sd = np.array([[sd_speed]], dtype=np.float64)
+        design = _design(t[None, :] / scale, order, scale, sd_path, sd)[0]
         inverse = np.linalg.pinv(design.T @ design, hermitian=True)
         weights = design @ inverse
         for_path, for_speed = weights[:width] / sd_path, weights[width:] / sd_speed
@@ -185,7 +217,8 @@ def _local_fit(
         found[1][inside] = terms[1] / scale
         found[2][inside] = 2.0 * terms[2] / scale**2
         found[3][inside] = np.sqrt(max(float(inverse[1, 1]), 0.0)) / scale
-    return found[0], found[1], found[2], found[3]
+        found[4][inside] = 2.0 * np.sqrt(max(float(inverse[2, 2]), 0.0)) / scale**2
+    return found[0], found[1], found[2], found[3], found[4]
 
 
 def _windows(
@@ -197,7 +230,7 @@ def _windows(
     sd_speed: Array | float,
     width: int,
     order: int,
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array, Array]:
     """`_local_fit` at the samples `which`, each in a window of its own."""
     first = np.clip(which - width // 2, 0, len(time) - width)
     index = first[:, None] + np.arange(width)[None, :]
@@ -214,6 +247,7 @@ def _windows(
         coefficients[:, 1] / scale,
         2.0 * coefficients[:, 2] / scale**2,
         np.sqrt(np.maximum(inverse[:, 1, 1], 0.0)) / scale,
+        2.0 * np.sqrt(np.maximum(inverse[:, 2, 2], 0.0)) / scale**2,
     )
 
 
@@ -234,26 +268,28 @@ def _smooth(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float
 ) -> tuple[Array, Array, Array, Array]:
     """Path, speed, acceleration and standard error of the speed in one stretch of motion."""
-    best: tuple[Array, Array, Array, Array] | None = None
-    low = np.full(len(time), -np.inf)
-    high = np.full(len(time), np.inf)
+    best: tuple[Array, ...] | None = None
+    # Of speed and of acceleration: where a force sets in, only the latter has a corner.
+    low = np.full((2, len(time)), -np.inf)
+    high = np.full((2, len(time)), np.inf)
     growing = np.ones(len(time), dtype=bool)
     for half in HALF_WIDTHS:
         if best is not None and 2 * half + 1 > len(time):
             break
         fit = _local_fit(time, path, speed, sd_path, sd_speed, half)
-        low = np.maximum(low, fit[1] - AGREEMENT * fit[3])
-        high = np.minimum(high, fit[1] + AGREEMENT * fit[3])
-        growing &= low <= high
+        value, error = np.stack(fit[1:3]), AGREEMENT * np.stack(fit[3:5])
+        low = np.maximum(low, value - error)
+        high = np.minimum(high, value + error)
+        growing &= (low <= high).all(axis=0)
         best = (
             fit
             if best is None
-            else tuple(np.where(growing, new, old) for new, old in zip(fit, best, strict=True))  # type: ignore[assignment]
+            else tuple(np.where(growing, new, old) for new, old in zip(fit, best, strict=True))
         )
         if not growing.any():
             break
     assert best is not None
-    return best
+    return best[0], best[1], best[2], best[3]
 
 
 def _place_rests(
@@ -312,6 +348,10 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     beyond = _disagreement(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
     usual = max(sd_speed, beyond)
 
+    contradiction = np.zeros(n)
+    if n > 1:
+        contradiction = _contradiction(time, path, speed, sd_path, usual)
+
     velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
     smooth_path, error = path.copy(), np.zeros(n)
     edges = np.diff(np.concatenate(([0], moving.astype(np.int8), [0])))
@@ -324,11 +364,15 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         sd: Array | float = usual
         if isinstance(local, np.ndarray):
             sd = np.maximum(local, usual)
+        if contradiction[part].any():
+            # A position was read; a speed was made from positions, and the making has its ends.
+            sd = np.maximum(sd, contradiction[part])
         smooth_path[part], velocity[part], acceleration[part], error[part] = _smooth(
             time[part], path[part], speed[part], sd_path, sd
         )
     _place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     trusted = rest | (np.abs(velocity) > SIGN_SIGMA * error)
+    trusted &= contradiction == 0.0
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and not trusted[0]:
         velocity[0] = 0.0

@@ -21,7 +21,10 @@ from jbf.catalogue import find_effect
 Array = npt.NDArray[np.float64]
 
 JUMP = 0.1
-"""A change within a sample by more than this share of the run's largest friction is a jump."""
+"""A change within a sample by more than this share of the run's largest friction is a jump,"""
+ALONE = 3.0
+"""if it is so many times the changes two samples before and after: a steep rise that the record
+resolves, such as a mass set going, is none."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
@@ -32,7 +35,11 @@ def moves_jumps(effects: Iterable[str]) -> bool:
 def jumps(prediction: Array) -> Array:
     """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
     change = np.abs(np.diff(prediction))
-    steep = np.where(change > JUMP * np.max(np.abs(prediction), initial=0.0), change, 0.0)
+    # A ramp that lies across a sample takes part of two changes: its neighbours are two away.
+    around = np.pad(change, 2)
+    alone = change > ALONE * np.maximum(around[:-4], around[4:])
+    steep = alone & (change > JUMP * np.max(np.abs(prediction), initial=0.0))
+    steep = np.where(steep, change, 0.0)
     found: Array = np.maximum(np.append(steep, 0.0), np.append(0.0, steep))
     return found
 
@@ -43,10 +50,8 @@ def without_jumps(
     """The campaign with the doubt that a model with these effects casts on its samples."""
     if not moves_jumps(effects):
         return campaign
-    return Campaign(
-        campaign.rig,
-        tuple(_doubted(p, f) for p, f in zip(campaign.prepared, predictions, strict=True)),
-    )
+    pairs = zip(campaign.prepared, predictions, strict=True)
+    return campaign.of(_doubted(p, f) for p, f in pairs)
 
 
 def _doubted(p: Prepared, prediction: Array) -> Prepared:

@@ -24,7 +24,7 @@ from jbf.doubt import without_jumps
 from jbf.errors import InputError
 from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
-from jbf.noise import WHITE, Noise, estimate_noise, innovation_cost
+from jbf.noise import WHITE, Noise, estimate_noise, independent_share, innovation_cost
 from jbf.record import Run
 from jbf.rig import Rig
 from jbf.starts import with_starts
@@ -179,7 +179,8 @@ class Problem:
         """The noise description that fits these residuals."""
         prepared = self.campaign.prepared
         masked = [r * p.trusted for r, p in zip(residuals, prepared, strict=True)]
-        return estimate_noise(masked, [p.step_s for p in prepared], [p.trusted for p in prepared])
+        steps, trusted = [p.step_s for p in prepared], [p.trusted for p in prepared]
+        return estimate_noise(masked, steps, trusted, self.campaign.most_noise_n)
 
     def search(self, start: Array, noise: Noise, evaluations: int) -> tuple[Array, bool, str]:
         """Least squares on innovations from one start."""
@@ -369,6 +370,14 @@ def costs(a: Solution, b: Solution) -> tuple[float, float]:
         return innovation_cost(solution.noise, weighted, steps, [w > 0.0 for w in weights])
 
     return cost(a), cost(b)
+
+
+def independent(solution: Solution) -> float:
+    """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
+    prepared = solution.campaign.prepared
+    pairs = zip(solution.residuals, prepared, strict=True)
+    left = [solution.noise.innovations(r * p.weight, p.step_s) * (p.weight > 0.0) for r, p in pairs]
+    return independent_share(left, [p.step_s for p in prepared])
 
 
 def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:

@@ -49,6 +49,26 @@ class Noise:
         out: Array = signal.lfilter([1.0, -phi], [1.0, theta], values, axis=0)
         return out
 
+    def coloured_share(self, step_s: float) -> float:
+        """Share of the variance that the coloured part has, 0 to 1."""
+        if self.colour <= 0.0 or self.memory_s <= 0.0:
+            return 0.0
+        keep = float(np.exp(-2.0 * step_s / self.memory_s))
+        left = 1.0 - self.colour
+        if left <= 0.0:
+            return 1.0
+        ratio = ((1.0 + keep * left**2) / left - (1.0 + keep)) / (1.0 - keep)
+        return ratio / (1.0 + ratio)
+
+    def with_share(self, share: float, step_s: float) -> Noise:
+        """The same memory, the coloured part having this share (below 1) of the variance."""
+        if share <= 0.0:
+            return WHITE
+        keep = float(np.exp(-2.0 * step_s / self.memory_s))
+        total = share / (1.0 - share) * (1.0 - keep) + 1.0 + keep
+        left = (total - np.sqrt(total**2 - 4.0 * keep)) / (2.0 * keep)
+        return Noise(self.memory_s, float(1.0 - left))
+
 
 WHITE = Noise()
 
@@ -65,12 +85,40 @@ def innovation_cost(
     return count * float(np.log(max(total, 1e-300) / max(count, 1)))
 
 
+def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:
+    """How many independent samples one sample of these innovations is worth, 0 to 1.
+
+    Innovations of noise alone are white. Those of a wrong model are not, and n samples of them tell
+    less than n (Bartlett 1946): the autocorrelations are summed until they sink into chance, or
+    are older than any noise.
+    """
+    count = max(sum(len(e) for e in innovations), 1)
+    longest = int(LONGEST_MEMORY_S / min(steps)) + 1
+    total = np.zeros(longest + 1)
+    middle = sum(float(np.sum(e)) for e in innovations) / count
+    for e in innovations:
+        n = len(e)
+        power = np.fft.irfft(np.abs(np.fft.rfft(e - middle, 2 * n)) ** 2)[: min(n, len(total))]
+        total[: len(power)] += power
+    if total[0] <= 0.0:
+        return 1.0
+    rho = total[1:] / total[0]
+    sunk = np.flatnonzero(rho < 2.0 / np.sqrt(count))
+    end = int(sunk[0]) if len(sunk) else len(rho)
+    return float(1.0 / (1.0 + 2.0 * np.sum(rho[:end])))
+
+
 def estimate_noise(
-    residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
+    residuals: Sequence[Array],
+    steps: Sequence[float],
+    masks: Sequence[Mask],
+    most_n: float | None = None,
 ) -> Noise:
     """The noise that makes the innovations of these residuals smallest.
 
-    White unless colour earns its two parameters clearly.
+    White unless colour earns its two parameters clearly. The coloured part's standard deviation is
+    held to `most_n`, N, where that is known: the error of a wrong model is as smooth as coloured
+    noise, and would be forgiven as such.
     """
     shortest = 2.0 * min(steps)
     longest = max(LONGEST_MEMORY_S, 2.0 * shortest)
@@ -89,31 +137,54 @@ def estimate_noise(
         cost, best, method="Nelder-Mead", options={"maxiter": 80, "xatol": 0.02, "fatol": 0.1}
     )
     white = innovation_cost(WHITE, residuals, steps, masks)
-    return unpack(found.x) if found.fun < white - 20.0 else WHITE
+    if found.fun >= white - 20.0:
+        return WHITE
+    noise = unpack(found.x)
+    if most_n is None:
+        return noise
+    square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residuals, masks, strict=True))
+    square /= max(sum(int(m.sum()) for m in masks), 1)
+    step = float(np.median(steps))
+    most = most_n**2 / max(square, 1e-300)
+    return noise if noise.coloured_share(step) <= most else noise.with_share(most, step)
 
 
-def noise_floor(campaign: Campaign, residuals: Sequence[Array] | None = None) -> float:
+def noise_floor(campaign: Campaign) -> float:
     """Standard deviation of the noise on the friction record, N, from the data alone.
 
     The white part comes from third differences of the record. A coloured part hides from
     differences; it shows where the same motion comes again a period later and where the shaft
     rests, so the larger of the estimates stands where it is clearly larger.
-    `residuals` (of any model) stand in for the record where given: what a model explains need
-    not be told from noise by smoothness.
     """
-    signals = residuals or [p.friction_n for p in campaign.prepared]
-    white, whole, weight = [], 0.0, 0
-    for p, s in zip(campaign.prepared, signals, strict=True):
-        white.append((noise_of(s[p.trusted]), int(p.trusted.sum())))
-        for square, count in (*_rest_squares(p.motion.resting, s), _repeat_square(p, s)):
-            whole += square * count
-            weight += count
-    floor = float(np.sqrt(np.average([w**2 for w, _ in white], weights=[n for _, n in white])))
-    if weight < 300:
+    floor, seen = _white(campaign), _seen(campaign)
+    if seen is None:
         return floor
-    seen = float(np.sqrt(whole / weight))
     # Coloured noise leaves few independent samples: ask for a clear excess.
     return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
+
+
+def most_noise(campaign: Campaign) -> float | None:
+    """The most that the noise can be, N, colour and all; None where the records cannot tell."""
+    seen = _seen(campaign)
+    return None if seen is None else max(seen, _white(campaign))
+
+
+def _white(campaign: Campaign) -> float:
+    """The white part, N, from third differences."""
+    prepared = campaign.prepared
+    squares = [noise_of(p.friction_n[p.trusted]) ** 2 for p in prepared]
+    return float(np.sqrt(np.average(squares, weights=[int(p.trusted.sum()) for p in prepared])))
+
+
+def _seen(campaign: Campaign) -> float | None:
+    """All of it, N, from periods that come again and from rests; None where these are too few."""
+    whole, weight = 0.0, 0
+    for p in campaign.prepared:
+        rests = _rest_squares(p.motion.resting, p.friction_n)
+        for square, count in (*rests, _repeat_square(p, p.friction_n)):
+            whole += square * count
+            weight += count
+    return None if weight < 300 else float(np.sqrt(whole / weight))
 
 
 def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:

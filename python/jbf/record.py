@@ -179,13 +179,17 @@ class Run:
         InputError
             The file cannot be written.
         """
+        write_text(path, self.to_csv())
+
+    def to_csv(self) -> str:
+        """The run as the text of a CSV file."""
         columns = self.columns()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
         # repr of a float is the shortest text that reads back to the same bits.
         writer.writerows(zip(*(map(repr, a.tolist()) for a in columns.values()), strict=True))
-        write_text(path, text.getvalue())
+        return text.getvalue()
 
 
 def require(run: Run, columns: str | Iterable[str], why: str) -> None:

@@ -7,18 +7,10 @@ from typing import Any
 
 from jbf import Rig, Run
 from rigsim import Campaign, simulate_campaign
-from rigsim.motions import Motion, sine, stop_and_go
+from rigsim.campaign import standard
+from rigsim.motions import Motion
 
-SHORT = Campaign(
-    "short",
-    (
-        sine("two_way_0.25", 50.3, 0.127, 0.25),
-        sine("two_way_1", 25.2, 0.127, 1.0),
-        sine("two_way_2", 18.9, 0.127, 2.0),
-        sine("one_way_0.5", 25.2, 0.0595, 0.5, bias=0.0728),
-        stop_and_go("stop_and_go", [(1.0, 1), (9.0, -1), (22.0, 1)], 0.055, 0.8, 3.5, 30.0),
-    ),
-)
+SHORT = standard("short")
 
 
 @cache

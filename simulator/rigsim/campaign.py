@@ -37,7 +37,7 @@ def _one_way(name: str, duration_s: float, omega: float) -> Motion:
 
 
 def standard(name: str) -> Campaign:
-    """One of the standard campaigns: `full`, `heldout`, `loads`, `slow`, `steady`."""
+    """One of the standard campaigns: `full`, `heldout`, `loads`, `short`, `slow`, `steady`."""
     shares: dict[str, float] = {}
     if name == "full":
         moves = [(1.0, 1), (9.1, -1), (26.2, 1), (32.1, 1), (61.2, -1), (72.3, -1), (78.9, 1)]
@@ -58,6 +58,14 @@ def standard(name: str) -> Campaign:
             multisine("multi", 60.0, tones),
             stop_and_go("stopgo2", moves, 0.07, 1.0, 4.0, 66.0),
             _one_way("uni_w0.5", 38.0, 0.5),
+        ]
+    elif name == "short":
+        motions = [
+            sine("two_way_0.25", 50.3, 0.127, 0.25),
+            sine("two_way_1", 25.2, 0.127, 1.0),
+            sine("two_way_2", 18.9, 0.127, 2.0),
+            sine("one_way_0.5", 25.2, 0.0595, 0.5, bias=0.0728),
+            stop_and_go("stop_and_go", [(1.0, 1), (9.0, -1), (22.0, 1)], 0.055, 0.8, 3.5, 30.0),
         ]
     elif name == "slow":
         motions = [
@@ -83,7 +91,7 @@ def standard(name: str) -> Campaign:
         ]
     else:
         raise ValueError(
-            f"no campaign named {name!r}; there are full, heldout, loads, slow, steady"
+            f"no campaign named {name!r}; there are full, heldout, loads, short, slow, steady"
         )
     return Campaign(name, tuple(motions), shares)
 

@@ -143,7 +143,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     /// nothing: one lost sample of a sensor must not stay in the state of a filter for ever.
     #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State, O>, to: &Motion<T>, dt_s: T) -> T {
-        if !(dt_s.value() >= SHORTEST_STEP_S && dt_s.is_finite() && to.is_finite()) {
+        if !(dt_s >= T::of(SHORTEST_STEP_S) && dt_s.is_finite() && to.is_finite()) {
             return state.reading_n;
         }
         let scaled = self.scaled(&mut state.effects, to.load_n);

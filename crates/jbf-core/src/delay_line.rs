@@ -35,30 +35,35 @@ impl<T: Real> DelayLine<T> {
     /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
     #[inline(always)]
     pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
-        let spacing = delay_s.value() / (POINTS - 4) as f64;
+        let spacing = delay_s / T::of((POINTS - 4) as f64);
+        // The remainder is no other number; it shows the compiler that no index is out of bounds.
+        let newest = self.newest % POINTS;
         // The newest point stands for now; it moves on until it is far enough from the last.
-        if self.filled > 1 && self.gap_s[self.newest].value() < spacing {
-            self.value[self.newest] = value;
-            self.gap_s[self.newest] += dt_s;
+        if self.filled > 1 && self.gap_s[newest] < spacing {
+            self.value[newest] = value;
+            self.gap_s[newest] += dt_s;
             return;
         }
-        if self.filled > 0 {
-            self.newest = (self.newest + 1) % POINTS;
-        }
+        let next = if self.filled > 0 {
+            (newest + 1) % POINTS
+        } else {
+            newest
+        };
+        self.newest = next;
         self.filled = (self.filled + 1).min(POINTS);
-        self.value[self.newest] = value;
-        self.gap_s[self.newest] = dt_s;
+        self.value[next] = value;
+        self.gap_s[next] = dt_s;
     }
 
     /// The signal `delay_s` ago; zero of an empty line.
     #[inline(always)]
     pub(crate) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
-        let mut at = self.newest;
+        let mut at = self.newest % POINTS;
         for _ in 1..self.filled {
             let before = (at + POINTS - 1) % POINTS;
             let gap = self.gap_s[at];
-            if (age + gap).value() > delay_s.value() {
+            if age + gap > delay_s {
                 let share = (delay_s - age) / gap;
                 return self.value[at] + (self.value[before] - self.value[at]) * share;
             }

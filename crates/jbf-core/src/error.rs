@@ -4,6 +4,7 @@ use core::fmt;
 
 /// A parameter that breaks its rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ParameterError {
     /// Name of the parameter, with its unit (`radius_m`).
     pub name: &'static str,

@@ -4,6 +4,7 @@ use crate::real::Real;
 
 /// The imposed motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion<T> {
     /// Time since the run began, s.
     pub time_s: T,

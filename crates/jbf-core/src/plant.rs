@@ -47,7 +47,7 @@ pub struct Drive {
 
 impl Drive {
     /// The thesis's motor and shaft. Its friction scale is not in the thesis: `volts_per_n` is
-    /// what fits the "none" column of its Tables 6.1 and 6.2.
+    /// near what fits the "none" column of its Tables 6.1 and 6.2 (0.0283).
     pub const THESIS: Self = Self {
         damping_1_s: 135.0,
         input_rad_s2_v: 457.0,
@@ -76,16 +76,25 @@ pub struct State<T: Real, S> {
     pub speed_rad_s: T,
     /// Friction, V; what holds the shaft where it sticks.
     pub friction_v: T,
+    /// Friction is guessed to go on changing as it did, V a step.
+    change_v: T,
     time_s: T,
     chain: chain::State<T, S>,
 }
 
-/// One candidate for the end of a step.
-#[derive(Clone, Copy)]
-struct Trial<T: Real, S> {
+/// Where a step begins, and what drives it. Each trial of a step starts from here and leaves its
+/// end in [`State`].
+struct Before<T: Real, S> {
     chain: chain::State<T, S>,
     speed_rad_s: T,
     angle_rad: T,
+    /// Speed at the end if there were no friction, rad/s.
+    free: T,
+    load_n: T,
+}
+
+/// Friction at the end of a trial, V.
+struct Felt<T> {
     jump_v: T,
     smooth_v: T,
 }
@@ -135,6 +144,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
             angle_rad: T::ZERO,
             speed_rad_s: T::ZERO,
             friction_v: T::ZERO,
+            change_v: T::ZERO,
             time_s: motion.time_s,
             chain,
         }
@@ -145,58 +155,57 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     pub fn step(&self, state: &mut State<T, L::State>, input_v: T, load_n: T) {
         let u = input_v.max(-self.limit_v).min(self.limit_v);
         let free = self.keep * state.speed_rad_s + self.gain * u;
-        let end = self
-            .sliding_on(state, free, load_n)
-            .unwrap_or_else(|| self.leave_rest(state, free, load_n));
+        let before = Before {
+            chain: state.chain,
+            speed_rad_s: state.speed_rad_s,
+            angle_rad: state.angle_rad,
+            free,
+            load_n,
+        };
+        if !self.sliding_on(state, &before) {
+            self.leave_rest(state, &before);
+        }
         // What the step's motion needed: at rest, whatever holds the shaft.
-        state.friction_v = (free - end.speed_rad_s) / self.gain;
-        state.speed_rad_s = end.speed_rad_s;
-        state.angle_rad = end.angle_rad;
+        let friction_v = (free - state.speed_rad_s) / self.gain;
+        state.change_v = friction_v - state.friction_v;
+        state.friction_v = friction_v;
         state.time_s += self.step_s;
-        state.chain = end.chain;
     }
 
-    /// A step that keeps its direction, where it does.
+    /// A step that keeps its direction; false, and worth nothing, where none does.
     #[inline]
-    fn sliding_on(
-        &self,
-        state: &State<T, L::State>,
-        free: T,
-        load_n: T,
-    ) -> Option<Trial<T, L::State>> {
-        let side = state.speed_rad_s.sign();
-        let guess = free - self.gain * state.friction_v;
+    fn sliding_on(&self, state: &mut State<T, L::State>, before: &Before<T, L::State>) -> bool {
+        let side = before.speed_rad_s.sign();
+        let guess = before.free - self.gain * (state.friction_v + state.change_v);
         if !(guess * side > T::ZERO) {
-            return None;
+            return false;
         }
-        let end = self.solve(state, free, guess, side, load_n);
-        (end.speed_rad_s * side > T::ZERO).then_some(end)
+        self.solve(state, before, guess, side);
+        state.speed_rad_s * side > T::ZERO
     }
 
     /// A step that may stick: only what friction at rest cannot hold moves the shaft.
     #[inline]
-    fn leave_rest(&self, state: &State<T, L::State>, free: T, load_n: T) -> Trial<T, L::State> {
-        let still = self.attempt(state, T::ZERO, load_n);
-        let push = free - self.gain * still.smooth_v;
+    fn leave_rest(&self, state: &mut State<T, L::State>, before: &Before<T, L::State>) {
+        let still = self.attempt(state, before, T::ZERO);
+        let push = before.free - self.gain * still.smooth_v;
         let hold = self.gain * still.jump_v;
         let side = push.sign();
         if push.abs() <= hold {
             // In the gap of a drive nothing holds: it moves as if there were no friction.
             if self.chain.effects.has_drive() && side != T::ZERO {
-                let loose = self.attempt(state, push, load_n);
-                if loose.jump_v == T::ZERO {
-                    return loose;
+                if self.attempt(state, before, push).jump_v == T::ZERO {
+                    return;
                 }
+                self.attempt(state, before, T::ZERO);
             }
-            return still;
+            return;
         }
         // A bristle has no jump: nothing keeps the shaft on one side of rest.
         let kept = if hold > T::ZERO { side } else { T::ZERO };
-        let end = self.solve(state, free, push - hold * side, kept, load_n);
-        if end.speed_rad_s * kept < T::ZERO {
-            still
-        } else {
-            end
+        self.solve(state, before, push - hold * side, kept);
+        if state.speed_rad_s * kept < T::ZERO {
+            self.attempt(state, before, T::ZERO);
         }
     }
 
@@ -205,57 +214,60 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     #[inline]
     fn solve(
         &self,
-        state: &State<T, L::State>,
-        free: T,
+        state: &mut State<T, L::State>,
+        before: &Before<T, L::State>,
         guess: T,
         side: T,
-        load_n: T,
-    ) -> Trial<T, L::State> {
+    ) {
         let direction = |v: T| if side == T::ZERO { v.sign() } else { side };
-        let missed = |t: &Trial<T, L::State>| {
-            let friction_v = t.jump_v * direction(t.speed_rad_s) + t.smooth_v;
-            t.speed_rad_s - free + self.gain * friction_v
+        let missed = |v: T, felt: &Felt<T>| {
+            let friction_v = felt.jump_v * direction(v) + felt.smooth_v;
+            v - before.free + self.gain * friction_v
         };
-        let mut here = self.attempt(state, guess, load_n);
-        let mut miss = missed(&here);
+        let mut here = guess;
+        let mut miss = missed(here, &self.attempt(state, before, here));
         let mut slope = T::ONE;
         for _ in 0..MOST_TRIALS {
-            if miss.abs() <= T::of(NEAR_RAD_S) + T::of(NEAR) * here.speed_rad_s.abs() {
+            if miss.abs() <= T::of(NEAR_RAD_S) + T::of(NEAR) * here.abs() {
                 break;
             }
-            let next = self.attempt(state, here.speed_rad_s - miss / slope, load_n);
-            let after = missed(&next);
-            let run = next.speed_rad_s - here.speed_rad_s;
+            let next = here - miss / slope;
+            let run = next - here;
             if !(run.abs() > T::ZERO) {
                 break;
             }
+            let after = missed(next, &self.attempt(state, before, next));
             // Friction that falls with speed makes the slope small, never so small.
             slope = ((after - miss) / run).max(T::of(0.2));
             (here, miss) = (next, after);
         }
-        here
     }
 
-    /// What the chain makes of a step that ends with a speed.
+    /// Take the chain from where it was before the step to one that ends with a speed.
     #[inline]
-    fn attempt(&self, state: &State<T, L::State>, speed_rad_s: T, load_n: T) -> Trial<T, L::State> {
+    fn attempt(
+        &self,
+        state: &mut State<T, L::State>,
+        before: &Before<T, L::State>,
+        speed_rad_s: T,
+    ) -> Felt<T> {
         let radius_m = self.chain.rig.radius_m;
         let h = self.step_s;
-        let angle_rad = state.angle_rad + (state.speed_rad_s + speed_rad_s) * (h * T::of(0.5));
+        let way_rad = (before.speed_rad_s + speed_rad_s) * (h * T::of(0.5));
+        let angle_rad = before.angle_rad + way_rad;
         let to = Motion {
             time_s: state.time_s + h,
             velocity_m_s: speed_rad_s * radius_m,
-            acceleration_m_s2: (speed_rad_s - state.speed_rad_s) * radius_m / h,
+            acceleration_m_s2: (speed_rad_s - before.speed_rad_s) * radius_m / h,
             angle_rad,
-            load_n,
+            load_n: before.load_n,
         };
-        let mut chain = state.chain;
-        self.chain.step(&mut chain, &to, h);
-        let felt = self.chain.felt(&chain);
-        Trial {
-            chain,
-            speed_rad_s,
-            angle_rad,
+        state.chain = before.chain;
+        self.chain.step(&mut state.chain, &to, h);
+        let felt = self.chain.felt(&state.chain);
+        state.speed_rad_s = speed_rad_s;
+        state.angle_rad = angle_rad;
+        Felt {
             jump_v: felt.jump_n * self.volts_per_n,
             smooth_v: felt.smooth_n * self.volts_per_n,
         }

@@ -188,7 +188,7 @@ macro_rules! real {
 real!(
     f32,
     1.0 - 1e-6,
-    libm::sqrtf,
+    crate::root::sqrtf,
     libm::expf,
     libm::expm1f,
     libm::logf,
@@ -200,7 +200,7 @@ real!(
 real!(
     f64,
     1.0 - 1e-9,
-    libm::sqrt,
+    crate::root::sqrt,
     libm::exp,
     libm::expm1,
     libm::log,

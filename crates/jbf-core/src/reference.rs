@@ -44,6 +44,7 @@ impl Wave {
 
 /// A point of a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Target<T> {
     /// The value: rad, or rad/s for velocity control.
     pub value: T,

@@ -1,5 +1,6 @@
 //! Many parameter sets of the journal law side by side.
 
+use crate::pool::on_pool;
 use jbf_batch::{Batch, Float, Method, Speeds};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Clock};
@@ -141,7 +142,7 @@ impl BatchRig {
         if out.len() != speeds.len() * sets.as_array().nrows() {
             return Err(wrong("out has another size than samples x sets"));
         }
-        py.detach(|| batch.friction(&mut batch.start(), &speeds, F::of(dt_s), out));
+        py.detach(|| on_pool(|| batch.friction(&mut batch.start(), &speeds, F::of(dt_s), out)));
         Ok(())
     }
 
@@ -160,7 +161,8 @@ impl BatchRig {
         if data.len() != speeds.len() {
             return Err(wrong("data has another length than the motion"));
         }
-        let sums = py.detach(|| batch.squares(&mut batch.start(), &speeds, F::of(dt_s), data));
+        let sums =
+            py.detach(|| on_pool(|| batch.squares(&mut batch.start(), &speeds, F::of(dt_s), data)));
         Ok(sums.into_pyarray(py))
     }
 }

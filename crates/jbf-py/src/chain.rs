@@ -2,6 +2,7 @@
 
 use crate::bearing::{refused, Sizes};
 use crate::motion::Motion;
+use crate::pool::on_pool;
 use crate::share::longest_first;
 use jbf_batch::Simd;
 use jbf_core::effect::{Effects, Info, Rig, CATALOGUE};
@@ -265,7 +266,7 @@ impl Chain {
         let p = self.checked(&parameters)?;
         let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
         let runs = py
-            .detach(|| self.runs(p, Values, &motions))
+            .detach(|| on_pool(|| self.runs(p, Values, &motions)))
             .map_err(refused)?;
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
     }
@@ -290,27 +291,29 @@ impl Chain {
         let columns = which.len();
         let runs = py
             .detach(|| {
-                let groups: Vec<&[usize]> = match columns {
-                    0 => vec![&[]],
-                    _ => which.chunks(MANY).collect(),
-                };
-                let jobs: Vec<(usize, usize)> = (0..motions.len())
-                    .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
-                    .collect();
-                let done = longest_first(
-                    &jobs,
-                    |&(m, _)| motions[m].len(),
-                    |&(m, g)| self.slopes(p, groups[g], motions[m]),
-                )?;
-                let mut out = Vec::with_capacity(motions.len());
-                let mut done = done.into_iter();
-                for motion in &motions {
-                    let n = motion.len();
-                    let mut parts: Vec<Slice> = done.by_ref().take(groups.len()).collect();
-                    let matrix = side_by_side(&parts, n, columns);
-                    out.push((parts.swap_remove(0).0, matrix, n));
-                }
-                Ok(out)
+                on_pool(|| {
+                    let groups: Vec<&[usize]> = match columns {
+                        0 => vec![&[]],
+                        _ => which.chunks(MANY).collect(),
+                    };
+                    let jobs: Vec<(usize, usize)> = (0..motions.len())
+                        .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
+                        .collect();
+                    let done = longest_first(
+                        &jobs,
+                        |&(m, _)| motions[m].len(),
+                        |&(m, g)| self.slopes(p, groups[g], motions[m]),
+                    )?;
+                    let mut out = Vec::with_capacity(motions.len());
+                    let mut done = done.into_iter();
+                    for motion in &motions {
+                        let n = motion.len();
+                        let mut parts: Vec<Slice> = done.by_ref().take(groups.len()).collect();
+                        let matrix = side_by_side(&parts, n, columns);
+                        out.push((parts.swap_remove(0).0, matrix, n));
+                    }
+                    Ok(out)
+                })
             })
             .map_err(refused)?;
         runs.into_iter()

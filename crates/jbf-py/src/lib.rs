@@ -10,6 +10,7 @@ mod control;
 mod curves;
 mod instrument;
 mod motion;
+mod pool;
 mod share;
 mod trajectory;
 

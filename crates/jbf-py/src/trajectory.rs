@@ -1,5 +1,6 @@
 //! Trajectories to a tolerance: many runs at once, each its own thread's work.
 
+use crate::pool::on_pool;
 use jbf_core::driver::{follow, Cost, Film, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters, START_PHI_RAD};
 use jbf_core::law::journal_full::JournalFull;
@@ -209,12 +210,14 @@ pub fn trajectories<'py>(
         .collect();
     let values = [f_m, u_tr_m_s, k0, gamma];
     let done = py.detach(|| {
-        if derivatives {
-            let lifted = |i: usize| Dual::<LANES>::parameter(values[i], i);
-            asked.follow(&named([lifted(0), lifted(1), lifted(2), lifted(3)]), &runs)
-        } else {
-            asked.follow(&named(values), &runs)
-        }
+        on_pool(|| {
+            if derivatives {
+                let lifted = |i: usize| Dual::<LANES>::parameter(values[i], i);
+                asked.follow(&named([lifted(0), lifted(1), lifted(2), lifted(3)]), &runs)
+            } else {
+                asked.follow(&named(values), &runs)
+            }
+        })
     });
     done.map_err(refused)?
         .into_iter()

@@ -13,7 +13,7 @@ const MOST: usize = 16;
 fn starts<T: Real>(pages: &[effect::Parameter]) -> ([T; MOST], usize) {
     let mut values = [T::ZERO; MOST];
     for (value, page) in values.iter_mut().zip(pages) {
-        *value = T::of(page.starts[0]);
+        *value = T::of(page.starts.first().copied().unwrap_or_default());
     }
     (values, pages.len().min(MOST))
 }

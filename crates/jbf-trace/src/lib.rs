@@ -1,5 +1,5 @@
 //! Fingerprints of everything that `jbf-core` steps: laws, steppers, effects, whole chains, the
-//! driver, in single and double precision. A target computes right if its fingerprints are those
+//! driver, control loops, in single and double precision. A target computes right if its fingerprints are those
 //! of [`TABLE`], to the last bit of every step.
 //!
 //! `no_std`, no allocation, nothing of the platform's: a microcontroller runs the same code and
@@ -21,12 +21,15 @@
 mod chains;
 mod drivers;
 mod hash;
+pub mod loops;
 mod motion;
+mod shaft;
 mod steppers;
 mod table;
 
 pub use hash::Hash;
 pub use motion::{motions, STEP_S};
+pub use shaft::{asked, Shaft, LOOP_STEPS, LOOP_STEP_S};
 pub use table::TABLE;
 
 use jbf_core::Real;
@@ -34,7 +37,7 @@ use jbf_core::Real;
 /// The fingerprint of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// What kind of thing ran: `law`, `stepper`, `effect`, `chain` or `driver`.
+    /// What kind of thing ran: `law`, `stepper`, `effect`, `chain`, `driver` or `loop`.
     pub group: &'static str,
     /// Its name.
     pub name: &'static str,
@@ -57,6 +60,19 @@ pub struct Found {
 
 /// All fingerprints in one kind of number, handed to `visit` as they are computed.
 pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
+    steps::<T>(kind, visit);
+    drivers::drivers::<T>(&mut |group, name, hash: Hash| {
+        visit(&Trace {
+            group,
+            name,
+            kind,
+            hash: hash.0,
+        });
+    });
+}
+
+/// Those of everything that a control loop may step: all but the driver, which is for analysis.
+pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     let mut named = |group, name, hash: Hash| {
         visit(&Trace {
             group,
@@ -69,7 +85,7 @@ pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     steppers::steppers::<T>(&mut named);
     chains::effects::<T>(&mut named);
     chains::together::<T>(&mut named);
-    drivers::drivers::<T>(&mut named);
+    loops::loops::<T>(&mut named);
 }
 
 /// All fingerprints, each beside what the table has for it.

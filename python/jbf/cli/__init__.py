@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from jbf.errors import InputError, did_you_mean
 
-COMMANDS = ("demo", "compare", "fit", "diagnose", "predict", "effects", "control")
+COMMANDS = ("demo", "compare", "fit", "diagnose", "predict", "export", "effects", "control")
 """Modules of this package, in the order in which help lists them."""
 
 _PIPE_CLOSED = 141

@@ -25,10 +25,13 @@ def command(
     return added
 
 
-def add_runs(parser: Parser) -> None:
+def add_runs(parser: Parser, *, needed: bool = True) -> None:
     """RUN..."""
     parser.add_argument(
-        "runs", metavar="RUN", nargs="+", help="a CSV file, a folder of them, or a pattern"
+        "runs",
+        metavar="RUN",
+        nargs="+" if needed else "*",
+        help="a CSV file, a folder of them, or a pattern",
     )
 
 

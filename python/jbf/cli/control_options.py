@@ -35,8 +35,6 @@ def bench_of(arguments: argparse.Namespace) -> Bench:
 
     names = ("volts_per_n", "damping_1_s", "input_rad_s2_v", "counts_per_rad", "limit_v", "seed")
     given = {n: getattr(arguments, n) for n in names if getattr(arguments, n) is not None}
-    if given.get("seed", 0) < 0:
-        raise InputError(problem="--seed is negative", mend="give zero or more")
     bench = replace(THESIS_BENCH, **given)
     times = arguments.noise_times
     if times is None:
@@ -52,6 +50,9 @@ def add_task(parser: Parser) -> None:
         "task", "a row of the thesis's tables (--task), changed by whatever else is given"
     )
     group.add_argument("--task", metavar="NAME", default="velocity sine", help="velocity sine")
+    group.add_argument(
+        "--motion", metavar="RUN", help="follow the speed (or angle) of a recorded run, CSV"
+    )
     group.add_argument("--control", choices=("position", "velocity"), help="what is controlled")
     group.add_argument("--wave", choices=("sine", "triangle", "square"), help="its reference")
     for name, does in (

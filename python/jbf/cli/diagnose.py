@@ -3,29 +3,81 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from jbf.catalogue import find_law
-from jbf.cli import inputs, outputs
+from jbf.cli import diagnose_many, inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
+from jbf.errors import InputError
+
+if TYPE_CHECKING:
+    from jbf.cli import Parser
+    from jbf.diagnosis import Limits
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
     does = "which effect is missing: adds it and shows the error fall, until nothing is missing"
     parser = command(commands, "diagnose", does, run)
-    parser.add_argument("rig", metavar="RIG", help="rig file (TOML)")
-    add_runs(parser)
+    parser.add_argument("rig", metavar="RIG", nargs="?", help="rig file (TOML)")
+    add_runs(parser, needed=False)
     parser.add_argument("--out", metavar="MODEL", help="write the completed model")
     add_json(parser)
     add_report(parser)
     add_law(parser)
     add_own(parser)
+    _add_next_run(parser)
+    diagnose_many.add(parser)
+
+
+def _add_next_run(parser: Parser) -> None:
+    group = parser.add_argument_group(
+        "next experiment", "the run that would part effects that fit equally well"
+    )
+    group.add_argument(
+        "--next-run", metavar="CSV", help="write its motion, to be played; needs a tie"
+    )
+    group.add_argument(
+        "--max-velocity-m-s", metavar="X", type=float, help="of the rig; as recorded"
+    )
+    group.add_argument(
+        "--max-acceleration-m-s2", metavar="X", type=float, help="of the rig; as recorded"
+    )
+    group.add_argument("--next-duration-s", metavar="X", type=float, default=60.0, help="60")
+    group.add_argument(
+        "--loads-n",
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        type=float,
+        help="loads that the rig can be put under; as recorded",
+    )
+
+
+def _limits(arguments: argparse.Namespace) -> Limits:
+    from jbf.diagnosis import Limits
+
+    return Limits(
+        velocity_m_s=arguments.max_velocity_m_s,
+        acceleration_m_s2=arguments.max_acceleration_m_s2,
+        duration_s=arguments.next_duration_s,
+        load_n=None if arguments.loads_n is None else tuple(arguments.loads_n),
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
+    if arguments.many is not None:
+        return diagnose_many.run(arguments, _limits(arguments))
+    if arguments.rig is None or not arguments.runs:
+        raise InputError(
+            file="jbf diagnose",
+            problem="RIG and RUN are missing",
+            mend="name the rig's TOML and its runs, or --many FOLDER",
+        )
     wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
+    wanted["--next-run"] = arguments.next_run
+    limits = _limits(arguments)
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     find_law(arguments.law)
     rig = inputs.rig(arguments.rig, arguments.law)
@@ -36,7 +88,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     texts = {}
     with shown("diagnosing") as report:
-        diagnosis = diagnose(rig, runs, law=arguments.law, clock=arguments.clock, progress=report)
+        diagnosis = diagnose(
+            rig,
+            runs,
+            law=arguments.law,
+            clock=arguments.clock,
+            limits=limits,
+            progress=report,
+        )
         if arguments.report:
             from jbf.report import diagnosis_page
 
@@ -46,6 +105,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         texts[arguments.out] = diagnosis.model.to_toml()
     summary = diagnosis.summary()
+    if arguments.next_run and diagnosis.experiment:
+        texts[arguments.next_run] = diagnosis.experiment.run.to_csv()
+    elif arguments.next_run:
+        summary += f"\n\nNo next run to play: {arguments.next_run} was not written"
     outputs.write(texts)
     outputs.say(summary, wanted)
     return 0

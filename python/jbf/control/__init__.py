@@ -7,6 +7,7 @@ True
 """
 
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
+from jbf.control.motion import Motion, follow
 from jbf.control.run import Result, run
 from jbf.control.schemes import (
     SCHEMES,
@@ -30,6 +31,7 @@ __all__ = [
     "Bench",
     "Coulomb",
     "Learning",
+    "Motion",
     "NoCompensation",
     "Observed",
     "Repetitive",
@@ -38,6 +40,7 @@ __all__ = [
     "Settings",
     "Table",
     "Task",
+    "follow",
     "run",
     "scheme",
     "thesis_model",

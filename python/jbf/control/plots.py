@@ -45,11 +45,7 @@ def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:
     top.plot(t, r.reference[::stride], color=MEASURED, linewidth=2.2, label="reference")
     top.plot(t, r.response[::stride], color=MODEL, linewidth=0.9, label="response")
     dress(top, r.scheme, "", f"{what} ({unit})" if first else "")
-    error.plot(t, r.error[::stride], color=BEFORE, linewidth=0.8)
-    dress(error, f"RMS {r.rms:.3g}, peak {r.peak:.3g}", "", f"Error ({unit})" if first else "")
-    counted = r.error[r.time_s >= max(r.task.skip_s, 1.0)]
-    limit = 1.3 * float(np.max(np.abs(counted))) if len(counted) else 1.0
-    error.set_ylim(-limit, limit)
+    _errors(error, r, t, stride, f"Error ({unit})" if first else "")
     loop.plot(
         r.velocity_rad_s[::stride],
         r.friction_v[::stride],
@@ -79,8 +75,26 @@ def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:
     dress(friction, "Friction", "", "Friction (V)" if first else "")
     _learned(learned, r, t, stride)
     if first:
-        for ax in (top, friction):
-            ax.legend(loc="upper right", fontsize="x-small", frameon=False)
+        top.legend(loc="upper right", fontsize="x-small", frameon=False)
+    if r.scheme != "none":
+        friction.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
+
+
+def _errors(ax: Axes, r: Result, t: Array, stride: int, label: str) -> None:
+    title = f"RMS {r.rms:.3g}, peak {r.peak:.3g}"
+    counts = r.time_s >= max(r.task.skip_s, 1.0)
+    shown = [r.error[counts]]
+    if not r.task.is_position:
+        # The loop's own estimate is not the shaft.
+        ax.plot(t, r.true_error[::stride], color=MEASURED, linewidth=0.8, label="of the shaft")
+        title += f", of the shaft {r.true_rms:.3g}"
+        shown.append(r.true_error[counts])
+    ax.plot(t, r.error[::stride], color=BEFORE, linewidth=0.8, label="of the estimate")
+    largest = max((float(np.quantile(np.abs(e), 0.999)) for e in shown if len(e)), default=1.0)
+    ax.set_ylim(-1.5 * largest, 1.5 * largest)
+    dress(ax, title, "", label)
+    if label and len(shown) > 1:
+        ax.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
 
 
 def _learned(ax: Axes, r: Result, t: Array, stride: int) -> None:
@@ -110,8 +124,10 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
     for i, column in enumerate(there):
         at = np.arange(len(rows)) + (i - (len(there) - 1) / 2.0) * 0.2
         cells = [tables[row, column] for row in rows]
-        label = f"{column}, bench"
-        ax.bar(at, [c.rms for c in cells], 0.17, color=colours[column], alpha=0.85, label=label)
+        ours = column not in COLUMNS
+        label = f"{column}, true error" if ours else f"{column}, bench"
+        heights = [c.true_rms if ours else c.rms for c in cells]
+        ax.bar(at, heights, 0.17, color=colours[column], alpha=0.85, label=label)
         if column in COLUMNS:
             known = [(x, c.printed_rms) for x, c in zip(at, cells, strict=True) if c.printed_rms]
             ax.plot(
@@ -125,7 +141,7 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
     ax.set_yscale("log")
     ax.set_xticks(range(len(rows)), [row.replace(" ", "\n", 1) for row in rows])
     dress(ax, "RMS error: bench (bars) and thesis (diamonds)", "", "rad or rad/s")
-    ax.legend(ncols=3, fontsize="small", frameon=False, loc="upper right")
+    made.legend(ncols=5, fontsize="small", frameon=False, loc="outside lower center")
     return made
 
 

@@ -12,7 +12,7 @@ from jbf import _core
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.schemes import Scheme, core_loop, scheme
 from jbf.control.settings import Settings
-from jbf.control.task import TASKS, Task
+from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
 from jbf.model import Model, core_load_n
 
@@ -109,6 +109,7 @@ def run(
     task: Task = TASKS["velocity sine"],
     *,
     bench: Bench = THESIS_BENCH,
+    told: Bench | None = None,
     carried: Model | None = None,
     settings: Settings | None = None,
     guard: Settings | None = None,
@@ -130,13 +131,15 @@ def run(
         Reference, control law and length.
     bench
         Motor, shaft, encoder, noise.
+    told
+        The bench that control law, observer and compensator believe in; the true one by default.
     carried
         The model that the compensator carries; the true one by default.
     settings
-        Of the observed compensator; from `tune(carried, bench)` by default.
+        Of the observed compensator; from `tune(carried, told)` by default.
     guard
-        Settings whose `moving_v` and `patience_s` guard the loop; `settings` by default, and none
-        at all for the thesis's schemes.
+        Settings whose `moving_v` and `patience_s` guard the loop; the observed compensator's own
+        by default, none at all for the thesis's schemes.
     load_n
         Load on one bearing, N: a number, or one value a step; the model's own by default.
     reference
@@ -154,7 +157,10 @@ def run(
         Something is out of range, or of the wrong length.
     """
     truth = thesis_model() if model is None else model
-    chosen = _scheme(scheme, truth if carried is None else carried, settings)
+    chosen = _scheme(scheme, model if carried is None else carried, settings)
+    believed = bench if told is None else told
+    if believed.dt_s != bench.dt_s:
+        raise InputError(problem="the two benches have different steps", mend="give both one dt_s")
     n = max(round(task.seconds / bench.dt_s), 1)
     value, rate = _reference(task, bench, n, reference)
     n = len(value)
@@ -167,8 +173,8 @@ def run(
     try:
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
-            core_loop(task, bench, settings if guard is None else guard),
-            chosen.core(task, bench),
+            core_loop(task, believed, chosen.guard(believed) if guard is None else guard),
+            chosen.core(task, believed),
             value,
             rate,
             load,
@@ -178,12 +184,15 @@ def run(
     except (ValueError, OverflowError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(problem=str(error), mend="correct it") from None
+        mend = "correct it"
+        if str(error).startswith("top_speed_rad_s"):
+            mend = "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
+        raise InputError(problem=str(error), mend=mend) from None
     time_s = np.arange(n, dtype=np.float64) * bench.dt_s
     return Result(task, chosen.name, time_s, value, **arrays)
 
 
-def _scheme(given: str | Scheme, carried: Model, settings: Settings | None) -> Scheme:
+def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | None) -> Scheme:
     return scheme(given, carried, settings) if isinstance(given, str) else given
 
 
@@ -197,6 +206,8 @@ def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
 def _reference(
     task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
 ) -> tuple[Array, Array]:
+    if given is None and task.wave == RECORDED:
+        raise InputError(problem="a recorded task has no wave", mend="give its reference")
     if given is None:
         return _core.control_reference(
             task.wave, task.low, task.high, task.frequency_rad_s, bench.dt_s, n

@@ -9,6 +9,10 @@ from typing import Literal
 from jbf.errors import InputError, did_you_mean
 
 WAVES = ("sine", "triangle", "square")
+RECORDED = "recorded"
+"""The wave of a task whose reference is given sample by sample."""
+
+_FARTHEST = 1e6
 
 
 @dataclass(frozen=True)
@@ -32,13 +36,14 @@ class Task:
                 problem=f'control "{self.control}" is not known',
                 mend="write position or velocity",
             )
-        if self.wave not in WAVES:
+        if self.wave not in (*WAVES, RECORDED):
             raise InputError(
                 problem=f'there is no wave "{self.wave}"', mend=did_you_mean(self.wave, WAVES)
             )
-        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+        if not -_FARTHEST <= self.low < self.high <= _FARTHEST:
             raise InputError(
-                problem=f"low {self.low} is not below high {self.high}", mend="give both, finite"
+                problem=f"low {self.low} and high {self.high} are no range",
+                mend="give low below high, within a million either way",
             )
         if not 0.0 < self.frequency_rad_s < math.inf:
             raise InputError(

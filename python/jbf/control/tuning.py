@@ -7,6 +7,7 @@ friction at rest and at the start of sliding that the model predicts.
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 
 import numpy as np
 
@@ -19,14 +20,37 @@ from jbf.record import Run
 _SHARE_OF_SAMPLING = 0.12
 """Observer's bandwidth times the step: its delay of half a step then costs 3.4 degrees."""
 
+_MOTOR_SHARE = 0.1
+"""Share of the largest voltage by which a motor may be another than it is said to be."""
+
+LAW_RAD_S = math.sqrt(200.0)
+"""Natural frequency of the position law, whose poles are at -10 +- 10i."""
+
+_MOST_LEVELS = 256
+
 _NOISE_SHARE = 0.01
 """Share of the friction level that noise may make of the output."""
 
 
 def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
     """The largest friction (V) that a model has in slow motion, effects included."""
+    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    key = (model.rig, model.law, model.effects, model.clock, tuple(values.items()))
+    if key not in _levels_n:
+        if len(_levels_n) >= _MOST_LEVELS:
+            _levels_n.clear()
+        _levels_n[key] = _friction_level_n(model)
+    return _levels_n[key] * bench.volts_per_n
+
+
+_levels_n: dict[Hashable, float] = {}
+"""What was found before: a prediction costs more than a run of the loop."""
+
+
+def _friction_level_n(model: Model) -> float:
     radius_m = 1.0 if model.rig.bearing is None else model.rig.bearing.radius_m
-    time_s = np.arange(0.0, 30.0, 0.02)
+    # A little more than one turn there and back.
+    time_s = np.arange(0.0, 11.0, 0.02)
     rate, top_m_s = 0.6, 0.005
     velocity = top_m_s * np.sin(rate * time_s)
     way = top_m_s / rate * (1.0 - np.cos(rate * time_s))
@@ -38,7 +62,7 @@ def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
         angle_rad=None if linear else way / radius_m,
         position_m=way if linear else None,
     )
-    return float(np.max(np.abs(model.predict(run)))) * bench.volts_per_n
+    return float(np.max(np.abs(model.predict(run))))
 
 
 def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
@@ -71,11 +95,13 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
     return Settings(
         bandwidth_rad_s=bandwidth,
         learning_1_s=bandwidth / 30.0,
-        # Friction may be nothing or twice what the model says; so may whatever else there is.
+        # Friction may be nothing or twice what the model says. Whatever else there is may be as
+        # much, and what a motor lacks or has over that is not the one of the data sheet.
         level_limit_v=level_v,
-        rest_limit_v=level_v,
+        rest_limit_v=level_v + _MOTOR_SHARE * bench.limit_v,
         slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
-        loop_rad_s=bandwidth / 2.0,
+        # An encoder too coarse for a stiffer loop is no reason for a softer one.
+        loop_rad_s=max(bandwidth / 2.0, LAW_RAD_S),
         breakaway=1.0,
         moving_v=min(2.5 * level_v, bench.limit_v),
         patience_s=50.0 * bench.dt_s,

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.campaign import Campaign
 from jbf.fitting import Problem, Solution
 
 Array = npt.NDArray[np.float64]
@@ -76,9 +75,7 @@ def _halves_rms(problem: Problem, solution: Solution) -> float:
     total, samples = 0.0, 0
     for half in (first, ~first):
         masked = replace(only, trusted=only.trusted & half, weight=only.weight * half)
-        part = Problem(
-            Campaign(problem.campaign.rig, (masked,)), problem.law, problem.clock, problem.effects
-        )
+        part = Problem(problem.campaign.of([masked]), problem.law, problem.clock, problem.effects)
         values, _, _ = part.search(solution.values, solution.noise, EVALUATIONS)
         seen = only.trusted & ~half
         total += float(np.sum(problem.residuals(values)[0][seen] ** 2))

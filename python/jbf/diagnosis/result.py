@@ -14,6 +14,8 @@ from jbf.record import PathLike
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from jbf.diagnosis.experiment import Experiment
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -111,6 +113,8 @@ class Diagnosis:
         Comparison of the bare law and of the final model with the runs.
     not_tried
         Effects that go with the law but that these runs cannot show, and why.
+    experiment
+        The motion of that run, where the verdict is `ambiguous` and a run would part the rivals.
     """
 
     verdict: str
@@ -125,6 +129,7 @@ class Diagnosis:
     after: Comparison
     elapsed_s: float
     not_tried: dict[str, str] = field(default_factory=dict)
+    experiment: Experiment | None = None
 
     @property
     def model(self) -> Model:

@@ -19,11 +19,20 @@ import numpy.typing as npt
 from jbf.campaign import Campaign
 from jbf.catalogue import effects as catalogue
 from jbf.comparison import compare_prepared
-from jbf.diagnosis.experiment import propose
+from jbf.diagnosis.excitations import Limits
+from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, costs, finish, first_step_gain, root_mean_square
+from jbf.fitting import (
+    Problem,
+    Solution,
+    costs,
+    finish,
+    first_step_gain,
+    independent,
+    root_mean_square,
+)
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -48,6 +57,10 @@ CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
+LEAST_FORESEEN = 0.5
+"""Share of what a candidate gains where it is fitted that it must gain on runs left out, if its
+evidence is weak; any gain will do where it is strong: one run alone may hold the rests, or the
+reversals, that an effect needs."""
 DOUBT = 60.0
 """Evidence of a candidate that fits and does not predict from which on something of its kind must
 be there: noise does not reach it."""
@@ -139,9 +152,12 @@ class Search:
         return MARGIN + float(parameters * np.log(self.campaign.samples) + tried)
 
     def evidence(self, richer: Solution, simpler: Solution) -> float:
-        """Evidence for the richer of two models."""
-        gain = np.subtract(*costs(simpler, richer))
-        return float(gain) - self.price(richer.free - simpler.free)
+        """Evidence for the richer of two models.
+
+        Where even the richer one leaves an error that is smooth, samples count for less.
+        """
+        gain = float(np.subtract(*costs(simpler, richer))) * independent(richer)
+        return gain - self.price(richer.free - simpler.free)
 
     def loss(self, effects: frozenset[str], whole: Solution, near: Solution) -> float:
         """How much evidence is lost when these effects stand in place of those of `whole`."""
@@ -208,7 +224,8 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
         outcome, reason = "useless", "gains no more than chance would"
         if evidence > 0 and leader is None:
             after = search.hold_out(frozenset((*present, name)))
-            if after < before:
+            gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
+            if gained > (0.0 if evidence > DOUBT else LEAST_FORESEEN):
                 leader, best = name, evidence
                 outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
             else:
@@ -272,6 +289,7 @@ def diagnose(
     *,
     law: str = "journal",
     clock: str = "journal",
+    limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which effect of the catalogue a law lacks to explain the runs; add it; repeat.
@@ -284,6 +302,8 @@ def diagnose(
         Recorded runs with friction; several different motions tell effects apart.
     law, clock
         Base law and its clock.
+    limits
+        What the rig may be asked to do in the next experiment; from the runs where not given.
     progress
         Called with a message, and how many of how many trials of the round are done.
 
@@ -346,7 +366,9 @@ def diagnose(
         verdict = "ambiguous"
     else:
         verdict = "missing" if present else "adequate"
-    proposal = propose(search, present, tied, noise) if tied else None
+    proposal: Experiment | str | None = None
+    if tied:
+        proposal = propose(search, [_rivals(present, n, tied[n]) for n in tied], limits)
     return Diagnosis(
         verdict=verdict,
         effects=present,
@@ -354,13 +376,20 @@ def diagnose(
         steps=tuple(steps),
         failures=before.failures,
         unexplained=remains,
-        next_experiment=proposal,
+        next_experiment=proposal.words if isinstance(proposal, Experiment) else proposal,
+        experiment=proposal if isinstance(proposal, Experiment) else None,
         fit=fit,
         before=before,
         after=after,
         elapsed_s=time.monotonic() - begun,
         not_tried=search.not_tried,
     )
+
+
+def _rivals(present: tuple[str, ...], name: str, others: tuple[str, ...]) -> list[tuple[str, ...]]:
+    """The models that fit equally well: with this effect, or another in its place."""
+    rest = tuple(e for e in present if e != name)
+    return [present, *((*rest, other) for other in others)]
 
 
 def _remainder(search: Search, present: tuple[str, ...]) -> tuple[Remainder, ...]:

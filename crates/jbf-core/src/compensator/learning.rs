@@ -68,7 +68,7 @@ pub struct State<T> {
 
 impl<T: Real> Learning<T> {
     /// A film (its K0 is the one that is learned from), the gamma that it was built with, what a
-    /// coefficient of 1 is in volts (25.5 V in the thesis), the journal's radius (m), the learning
+    /// coefficient of 1 is in volts (25.5 V by the thesis's listings), the journal's radius (m), the learning
     /// gains per step, and the bounds of what may be learned.
     ///
     /// # Errors

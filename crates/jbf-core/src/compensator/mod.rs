@@ -39,6 +39,7 @@ pub struct Sense<T> {
 
 /// A compensator's answer, in parts for logging.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Answer<T> {
     /// Voltage to add to the control law's, V.
     pub sum_v: T,

@@ -221,37 +221,33 @@ fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
     let h = 0.5 * dt_s;
     // The prediction: x + h (v + v'), v' = keep v - gain d, d.
     let (a12, a13) = (h * (1.0 + keep), -h * gain);
-    // phi(A) = (A - p)^2 (A - own) for the upper triangular A = [1 a12 a13; 0 keep -gain; 0 0 1].
-    let less = |p: f64| {
+    // Rows C A, C A^2, C A^3 of what is seen, A = [1 a12 a13; 0 keep -gain; 0 0 1]; their solution
+    // against (0, 0, 1).
+    let next = |r: [f64; 3]| {
         [
-            [1.0 - p, a12, a13],
-            [0.0, keep - p, -gain],
-            [0.0, 0.0, 1.0 - p],
+            r[0],
+            r[0] * a12 + r[1] * keep,
+            r[0] * a13 - r[1] * gain + r[2],
         ]
     };
-    let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]| {
-        let mut z = [[0.0; 3]; 3];
-        for (i, row) in z.iter_mut().enumerate() {
-            for (j, cell) in row.iter_mut().enumerate() {
-                *cell = (0..3).map(|k| x[i][k] * y[k][j]).sum();
-            }
-        }
-        z
-    };
-    let phi = product(&product(&less(p), &less(p)), &less(p.min(keep)));
-    // Rows C A, C A^2, C A^3 of what is seen; their solution against (0, 0, 1).
-    let a = [[1.0, a12, a13], [0.0, keep, -gain], [0.0, 0.0, 1.0]];
-    let a2 = product(&a, &a);
-    let a3 = product(&a2, &a);
-    let (r1, r2, r3) = (a[0], a2[0], a3[0]);
+    let r1 = [1.0, a12, a13];
+    let r2 = next(r1);
+    let r3 = next(r2);
     // The first entry of each row is 1: eliminate it, then two equations are left.
     let (b1, c1) = (r2[1] - r1[1], r2[2] - r1[2]);
     let (b2, c2) = (r3[1] - r2[1], r3[2] - r2[2]);
     let determinant = b1 * c2 - b2 * c1;
     let (q1, q2) = (-c1 / determinant, b1 / determinant);
     let q0 = -(r1[1] * q1 + r1[2] * q2);
-    let q = [q0, q1, q2];
-    phi.map(|row| row[0] * q[0] + row[1] * q[1] + row[2] * q[2])
+    // phi(A) q, phi(A) = (A - p)^2 (A - own), a factor at a time.
+    let less = |p: f64, q: [f64; 3]| {
+        [
+            (1.0 - p) * q[0] + a12 * q[1] + a13 * q[2],
+            (keep - p) * q[1] - gain * q[2],
+            (1.0 - p) * q[2],
+        ]
+    };
+    less(p, less(p, less(p.min(keep), [q0, q1, q2])))
 }
 
 impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {

@@ -4,6 +4,7 @@ use core::ops::{BitOr, BitOrAssign};
 
 /// Flags of one step; [`Status::OK`] is none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Status(u8);
 

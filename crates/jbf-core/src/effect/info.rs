@@ -108,6 +108,44 @@ impl Info {
     }
 }
 
+/// True where there is one value for each parameter and each lies in its bounds or at its null:
+/// what can be checked of constants while a program is compiled.
+pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
+    if pages.len() != values.len() {
+        return false;
+    }
+    let mut i = 0;
+    while i < values.len() {
+        let (page, value) = (&pages[i], values[i]);
+        let at_null = match page.null {
+            Some(null) => value == null,
+            None => false,
+        };
+        let within = at_null || (value >= page.lower && value <= page.upper);
+        if !within {
+            return false;
+        }
+        i += 1;
+    }
+    true
+}
+
+/// Two names, while a program is compiled.
+pub(crate) const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    if a.len() != b.len() {
+        return false;
+    }
+    let mut i = 0;
+    while i < a.len() {
+        if a[i] != b[i] {
+            return false;
+        }
+        i += 1;
+    }
+    true
+}
+
 /// Check values against the bounds of their pages. A null value is always allowed.
 ///
 /// # Errors

@@ -230,3 +230,21 @@ registry::signal_chain! {
         sensor_drift::SensorDrift,
     ],
 }
+
+/// True where the catalogue has an effect of that name, and the values are as many as its parameters and
+/// each within its bounds. A constant can be checked by it while a program is compiled; what
+/// `jbf export` writes is.
+///
+/// ```
+/// const _: () = assert!(jbf_core::effect::fits("coulomb_drag", &[0.8]));
+/// ```
+pub const fn fits(name: &str, values: &[f64]) -> bool {
+    let mut i = 0;
+    while i < CATALOGUE.len() {
+        if info::same(CATALOGUE[i].name, name) {
+            return info::values_fit(CATALOGUE[i].parameters, values);
+        }
+        i += 1;
+    }
+    false
+}

@@ -40,7 +40,7 @@ impl<T: Real> Dahl<T> {
         let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
         let ratio = self.stiffness_n_m * leg.distance_m / mean;
         // A way so short that its ratio rounds to zero.
-        if ratio.value() <= 0.0 {
+        if ratio <= T::ZERO {
             return force_n;
         }
         let lacking = T::ONE - way * force_n / mean;

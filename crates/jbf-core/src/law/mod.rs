@@ -122,3 +122,21 @@ registry::laws! {
     dahl::Dahl,
     lugre::LuGre,
 }
+
+/// True where the catalogue has a law of that name, and the values are as many as its parameters and
+/// each within its bounds. A constant can be checked by it while a program is compiled; what
+/// `jbf export` writes is.
+///
+/// ```
+/// const _: () = assert!(jbf_core::law::fits("journal", &[0.26, 0.06, 7.5e5, 33.0]));
+/// ```
+pub const fn fits(name: &str, values: &[f64]) -> bool {
+    let mut i = 0;
+    while i < CATALOGUE.len() {
+        if crate::effect::info::same(CATALOGUE[i].name, name) {
+            return crate::effect::info::values_fit(CATALOGUE[i].parameters, values);
+        }
+        i += 1;
+    }
+    false
+}

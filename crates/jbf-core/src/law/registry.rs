@@ -28,6 +28,14 @@ macro_rules! laws {
             Err(UNKNOWN)
         }
 
+        /// The Rust type of the law of that name, as `law::NAME::TYPE` has it.
+        pub fn type_name(name: &str) -> Option<&'static str> {
+            $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
+                return Some(stringify!($Type));
+            })*
+            None
+        }
+
         /// Steady friction (N) of the law of that name at speeds (m/s, not zero), into `out`.
         ///
         /// # Errors

@@ -102,7 +102,7 @@ pub struct LearningSpec {
     u_tr_m_s: f64,
     k0: f64,
     gamma: f64,
-    eps_tr: f64,
+    eps_tr: Option<f64>,
     volts: f64,
     k0_gain: f64,
     gamma_gain: f64,
@@ -219,7 +219,10 @@ impl LearningSpec {
             gamma: T::of(self.gamma),
         };
         let law = Journal::new(&bearing, self.load_n, &parameters, clock)
-            .and_then(|law| law.with_eps_tr(self.eps_tr))
+            .and_then(|law| match self.eps_tr {
+                Some(eps_tr) => law.with_eps_tr(eps_tr),
+                None => Ok(law),
+            })
             .map_err(refused)?;
         let rule = if settings.position {
             Rule::Position {

@@ -66,7 +66,7 @@ impl<T: Real> Journal<T> {
     /// Load number and transition eccentricity under a load; see [`LIGHTEST_SHARE`]
     /// for a lifted bearing.
     pub fn under(&self, load_n: T) -> Loaded<T> {
-        if load_n.value() == self.nominal.load_n.value() {
+        if load_n == self.nominal.load_n {
             return self.nominal;
         }
         let load_number = self.fb_per_n * self.pressed_n(load_n);
@@ -264,7 +264,7 @@ impl<T: Real> Law<T> for Journal<T> {
 
     #[inline(always)]
     fn set_load(&self, state: &mut State<T>, load_n: T) {
-        if load_n.value() != state.loaded.load_n.value() {
+        if load_n != state.loaded.load_n {
             state.loaded = self.under(load_n);
         }
     }

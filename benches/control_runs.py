@@ -1,0 +1,51 @@
+"""Processor time of `jbf.control.run` for 100 s of loop at 2 ms (50,000 steps), plant and log too.
+
+`python benches/control_runs.py` prints the middle and the least of several runs by scheme. The
+task is the velocity sine of Table 6.2, the bench the thesis's with its elastic belt; `rigid` has
+none, and `all effects` has every effect of the catalogue at its starting values.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from dataclasses import replace
+
+from jbf import Model, control
+from jbf.catalogue import effects
+from jbf.control.bench import THESIS_RIG
+
+TASK = replace(control.TASKS["velocity sine"], seconds=100.0)
+RUNS = 9
+
+
+def burdened() -> Model:
+    """The film with every effect that goes with it."""
+    names = [name for name, page in effects().items() if "journal" not in page.refused]
+    values = {f"{n}.{p.name}": p.starts[0] for n in names for p in effects()[n].parameters}
+    return Model(THESIS_RIG, effects=names, parameters=values, clock="thesis")
+
+
+def main() -> None:
+    """One row a scheme, on three benches."""
+    benches = {
+        "elastic belt": control.thesis_model(),
+        "rigid": control.thesis_model(elastic="nothing"),
+        "all effects": burdened(),
+    }
+    print("| scheme | " + " | ".join(f"{name}, ms" for name in benches) + " |")
+    print("| --- |" + " --- |" * len(benches))
+    for scheme in control.SCHEMES:
+        cells = []
+        for model in benches.values():
+            times = []
+            for _ in range(RUNS):
+                begin = time.process_time()
+                control.run(model, scheme, TASK)
+                times.append(1e3 * (time.process_time() - begin))
+            cells.append(f"{statistics.median(times):.1f} ({min(times):.1f})")
+        print(f"| `{scheme}` | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main()

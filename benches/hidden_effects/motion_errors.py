@@ -1,0 +1,19 @@
+"""Errors of a model on runs, where the sign of the speed is known."""
+
+from __future__ import annotations
+
+import jbf
+import numpy as np
+
+SLOWEST_M_S = 5e-4
+
+
+def held_out(model: jbf.Model, runs: list[jbf.Run]) -> dict[str, float]:
+    """RMS and mean absolute error, N."""
+    errors = []
+    for run in runs:
+        assert run.friction_n is not None
+        kept = np.abs(run.velocity_m_s) >= SLOWEST_M_S
+        errors.append((run.friction_n - model.predict(run))[kept])
+    all_ = np.concatenate(errors)
+    return {"rms_n": float(np.sqrt(np.mean(all_**2))), "mae_n": float(np.mean(np.abs(all_)))}

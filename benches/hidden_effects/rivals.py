@@ -1,0 +1,127 @@
+"""What simpler rules name on the same runs, each at its best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
+
+import jbf
+import numpy as np
+import numpy.typing as npt
+from motion_errors import held_out
+
+Array = npt.NDArray[np.float64]
+
+MOST_STEPS = 3
+THRESHOLDS = (0.003, 0.01, 0.03, 0.1, 0.3)
+
+
+class Rivals:
+    """The runs that a rule may fit, other runs of the same rig, and the fits made so far."""
+
+    def __init__(self, rig: jbf.Rig, runs: list[jbf.Run], others: list[jbf.Run]) -> None:
+        self.rig, self.runs, self.others = rig, runs, others
+        self._fits: dict[frozenset[str], jbf.Fit | None] = {}
+
+    def fit(self, effects: Sequence[str]) -> jbf.Fit | None:
+        """A fit, or None where the runs cannot show the effects."""
+        key = frozenset(effects)
+        if key not in self._fits:
+            try:
+                self._fits[key] = jbf.fit(self.rig, self.runs, effects=list(effects))
+            except jbf.InputError:
+                self._fits[key] = None
+        return self._fits[key]
+
+    @cached_property
+    def bare(self) -> jbf.Fit:
+        """The law alone."""
+        found = self.fit(())
+        assert found is not None
+        return found
+
+    def always_adequate(self) -> list[str]:
+        """Nothing is ever missing."""
+        return []
+
+    def lowest_mae(self) -> list[str]:
+        """The single effect (or none) whose model predicts other runs with the lowest mean
+        absolute error, as whole models are ranked elsewhere."""
+        best: list[str] = []
+        lowest = held_out(self.bare.model, self.others)["mae_n"]
+        for name in jbf.effects():
+            fit = self.fit([name])
+            error = math.inf if fit is None else held_out(fit.model, self.others)["mae_n"]
+            if error < lowest:
+                best, lowest = [name], error
+        return best
+
+    def bic(self) -> list[str]:
+        """Effects added one by one while the Bayesian information criterion of a white residual
+        falls."""
+
+        def score(fit: jbf.Fit) -> float:
+            free = len(fit.parameters)
+            return fit.samples * 2.0 * math.log(fit.rms_n) + free * math.log(fit.samples)
+
+        chosen: list[str] = []
+        best = score(self.bare)
+        while len(chosen) < MOST_STEPS:
+            fits = {n: self.fit([*chosen, n]) for n in jbf.effects() if n not in chosen}
+            scores = {n: score(fit) for n, fit in fits.items() if fit is not None}
+            name = min(scores, key=scores.__getitem__)
+            if scores[name] >= best:
+                break
+            best = scores[name]
+            chosen.append(name)
+        return chosen
+
+    def sparse_regression(self) -> list[str]:
+        """Sequentially thresholded least squares (pysindy) of the bare law's residual on the same
+        library: the change that each effect makes at its usual strength. The threshold is the one
+        that predicts other runs best.
+        """
+        from pysindy.optimizers import STLSQ
+
+        library, residual = self._library(self.runs)
+        seen, unseen = self._library(self.others)
+        size = np.linalg.norm(library, axis=0) / math.sqrt(len(residual))
+        felt = np.flatnonzero(size > 1e-9)
+        names = [list(jbf.effects())[i] for i in felt]
+        scale = float(np.std(residual))
+        best, lowest = np.zeros(len(felt)), float(np.mean(unseen**2))
+        for threshold in THRESHOLDS:
+            optimizer: Any = STLSQ(threshold=threshold, alpha=1e-3, max_iter=50)
+            try:
+                optimizer.fit(library[:, felt] / size[felt], residual[:, None] / scale)
+            except Exception:  # no term survives this threshold
+                continue
+            weights = np.ravel(optimizer.coef_) * scale / size[felt]
+            error = float(np.mean((unseen - seen[:, felt] @ weights) ** 2))
+            if error < lowest:
+                best, lowest = weights, error
+        return [name for name, weight in zip(names, best, strict=True) if weight != 0.0]
+
+    def _library(self, runs: list[jbf.Run]) -> tuple[Array, Array]:
+        own = dict(zip(self.bare.parameters, self.bare.model.values.tolist(), strict=True))
+        base = np.concatenate([self.bare.model.predict(run) for run in runs])
+        record = np.concatenate([run.friction_n for run in runs if run.friction_n is not None])
+        columns = []
+        for effect in jbf.effects().values():
+            values = {f"{effect.name}.{p.name}": p.starts[0] for p in effect.parameters}
+            try:
+                model = jbf.Model(self.rig, effects=[effect.name], parameters=own | values)
+                columns.append(np.concatenate([model.predict(run) for run in runs]) - base)
+            except jbf.InputError:
+                columns.append(np.zeros_like(base))
+        return np.stack(columns, axis=1), record - base
+
+
+RULES: dict[str, Callable[[Rivals], list[str]]] = {
+    "lowest_mae": Rivals.lowest_mae,
+    "bic": Rivals.bic,
+    "sparse_regression": Rivals.sparse_regression,
+    "always_adequate": Rivals.always_adequate,
+}

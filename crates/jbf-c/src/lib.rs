@@ -1,0 +1,155 @@
+//! A plain C interface of `jbf-core`, for firmware in C: `include/jbf.h` says what to call.
+//!
+//! Every law has its own functions in single and in double precision, so that a linker keeps only
+//! what is called. Models and states live where C puts them; nothing is allocated, and a step cannot
+//! panic. `jbf export MODEL --c model.h` writes the calls that build a fitted model.
+#![cfg_attr(not(feature = "std"), no_std)]
+// What a pointer must point at is said once, in the header.
+#![allow(clippy::missing_safety_doc)]
+
+mod model;
+mod types;
+
+pub use types::{CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
+
+use core::ffi::c_char;
+use core::mem::{align_of, size_of};
+use jbf_core::{chain::State, law, Chain};
+
+/// Nothing in a step gets here; a constructor neither.
+#[cfg(not(feature = "std"))]
+#[panic_handler]
+fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}
+
+/// Name, kind, and the 64-bit words that the header gives a model and a state.
+pub type Size = (&'static str, &'static str, usize, usize);
+
+macro_rules! laws {
+    ($($module:ident::$Type:ident, $kind:ident,
+       $init:ident $effect:ident $start:ident $step:ident $predict:ident,
+       $model_words:literal, $state_words:literal;)*) => {
+        /// Every pair of a law and a kind of number, as the header declares them.
+        pub const SIZES: &[Size] =
+            &[$((stringify!($module), stringify!($kind), $model_words, $state_words),)*];
+        $(
+            const _: () = {
+                type Model = Chain<$kind, law::$module::$Type<$kind>>;
+                type Changes = State<
+                    $kind,
+                    <law::$module::$Type<$kind> as law::Law<$kind>>::State,
+                >;
+                assert!(size_of::<Model>() <= 8 * $model_words);
+                assert!(size_of::<Changes>() <= 8 * $state_words);
+                assert!(align_of::<Model>() <= 8 && align_of::<Changes>() <= 8);
+            };
+
+            /// Build the law; see `jbf.h`.
+            #[no_mangle]
+            pub unsafe extern "C" fn $init(
+                model: *mut Chain<$kind, law::$module::$Type<$kind>>,
+                bearing: *const CBearing,
+                load_n: f64,
+                parameters: *const f64,
+                count: usize,
+                clock: i32,
+                error: *mut CError,
+            ) -> i32 {
+                model::init(model, bearing, load_n, (parameters, count), clock, error)
+            }
+
+            /// Add an effect; see `jbf.h`.
+            #[no_mangle]
+            pub unsafe extern "C" fn $effect(
+                model: *mut Chain<$kind, law::$module::$Type<$kind>>,
+                name: *const c_char,
+                parameters: *const f64,
+                count: usize,
+                error: *mut CError,
+            ) -> i32 {
+                model::effect(model, name, (parameters, count), error)
+            }
+
+            /// The state at the first sample; see `jbf.h`.
+            #[no_mangle]
+            pub unsafe extern "C" fn $start(
+                model: *const Chain<$kind, law::$module::$Type<$kind>>,
+                state: *mut State<$kind, <law::$module::$Type<$kind> as law::Law<$kind>>::State>,
+                motion: *const CMotion<$kind>,
+            ) -> $kind {
+                model::start(model, state, motion)
+            }
+
+            /// One step; see `jbf.h`.
+            #[no_mangle]
+            pub unsafe extern "C" fn $step(
+                model: *const Chain<$kind, law::$module::$Type<$kind>>,
+                state: *mut State<$kind, <law::$module::$Type<$kind> as law::Law<$kind>>::State>,
+                motion: *const CMotion<$kind>,
+                dt_s: $kind,
+            ) -> $kind {
+                model::step(model, state, motion, dt_s)
+            }
+
+            /// A whole record; see `jbf.h`.
+            #[no_mangle]
+            pub unsafe extern "C" fn $predict(
+                model: *const Chain<$kind, law::$module::$Type<$kind>>,
+                record: *const CRecord,
+                max_step_s: f64,
+                out_n: *mut $kind,
+            ) -> i32 {
+                model::whole(model, record, max_step_s, out_n)
+            }
+        )*
+    };
+}
+
+// The words are those of `include/jbf.h`; a test compares.
+laws! {
+    journal::Journal, f32,
+        jbf_journal_f32_init jbf_journal_f32_effect jbf_journal_f32_start jbf_journal_f32_step jbf_journal_f32_predict,
+        48, 128;
+    journal::Journal, f64,
+        jbf_journal_f64_init jbf_journal_f64_effect jbf_journal_f64_start jbf_journal_f64_step jbf_journal_f64_predict,
+        96, 256;
+    journal_full::JournalFull, f32,
+        jbf_journal_full_f32_init jbf_journal_full_f32_effect jbf_journal_full_f32_start jbf_journal_full_f32_step jbf_journal_full_f32_predict,
+        48, 128;
+    journal_full::JournalFull, f64,
+        jbf_journal_full_f64_init jbf_journal_full_f64_effect jbf_journal_full_f64_start jbf_journal_full_f64_step jbf_journal_full_f64_predict,
+        96, 256;
+    coulomb::Coulomb, f32,
+        jbf_coulomb_f32_init jbf_coulomb_f32_effect jbf_coulomb_f32_start jbf_coulomb_f32_step jbf_coulomb_f32_predict,
+        48, 128;
+    coulomb::Coulomb, f64,
+        jbf_coulomb_f64_init jbf_coulomb_f64_effect jbf_coulomb_f64_start jbf_coulomb_f64_step jbf_coulomb_f64_predict,
+        96, 256;
+    stribeck::Stribeck, f32,
+        jbf_stribeck_f32_init jbf_stribeck_f32_effect jbf_stribeck_f32_start jbf_stribeck_f32_step jbf_stribeck_f32_predict,
+        48, 128;
+    stribeck::Stribeck, f64,
+        jbf_stribeck_f64_init jbf_stribeck_f64_effect jbf_stribeck_f64_start jbf_stribeck_f64_step jbf_stribeck_f64_predict,
+        96, 256;
+    seven_parameter::SevenParameter, f32,
+        jbf_seven_parameter_f32_init jbf_seven_parameter_f32_effect jbf_seven_parameter_f32_start jbf_seven_parameter_f32_step jbf_seven_parameter_f32_predict,
+        48, 192;
+    seven_parameter::SevenParameter, f64,
+        jbf_seven_parameter_f64_init jbf_seven_parameter_f64_effect jbf_seven_parameter_f64_start jbf_seven_parameter_f64_step jbf_seven_parameter_f64_predict,
+        96, 384;
+    dahl::Dahl, f32,
+        jbf_dahl_f32_init jbf_dahl_f32_effect jbf_dahl_f32_start jbf_dahl_f32_step jbf_dahl_f32_predict,
+        48, 128;
+    dahl::Dahl, f64,
+        jbf_dahl_f64_init jbf_dahl_f64_effect jbf_dahl_f64_start jbf_dahl_f64_step jbf_dahl_f64_predict,
+        96, 256;
+    lugre::LuGre, f32,
+        jbf_lugre_f32_init jbf_lugre_f32_effect jbf_lugre_f32_start jbf_lugre_f32_step jbf_lugre_f32_predict,
+        48, 128;
+    lugre::LuGre, f64,
+        jbf_lugre_f64_init jbf_lugre_f64_effect jbf_lugre_f64_start jbf_lugre_f64_step jbf_lugre_f64_predict,
+        96, 256;
+}

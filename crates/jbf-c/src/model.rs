@@ -1,0 +1,165 @@
+//! What the functions of every law share. Pointers have been checked for null by then; that they
+//! point at what the header says is the caller's to see to.
+
+use crate::types::{clock, CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
+use core::ffi::{c_char, CStr};
+use core::{ptr, slice};
+use jbf_core::chain::State;
+use jbf_core::effect::{Effects, Rig, CATALOGUE};
+use jbf_core::law::{Law, Named};
+use jbf_core::run::{predict, Record};
+use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
+
+/// Most parameters that a law or an effect has.
+const MOST: usize = 16;
+
+/// Report a parameter that breaks its rule.
+unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
+    if !error.is_null() {
+        error.write(why.into());
+    }
+    PARAMETER
+}
+
+/// `n` numbers at `values`, lifted.
+unsafe fn lifted<T: Real>(values: *const f64, n: usize) -> ([T; MOST], usize) {
+    let mut out = [T::ZERO; MOST];
+    let given = if values.is_null() || n == 0 {
+        &[][..]
+    } else {
+        slice::from_raw_parts(values, n)
+    };
+    for (slot, &value) in out.iter_mut().zip(given) {
+        *slot = T::of(value);
+    }
+    (out, given.len().min(MOST))
+}
+
+/// Build a law at `model`; `bearing` may be null for a law in newtons.
+pub unsafe fn init<T: Real, L: Named<T>>(
+    model: *mut Chain<T, L>,
+    bearing: *const CBearing,
+    load_n: f64,
+    (values, n): (*const f64, usize),
+    clock_number: i32,
+    error: *mut CError,
+) -> i32 {
+    if model.is_null() {
+        return NULL;
+    }
+    let Some(clock) = clock(clock_number) else {
+        return NAME;
+    };
+    let bearing: Option<Bearing> = bearing.as_ref().map(Bearing::from);
+    let (values, n) = lifted::<T>(values, n);
+    let values = values.get(..n).unwrap_or_default();
+    let rig = Rig {
+        radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
+        count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
+    };
+    let page = L::INFO;
+    match page
+        .check(values)
+        .and_then(|()| L::build(bearing.as_ref(), Some(load_n), values, clock))
+    {
+        Ok(law) => {
+            let effects = Effects::NONE;
+            ptr::write(model, Chain { law, effects, rig });
+            OK
+        }
+        Err(why) => refuse(error, why),
+    }
+}
+
+/// Add an effect by its name.
+pub unsafe fn effect<T: Real, L: Named<T>>(
+    model: *mut Chain<T, L>,
+    name: *const c_char,
+    (values, n): (*const f64, usize),
+    error: *mut CError,
+) -> i32 {
+    let (Some(model), false) = (model.as_mut(), name.is_null()) else {
+        return NULL;
+    };
+    let Ok(name) = CStr::from_ptr(name).to_str() else {
+        return NAME;
+    };
+    let mut known = CATALOGUE.iter();
+    if !known.any(|page| page.name == name && page.lacking(&L::INFO).is_none()) {
+        return NAME;
+    }
+    let (values, n) = lifted::<T>(values, n);
+    match model.effects.set(name, values.get(..n).unwrap_or_default()) {
+        Ok(()) => OK,
+        Err(why) => refuse(error, why),
+    }
+}
+
+/// The state at the first sample; gives the reading there, N.
+pub unsafe fn start<T: Real, L: Law<T>>(
+    model: *const Chain<T, L>,
+    state: *mut State<T, L::State>,
+    motion: *const CMotion<T>,
+) -> T {
+    let (Some(model), Some(motion), false) = (model.as_ref(), motion.as_ref(), state.is_null())
+    else {
+        return T::ZERO;
+    };
+    let begin = model.start(&Motion::from(motion));
+    let reading_n = begin.reading_n;
+    ptr::write(state, begin);
+    reading_n
+}
+
+/// Advance to a motion `dt_s` later; gives the reading there, N.
+pub unsafe fn step<T: Real, L: Law<T>>(
+    model: *const Chain<T, L>,
+    state: *mut State<T, L::State>,
+    motion: *const CMotion<T>,
+    dt_s: T,
+) -> T {
+    let (Some(model), Some(motion), Some(state)) =
+        (model.as_ref(), motion.as_ref(), state.as_mut())
+    else {
+        return T::ZERO;
+    };
+    model.step(state, &Motion::from(motion), dt_s)
+}
+
+/// Readings (N) along a whole record, as `jbf predict` gives them.
+pub unsafe fn whole<T: Real, L: Law<T>>(
+    model: *const Chain<T, L>,
+    record: *const CRecord,
+    max_step_s: f64,
+    out_n: *mut T,
+) -> i32 {
+    let (Some(model), Some(r), false) = (model.as_ref(), record.as_ref(), out_n.is_null()) else {
+        return NULL;
+    };
+    let columns = [
+        r.time_s,
+        r.velocity_m_s,
+        r.acceleration_m_s2,
+        r.angle_rad,
+        r.load_n,
+    ];
+    if columns.iter().any(|c| c.is_null()) {
+        return NULL;
+    }
+    let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] =
+        columns.map(|c| slice::from_raw_parts(c, r.samples));
+    let record = Record {
+        time_s,
+        velocity_m_s,
+        acceleration_m_s2,
+        angle_rad,
+        load_n,
+    };
+    let out = slice::from_raw_parts_mut(out_n, r.samples);
+    predict(model, &record, max_step_s, |i, reading| {
+        if let Some(slot) = out.get_mut(i) {
+            *slot = reading;
+        }
+    });
+    OK
+}

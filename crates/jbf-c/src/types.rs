@@ -1,0 +1,129 @@
+//! What crosses the border, laid out as in `include/jbf.h`.
+
+use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
+
+/// All is well.
+pub const OK: i32 = 0;
+/// A pointer is null.
+pub const NULL: i32 = -1;
+/// A parameter breaks its rule.
+pub const PARAMETER: i32 = -2;
+/// A name is not text, or not known.
+pub const NAME: i32 = -3;
+
+/// A bearing and its lubricant.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CBearing {
+    /// Journal radius, m.
+    pub radius_m: f64,
+    /// Bearing length, m.
+    pub length_m: f64,
+    /// Radial clearance, m.
+    pub clearance_m: f64,
+    /// Rotating mass, kg.
+    pub mass_kg: f64,
+    /// Viscosity of the lubricant, Pa s.
+    pub viscosity_pa_s: f64,
+    /// Bearings on the shaft.
+    pub count: u32,
+}
+
+impl From<&CBearing> for Bearing {
+    fn from(b: &CBearing) -> Self {
+        Self {
+            radius_m: b.radius_m,
+            length_m: b.length_m,
+            clearance_m: b.clearance_m,
+            mass_kg: b.mass_kg,
+            count: b.count,
+            viscosity_pa_s: b.viscosity_pa_s,
+        }
+    }
+}
+
+/// An imposed motion at one instant.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CMotion<T> {
+    /// Time, s.
+    pub time_s: T,
+    /// Surface speed, m/s.
+    pub velocity_m_s: T,
+    /// Its rate of change, m/s^2.
+    pub acceleration_m_s2: T,
+    /// Shaft angle, rad; on a linear axis the place, m.
+    pub angle_rad: T,
+    /// Load on one bearing, N.
+    pub load_n: T,
+}
+
+impl<T: Real> From<&CMotion<T>> for Motion<T> {
+    fn from(m: &CMotion<T>) -> Self {
+        Self {
+            time_s: m.time_s,
+            velocity_m_s: m.velocity_m_s,
+            acceleration_m_s2: m.acceleration_m_s2,
+            angle_rad: m.angle_rad,
+            load_n: m.load_n,
+        }
+    }
+}
+
+/// A whole recorded run: five columns of one length.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CRecord {
+    /// Samples.
+    pub samples: usize,
+    /// Time, s, rising.
+    pub time_s: *const f64,
+    /// Surface speed, m/s.
+    pub velocity_m_s: *const f64,
+    /// Its rate of change, m/s^2.
+    pub acceleration_m_s2: *const f64,
+    /// Shaft angle, rad.
+    pub angle_rad: *const f64,
+    /// Load on one bearing, N.
+    pub load_n: *const f64,
+}
+
+/// Which parameter, which value, which rule.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CError {
+    /// Name, cut to fit, ended by a zero.
+    pub name: [u8; 32],
+    /// Rule, cut to fit, ended by a zero.
+    pub rule: [u8; 96],
+    /// The value that was given.
+    pub value: f64,
+}
+
+fn text<const N: usize>(from: &str) -> [u8; N] {
+    let mut to = [0; N];
+    // The last byte stays zero.
+    for (slot, byte) in to.iter_mut().take(N - 1).zip(from.bytes()) {
+        *slot = byte;
+    }
+    to
+}
+
+impl From<ParameterError> for CError {
+    fn from(error: ParameterError) -> Self {
+        Self {
+            name: text(error.name),
+            rule: text(error.rule),
+            value: error.value,
+        }
+    }
+}
+
+/// The clock of that number.
+pub fn clock(number: i32) -> Option<Clock> {
+    match number {
+        0 => Some(Clock::Journal),
+        1 => Some(Clock::Thesis),
+        _ => None,
+    }
+}

@@ -1,0 +1,286 @@
+//! Every observer and compensator in a loop that could fly: encoder, velocity observer, control law,
+//! compensator, limit. What is fingerprinted here is what the benchmarks and the firmware step.
+
+use crate::hash::Hash;
+use crate::shaft::{
+    asked, Shaft, COUNTS_PER_RAD, DAMPING_1_S, INPUT_RAD_S2_V, LOOP_STEPS, LOOP_STEP_S,
+};
+use jbf_core::compensator::carried::{Bare, Carried, Whole};
+use jbf_core::compensator::learning::{Learned, Learning, Rule};
+use jbf_core::compensator::observed::{Observed, Settings};
+use jbf_core::compensator::table::{Axis, Table};
+use jbf_core::compensator::{Compensator, Coulomb, NoCompensation, Repetitive};
+use jbf_core::controller::{BaseLaw, Controller, Limits};
+use jbf_core::effect::{Effects, Rig};
+use jbf_core::encoder::Encoder;
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::journal_full::JournalFull;
+use jbf_core::observer::{CoulombObserver, VelocityObserver};
+use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
+
+const LOAD_N: f64 = 104.0;
+/// What one newton of friction on one bearing is in volts.
+const VOLTS_PER_N: f64 = 0.02827;
+/// Entries of a look-up table, cells of a lap.
+const ENTRIES: usize = 64;
+
+/// Someone who wants to see a loop.
+pub trait LoopVisitor<T: Real> {
+    /// One loop, ready to start; `position` where its references are angles.
+    fn visit<C: Compensator<T>>(
+        &mut self,
+        name: &'static str,
+        controller: &Controller<T, C>,
+        position: bool,
+    );
+}
+
+/// A compensator in the thesis's loop.
+pub fn around<T: Real, C: Compensator<T>>(
+    compensator: C,
+    position: bool,
+) -> Result<Controller<T, C>, ParameterError> {
+    let law = if position {
+        BaseLaw::thesis_position()
+    } else {
+        BaseLaw::thesis_velocity()
+    };
+    Controller::new(
+        Encoder::new(COUNTS_PER_RAD, 16, 100.0, LOOP_STEP_S)?,
+        velocity_observer()?,
+        law,
+        compensator,
+        Limits {
+            output_v: 10.0,
+            moving_v: 1.83,
+            patience_s: 0.1,
+        },
+        LOOP_STEP_S,
+    )
+}
+
+/// The velocity observer of Appendix E.
+pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
+    VelocityObserver::fed_forward(100.0, DAMPING_1_S, INPUT_RAD_S2_V, LOOP_STEP_S)
+}
+
+/// The Coulomb friction observer.
+pub fn coulomb_observer<T: Real>(
+    gain: f64,
+    exponent: f64,
+) -> Result<CoulombObserver<T>, ParameterError> {
+    CoulombObserver::new(gain, exponent, INPUT_RAD_S2_V, 5.0, LOOP_STEP_S)
+}
+
+/// Compensation by it.
+pub fn coulomb<T: Real>(gain: f64, exponent: f64) -> Result<Coulomb<T>, ParameterError> {
+    Ok(Coulomb {
+        observer: coulomb_observer(gain, exponent)?,
+        damping_1_s: T::of(DAMPING_1_S),
+        input_rad_s2_v: T::of(INPUT_RAD_S2_V),
+        start_v: T::ZERO,
+    })
+}
+
+fn parameters<T: Real>() -> Parameters<T> {
+    Parameters {
+        f_m: T::of(0.26),
+        u_tr_m_s: T::of(0.06128),
+        k0: T::of(4.123e6),
+        gamma: T::of(90.29),
+    }
+}
+
+/// The reduced model, fitted to the thesis's loop.
+pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
+    Ok(bare(Journal::new(
+        &Bearing::THESIS,
+        LOAD_N,
+        &parameters(),
+        Clock::Thesis,
+    )?))
+}
+
+/// The full model, inertia included.
+pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
+    Ok(bare(JournalFull::new(
+        &Bearing::THESIS,
+        LOAD_N,
+        &parameters(),
+        Clock::Thesis,
+    )?))
+}
+
+fn bare<T: Real, L>(law: L) -> Bare<T, L> {
+    Bare {
+        law,
+        radius_m: T::of(Bearing::THESIS.radius_m),
+        volts_per_n: T::of(VOLTS_PER_N),
+        load_n: T::of(LOAD_N),
+    }
+}
+
+/// The reduced model with a contact that bends and a ripple over the turn.
+pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>>, ParameterError> {
+    let mut effects = Effects::NONE;
+    effects.set("presliding", &[T::of(0.26 * COUNTS_PER_RAD / 0.0127)])?;
+    Ok(Whole {
+        chain: Chain {
+            law: reduced()?.law,
+            effects,
+            rig: Rig {
+                radius_m: T::of(Bearing::THESIS.radius_m),
+                count: T::of(f64::from(Bearing::THESIS.count)),
+            },
+        },
+        volts_per_n: T::of(VOLTS_PER_N),
+        load_n: T::of(LOAD_N),
+    })
+}
+
+/// A model corrected by an observer, with the settings that `jbf control tune` gives.
+pub fn observed<T: Real, M: Carried<T>>(
+    model: M,
+    position: bool,
+) -> Result<Observed<T, M>, ParameterError> {
+    let (stiffer_v_rad, stiffer_v_s_rad, approach_1_s, forward) = if position {
+        (1.5317, 0.0491, 10.0, 0.25164)
+    } else {
+        (0.0, 0.0, 0.0, 0.295)
+    };
+    Observed::new(
+        model,
+        &Settings {
+            damping_1_s: DAMPING_1_S,
+            input_rad_s2_v: INPUT_RAD_S2_V,
+            bandwidth_rad_s: 60.0,
+            learning_1_s: 2.0,
+            level_limit_v: 0.73,
+            rest_limit_v: 0.73,
+            slow_rad_s: 0.05027,
+            approach_1_s,
+            breakaway: 1.0,
+            stiffer_v_rad,
+            stiffer_v_s_rad,
+            law_forward_v_s_rad: forward,
+            dt_s: LOOP_STEP_S,
+        },
+    )
+}
+
+/// The thesis's learning compensator.
+pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> {
+    let p = Parameters {
+        f_m: T::of(0.26),
+        u_tr_m_s: T::of(0.05),
+        k0: T::of(650_000.0),
+        gamma: T::of(33.0),
+    };
+    let law = Journal::new(&Bearing::THESIS, LOAD_N, &p, Clock::Thesis)?.with_eps_tr(0.9747)?;
+    let rule = if position {
+        Rule::Position {
+            gate_rad: T::of(0.8),
+            clip_rad: T::of(0.3),
+        }
+    } else {
+        Rule::Velocity
+    };
+    let gain = if position {
+        (12_500.0, 0.5)
+    } else {
+        (15_000.0, 2.0)
+    };
+    let learned = |(k0, gamma)| Learned { k0, gamma };
+    Learning::new(
+        law,
+        33.0,
+        rule,
+        learned(gain),
+        [learned((1.0, 1e-3)), learned((1e8, 1e4))],
+        25.5,
+        Bearing::THESIS.radius_m,
+        LOOP_STEP_S,
+    )
+}
+
+/// A look-up table against speed.
+pub fn table<T: Real>() -> Result<Table<T, ENTRIES>, ParameterError> {
+    let level = |i: usize| T::of(0.7 - 0.4 * i as f64 / (i as f64 + 8.0));
+    Table::new(core::array::from_fn(level), Axis::Speed, 0.5, 0.01)
+}
+
+/// Learning from lap to lap.
+pub fn repetitive<T: Real>() -> Result<Repetitive<T, ENTRIES>, ParameterError> {
+    Repetitive::new(500, 0.6, 0.1, 0.02, 3.0, LOOP_STEP_S)
+}
+
+/// Every loop, in velocity control; those that mean something else by a position, in that too.
+pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterError> {
+    macro_rules! on {
+        ($($name:literal, $position:literal: $compensator:expr;)*) => {
+            $(visit.visit($name, &around($compensator, $position)?, $position);)*
+        };
+    }
+    on! {
+        "none", false: NoCompensation;
+        "coulomb/p=1", false: coulomb(0.01, 1.0)?;
+        "coulomb/p=0.5", false: coulomb(0.01, 0.5)?;
+        "coulomb/p=2", false: coulomb(0.01, 2.0)?;
+        "table", false: table()?;
+        "repetitive", false: repetitive()?;
+        "learning", false: learning(false)?;
+        "learning/position", true: learning(true)?;
+        "observed/journal", false: observed(reduced()?, false)?;
+        "observed/journal/position", true: observed(reduced()?, true)?;
+        "observed/journal+presliding", false: observed(chained()?, false)?;
+        "observed/journal_full", false: observed(full()?, false)?;
+    }
+    Ok(())
+}
+
+/// Fingerprint of a loop round the shaft, and of what it says of itself.
+pub fn run<T: Real, C: Compensator<T>>(
+    controller: &Controller<T, C>,
+    position: bool,
+    stride: u32,
+) -> Hash {
+    let mut hash = Hash::default();
+    let mut shaft = Shaft::default();
+    let mut state = controller.start();
+    for step in (0..LOOP_STEPS).step_by(stride as usize) {
+        let (target, level_v) = asked(step, position);
+        let counter = shaft.counter(step);
+        let parts = controller.step(&mut state, counter, &target);
+        shaft.push(parts.output_v, level_v);
+        for number in [parts.velocity_rad_s, parts.error, parts.output_v] {
+            hash.take(number);
+        }
+        hash.take(T::of(f64::from(parts.status.bits())));
+    }
+    hash
+}
+
+/// Every fifth step of the excitation: a hard road for a loop, and a short one for a target
+/// that has to emulate double precision.
+const STRIDE: u32 = 5;
+
+struct Take<'a>(&'a mut dyn FnMut(&'static str, &'static str, Hash));
+
+impl<T: Real> LoopVisitor<T> for Take<'_> {
+    fn visit<C: Compensator<T>>(
+        &mut self,
+        name: &'static str,
+        controller: &Controller<T, C>,
+        position: bool,
+    ) {
+        (self.0)("loop", name, run(controller, position, STRIDE));
+    }
+}
+
+/// Every loop, fingerprinted.
+pub(crate) fn loops<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
+    if each::<T>(&mut Take(take)).is_err() {
+        // The hash of nothing: a test looks for it.
+        take("loop", "refused", Hash::default());
+    }
+}

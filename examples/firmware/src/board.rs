@@ -1,0 +1,75 @@
+//! The board: encoder, amplifier, tick, and a clock that counts instructions under QEMU. The
+//! addresses are those of Arm's MPS2 with the AN386 image; put your own chip's HAL here.
+
+use core::ptr;
+use cortex_m::peripheral::{syst::SystClkSource, SYST};
+
+/// CMSDK timer 0, 25 MHz: under `-icount shift=6` an instruction takes 64 ns.
+const TIMER: usize = 0x4000_0000;
+const TIMER_VALUE: usize = TIMER + 4;
+const TIMER_RELOAD: usize = TIMER + 8;
+
+/// Stands in for the encoder's counter: CMSDK timer 1.
+const COUNTER: usize = 0x4000_1004;
+/// Stands in for the amplifier's converter: the LEDs of the FPGA.
+const AMPLIFIER: usize = 0x4002_8000;
+
+fn read(address: usize) -> u32 {
+    // A register of this board; reading it has no effect beside its value.
+    unsafe { ptr::read_volatile(address as *const u32) }
+}
+
+fn write(address: usize, value: u32) {
+    // A register of this board.
+    unsafe { ptr::write_volatile(address as *mut u32, value) }
+}
+
+/// The encoder's counter, 16 bits.
+pub fn counter() -> u32 {
+    read(COUNTER) & 0xffff
+}
+
+/// Give a voltage to the amplifier: 12 bits over +-10 V.
+pub fn amplify(volts: f32) {
+    let counts = (volts * 204.7) as i32 + 2048;
+    write(AMPLIFIER, counts as u32);
+}
+
+/// Let SysTick tick every 2 ms of a clock of 168 MHz.
+pub fn tick_every_2_ms(syst: &mut SYST) {
+    syst.set_clock_source(SystClkSource::Core);
+    syst.set_reload(336_000 - 1);
+    syst.clear_current();
+    syst.enable_counter();
+    syst.enable_interrupt();
+}
+
+/// Counts instructions, under QEMU with `-icount shift=6`.
+#[derive(Clone, Copy)]
+pub struct Instructions(u32);
+
+impl Instructions {
+    /// Let the timer run; call once.
+    pub fn begin() {
+        write(TIMER_RELOAD, u32::MAX);
+        write(TIMER_VALUE, u32::MAX);
+        write(TIMER, 1);
+    }
+
+    /// Now.
+    #[inline(always)]
+    pub fn now() -> Self {
+        Self(read(TIMER_VALUE))
+    }
+
+    /// Ticks of the timer since, 40 ns each.
+    #[inline(always)]
+    pub fn ticks(self) -> u32 {
+        self.0.wrapping_sub(read(TIMER_VALUE))
+    }
+}
+
+/// Instructions of so many ticks: 64 ns each.
+pub fn instructions(ticks: u32) -> u32 {
+    ticks * 40 / 64
+}

@@ -1,0 +1,105 @@
+"""`jbf diagnose --many FOLDER`: every campaign in a folder, side by side."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jbf.cli import outputs
+from jbf.cli.progress import shown
+from jbf.errors import InputError
+from jbf.text import columns
+from jbf.words import number
+
+if TYPE_CHECKING:
+    from jbf.cli import Parser
+    from jbf.diagnosis import Diagnosis, Limits
+    from jbf.errors import JbfError
+
+
+def add(parser: Parser) -> None:
+    """Its options."""
+    group = parser.add_argument_group("many rigs")
+    group.add_argument(
+        "--many",
+        metavar="FOLDER",
+        help="diagnose each folder in it, which holds rig.toml and CSV files; --out and --report "
+        "then name folders, for one file a campaign",
+    )
+    group.add_argument("--jobs", metavar="N", type=int, help="campaigns at a time; all cores")
+
+
+def run(arguments: argparse.Namespace, limits: Limits) -> int:
+    """Do it; a campaign that fails is said, and the rest goes on."""
+    from jbf.diagnosis import diagnose_many
+    from jbf.diagnosis.many import campaigns_in
+
+    if arguments.rig is not None or arguments.next_run:
+        raise InputError(
+            file="jbf diagnose --many",
+            problem="takes neither RIG nor RUN nor --next-run",
+            mend="each folder in it holds its own rig.toml and runs",
+        )
+    jobs = arguments.jobs if arguments.jobs is not None else os.cpu_count() or 1
+    if jobs < 1:
+        raise InputError(file="--jobs", problem=f"{jobs} campaigns at a time", mend="1 or more")
+    campaigns = campaigns_in(arguments.many)
+    outputs.check({"--json": arguments.json})
+    for option in ("out", "report"):
+        if getattr(arguments, option):
+            outputs.check_folder(f"--{option}", Path(getattr(arguments, option)))
+    with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
+        found = diagnose_many(
+            campaigns,
+            executor=executor,
+            progress=report,
+            law=arguments.law,
+            clock=arguments.clock,
+            limits=limits,
+        )
+    texts: dict[str, str] = {}
+    for name, result in found.items():
+        texts |= _files(arguments, name, result)
+    if arguments.json:
+        pages = {name: _page(result) for name, result in found.items()}
+        texts[arguments.json] = outputs.json_text(pages)
+    outputs.write(texts)
+    outputs.say("\n".join(_table(found)), {"--json": arguments.json})
+    return 0
+
+
+def _files(
+    arguments: argparse.Namespace, name: str, result: Diagnosis | JbfError
+) -> dict[str, str]:
+    if isinstance(result, Exception):
+        return {}
+    found = {}
+    if arguments.out:
+        found[str(Path(arguments.out) / f"{name}.toml")] = result.model.to_toml()
+    if arguments.report:
+        from jbf.report import diagnosis_page
+
+        found[str(Path(arguments.report) / f"{name}.html")] = diagnosis_page(result)
+    return found
+
+
+def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
+    return {"error": str(result)} if isinstance(result, Exception) else result.to_dict()
+
+
+def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
+    rows = [("campaign", "verdict", "effects", "held out (N)", "noise (N)")]
+    failed = []
+    for name, result in found.items():
+        if isinstance(result, Exception):
+            rows.append((name, "failed", "-", "-", "-"))
+            failed.append(f"{name}: {result}")
+            continue
+        last = result.steps[-1]
+        effects = ", ".join(result.effects) or "-"
+        row = (name, result.verdict, effects, number(last.holdout_rms_n), number(last.noise_n))
+        rows.append(row)
+    return [*columns(rows, "<<<>>", 0), *([""] if failed else []), *failed]

@@ -1,0 +1,73 @@
+"""What the thesis must have done: the tables under other assumptions.
+
+Each changes one thing of the tables and computes anew only the columns that it touches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from jbf.control.bench import thesis_model
+from jbf.control.schemes import LISTED_VOLTS, Coulomb, Learning
+from jbf.control.task import TASKS
+from jbf.control.thesis_tables import Tables, fit_friction, standard_schemes, tables
+from jbf.model import Model
+
+Report = Callable[[str, int, int], None]
+
+_SEEDS = 3
+_COUNT = 9
+
+
+def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[str, Tables]]:
+    """Names and tables, the base first."""
+    done = 0
+
+    def told(name: str, changed: Tables | None = None) -> tuple[str, Tables]:
+        nonlocal done
+        done += 1
+        if report is not None:
+            report("other assumptions", done, _COUNT)
+        return name, base if changed is None else base.replaced(changed)
+
+    def learning(scheme: Learning) -> Tables:
+        schemes = {"learning": scheme}
+        return tables(base.model, base.bench, schemes=schemes, seeds=_SEEDS)
+
+    def elastic(what: str, scheme: Learning) -> Tables:
+        model = _with_elastic(base.model, what)
+        schemes = {**standard_schemes(model), "learning": scheme}
+        del schemes["observed"]
+        return tables(model, base.bench, schemes=schemes, seeds=_SEEDS)
+
+    listed = Learning(volts=LISTED_VOLTS)
+    yield told("the rig's scale, elastic belt")
+    yield told("scale 3.5 V", learning(Learning(volts=3.5)))
+    yield told("scale 25.5 V, as listed", learning(listed))
+    yield told("compensator's film on the journal clock", learning(Learning(clock="journal")))
+    yield told("k_F 0.02", tables(base.model, base.bench, schemes={"coulomb": Coulomb(gain=0.02)}))
+    yield told("elastic contact, no belt", elastic("contact", Learning()))
+    yield told("elastic contact, scale 25.5 V", elastic("contact", listed))
+    yield told("nothing elastic", elastic("nothing", Learning()))
+    counted = {name: replace(task, skip_s=0.0) for name, task in TASKS.items()}
+    schemes = standard_schemes(base.model)
+    del schemes["observed"]
+    yield told(
+        "first seconds counted",
+        tables(base.model, base.bench, schemes=schemes, tasks=counted, seeds=_SEEDS),
+    )
+
+
+def on_the_journal_clock(report: Report | None = None) -> float:
+    """The worst of the cells without compensation, where the bench's film has the journal clock."""
+    model, bench = fit_friction(clock="journal", report=report)
+    schemes = {"none": standard_schemes(model)["none"]}
+    cells = tables(model, bench, schemes=schemes, seeds=_SEEDS).column("none")
+    return max(abs(c.ratio - 1.0) for c in cells if c.ratio is not None)
+
+
+def _with_elastic(model: Model, what: str) -> Model:
+    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    u_tr, k0, gamma = (values[n] for n in ("U_tr_m_s", "K0", "gamma"))
+    return thesis_model(elastic=what, U_tr_m_s=u_tr, K0=k0, gamma=gamma)

@@ -1,0 +1,72 @@
+"""A recorded run as the reference of a loop: the motion and the load that a rig once had."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.control.bench import THESIS_BENCH, Bench
+from jbf.control.task import RECORDED, Task
+from jbf.errors import InputError
+from jbf.record import Run
+from jbf.rig import Rig
+
+Array = npt.NDArray[np.float64]
+
+
+class Motion(NamedTuple):
+    """What `jbf.control.run` takes as `task`, `reference` and `load_n`."""
+
+    task: Task
+    reference: tuple[Array, Array] | None
+    load_n: Array | None
+
+
+def follow(
+    recorded: Run,
+    rig: Rig,
+    control: Literal["position", "velocity"] = "velocity",
+    bench: Bench = THESIS_BENCH,
+) -> Motion:
+    """The reference that follows a recorded motion, on straight lines between its samples.
+
+    Parameters
+    ----------
+    recorded
+        Its speed is followed, or its angle; its load, where it has one, acts on the bench.
+    rig
+        Its journal's radius makes rad/s of m/s; without a bearing m count as rad.
+    control
+        What is controlled.
+    bench
+        Its step is used.
+
+    Raises
+    ------
+    InputError
+        Position control of a run without an angle, or a run that does not move.
+    """
+    radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
+    values = recorded.velocity_m_s / radius_m
+    if control == "position":
+        where = recorded.angle_rad if rig.bearing is not None else recorded.position_m
+        if where is None:
+            raise InputError(
+                file=recorded.path,
+                problem="has no angle to follow",
+                mend="add angle_rad, or follow its speed: --control velocity",
+            )
+        values = where - where[0]
+    time_s = recorded.time_s - recorded.time_s[0]
+    steps = np.arange(0.0, time_s[-1], bench.dt_s)
+    value = np.interp(steps, time_s, values)
+    if not np.ptp(value) > 0.0:
+        raise InputError(file=recorded.path, problem="does not move", mend="name a run that does")
+    rate = np.interp(steps, time_s, np.gradient(values, time_s))
+    load = None if recorded.load_n is None else np.interp(steps, time_s, recorded.load_n)
+    seconds = len(steps) * bench.dt_s
+    low, high = float(np.min(value)), float(np.max(value))
+    task = Task(control, RECORDED, low, high, 2.0 * np.pi / seconds, seconds)
+    return Motion(task, (value, rate), load)

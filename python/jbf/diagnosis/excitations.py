@@ -1,0 +1,123 @@
+"""Motions that a rig can make, to choose the next experiment from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.campaign import Campaign
+from jbf.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+SHARES = (1.0, 0.3, 0.1, 0.02)
+"""Amplitudes tried, as shares of the largest speed."""
+REST_S = 8.0
+USUAL_RATE_RAD_S = 2.0
+"""A drive that reaches a speed is taken to reach it in a sine of this rate, too."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the rig may be asked to do; whatever is None is taken from the runs.
+
+    Attributes
+    ----------
+    velocity_m_s, acceleration_m_s2
+        Largest surface speed and acceleration. From the runs: the largest on record, and at least
+        the acceleration of a sine of the largest speed at 2 rad/s.
+    duration_s
+        Length of the run.
+    load_n
+        Smallest and largest load on a bearing; one value twice for a load that cannot be changed.
+        From the runs: the loads on record.
+
+    Raises
+    ------
+    InputError
+        A limit that is not positive, or a smallest load above the largest.
+    """
+
+    velocity_m_s: float | None = None
+    acceleration_m_s2: float | None = None
+    duration_s: float = 60.0
+    load_n: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        named = {name: getattr(self, name) for name in ("velocity_m_s", "acceleration_m_s2")}
+        named["duration_s"] = self.duration_s
+        named["load_n"] = min(self.load_n) if self.load_n else None
+        for name, value in named.items():
+            if value is not None and not (np.isfinite(value) and value > 0.0):
+                raise InputError(problem=f"the limit {name} = {value:g}", mend="must be above zero")
+        if self.load_n and self.load_n[0] > self.load_n[1]:
+            raise InputError(
+                problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",
+                mend="give the smaller load first",
+            )
+
+    def filled(self, campaign: Campaign) -> Limits:
+        """The limits with what the runs tell in place of None."""
+        motions = [p.motion for p in campaign.prepared]
+        top = self.velocity_m_s or max(float(np.max(np.abs(m.velocity_m_s))) for m in motions)
+        seen = max(float(np.quantile(np.abs(m.acceleration_m_s2), 0.999)) for m in motions)
+        sharp = self.acceleration_m_s2 or max(seen, USUAL_RATE_RAD_S * top)
+        loads = [p.run.load_n for p in campaign.prepared if p.run.load_n is not None]
+        load = self.load_n
+        if load is None and campaign.has_loads and loads:
+            middles = [float(np.median(values)) for values in loads]
+            load = min(middles), max(middles)
+        return Limits(top, sharp, self.duration_s, load)
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """A motion to play: words, speed (m/s) at even steps, load (N) or None for the usual one."""
+
+    words: str
+    velocity_m_s: Array
+    load_n: float | None
+
+
+def excitations(limits: Limits, step_s: float) -> Iterator[Excitation]:
+    """Motions within limits that are filled in: each begins at rest."""
+    loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
+    top, sharp = limits.velocity_m_s, limits.acceleration_m_s2
+    assert top is not None
+    assert sharp is not None
+    time = np.arange(0.0, limits.duration_s, step_s)
+    for words, velocity in _motions(time, top, sharp):
+        if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * sharp * step_s:
+            continue
+        for load in loads:
+            under = "" if load is None else f" under {load:.4g} N"
+            yield Excitation(words + under, velocity, load)
+
+
+def _motions(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
+    duration = float(t[-1]) if len(t) else 0.0
+    # So long a start that its acceleration stays within half of what is allowed.
+    start = np.clip(t * 0.5 * sharp / top, 0.0, 1.0)
+    for share in SHARES:
+        for w in RATES_RAD_S:
+            if w * duration > 4.0 * np.pi:
+                name = f"a two-way sine of {share * top:.3g} m/s at {w:g} rad/s"
+                yield name, share * top * np.sin(w * t)
+    for w in RATES_RAD_S:
+        if w * duration > 4.0 * np.pi:
+            name = f"a one-way sine from {0.1 * top:.3g} to {top:.3g} m/s at {w:g} rad/s"
+            yield name, top * start * (0.55 + 0.45 * np.sin(w * t))
+    for share in (1.0, 0.3):
+        yield f"a run at a constant {share * top:.3g} m/s", share * top * start
+    for share in (0.4, 1.0):
+        ramp = max(1.0, 1.05 * share * top / sharp)
+        cycle = 2.0 * ramp + 3.0 + REST_S
+        phase = np.mod(t, cycle)
+        height = np.clip(np.minimum(phase - REST_S, cycle - phase) / ramp, 0.0, 1.0)
+        way = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
+        name = f"stop and go to {share * top:.3g} m/s, both ways, with rests of {REST_S:g} s"
+        yield name, share * top * height * way

@@ -1,0 +1,123 @@
+"""Many rigs at once: each campaign diagnosed by itself, on whatever executor there is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, as_completed
+from pathlib import Path
+from typing import Any
+
+from jbf.catalogue import find_law
+from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.search import Progress, diagnose
+from jbf.errors import InputError, JbfError
+from jbf.record import PathLike, Run, read_runs
+from jbf.rig import Rig, read_rig
+
+Given = tuple[Rig, Sequence[Run]] | PathLike
+"""A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""
+
+
+def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
+    """The rig and the runs of a folder that holds `rig.toml` and CSV files.
+
+    Raises
+    ------
+    InputError
+        There is no rig, no run, or one of them is wrong.
+    """
+    folder = Path(folder)
+    path = folder / "rig.toml"
+    if not path.is_file():
+        raise InputError(
+            file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
+        )
+    return read_rig(path), read_runs(folder)
+
+
+def campaigns_in(folder: PathLike) -> dict[str, Path]:
+    """Every folder in a folder that holds a rig or a run, by name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    found = {
+        path.name: path
+        for path in sorted(Path(folder).iterdir() if Path(folder).is_dir() else ())
+        if path.is_dir() and ((path / "rig.toml").is_file() or any(path.glob("*.csv")))
+    }
+    if not found:
+        raise InputError(
+            file=folder,
+            problem="holds no campaign",
+            mend="give each campaign a folder in it, with rig.toml and the runs as CSV",
+        )
+    return found
+
+
+def diagnose_many(
+    campaigns: Mapping[str, Given],
+    *,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> dict[str, Diagnosis | JbfError]:
+    """Diagnose many campaigns; one that cannot be diagnosed does not stop the others.
+
+    Parameters
+    ----------
+    campaigns
+        Name to a rig with its runs, or to a folder that holds `rig.toml` and CSV files, which is
+        read where the work is done.
+    executor
+        Any `concurrent.futures` executor: processes, a Dask client's `get_executor()`, and so on;
+        one campaign after the other where not given. Left open.
+    progress
+        Called with a campaign's name and verdict, and how many of how many are done.
+    options
+        As for `diagnose`: `law`, `clock`, `limits`.
+
+    Returns
+    -------
+    dict
+        In the order given: each campaign's diagnosis, or the error that it ended with.
+
+    Raises
+    ------
+    InputError
+        An option that is wrong for all of them.
+    """
+    find_law(options.get("law", "journal"))
+    found: dict[str, Diagnosis | JbfError] = {}
+
+    def keep(name: str, result: Diagnosis | JbfError) -> None:
+        found[name] = result
+        if progress is not None:
+            said = result.verdict if isinstance(result, Diagnosis) else str(result)
+            progress(f"{name}: {said}", len(found), len(campaigns))
+
+    if executor is None:
+        for name, given in campaigns.items():
+            keep(name, _diagnosed(given, options))
+    else:
+        running = {executor.submit(_diagnosed, g, options): n for n, g in campaigns.items()}
+        for future in as_completed(running):
+            try:
+                keep(running[future], future.result())
+            except Exception as error:  # a worker that died; its campaign's result is that
+                keep(running[future], _lost(error))
+    return {name: found[name] for name in campaigns}
+
+
+def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError:
+    try:
+        rig, runs = given if isinstance(given, tuple) else read_campaign(given)
+        return diagnose(rig, runs, **options)
+    except JbfError as error:
+        return error
+
+
+def _lost(error: BaseException) -> JbfError:
+    return JbfError(f"the work was lost: {type(error).__name__}: {error}".rstrip(": "))

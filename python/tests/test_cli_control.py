@@ -1,0 +1,145 @@
+"""`jbf control`: what it prints and writes, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from jbf import Model, Rig
+from jbf.cli import main
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Model(Rig.thesis("4.2")).save("model.toml")
+    Model(Rig.thesis("4.2"), law="lugre").save("lugre.toml")
+    Path("wrong.toml").write_text("bandwidth = 3\n")
+    speed = [0.02 * math.sin(0.02 * i) for i in range(300)]
+    rows = [f"{0.02 * i:.2f},{v:.6f}" for i, v in enumerate(speed)]
+    Path("run.csv").write_text("\n".join(["time_s,velocity_m_s", *rows]) + "\n")
+
+
+def test_run_prints_each_scheme_and_draws(capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["control", "run", "model.toml", "--task", "position sine", "--seconds", "5"]
+    assert main([*run, "--plot", "p.png"]) == 0
+    out = capsys.readouterr().out
+    for word in ("none", "learning", "coulomb", "observed", "RMS, rad", "true RMS"):
+        assert word in out
+    assert Path("p.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_run_writes_a_table(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "run", "--scheme", "observed", "--seconds", "4", "--out", "r.csv"]) == 0
+    with open("r.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2000
+    assert float(rows[-1]["time_s"]) == pytest.approx(3.998)
+    assert {"estimated_friction_v", "friction_v", "status"} <= set(rows[0])
+
+
+def test_a_recorded_motion_is_followed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "run", "model.toml", "--motion", "run.csv"]) == 0
+    assert "recorded -1.57 to 1.57 rad/s, 5.98 s" in capsys.readouterr().out
+
+
+def test_a_law_without_a_film_leaves_the_learning_scheme_out(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["control", "run", "lugre.toml", "--seconds", "4"]) == 0
+    assert "learning" not in capsys.readouterr().out
+
+
+def test_tuned_settings_go_back_into_a_run(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "tune", "model.toml", "--out", "s.toml"]) == 0
+    run = ["control", "run", "model.toml", "--scheme", "observed", "--seconds", "5"]
+    capsys.readouterr()
+    assert main(run) == 0
+    plain = capsys.readouterr().out
+    assert main([*run, "--settings", "s.toml"]) == 0
+    assert capsys.readouterr().out.split()[-6:-4] == plain.split()[-6:-4]
+
+
+def test_robustness_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "robustness", "model.toml", "--json", "r.json"]) == 0
+    cases = json.loads(Path("r.json").read_text())["cases"]
+    assert {"name", "ratios", "worst", "verdict"} <= set(cases[0])
+    assert {c["verdict"] for c in cases} <= {"help", "neutral"}
+    assert "harm 0" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", "tables", "--json", "t.json", "--plot", "t.svg"]) == 0
+    told = json.loads(Path("t.json").read_text())
+    assert told["within_2"] >= 12
+    assert len(told["cells"]) == 28
+    assert min(told["times_better"].values()) > 1.3
+    assert {"scale 3.5 V", "scale 25.5 V, as listed"} <= {a["name"] for a in told["assumptions"]}
+    out = capsys.readouterr().out
+    assert "of 13 cells" in out
+    assert "in 7 of 7 rows" in out
+
+
+def _documented() -> list[str]:
+    """The commands of docs/control.md, but for those that take their time."""
+    page = Path(__file__).resolve().parents[2] / "docs" / "control.md"
+    text = page.read_text(encoding="utf-8").replace("\n--counts", " --counts")
+    found = re.findall(r"^jbf (control (?:run|tune)[^#\n]*)", text, re.MULTILINE)
+    return found + re.findall(r"`jbf (control run model.toml --damping[^`]*)`", text)
+
+
+@pytest.mark.parametrize("command", _documented())
+def test_the_commands_of_the_docs(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Model(Rig.thesis("4.2")).save("bare.toml")
+    assert main(shlex.split(command)) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ("run --scheme magic", ["magic", "observed"]),
+        ("run --scheme ,", ["--scheme"]),
+        ("run lugre.toml --scheme learning", ["lugre"]),
+        ("run --task circle", ["circle", "velocity sine"]),
+        ("run --low 3 --high 1", ["low 3"]),
+        ("run --seconds nan", ["nan"]),
+        ("run --seconds 1 --skip-s 2", ["2.0 s left out"]),
+        ("run --frequency-rad-s 0", ["frequency"]),
+        ("run none.toml", ["none.toml", "does not exist"]),
+        ("run --settings wrong.toml", ["wrong.toml", "bandwidth"]),
+        ("run --out x.csv", ["--out", "one scheme"]),
+        ("run --scheme none --out gone/x.csv", ["gone"]),
+        ("run model.toml --scheme none --out model.toml", ["model.toml", "input"]),
+        ("run --motion run.csv --high 2", ["--high", "--motion"]),
+        ("run --motion run.csv --control position", ["run.csv", "angle_rad"]),
+        ("run --motion none.csv", ["none.csv"]),
+        ("run --plot x.doc", ["x.doc", "png"]),
+        ("run --seed 99999999999999999999", ["seed"]),
+        ("run --counts-per-rad 1e12", ["roll-over", "counts_per_rad"]),
+        ("run --volts-per-n 10", ["--volts-per-n"]),
+        ("run --noise-times -1", ["--noise-times"]),
+        ("tune none.toml", ["none.toml"]),
+        ("tune model.toml --limit-v 0.1", ["0.1 V"]),
+        ("tables --plot pictures", ["pictures"]),
+        ("robustness model.toml --json model.toml", ["input"]),
+    ],
+)
+def test_refused_in_one_line(
+    arguments: str, words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {p: p.read_bytes() for p in Path().iterdir()}
+    assert main(["control", *arguments.split()]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("jbf: ")
+    assert said.err.count("\n") == 1
+    for word in words:
+        assert word in said.err
+    assert {p: p.read_bytes() for p in Path().iterdir()} == before

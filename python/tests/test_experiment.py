@@ -1,0 +1,97 @@
+"""The next experiment: within its limits, and decisive where it is made."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from campaigns import campaign
+from jbf.cli import main
+from jbf.diagnosis.excitations import Limits, excitations
+from rigsim.motions import Motion, polyline, sine
+
+ONE_WAY = (
+    sine("one_way_0.25", 50.3, 0.0595, 0.25, bias=0.0728),
+    sine("one_way_1", 25.2, 0.0595, 1.0, bias=0.0728),
+)
+"""Runs in which nothing turns round: a drag and a sensor's offset are the same there."""
+
+
+@cache
+def _tied() -> jbf.Diagnosis:
+    rig, runs, _ = campaign(65, ("coulomb_drag",), motions=ONE_WAY)
+    return jbf.diagnose(rig, runs)
+
+
+def _played(run: jbf.Run) -> Motion:
+    """The motion of a proposed run on the simulated rig, drawn through every fifth sample."""
+    knots = zip(run.time_s[::5].tolist(), run.velocity_m_s[::5].tolist(), strict=True)
+    return polyline("next", list(knots))
+
+
+def test_the_next_run_breaks_the_tie() -> None:
+    found = _tied()
+    assert found.verdict == "ambiguous"
+    names = {*found.effects, *found.alternatives[found.effects[0]]}
+    assert names == {"coulomb_drag", "sensor_offset"}
+    assert found.experiment is not None
+    assert found.next_experiment == found.experiment.words
+    assert "two-way" in found.experiment.words
+    assert found.experiment.evidence > 100.0
+
+    motions = (*ONE_WAY, _played(found.experiment.run))
+    rig, runs, _ = campaign(65, ("coulomb_drag",), motions=motions)
+    after = jbf.diagnose(rig, runs)
+    assert after.verdict == "missing"
+    assert after.effects == ("coulomb_drag",)
+
+
+def test_the_motion_keeps_to_the_limits() -> None:
+    limits = Limits(0.05, 0.02, 30.0, (80.0, 120.0))
+    seen = list(excitations(limits, 0.02))
+    assert len(seen) > 10
+    for excitation in seen:
+        assert np.max(np.abs(excitation.velocity_m_s)) <= 0.05 * (1.0 + 1e-12)
+        assert np.max(np.abs(np.diff(excitation.velocity_m_s))) <= 1.02 * 0.02 * 0.02
+        assert len(excitation.velocity_m_s) == 1500
+        assert abs(excitation.velocity_m_s[0]) < 1e-3
+    assert {e.load_n for e in seen} == {80.0, 120.0}
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ({"velocity_m_s": -1.0}, "velocity_m_s"),
+        ({"duration_s": 0.0}, "duration_s"),
+        ({"acceleration_m_s2": float("nan")}, "acceleration_m_s2"),
+        ({"load_n": (2.0, 1.0)}, "load_n"),
+    ],
+)
+def test_limits_that_are_none_are_refused(given: dict[str, float], name: str) -> None:
+    with pytest.raises(jbf.InputError, match=name):
+        Limits(**given)  # type: ignore[arg-type]
+
+
+def test_from_the_shell(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rig, runs, _ = campaign(65, ("coulomb_drag",), motions=ONE_WAY)
+    rig.write(tmp_path / "rig.toml")
+    for run in runs:
+        run.write_csv(tmp_path / f"{run.name}.csv")
+    out = tmp_path / "next.csv"
+    words = [
+        "diagnose",
+        str(tmp_path / "rig.toml"),
+        *(str(tmp_path / f"{r.name}.csv") for r in runs),
+    ]
+    assert main([*words, "--next-run", str(out), "--max-velocity-m-s", "0.05"]) == 0
+    assert "Next experiment: record" in capsys.readouterr().out
+    played = jbf.read_run(out, need_friction=False)
+    assert np.max(np.abs(played.velocity_m_s)) <= 0.05
+    assert played.friction_n is None
+    assert played.angle_rad is not None
+
+    assert main([*words, "--max-velocity-m-s", "0"]) == 2
+    assert "velocity_m_s" in capsys.readouterr().err

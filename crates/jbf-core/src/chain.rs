@@ -264,23 +264,25 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         state.force_n = coefficient * load_n + level_n * journal.direction + smooth_n;
         state.magnitude = magnitude;
         let speed = journal.velocity_m_s;
-        let slope = if speed == T::ZERO {
-            T::ZERO
-        } else {
-            (sliding.viscous * load_n / speed).max(T::ZERO)
-        };
-        let resistance = Resistance {
-            level_n: sliding.level * load_n + level_n,
-            slope_n_s_m: slope,
-        };
-        // A run begins with a resistance that has not changed.
-        state.resistance_before = if dt_s > T::ZERO {
-            state.resistance
-        } else {
-            resistance
-        };
-        state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
-        state.resistance = resistance;
+        if self.effects.has_drive() {
+            let slope = if speed == T::ZERO {
+                T::ZERO
+            } else {
+                (sliding.viscous * load_n / speed).max(T::ZERO)
+            };
+            let resistance = Resistance {
+                level_n: sliding.level * load_n + level_n,
+                slope_n_s_m: slope,
+            };
+            // A run begins with a resistance that has not changed.
+            state.resistance_before = if dt_s > T::ZERO {
+                state.resistance
+            } else {
+                resistance
+            };
+            state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
+            state.resistance = resistance;
+        }
         // Only the film's own friction warms the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
         self.effects

@@ -6,7 +6,7 @@ residual whose mean differs from bin to bin fails along that axis.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,6 +21,7 @@ Bins = npt.NDArray[np.intp]
 ANGLE_BINS = 24
 TIME_BINS = 12
 SPEED_BINS = 12
+FORCE_BINS = 16
 BOUNDARY_SHARE = 0.2
 """Below this share of U_tr the asperities carry most of the load."""
 
@@ -167,6 +168,20 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
     labels = tuple(f"run {p.run.name}" for p in campaign.prepared)
     bins = [np.full(len(p.run), i, dtype=np.intp) for i, p in enumerate(campaign.prepared)]
     return Binned("run", labels, bins)
+
+
+def force_axis(predictions: Sequence[Array]) -> Binned:
+    """Samples by the force that a model predicts, N: along it a cell that is not straight shows."""
+    every = np.concatenate(list(predictions))
+    edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))
+    count = len(edges) + 1
+    places = [np.digitize(f, edges).astype(np.intp) for f in predictions]
+    sorted_ = np.concatenate(places)
+    labels = tuple(
+        f"f = {float(np.median(every[sorted_ == i])):+.3g} N" if np.any(sorted_ == i) else "none"
+        for i in range(count)
+    )
+    return Binned("force", labels, places)
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:

@@ -14,6 +14,7 @@ Array = npt.NDArray[np.float64]
 
 _DIRECTION = re.compile(r"^(?P<rest>.*?),? ?(?P<direction>v (<|<=|>|>=) 0)$")
 _SPEED = re.compile(r"^v = ([-+][\d.e+-]+) m/s$")
+_FORCE = re.compile(r"^f = ([-+][\d.e+-]+) N$")
 _ANGLE = re.compile(r"^angle ([\d.]+) deg$")
 _SPAN = re.compile(r"^([\d.e+-]+) to ([\d.e+-]+) s$")
 _NAMES = {
@@ -24,6 +25,7 @@ _NAMES = {
     "distance since a reversal": "Distance since the motion reversed",
     "direction": "Direction of motion",
     "regime": "Lubrication regime",
+    "force": "Force of the model (N)",
     "speed range": "Speed range",
     "acceleration": "Phase of the motion",
     "run": "Run",
@@ -76,7 +78,7 @@ def _split(label: str, axis: str) -> tuple[str, str]:
 
 def _value(place: str) -> float | None:
     """The number that a place stands for, where it is one."""
-    for pattern in (_SPEED, _ANGLE, _SPAN):
+    for pattern in (_SPEED, _FORCE, _ANGLE, _SPAN):
         found = pattern.match(place)
         if found:
             return float(np.mean([float(x) for x in found.groups()]))

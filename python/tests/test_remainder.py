@@ -108,3 +108,13 @@ def test_what_fits_but_does_not_predict_is_no_adequate_model() -> None:
     found = diagnose(rig, runs)
     assert found.verdict == "unexplained"
     assert found.effects == ()
+
+
+def test_a_cell_that_is_not_straight_shows_along_the_force() -> None:
+    def bent(random: np.random.Generator, run: int) -> Array:
+        problem, solution = _solved()
+        force = problem.predict(solution.values)[run]
+        return _white(random, run) + 0.25 * SIGMA_N * np.sin(6.0 * force / np.max(np.abs(force)))
+
+    found = find_remainder(*_with(bent, 5))
+    assert "force" in {r.axis for r in found}

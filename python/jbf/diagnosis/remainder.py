@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from jbf.axes import all_axes
+from jbf.axes import all_axes, force_axis
 from jbf.catalogue import transition_speed
 from jbf.comparison import Failure, _failure
 from jbf.diagnosis.bursts import find_bursts
@@ -24,6 +24,9 @@ Array = npt.NDArray[np.float64]
 
 LEAST_SHARE = 0.008
 """A pattern that explains less of the residual's mean square than this is let pass."""
+LEAST_SHARE_OF_FORCE = 0.003
+"""Along the model's own force less will do: a law bends itself to hide what a cell that is not
+straight does to it, and right models leave half of this at most."""
 TONE_CHANCE = 1e-7
 """Probability that noise alone shows so high a spectral line in any run."""
 
@@ -58,9 +61,11 @@ def _patterns(problem: Problem, solution: Solution, innovations: list[Array]) ->
     size = float(np.sqrt(total / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
     found = []
-    for axis in all_axes(campaign, u_tr):
+    force = force_axis(problem.predict(solution.values))
+    for axis in (*all_axes(campaign, u_tr), force):
         failure = _failure(axis, e, trusted, total, size)
-        if failure is not None and failure.share >= LEAST_SHARE:
+        least = LEAST_SHARE_OF_FORCE if axis is force else LEAST_SHARE
+        if failure is not None and failure.share >= least:
             found.append(failure)
     return found
 

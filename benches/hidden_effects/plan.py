@@ -9,10 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from rigsim import CATALOGUE, FOREIGN
 
-KINDS = ("single", "none", "pair", "foreign", "poor")
+KINDS = ("single", "none", "pair", "foreign", "poor", "tied")
 STRENGTHS = (0.6, 1.0, 1.5)
 SLOW = ("drive_compliance", "sensor_lag", "inertia_leak", "film_memory", "presliding")
 """What slow sweeps show hardly or not at all."""
+ALIKE = ("coulomb_drag", "sensor_offset", "direction_asymmetry", "quadratic_drag", "time_delay")
+"""What runs that never turn round show, and may not tell apart."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class Task:
         """Standard motions of the simulator."""
         if self.kind == "poor":
             return "slow"
+        if self.kind == "tied":
+            return "one_way"
         # What a load changes shows only under several loads.
         if "load_dependence" in self.effects:
             return "loads"
@@ -72,6 +76,9 @@ def _kind(kind: str, seed: int) -> Iterator[Task]:
     elif kind == "poor":
         for i, name in enumerate(SLOW):
             yield Task(kind, 1000 * seed + 400 + i, (name,), coloured=coloured)
+    elif kind == "tied":
+        for i, name in enumerate(ALIKE):
+            yield Task(kind, 1000 * seed + 500 + i, (name,), (), strength, coloured)
 
 
 def tasks(

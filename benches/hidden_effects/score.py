@@ -15,9 +15,11 @@ def judge(
     alternatives: Mapping[str, Sequence[str]],
     *,
     foreign: bool = False,
+    unseen: Sequence[str] = (),
 ) -> str:
     """`right`, `tied` (all hidden effects are among the names of honest ties), `abstained` (says
-    that structure remains and names nothing false), or `wrong`.
+    that structure remains, or that the effect could hide in these runs, and names nothing false),
+    or `wrong`.
 
     Parameters
     ----------
@@ -25,6 +27,8 @@ def judge(
         Effects of the catalogue in the record.
     foreign
         Whether something is hidden that no catalogue has.
+    unseen
+        Effects that the answer says could hide in these runs.
     """
     truth, given = set(hidden), set(named)
     false_name = given - truth
@@ -34,6 +38,8 @@ def judge(
         return "abstained" if not false_name else "wrong"
     if given == truth:
         return "right"
+    if given < truth and truth <= given | set(unseen):
+        return "abstained"
     honest = len(given) == len(truth)
     open_names = set(given)
     for others in alternatives.values():

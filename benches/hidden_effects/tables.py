@@ -71,6 +71,15 @@ def rivals(rows: list[Row]) -> str:
     return "\n".join(lines)
 
 
+def next_runs(rows: list[Row]) -> str:
+    """How often the run that was proposed for a tie decides it."""
+    asked = [row["after_next_run"] for row in rows if row.get("after_next_run")]
+    if not asked:
+        return ""
+    right = sum(said == "right" for said in asked)
+    return f"ties for which a run was proposed: {len(asked)}; that run names the one: {right}"
+
+
 def shares(rows: list[Row], least: float) -> bool:
     """Whether so large a share of each kind's answers is good; says where not."""
     good = True
@@ -84,5 +93,5 @@ def shares(rows: list[Row], least: float) -> bool:
 
 def tables(rows: list[Row]) -> str:
     """All tables."""
-    parts = [summary(rows), confusion(rows), rivals(rows)]
+    parts = [summary(rows), confusion(rows), rivals(rows), next_runs(rows)]
     return "\n\n".join(["", *(part for part in parts if part)])

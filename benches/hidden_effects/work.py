@@ -9,7 +9,9 @@ from typing import Any
 import jbf
 from motion_errors import held_out
 from plan import Task
-from rigsim import Record, simulate_campaign
+from rigsim import Campaign, Record, simulate_campaign
+from rigsim.campaign import standard
+from rigsim.motions import polyline
 from rivals import RULES, Rivals
 from score import judge
 
@@ -36,7 +38,7 @@ def rig_of(truth: dict[str, Any]) -> jbf.Rig:
     return jbf.Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3")
 
 
-def simulate(task: Task, campaign: str) -> tuple[list[jbf.Run], dict[str, Any]]:
+def simulate(task: Task, campaign: str | Campaign) -> tuple[list[jbf.Run], dict[str, Any]]:
     """Runs of a task and the truth behind them."""
     records, truth = simulate_campaign(
         task.seed,
@@ -47,6 +49,21 @@ def simulate(task: Task, campaign: str) -> tuple[list[jbf.Run], dict[str, Any]]:
         foreign=task.foreign,
     )
     return read(records), truth
+
+
+def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
+    """What is said once the proposed run has been recorded too; None where none was proposed."""
+    if found.experiment is None:
+        return None
+    played = found.experiment.run
+    # Straight lines through every fifth sample are near enough to the motion asked for.
+    knots = zip(played.time_s[::5].tolist(), played.velocity_m_s[::5].tolist(), strict=True)
+    first = standard(task.campaign)
+    more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
+    runs, truth = simulate(task, more)
+    again = jbf.diagnose(rig_of(truth), runs)
+    alternatives = {k: list(v) for k, v in again.alternatives.items()}
+    return judge(task.effects, again.verdict, again.effects, alternatives)
 
 
 def work(task: Task, with_rivals: bool) -> Row:
@@ -69,7 +86,15 @@ def work(task: Task, with_rivals: bool) -> Row:
         "verdict": found.verdict,
         "named": list(found.effects),
         "alternatives": alternatives,
-        "judged": judge(task.effects, found.verdict, found.effects, alternatives, foreign=foreign),
+        "judged": judge(
+            task.effects,
+            found.verdict,
+            found.effects,
+            alternatives,
+            foreign=foreign,
+            unseen=found.unseen,
+        ),
+        "unseen": list(found.unseen),
         "held_out_over_noise": held_out(found.model, others)["rms_n"] / (truth["noise_n"] * colour),
         "effect_over_noise": max(truth["effect_to_noise"].values(), default=0.0) / colour,
         "unexplained": [str(r.where) for r in found.unexplained],
@@ -77,6 +102,8 @@ def work(task: Task, with_rivals: bool) -> Row:
         "holdout_over_rms": found.steps[-1].holdout_rms_n / found.steps[-1].rms_n,
         "seconds": seconds,
     }
+    if task.kind == "tied":
+        row["after_next_run"] = after_next_run(task, found)
     if with_rivals:
         rivals = Rivals(rig, runs, others)
         row["rivals"] = {}

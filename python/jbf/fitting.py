@@ -118,7 +118,8 @@ class Problem:
         values: Array = base.copy()
         log = self.log[self.open]
         there = x.copy()
-        there[log] = np.exp(x[log])
+        # The search may look far outside before it is called back.
+        there[log] = np.exp(np.minimum(x[log], 700.0))
         # A logarithm and back may land a rounding error outside.
         values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
         return values

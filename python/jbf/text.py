@@ -153,6 +153,9 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         lines += ["", "Not tried: these runs cannot show"]
         for name, reason in diagnosis.not_tried.items():
             lines += _hanging(f"    {name}: ", reason, 0)
+    if diagnosis.unseen:
+        lines += ["", "Could be there at a usual strength and hide in these runs"]
+        lines += _hanging("    ", ", ".join(diagnosis.unseen), 0)
     return lines
 
 

@@ -11,7 +11,7 @@ import pytest
 from campaigns import campaign
 from jbf.cli import main
 from jbf.diagnosis.excitations import Limits, excitations
-from rigsim.motions import Motion, polyline, sine
+from rigsim.motions import Motion, polyline, sine, sweep
 
 ONE_WAY = (
     sine("one_way_0.25", 50.3, 0.0595, 0.25, bias=0.0728),
@@ -59,6 +59,23 @@ def test_the_motion_keeps_to_the_limits() -> None:
         assert len(excitation.velocity_m_s) == 1500
         assert abs(excitation.velocity_m_s[0]) < 1e-3
     assert {e.load_n for e in seen} == {80.0, 120.0}
+
+
+def test_what_slow_sweeps_cannot_show_is_said_and_the_next_run_shows_it() -> None:
+    sweeps = (sweep("sweep", 0.13, 60.0), sine("slow", 140.0, 0.127, 0.045))
+    rig, runs, _ = campaign(67, ("inertia_leak",), motions=sweeps)
+    found = jbf.diagnose(rig, runs)
+    assert found.verdict == "adequate"
+    assert "inertia_leak" in found.unseen
+    assert "coulomb_drag" not in found.unseen
+    assert found.next_experiment is not None
+    assert "inertia_leak" in found.next_experiment
+    assert "inertia_leak" in found.summary()
+    assert found.experiment is not None
+
+    motions = (*sweeps, _played(found.experiment.run))
+    rig, runs, _ = campaign(67, ("inertia_leak",), motions=motions)
+    assert "inertia_leak" in jbf.diagnose(rig, runs).effects
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,8 @@ def _one_way(name: str, duration_s: float, omega: float) -> Motion:
 
 
 def standard(name: str) -> Campaign:
-    """One of the standard campaigns: `full`, `heldout`, `loads`, `short`, `slow`, `steady`."""
+    """One of the standard campaigns: `full`, `heldout`, `loads`, `one_way`, `short`, `slow`,
+    `steady`."""
     shares: dict[str, float] = {}
     if name == "full":
         moves = [(1.0, 1), (9.1, -1), (26.2, 1), (32.1, 1), (61.2, -1), (72.3, -1), (78.9, 1)]
@@ -59,6 +60,9 @@ def standard(name: str) -> Campaign:
             stop_and_go("stopgo2", moves, 0.07, 1.0, 4.0, 66.0),
             _one_way("uni_w0.5", 38.0, 0.5),
         ]
+    elif name == "one_way":
+        # Nothing turns round: what has the sign of the motion and what has none are alike.
+        motions = [_one_way("uni_w0.25", 50.3, 0.25), _one_way("uni_w1.0", 25.2, 1.0)]
     elif name == "short":
         motions = [
             sine("two_way_0.25", 50.3, 0.127, 0.25),
@@ -91,7 +95,8 @@ def standard(name: str) -> Campaign:
         ]
     else:
         raise ValueError(
-            f"no campaign named {name!r}; there are full, heldout, loads, short, slow, steady"
+            f"no campaign named {name!r}; there are full, heldout, loads, one_way, short, slow, "
+            "steady"
         )
     return Campaign(name, tuple(motions), shares)
 

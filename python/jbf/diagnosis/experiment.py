@@ -8,7 +8,7 @@ for a wrong effect must not be counted as evidence.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -83,15 +83,13 @@ def propose(
     strange = {c for effects in every for e in effects for c in find_effect(e).columns} - SIMULATED
     if strange:
         return f"no run can be proposed: nobody knows what {', '.join(sorted(strange))} would be"
-    campaign = search.campaign
-    limits = (limits or Limits()).filled(campaign)
-    step_s = float(np.median([p.step_s for p in campaign.prepared]))
-    step_s = max(step_s, limits.duration_s / MOST_SAMPLES)
-    models = {effects: _Model(search, effects) for effects in every}
+    limits, step_s = _filled(search, limits)
+    models = {
+        effects: _Model(search.problem(effects), search.solve(frozenset(effects)))
+        for effects in every
+    }
     best, chosen = 0.0, None
-    for excitation in excitations(limits, step_s):
-        run = _run(search, excitation, step_s)
-        motion = core_motion(campaign.rig, run, imposed(campaign.rig, run))
+    for excitation, run, motion in _motions(search, limits, step_s):
         seen = {effects: model.at(motion) for effects, model in models.items()}
         # The least separated pair decides whether the run would settle it.
         least = min(
@@ -122,9 +120,8 @@ def propose(
 class _Model:
     """A rival: its solution, and what the runs at hand already know of its parameters."""
 
-    def __init__(self, search: Search, effects: tuple[str, ...]) -> None:
-        self.problem: Problem = search.problem(effects)
-        self.solution: Solution = search.solve(frozenset(effects))
+    def __init__(self, problem: Problem, solution: Solution) -> None:
+        self.problem, self.solution = problem, solution
         r, j = self.problem.on(self.solution.campaign).stacked(
             self.solution.residuals, self.solution.jacobian, self.solution.noise
         )
@@ -155,6 +152,22 @@ class _Model:
         return float(left @ left) / max(self.noise_n, 1e-300) ** 2
 
 
+def _filled(search: Search, limits: Limits | None) -> tuple[Limits, float]:
+    """Limits without gaps, and the step of a run to be proposed, s."""
+    filled = (limits or Limits()).filled(search.campaign)
+    step_s = float(np.median([p.step_s for p in search.campaign.prepared]))
+    return filled, max(step_s, filled.duration_s / MOST_SAMPLES)
+
+
+def _motions(
+    search: Search, limits: Limits, step_s: float
+) -> Iterator[tuple[Excitation, Run, _core.Motion]]:
+    rig = search.campaign.rig
+    for excitation in excitations(limits, step_s):
+        run = _run(search, excitation, step_s)
+        yield excitation, run, core_motion(rig, run, imposed(rig, run))
+
+
 def _run(search: Search, excitation: Excitation, step_s: float) -> Run:
     campaign = search.campaign
     velocity = excitation.velocity_m_s
@@ -167,6 +180,81 @@ def _run(search: Search, excitation: Excitation, step_s: float) -> Run:
     load_n = excitation.load_n or core_load_n(campaign.rig)
     load = None if load_n is None else np.full(len(time), load_n)
     return Run.from_arrays(time, velocity, load_n=load, name="next", **place)
+
+
+def unseen(search: Search, present: tuple[str, ...]) -> tuple[str, ...]:
+    """Candidates that could be at work at their usual strength and yet leave no evidence in these
+    runs: what the law's own parameters can absorb, or the noise covers."""
+    base = search.solve(frozenset(present))
+    problem = search.problem(present).on(base.campaign)
+    now = problem.predict(base.values)
+    found = []
+    for name in search.candidates:
+        if name in present or set(find_effect(name).columns) - SIMULATED:
+            continue
+        richer, values = _with_usual(search, present, name)
+        gaps = [a - b for a, b in zip(richer.predict(values), now, strict=True)]
+        gap, slopes = problem.stacked(gaps, base.jacobian, base.noise)
+        noise, _ = problem.stacked(base.residuals, base.jacobian, base.noise)
+        size = np.linalg.norm(slopes, axis=0)
+        design = slopes[:, size > 0.0] / size[size > 0.0]
+        step, *_ = np.linalg.lstsq(design, gap, rcond=1e-10)
+        left = gap - design @ step
+        evidence = float(left @ left) / max(float(noise @ noise) / len(noise), 1e-300)
+        if evidence < search.price(len(richer.names) - base.free):
+            found.append(name)
+    return tuple(found)
+
+
+def propose_to_see(
+    search: Search,
+    present: tuple[str, ...],
+    hidden: Sequence[str],
+    limits: Limits | None = None,
+) -> Experiment | str:
+    """The run that would show most of what could hide in the runs at hand."""
+    limits, step_s = _filled(search, limits)
+    base = _Model(search.problem(present), search.solve(frozenset(present)))
+    richer = {name: _with_usual(search, present, name) for name in hidden}
+    best: tuple[int, float] = (0, 0.0)
+    chosen: tuple[Excitation, Run, list[str]] | None = None
+    for excitation, run, motion in _motions(search, limits, step_s):
+        own = base.at(motion)
+        shown = {
+            name: base.evidence(own, (problem.chain.predict(values, [motion])[0], own[1]), step_s)
+            for name, (problem, values) in richer.items()
+        }
+        names = [name for name, evidence in shown.items() if evidence > 2.0 * ENOUGH]
+        rank = (len(names), sum(np.log(max(shown[name], 1.0)) for name in names))
+        if rank > best:
+            best, chosen = rank, (excitation, run, names)
+    listed = ", ".join(hidden)
+    if chosen is None:
+        return (
+            f"these runs could not show {listed} at a usual strength, nor could any motion within "
+            "the limits"
+        )
+    excitation, run, names = chosen
+    which = "them" if len(names) == len(hidden) else ", ".join(names)
+    words = (
+        f"these runs could not show {listed} at a usual strength: record {excitation.words} for "
+        f"{limits.duration_s:g} s, which would show {which}"
+    )
+    sigma = float(np.sqrt(np.exp(best[1] / best[0]) / len(run)))
+    return Experiment(words, run, sigma * base.noise_n, sigma, float(np.exp(best[1] / best[0])))
+
+
+def _with_usual(search: Search, present: tuple[str, ...], name: str) -> tuple[Problem, Array]:
+    """A model with one effect more, at the first of its starting values."""
+    base = dict(
+        zip(
+            search.problem(present).names,
+            search.solve(frozenset(present)).values.tolist(),
+            strict=True,
+        )
+    )
+    problem = search.problem((*present, name))
+    return problem, next(iter(problem.starts(base)))
 
 
 def _names(rivals: Sequence[Sequence[tuple[str, ...]]]) -> str:

@@ -113,8 +113,10 @@ class Diagnosis:
         Comparison of the bare law and of the final model with the runs.
     not_tried
         Effects that go with the law but that these runs cannot show, and why.
+    unseen
+        Effects that could be there at a usual strength, and that these runs would still not show.
     experiment
-        The motion of that run, where the verdict is `ambiguous` and a run would part the rivals.
+        The motion of the next run, where a run would part rivals or show what could hide.
     """
 
     verdict: str
@@ -129,6 +131,7 @@ class Diagnosis:
     after: Comparison
     elapsed_s: float
     not_tried: dict[str, str] = field(default_factory=dict)
+    unseen: tuple[str, ...] = ()
     experiment: Experiment | None = None
 
     @property
@@ -151,6 +154,7 @@ class Diagnosis:
                 for name, p in self.fit.parameters.items()
             },
             "not_tried": dict(self.not_tried),
+            "unseen": list(self.unseen),
             "elapsed_s": self.elapsed_s,
         }
 

@@ -20,7 +20,7 @@ from jbf.campaign import Campaign
 from jbf.catalogue import effects as catalogue
 from jbf.comparison import compare_prepared
 from jbf.diagnosis.excitations import Limits
-from jbf.diagnosis.experiment import Experiment, propose
+from jbf.diagnosis.experiment import Experiment, propose, propose_to_see, unseen
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
@@ -366,7 +366,10 @@ def diagnose(
         verdict = "ambiguous"
     else:
         verdict = "missing" if present else "adequate"
+    hidden = () if remains else unseen(search, present)
     proposal: Experiment | str | None = None
+    if verdict == "adequate" and hidden:
+        proposal = propose_to_see(search, present, hidden, limits)
     if tied:
         proposal = propose(search, [_rivals(present, n, tied[n]) for n in tied], limits)
     return Diagnosis(
@@ -383,6 +386,7 @@ def diagnose(
         after=after,
         elapsed_s=time.monotonic() - begun,
         not_tried=search.not_tried,
+        unseen=hidden,
     )
 
 

@@ -46,7 +46,8 @@ def confusion(rows: list[Row]) -> str:
             name += " or " + ", ".join(sorted(others))
         elif row["named"] and row["verdict"] == "unexplained":
             name += " + unexplained"
-        said.setdefault(row["hidden"], Counter())[name] += 1
+        hidden = row["hidden"] + (" (no such effect)" if row["kind"] == "foreign" else "")
+        said.setdefault(hidden, Counter())[name] += 1
     lines = ["| hidden | said |", "|---|---|"]
     for hidden, names in sorted(said.items()):
         words = ", ".join(f"{name} ({n})" for name, n in names.most_common())

@@ -5,7 +5,10 @@ FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1
 FOLDER, a compiler or a package, the task is skipped and says so. The folder is copied to
 `target/peers` and built there.
 
-Peers and jbf take turns, so that a busy machine is busy for both: read ratios, not times.
+Peers and jbf take turns, so that a busy machine is busy for both: read ratios, not times. Before a
+turn is clocked, the machine rests and the row works unclocked for a while: OpenMP's threads (the
+peers') keep a core busy for some milliseconds after their work, in wait for more, which is the next
+row's time; and any thread that sleeps wakes late. `--no-rest` shows what it is like without.
 """
 
 from __future__ import annotations
@@ -35,6 +38,9 @@ TABLE = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
 STEPS, DT_S, SETS = 50_000, 0.002, 1024
 SPEED = 0.127 * np.sin(0.25 * DT_S * np.arange(STEPS))
 
+REST_S = 0.05
+WARM_S = 0.05
+
 Timed = dict[str, Callable[[], float]]
 
 
@@ -43,6 +49,11 @@ def table(title: str, unit: str, peer: str, rounds: int, rows: Timed) -> None:
     times: dict[str, list[float]] = {name: [] for name in rows}
     for _ in range(rounds):
         for name, run in rows.items():
+            if REST_S > 0.0:
+                time.sleep(REST_S)
+                warm = time.perf_counter() + WARM_S
+                while time.perf_counter() < warm:
+                    run()
             times[name].append(run())
     middle = {name: float(np.median(t)) for name, t in times.items()}
     print(f"\n{title}\n\n| | median, {unit} | least | {peer} / this, median | least |")
@@ -260,7 +271,11 @@ def main() -> None:
     parser.add_argument(
         "--tasks", nargs="+", choices=TASKS, default=TASKS, metavar="TASK", help=" ".join(TASKS)
     )
+    parser.add_argument("--no-rest", action="store_true", help="one turn right after the other")
     asked = parser.parse_args()
+    if asked.no_rest:
+        global REST_S
+        REST_S = 0.0
     if asked.folder is None or not (asked.folder / "c" / "kern.h").is_file():
         skip("All", f"no peers in {asked.folder}: give the folder that holds c/kern.h")
         return

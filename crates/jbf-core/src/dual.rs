@@ -143,6 +143,7 @@ impl<const N: usize> MulAssign for Dual<N> {
 }
 
 impl<const N: usize> Real for Dual<N> {
+    const HAS_SLOPES: bool = true;
     const ZERO: Self = Self {
         value: 0.0,
         slope: [0.0; N],
@@ -217,6 +218,16 @@ impl<const N: usize> Real for Dual<N> {
     #[inline(always)]
     fn implicit(value: f64, residual: Self, slope: f64) -> Self {
         residual.chain(value, -1.0 / slope)
+    }
+    #[inline(always)]
+    fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {
+        let mut sum = Self::of(value);
+        for (input, partial) in inputs {
+            for (s, i) in sum.slope.iter_mut().zip(input.slope.iter()) {
+                *s += partial * *i;
+            }
+        }
+        sum
     }
 }
 

@@ -38,6 +38,10 @@ pub trait Real:
     /// the bearing is then only marked, its state means nothing any more, and it is for the
     /// caller to take it again with a number that stands alone.
     const SIDE_BY_SIDE: bool = false;
+    /// True for a number that carries derivatives. A function of many operations and few inputs
+    /// then computes its partial derivatives in plain numbers and joins them once, by
+    /// [`Real::joined`], where operation after operation would carry all of them.
+    const HAS_SLOPES: bool = false;
 
     /// The nearest number of this kind; derivatives are zero.
     fn of(value: f64) -> Self;
@@ -74,6 +78,13 @@ pub trait Real:
     /// function theorem gives it: `residual` evaluated at the root, `slope` its derivative
     /// with respect to the unknown.
     fn implicit(value: f64, residual: Self, slope: f64) -> Self;
+
+    /// `value`, with the derivatives of its inputs times the partial derivatives beside them.
+    #[inline(always)]
+    fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {
+        let _ = inputs;
+        Self::of(value)
+    }
 
     /// The larger of two.
     #[inline(always)]

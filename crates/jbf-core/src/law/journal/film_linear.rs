@@ -5,7 +5,7 @@
 //! J     = Q M Q^T,       M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
 //! ```
 
-use super::film_motion::{slope, Film};
+use super::film_motion::{slope, Asperities, Film};
 use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
@@ -135,11 +135,12 @@ impl<T: Real> SmoothFilm<T> {
 impl<T: Real> System<T, 2> for SmoothFilm<T> {
     #[inline]
     fn slope(&self, &[x, y]: &[T; 2], ub: T) -> [T; 2] {
-        let load = |e: T| {
-            let touch = e - self.eps_tr;
-            self.k0 * touch * touch
+        let asperities = Asperities {
+            k0: self.k0,
+            eps_tr: self.eps_tr,
+            part: false,
         };
-        slope(self.load_number, [x, y], x * x + y * y, load, ub)
+        slope(self.load_number, [x, y], x * x + y * y, &asperities, ub)
     }
 }
 

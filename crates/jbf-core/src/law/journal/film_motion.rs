@@ -11,6 +11,7 @@
 //! them is formed meanwhile. `sqrt(d)^2 = d` leaves no root in the turning. On x86-64 that is
 //! 1.9 times faster than the printed order.
 
+use super::film_slopes;
 use super::{Journal, Loaded};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
 use crate::real::Real;
@@ -78,8 +79,47 @@ impl<T: Real> Film<'_, T> {
 
     #[inline(always)]
     fn inside(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
-        let load = |e| self.law.asperity_load(e, self.loaded.eps_tr);
-        slope(self.loaded.load_number, [x, y], e2, load, ub)
+        let asperities = self.law.asperities(self.loaded);
+        slope(self.loaded.load_number, [x, y], e2, &asperities, ub)
+    }
+}
+
+/// What carries load where surfaces touch.
+#[derive(Clone, Copy)]
+pub(super) struct Asperities<T> {
+    pub(super) k0: T,
+    pub(super) eps_tr: T,
+    /// False where the parabola goes on below eps_tr, for a step that may look across it.
+    pub(super) part: bool,
+}
+
+impl<T: Real> Asperities<T> {
+    /// How deep they are pressed at an eccentricity ratio.
+    #[inline(always)]
+    pub(super) fn touch(&self, e: T) -> T {
+        e - self.eps_tr
+    }
+
+    /// `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
+    #[inline(always)]
+    pub(super) fn load(&self, e: T) -> T {
+        let touch = self.touch(e);
+        let load = self.k0 * touch * touch;
+        if touch > T::ZERO || !self.part {
+            load
+        } else {
+            T::ZERO
+        }
+    }
+
+    /// Without derivatives.
+    #[inline(always)]
+    pub(super) fn plain(&self) -> Asperities<f64> {
+        Asperities {
+            k0: self.k0.value(),
+            eps_tr: self.eps_tr.value(),
+            part: self.part,
+        }
     }
 }
 
@@ -88,16 +128,17 @@ impl<T: Real> Film<'_, T> {
 #[derive(Clone, Copy)]
 pub(super) struct Gap<T> {
     /// `eps^2`.
-    e2: T,
+    pub(super) e2: T,
     /// `1 - eps^2`.
-    d: T,
+    pub(super) d: T,
     /// Eccentricity ratio.
     pub(super) e: T,
-    root: T,
+    /// `sqrt(1 - eps^2)`.
+    pub(super) root: T,
     /// `(J22 - J12^2/J11) d^(5/2)`.
-    determinant: T,
+    pub(super) determinant: T,
     /// `1 / (eps^2 d determinant)`, infinite at the centre.
-    inverse: T,
+    pub(super) inverse: T,
 }
 
 impl<T: Real> Gap<T> {
@@ -129,29 +170,39 @@ impl<T: Real> Gap<T> {
     }
 }
 
-/// The slope at `e2 = x^2 + y^2`, well between 0 and 1, of a film whose asperities carry
-/// `asperity_load` at an eccentricity.
+/// The slope at `e2 = x^2 + y^2`, well between 0 and 1.
 #[inline(always)]
 pub(super) fn slope<T: Real>(
     fb: T,
-    [x, y]: [T; 2],
+    xy: [T; 2],
     e2: T,
-    asperity_load: impl FnOnce(T) -> T,
+    asperities: &Asperities<T>,
     ub: T,
 ) -> [T; 2] {
-    let Gap {
+    if T::HAS_SLOPES {
+        film_slopes::motion(fb, xy, e2.value(), asperities, ub)
+    } else {
+        let gap = Gap::at(e2);
+        plain(&gap, fb, xy, asperities.load(gap.e), ub)
+    }
+}
+
+/// The same, operation by operation.
+#[inline(always)]
+pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T) -> [T; 2] {
+    let &Gap {
         e2,
         d,
         e,
         root,
         determinant,
         inverse,
-    } = Gap::at(e2);
+    } = gap;
     let stiff = d * d * d * inverse;
     // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
     let along = (fb * x) * d * determinant * inverse * e;
     let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
-    let push = along - asperity_load(e) - across;
+    let push = along - load - across;
     // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
     let radial = push * (stiff * e * root);
     let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));

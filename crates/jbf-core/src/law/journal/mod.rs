@@ -16,6 +16,7 @@
 mod build;
 pub(crate) mod film_linear;
 mod film_motion;
+mod film_slopes;
 mod named;
 mod parameters;
 mod side_by_side;
@@ -35,7 +36,7 @@ use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use film_motion::{within, Film, Gap};
+use film_motion::{within, Asperities, Film, Gap};
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -85,27 +86,36 @@ impl<T: Real> Journal<T> {
         self.nominal
     }
 
+    /// The asperities under a load.
+    #[inline(always)]
+    fn asperities(&self, loaded: &Loaded<T>) -> Asperities<T> {
+        Asperities {
+            k0: self.k0,
+            eps_tr: loaded.eps_tr,
+            part: true,
+        }
+    }
+
     /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
     #[inline(always)]
     pub(crate) fn asperity_load(&self, eps: T, eps_tr: T) -> T {
-        let touch = eps - eps_tr;
-        let load = self.k0 * touch * touch;
-        if touch > T::ZERO {
-            load
-        } else {
-            T::ZERO
-        }
+        let (k0, part) = (self.k0, true);
+        Asperities { k0, eps_tr, part }.load(eps)
     }
 
     /// Friction at an eccentricity ratio, given with its square, and a speed, (3.14).
     #[inline(always)]
     pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Sliding<T> {
+        let asperities = self.asperities(loaded);
+        let per_load = loaded.inverse_load_number;
+        if T::HAS_SLOPES {
+            let (f_m, viscous_s_m) = (self.f_m, self.viscous_s_m);
+            return film_slopes::sliding([f_m, viscous_s_m, per_load], &asperities, e2, velocity_m_s);
+        }
         let gap = Gap::at(e2);
-        let load = self.asperity_load(gap.e, loaded.eps_tr);
-        let viscous = self.viscous_s_m * loaded.inverse_load_number * velocity_m_s;
         Sliding {
-            level: self.f_m * loaded.inverse_load_number * load,
-            viscous: viscous * gap.inverse_root(),
+            level: self.f_m * per_load * asperities.load(gap.e),
+            viscous: self.viscous_s_m * per_load * velocity_m_s * gap.inverse_root(),
         }
     }
 

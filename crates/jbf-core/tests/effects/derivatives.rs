@@ -78,11 +78,12 @@ fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
     run(info, &q, |t| sines.under(load_n(info), t))
 }
 
-/// A difference quotient, the step that made it and the force that it was made from.
+/// Difference quotients, the step that made them and the force that they were made from.
 struct Difference {
-    slopes: Vec<f64>,
-    /// Half of what the slopes ahead and behind differ by.
-    bends: Vec<f64>,
+    /// Each of second order: of values on both sides, ahead and behind. A kink (a touch, a
+    /// break-away, the sample at which a delay's interpolation turns) that the step passes spoils
+    /// those that look across it; the derivative is that of the side where it stands.
+    slopes: Vec<Vec<f64>>,
     step: f64,
     peak_n: f64,
 }
@@ -91,34 +92,33 @@ impl Difference {
     /// False where the parameter does nothing.
     fn check(&self, label: &str, carried: &[f64]) -> bool {
         let largest = carried.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-        let nothing = largest == 0.0 && self.slopes.iter().all(|&s| s == 0.0);
+        let nothing = largest == 0.0 && self.slopes.iter().flatten().all(|&s| s == 0.0);
         if nothing {
             return false;
         }
-        let bound = 1e-6 * largest + 1e-12 * self.peak_n / self.step;
+        let bound = 1e-6 * largest + 4e-12 * self.peak_n / self.step;
         // Rounding may not be what makes the test pass.
         assert!(
             bound < 1e-3 * largest,
             "{label}: {bound:e} against slopes of {largest:e}"
         );
-        let mut kinks = 0;
-        for (i, (a, b)) in carried.iter().zip(&self.slopes).enumerate() {
-            let error = (a - b).abs();
-            // Where a kink (a touch, a break-away) lies within the difference, the slope is that of
-            // one of its sides, and stays so for some samples. That is chance, and rare.
-            if error >= bound && error < bound + 1.5 * self.bends[i].abs() {
-                kinks += 1;
-                continue;
-            }
+        for (i, &slope) in carried.iter().enumerate() {
+            let errors = self.slopes.iter().map(|s| (s[i] - slope).abs());
+            let error = errors.fold(f64::INFINITY, f64::min);
+            let found: Vec<f64> = self.slopes.iter().map(|s| s[i]).collect();
             assert!(
                 error < bound,
-                "{label}, sample {i}: {a} {b}, {error:e} > {bound:e}, bend {:e}",
-                self.bends[i]
+                "{label}, sample {i}: {slope} {found:?}, {error:e} > {bound:e}"
             );
         }
-        assert!(kinks * 100 <= carried.len(), "{label}: {kinks} kinks");
         true
     }
+}
+
+/// Of second order, from values at none, one and two steps.
+fn one_sided(at: &[f64], one: &[f64], two: &[f64], step: f64) -> Vec<f64> {
+    let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * step);
+    (0..at.len()).map(slope).collect()
 }
 
 fn peak(signal: &[f64]) -> f64 {
@@ -137,16 +137,16 @@ fn slopes_match_central_differences() {
             ] {
                 for i in 0..p.len() {
                     let h = 5e-5 * if p[i] == 0.0 { 1.0 } else { p[i].abs() };
-                    let above = moved(info, &p, i, h, &sines);
-                    let below = moved(info, &p, i, -h, &sines);
-                    let at = moved(info, &p, i, 0.0, &sines);
-                    let pairs = above.iter().zip(&below);
-                    let bends = pairs.clone().zip(&at);
+                    let by = |steps: f64| moved(info, &p, i, steps * h, &sines);
+                    let at = by(0.0);
+                    let (above, below) = (by(1.0), by(-1.0));
+                    let both = above.iter().zip(&below);
                     let difference = Difference {
-                        slopes: pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect(),
-                        bends: bends
-                            .map(|((a, b), f)| (a + b - 2.0 * f) / (2.0 * h))
-                            .collect(),
+                        slopes: vec![
+                            both.map(|(a, b)| (a - b) / (2.0 * h)).collect(),
+                            one_sided(&at, &above, &by(2.0), h),
+                            one_sided(&at, &below, &by(-2.0), -h),
+                        ],
                         step: h,
                         peak_n: peak(&above),
                     };
@@ -179,10 +179,8 @@ fn slopes_at_a_null_match_one_sided_differences() {
             };
             let h = 5e-5 * parameter.starts[0];
             let [at, one, two] = [0.0, h, 2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
-            let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * h);
             let difference = Difference {
-                slopes: (0..at.len()).map(slope).collect(),
-                bends: vec![0.0; at.len()],
+                slopes: vec![one_sided(&at, &one, &two, h)],
                 step: h,
                 peak_n: peak(&at),
             };

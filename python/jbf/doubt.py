@@ -23,8 +23,8 @@ Array = npt.NDArray[np.float64]
 JUMP = 0.1
 """A change within a sample by more than this share of the run's largest friction is a jump,"""
 ALONE = 3.0
-"""if it is so many times the changes two samples before and after: a steep rise that the record
-resolves, such as a mass set going, is none."""
+"""if it is so many times a change within two samples before it, and one after: a steep rise that the
+record resolves, such as a mass set going, is none."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
@@ -35,9 +35,14 @@ def moves_jumps(effects: Iterable[str]) -> bool:
 def jumps(prediction: Array) -> Array:
     """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
     change = np.abs(np.diff(prediction))
-    # A ramp that lies across a sample takes part of two changes: its neighbours are two away.
+    # A ramp that lies across a sample takes part of two changes: one neighbour may be its own. The
+    # two jumps at a gap may be as close as that, too.
     around = np.pad(change, 2)
-    alone = change > ALONE * np.maximum(around[:-4], around[4:])
+    before, after = (
+        np.minimum(around[:-4], around[1:-3]),
+        np.minimum(around[3:-1], around[4:]),
+    )
+    alone = change > ALONE * np.maximum(before, after)
     steep = alone & (change > JUMP * np.max(np.abs(prediction), initial=0.0))
     steep = np.where(steep, change, 0.0)
     found: Array = np.maximum(np.append(steep, 0.0), np.append(0.0, steep))

@@ -19,6 +19,13 @@ def test_only_a_jump_is_in_doubt() -> None:
     assert not jumps(np.zeros(20)).any()
 
 
+def test_two_jumps_at_a_gap_are_seen_and_a_resolved_rise_is_none() -> None:
+    gap = np.concatenate((np.full(20, 20.0), np.zeros(2), np.full(20, -20.0)))
+    assert np.flatnonzero(jumps(gap)).tolist() == [19, 20, 21, 22]
+    rise = np.concatenate((np.zeros(20), np.linspace(0.0, 20.0, 6), np.full(20, 20.0)))
+    assert not jumps(rise).any()
+
+
 def test_only_effects_that_move_jumps_cast_doubt() -> None:
     assert moves_jumps(["sensor_lag", "time_delay"])
     assert not moves_jumps(["sensor_lag", "drive_compliance"])

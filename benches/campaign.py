@@ -23,6 +23,7 @@ from jbf.model import MAX_STEP_S, core_bearing, core_load_n
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 
 import rigsim
+from rigruns import rig_of, runs_of
 
 EFFECTS = ("coulomb_drag", "sensor_lag")
 FINE_STEP_S, FINEST_STEP_S = 0.002, 0.0005
@@ -37,18 +38,7 @@ def campaign(seed: int) -> tuple[jbf.Rig, list[jbf.Run]]:
     )
     plan = rigsim.Campaign("bench", motions)
     records, truth = rigsim.simulate_campaign(seed, EFFECTS, campaign=plan)
-    runs = [
-        jbf.Run.from_arrays(
-            r.time_s,
-            r.velocity_m_s,
-            r.friction_n,
-            angle_rad=r.angle_rad,
-            load_n=r.load_n,
-            name=name,
-        )
-        for name, r in records.items()
-    ]
-    return jbf.Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3"), runs
+    return rig_of(truth["base"]["load_n"]), runs_of(records)
 
 
 def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]:

@@ -14,7 +14,7 @@ import sys
 import zlib
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -25,6 +25,7 @@ from jbf.catalogue import find_parameter, parameters_of
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 
 import rigsim
+from rigruns import rig_of, runs_of
 from rigsim.campaign import draw_base
 from rigsim.motions import Motion
 
@@ -80,24 +81,32 @@ def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[
     """The records as instruments show them."""
     base = truth.base
     meter = rigsim.Noise(NOISE_SHARE * base.f_m * base.load_n, 0.5 if coloured else 0.0)
-    return [
-        jbf.Run.from_arrays(
-            r.time_s,
-            meter.velocity(r.velocity_m_s, random),
-            meter.friction(r.friction_n, float(r.time_s[1]), random),
-            angle_rad=meter.angle(r.angle_rad),
-            load_n=r.load_n,
-            name=name,
-        )
-        for name, r in truth.records.items()
-    ]
+    return runs_of(
+        {
+            name: replace(
+                r,
+                velocity_m_s=meter.velocity(r.velocity_m_s, random),
+                friction_n=meter.friction(r.friction_n, float(r.time_s[1]), random),
+                angle_rad=meter.angle(r.angle_rad),
+            )
+            for name, r in truth.records.items()
+        }
+    )
 
 
-def errors_of(truth: Truth, seed: Iterable[int], coloured: bool) -> dict[str, float]:
-    """Estimate less truth in standard errors, by name; NaN where a fit gives no interval."""
-    rig = jbf.Rig.thesis("4.2" if truth.base.load_n == 104.0 else "4.3")
+def errors_of(
+    truth: Truth, seed: Iterable[int], coloured: bool, bootstrap: int | None = None
+) -> dict[str, float]:
+    """Estimate less truth in standard errors, by name; NaN where a fit gives no interval.
+
+    With `bootstrap` the errors are those of so many fits of simulated records, where the fit
+    itself says that its own are none.
+    """
     runs = measured(truth, np.random.default_rng(list(seed)), coloured)
-    found = jbf.fit(rig, runs, list(truth.effects)).parameters
+    fitted = jbf.fit(rig_of(truth.base.load_n), runs, list(truth.effects))
+    if bootstrap is not None and fitted.doubtful:
+        fitted = jbf.bootstrap(fitted, runs, repeats=bootstrap).fit
+    found = fitted.parameters
     pages = parameters_of("journal", tuple(truth.effects))
     errors = {}
     for name, value in truth.values().items():
@@ -110,19 +119,30 @@ def errors_of(truth: Truth, seed: Iterable[int], coloured: bool) -> dict[str, fl
 
 
 def repeat(
-    effect: str | None, rig: int, repeats: int, seed: int, coloured: bool
+    effect: str | None,
+    rig: int,
+    repeats: int,
+    seed: int,
+    coloured: bool,
+    bootstrap: int | None = None,
 ) -> list[dict[str, float]]:
     """All repeats on one rig."""
     truth = make_truth(effect, 1000 * seed + rig, motions_for(effect or ""))
-    return [errors_of(truth, (seed, rig, k), coloured) for k in range(repeats)]
+    return [errors_of(truth, (seed, rig, k), coloured, bootstrap) for k in range(repeats)]
 
 
 def study(
-    effect: str | None, repeats: int, rigs: int, seed: int, coloured: bool, jobs: int
+    effect: str | None,
+    repeats: int,
+    rigs: int,
+    seed: int,
+    coloured: bool,
+    jobs: int,
+    bootstrap: int | None = None,
 ) -> dict[str, list[float]]:
     """Errors in standard errors, one list a parameter."""
     share = [repeats // rigs + (i < repeats % rigs) for i in range(rigs)]
-    work = partial(_one_rig, effect, share, seed, coloured)
+    work = partial(_one_rig, effect, share, seed, coloured, bootstrap)
     rows: Iterator[list[dict[str, float]]]
     if jobs == 1:
         rows = map(work, range(rigs))
@@ -134,9 +154,14 @@ def study(
 
 
 def _one_rig(
-    effect: str | None, share: list[int], seed: int, coloured: bool, rig: int
+    effect: str | None,
+    share: list[int],
+    seed: int,
+    coloured: bool,
+    bootstrap: int | None,
+    rig: int,
 ) -> list[dict[str, float]]:
-    return repeat(effect, rig, share[rig], seed, coloured)
+    return repeat(effect, rig, share[rig], seed, coloured, bootstrap)
 
 
 @dataclass(frozen=True)
@@ -193,6 +218,12 @@ def main() -> None:
     parser.add_argument("--rigs", type=int, default=8, help="rigs among which they are shared")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--coloured", action="store_true", help="noise with a coloured part")
+    parser.add_argument(
+        "--bootstrap",
+        type=int,
+        metavar="N",
+        help="errors from N fits of simulated records where a fit says that its own are none",
+    )
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--json", type=Path, help="write every error here, effect by effect")
     asked = parser.parse_args()
@@ -200,7 +231,15 @@ def main() -> None:
     print(f"{asked.repeats} fits an effect, {asked.rigs} rigs, seed {asked.seed}\n\n{HEADER}")
     for effect in asked.effects or [None, *rigsim.CATALOGUE]:
         name = None if effect in (None, "none") else effect
-        errors = study(name, asked.repeats, asked.rigs, asked.seed, asked.coloured, asked.jobs)
+        errors = study(
+            name,
+            asked.repeats,
+            asked.rigs,
+            asked.seed,
+            asked.coloured,
+            asked.jobs,
+            asked.bootstrap,
+        )
         kept[name or "none"] = errors
         print("\n".join(lines(name or "none", errors)), flush=True)
         if asked.json is not None:

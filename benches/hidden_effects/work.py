@@ -9,33 +9,14 @@ from typing import Any
 import jbf
 from motion_errors import held_out
 from plan import Task
-from rigsim import Campaign, Record, simulate_campaign
+from rigruns import rig_of, runs_of
+from rigsim import Campaign, simulate_campaign
 from rigsim.campaign import standard
 from rigsim.motions import polyline
 from rivals import RULES, Rivals
 from score import judge
 
 Row = dict[str, Any]
-
-
-def read(records: dict[str, Record]) -> list[jbf.Run]:
-    """Simulated records as runs."""
-    return [
-        jbf.Run.from_arrays(
-            r.time_s,
-            r.velocity_m_s,
-            r.friction_n,
-            angle_rad=r.angle_rad,
-            load_n=r.load_n,
-            name=name,
-        )
-        for name, r in records.items()
-    ]
-
-
-def rig_of(truth: dict[str, Any]) -> jbf.Rig:
-    """The rig whose load the simulator drew."""
-    return jbf.Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3")
 
 
 def simulate(task: Task, campaign: str | Campaign) -> tuple[list[jbf.Run], dict[str, Any]]:
@@ -48,7 +29,7 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[list[jbf.Run], dict[
         campaign=campaign,
         foreign=task.foreign,
     )
-    return read(records), truth
+    return runs_of(records), truth
 
 
 def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
@@ -61,7 +42,7 @@ def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
     first = standard(task.campaign)
     more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
     runs, truth = simulate(task, more)
-    again = jbf.diagnose(rig_of(truth), runs)
+    again = jbf.diagnose(rig_of(truth["base"]["load_n"]), runs)
     alternatives = {k: list(v) for k, v in again.alternatives.items()}
     return judge(task.effects, again.verdict, again.effects, alternatives)
 
@@ -70,7 +51,7 @@ def work(task: Task, with_rivals: bool) -> Row:
     """Everything that the tables need of one campaign."""
     runs, truth = simulate(task, task.campaign)
     others, _ = simulate(task, "heldout")
-    rig = rig_of(truth)
+    rig = rig_of(truth["base"]["load_n"])
     begun = time.monotonic()
     found = jbf.diagnose(rig, runs)
     seconds = time.monotonic() - begun

@@ -23,6 +23,7 @@ from jbf.trajectory import Trajectory, trajectories, trajectory
 
 if TYPE_CHECKING:
     from jbf import control
+    from jbf.bootstrapping import Bootstrap, bootstrap
     from jbf.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
     from jbf.fitting import Fit, fit
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.
 _LATER = {
+    "Bootstrap": "jbf.bootstrapping",
+    "bootstrap": "jbf.bootstrapping",
     "Comparison": "jbf.comparison",
     "compare": "jbf.comparison",
     "Diagnosis": "jbf.diagnosis",
@@ -46,6 +49,7 @@ _LATER = {
 
 __all__ = [
     "Bearing",
+    "Bootstrap",
     "Comparison",
     "Diagnosis",
     "Experiment",
@@ -64,6 +68,7 @@ __all__ = [
     "TrajectoryFit",
     "__version__",
     "batch",
+    "bootstrap",
     "compare",
     "control",
     "diagnose",

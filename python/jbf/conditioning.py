@@ -173,6 +173,13 @@ def _step_of(angle: Array) -> float:
     return float(np.min(steps)) if len(steps) else 0.0
 
 
+def encoder_step(path: Array) -> float:
+    """The step of the encoder that recorded a path in motion, in the path's unit; zero where its
+    samples are finer than any encoder's."""
+    step = _step_of(path)
+    return 0.0 if noise_of(path) > UNEVEN * step / np.sqrt(12.0) else step
+
+
 def _local_fit(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float, half: int
 ) -> tuple[Array, Array, Array, Array, Array]:

@@ -23,8 +23,8 @@ Array = npt.NDArray[np.float64]
 JUMP = 0.1
 """A change within a sample by more than this share of the run's largest friction is a jump,"""
 ALONE = 3.0
-"""if it is so many times a change within two samples before it, and one after: a steep rise that the
-record resolves, such as a mass set going, is none."""
+"""if it is so many times a change within two samples before it, and one after: a steep rise that
+the record resolves, such as a mass set going, is none."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:

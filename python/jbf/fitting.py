@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -407,6 +407,9 @@ class Fit:
         Root mean square of the residual over trusted samples, N.
     residuals
         Prediction minus record, N, one array a run.
+    doubtful
+        Names of the parameters whose standard error is no error, because the likelihood is no
+        parabola so far out: :func:`jbf.bootstrap` finds theirs.
     """
 
     model: Model
@@ -418,6 +421,7 @@ class Fit:
     residuals: list[Array]
     converged: bool
     message: str
+    doubtful: tuple[str, ...] = ()
 
     def report(self) -> str:
         """Statistics, parameters with errors, and the strongest correlations, as text."""
@@ -522,13 +526,18 @@ def fit(
     campaign = Campaign.prepare(rig, runs)
     check_effects(campaign, chosen)
     known = parameters_of(law, chosen)
-    held = _named_values(fixed, known)
+    held = named_values(fixed, known)
     problem = Problem(campaign, law, clock, chosen, held)
-    solution = problem.solve([_named_values(start, known)])
-    return finish(problem, solution)
+    solution = problem.solve([named_values(start, known)])
+    fitted = finish(problem, solution)
+    from jbf.curvature import doubtful  # which knows problems and solutions
+
+    errors = [p.stderr for p in fitted.parameters.values()]
+    sure = problem.on(solution.campaign)
+    return replace(fitted, doubtful=doubtful(sure, solution, errors, fitted.correlations))
 
 
-def _named_values(
+def named_values(
     values: Mapping[str, float] | None, known: Mapping[str, Parameter]
 ) -> dict[str, float]:
     """Full names and checked bounds."""

@@ -94,6 +94,14 @@ def fit_report(fit: Fit) -> str:
     ]
     lines = ["[[Fit]]", *columns([(k, f"= {v}") for k, v in facts], "<<", 4)]
     lines += ["[[Parameters]]", *_parameter_lines(model, fit.parameters)]
+    if fit.doubtful:
+        names = ", ".join(fit.doubtful)
+        lines += _hanging(
+            "note: ",
+            f"of {names} the likelihood is no parabola within these errors, so they may be far "
+            "too small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.",
+            4,
+        )
     pairs = correlation_pairs(fit)
     if pairs:
         lines.append(f"[[Correlations]] (those above {LEAST_CORRELATION})")

@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 from jbf import Rig, Run
+from rigruns import rig_of, runs_of
 from rigsim import Campaign, simulate_campaign
 from rigsim.campaign import standard
 from rigsim.motions import Motion
@@ -33,16 +34,4 @@ def campaign(
         foreign=foreign,
         campaign=Campaign("short", motions, dict(loads)),
     )
-    rig = Rig.thesis("4.2" if truth["base"]["load_n"] == 104.0 else "4.3")
-    runs = [
-        Run.from_arrays(
-            r.time_s,
-            r.velocity_m_s,
-            r.friction_n,
-            angle_rad=r.angle_rad,
-            load_n=r.load_n,
-            name=name,
-        )
-        for name, r in records.items()
-    ]
-    return rig, runs, truth
+    return rig_of(truth["base"]["load_n"]), runs_of(records), truth

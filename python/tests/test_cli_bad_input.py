@@ -352,3 +352,10 @@ def test_two_outputs_may_not_share_a_file(refused: Refused) -> None:
 def test_demo_wants_a_folder(refused: Refused) -> None:
     assert "DIR rig.toml: is a file, not a folder" in refused("demo", "rig.toml")
     assert "its parent folder does not exist" in refused("demo", "no/such")
+
+
+def test_too_few_fits_for_an_error(refused: Refused) -> None:
+    line = refused("fit", "rig.toml", "runs", "--bootstrap", "3", "--out", "new.toml")
+    assert line == (
+        "jbf: --bootstrap 3 is too few to tell an error; ask for 10 or more; 40 will do"
+    )

@@ -31,6 +31,13 @@ def add(commands: Commands) -> None:
         default=[],
         help="hold a parameter at a value, SI units; may be repeated",
     )
+    parser.add_argument(
+        "--bootstrap",
+        metavar="N",
+        type=int,
+        help="take the errors from N fits of simulated records of the same runs (40 will do; "
+        "takes N times as long)",
+    )
     parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
     add_own(parser)
 
@@ -48,11 +55,19 @@ def run(arguments: argparse.Namespace) -> int:
 
     from jbf.fitting import fit
 
-    with shown("fitting"):
+    repeats = arguments.bootstrap
+    if repeats is not None:
+        from jbf.bootstrapping import check_repeats
+
+        check_repeats(repeats, "--bootstrap")
+    with shown("fitting") as report:
         fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
-    report = fitted.report()
+        if repeats is not None:
+            from jbf.bootstrapping import bootstrap
+
+            fitted = bootstrap(fitted, runs, repeats=repeats, progress=report).fit
     outputs.write({arguments.out: fitted.model.to_toml()})
-    outputs.say(report, wanted)
+    outputs.say(fitted.report(), wanted)
     return 0
 
 

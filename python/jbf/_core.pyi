@@ -32,6 +32,7 @@ class EffectPage(TypedDict):
     needs: list[str]
     refused: dict[str, str]
     moves_jumps: bool
+    peaks: str | None
     longest_step_s: float
     parameters: list[ParameterPage]
 

@@ -48,7 +48,8 @@ class Effect:
 
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
-    instants at which friction jumps. `columns` are those that an effect of one's own asks for.
+    instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
+    peaks, None for most. `columns` are those that an effect of one's own asks for.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Effect:
     needs: tuple[str, ...]
     refused: Mapping[str, str]
     moves_jumps: bool
+    peaks: str | None
     longest_step_s: float
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()

@@ -25,6 +25,7 @@ from jbf.errors import InputError
 from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
 from jbf.noise import WHITE, Noise, estimate_noise, independent_share, innovation_cost
+from jbf.peaks import other_peaks
 from jbf.record import Run
 from jbf.rig import Rig
 from jbf.starts import with_starts
@@ -226,7 +227,12 @@ class Problem:
         ]
         return [np.array(values, dtype=float) for values in itertools.product(*choices)]
 
-    def approach(self, seeds: Sequence[Mapping[str, float]], evaluations: int) -> Solution:
+    def approach(
+        self,
+        seeds: Sequence[Mapping[str, float]],
+        evaluations: int,
+        least: float = np.inf,
+    ) -> Solution:
         """Search from the best of all starting points, as if the noise were white.
 
         Parameters
@@ -235,6 +241,9 @@ class Problem:
             Known values by name; starting values fill each one up.
         evaluations
             Where to stop; enough to rank candidates, or to converge.
+        least
+            A sum of squares, N^2, that the first steps must come below: a search that leads nowhere
+            is not followed.
         """
         starts = [s for seed in seeds for s in self.starts({**seed, **self.fixed})]
         starts.sort(key=self.square)
@@ -242,7 +251,9 @@ class Problem:
         if len(starts) > 1:
             short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in starts[:FOLLOWED]]
             best = min(short, key=self.square)
-        values, converged, message = self.search(best, WHITE, evaluations)
+        values, converged, message = best, False, "not followed"
+        if len(starts) == 1 or self.square(best) < least:
+            values, converged, message = self.search(best, WHITE, evaluations)
         sure = self.without_doubt(values)
         noise = sure.estimate_noise(sure.residuals(values))
         return sure.solution(self._wrapped(values), noise, converged, message)
@@ -280,8 +291,26 @@ class Problem:
         return self.solution(self._wrapped(values), noise, converged, message)
 
     def solve(self, seeds: Sequence[Mapping[str, float]]) -> Solution:
-        """Approach and settle."""
-        return self.settle(self.approach(seeds, MAX_EVALUATIONS))
+        """Approach, settle and look around."""
+        return self.look_around(self.settle(self.approach(seeds, MAX_EVALUATIONS)))
+
+    def look_around(self, near: Solution) -> Solution:
+        """The highest peak near a solution, where an effect makes many."""
+        for effect in self.effects:
+            peak = find_effect(effect).peaks
+            name = f"{effect}.{peak}"
+            if peak is None or name in self.fixed:
+                continue
+            which = self.names.index(name)
+            sure = self.on(near.campaign)
+            starts = other_peaks(
+                sure.square, near.values, which, self.lower[which], self.upper[which]
+            )
+            ends = [sure.search(s, near.noise, TRIAL_EVALUATIONS)[0] for s in starts]
+            best = min(ends, key=sure.square, default=near.values)
+            if sure.square(best) < sure.square(near.values):
+                near = self.settle(sure.solution(best, near.noise, False))
+        return near
 
     def solution(
         self, values: Array, noise: Noise, converged: bool = True, message: str = ""

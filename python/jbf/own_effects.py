@@ -219,6 +219,7 @@ def register_effect(
         needs=(),
         refused={},
         moves_jumps=False,
+        peaks=None,
         longest_step_s=np.inf,
         parameters=pages,
         columns=_columns(function, pages, wrong),

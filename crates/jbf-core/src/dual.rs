@@ -220,6 +220,10 @@ impl<const N: usize> Real for Dual<N> {
         residual.chain(value, -1.0 / slope)
     }
     #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self.chain(self.value * factor, factor)
+    }
+    #[inline(always)]
     fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {
         let mut sum = Self::of(value);
         for (input, partial) in inputs {

@@ -79,6 +79,12 @@ pub trait Real:
     /// with respect to the unknown.
     fn implicit(value: f64, residual: Self, slope: f64) -> Self;
 
+    /// A plain number of times this one.
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * Self::of(factor)
+    }
+
     /// `value`, with the derivatives of its inputs times the partial derivatives beside them.
     #[inline(always)]
     fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {

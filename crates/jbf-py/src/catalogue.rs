@@ -1,6 +1,6 @@
 //! The catalogue of laws and effects, as dictionaries.
 
-use jbf_core::effect::{moves_jumps, Parameter, CATALOGUE};
+use jbf_core::effect::{moves_jumps, peaks, Parameter, CATALOGUE};
 use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -45,6 +45,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         }
         d.set_item("refused", refused)?;
         d.set_item("moves_jumps", moves_jumps(info.name))?;
+        d.set_item("peaks", peaks(info.name))?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;

@@ -14,9 +14,10 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 /// Derivatives carried side by side in one pass: a law's own, or those of a law with effects. A
-/// pass of eight costs one and a half of four.
+/// pass of eight costs a quarter more than one of four, one of twelve three quarters of two passes.
 const FEW: usize = 4;
 const MANY: usize = 8;
+const MOST: usize = 12;
 
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
@@ -169,12 +170,12 @@ impl Chain {
         }
     }
 
-    /// Values and derivatives with respect to at most `MANY` parameters along one run.
+    /// Values and derivatives with respect to at most `MOST` parameters along one run.
     fn slopes(&self, p: &[f64], which: &[usize], motion: &Motion) -> Result<Slice, ParameterError> {
-        if which.len() <= FEW {
-            self.slopes_of::<FEW>(p, which, motion)
-        } else {
-            self.slopes_of::<MANY>(p, which, motion)
+        match which.len() {
+            n if n <= FEW => self.slopes_of::<FEW>(p, which, motion),
+            n if n <= MANY => self.slopes_of::<MANY>(p, which, motion),
+            _ => self.slopes_of::<MOST>(p, which, motion),
         }
     }
 
@@ -294,6 +295,7 @@ impl Chain {
                 on_pool(|| {
                     let groups: Vec<&[usize]> = match columns {
                         0 => vec![&[]],
+                        MANY..=MOST => vec![&which],
                         _ => which.chunks(MANY).collect(),
                     };
                     let jobs: Vec<(usize, usize)> = (0..motions.len())

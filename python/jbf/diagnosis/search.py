@@ -47,7 +47,7 @@ room for noise that is not quite as described."""
 TIE = 8.0
 """Candidates closer in evidence than this fit equally well; less than one parameter costs."""
 TRACE = 10.0
-"""Gain in twice the log likelihood, of a first step, below which an effect leaves no trace;
+"""Gain in twice the log likelihood, of a first step, below which an effect leaves no trace:
 half of what the cheapest effect must bring in the end."""
 SCREEN_EVALUATIONS = 8
 """Steps after which candidates are ranked; only those that could win go on."""
@@ -78,7 +78,7 @@ class Search:
     clock: str
     progress: Progress | None = None
     solved: dict[frozenset[str], Solution] = field(default_factory=dict)
-    glanced: dict[frozenset[str], bool] = field(default_factory=dict)
+    glanced: dict[frozenset[str], float] = field(default_factory=dict)
     settled: set[frozenset[str]] = field(default_factory=set)
     held_out: dict[frozenset[str], float] = field(default_factory=dict)
 
@@ -112,14 +112,23 @@ class Search:
                 law = dict(zip(names, near.values, strict=True))
                 # A law that had to make up for a missing effect may be a poor start.
                 seeds = [law, {n: v for n, v in law.items() if "." in n}]
-            self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS)
+            least = self._least(near)
+            self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS, least)
         return self.solved[effects]
 
-    def blind(self, effects: frozenset[str], near: Solution) -> bool:
-        """True where the records show no trace of an effect beside a smaller model.
+    def _least(self, near: Solution | None) -> float:
+        """The sum of squares from which on something beside a smaller model leaves a trace."""
+        if near is None:
+            return np.inf
+        square = self.problem(near.effects).square(near.values)
+        return square * float(np.exp(-TRACE / self.campaign.samples))
 
-        The score test: one Gauss-Newton step from the effect's null, the law free to move with
-        it. An effect whose first step gains next to nothing from any start is not tried further.
+    def trace(self, effects: frozenset[str], near: Solution) -> float:
+        """What the records show at first glance of an effect beside a smaller model.
+
+        The score test: the gain in twice the log likelihood that one Gauss-Newton step promises,
+        from the effect's null, the law free to move with it; the largest from any start. Infinite
+        of an effect whose null is out of a step's reach.
         """
         if effects not in self.glanced:
             added = effects - set(near.effects)
@@ -131,12 +140,12 @@ class Search:
             }
             nulls = {n: p.null for n, p in pages.items() if p.null is not None}
             if not nulls or not all(np.isfinite(null) for null in nulls.values()):
-                self.glanced[effects] = False
+                self.glanced[effects] = np.inf
             else:
                 known = dict(zip(self.problem(near.effects).names, near.values, strict=True))
                 starts = problem.starts({**known, **nulls})
                 gains = (first_step_gain(problem, start, near.noise) for start in starts)
-                self.glanced[effects] = not any(gain > TRACE for gain in gains)
+                self.glanced[effects] = max(gains)
         return self.glanced[effects]
 
     def solve(self, effects: frozenset[str], near: Solution | None = None) -> Solution:
@@ -144,7 +153,18 @@ class Search:
         if effects not in self.settled:
             self.solved[effects] = self.problem(effects).settle(self.screen(effects, near))
             self.settled.add(effects)
+            if any(catalogue()[e].peaks for e in effects - set(near.effects if near else ())):
+                self.look_again(effects)
         return self.solved[effects]
+
+    def look_again(self, effects: frozenset[str]) -> None:
+        """Look for a higher peak of the likelihood, now that these effects are together: what was
+        missing before may have led the search to another."""
+        near = self.solve(effects)
+        found = self.problem(effects).look_around(near)
+        if found is not near:
+            self.solved[effects] = found
+            self.held_out.pop(effects, None)
 
     def price(self, parameters: int) -> float:
         """What so many parameters of the best of all candidates gain by chance."""
@@ -166,7 +186,7 @@ class Search:
             lost = np.subtract(*costs(solution, whole))
             return float(lost) + self.price(solution.free) - self.price(whole.free)
 
-        if self.blind(effects, near):
+        if self.trace(effects, near) <= TRACE:
             return of(near)
         first = of(self.screen(effects, near))
         return of(self.solve(effects, near)) if first < CONTENDER else first
@@ -196,11 +216,13 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
     """Fit every candidate beside the effects present, and say which should be added."""
     base = search.solve(frozenset(present))
     rivals = [c for c in search.candidates if c not in present]
+    share = independent(base)
     first: dict[str, float] = {}
     for i, name in enumerate(rivals):
         search.say(f"trying {name}", i, len(rivals))
         effects = frozenset((*present, name))
-        if search.blind(effects, base):
+        # Of a smooth error a sample tells less, and anything gains a little.
+        if search.trace(effects, base) * share <= TRACE:
             first[name] = -np.inf
         else:
             first[name] = search.evidence(search.screen(effects, base), base)
@@ -344,6 +366,7 @@ def diagnose(
         steps.append(step(present, round_.trials))
         if round_.leader is None or len(present) >= MOST_EFFECTS:
             break
+        search.look_again(frozenset((*present, round_.leader)))
         grown = question(search, (*present, round_.leader))
         if frozenset(grown) in visited:
             break

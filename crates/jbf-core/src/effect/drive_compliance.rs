@@ -85,6 +85,9 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
         needs: &[Need::Path, Need::NoBristle],
         longest_step_s: 0.005,
     };
+    // It rings, often faster than half the rate of the samples: frequencies that these cannot tell
+    // apart make a peak each.
+    const PEAKS: Option<&'static str> = Some("J_kg_m2");
     type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -119,38 +122,45 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         dt_s: T,
     ) -> JournalMotion<T> {
         let arm = rig.count * rig.radius_m;
+        let inverse_radius = T::ONE / rig.radius_m;
         let hold = arm * middle.level_n;
         let slope = arm * rig.radius_m * middle.slope_n_s_m;
         let steps = libm::ceil(dt_s.value() / self.inner_step_s).clamp(1.0, 64.0);
-        let h = dt_s * T::of(1.0 / steps);
-        let half = h * T::of(0.5);
+        let inverse_steps = 1.0 / steps;
+        let h = dt_s.times(inverse_steps);
+        let half = h.times(0.5);
         let (k, c) = (self.stiffness_n_m_rad, self.damping_n_m_s_rad);
         // Everything that multiplies the midpoint speed.
-        let inertia = T::of(2.0) * self.inertia_kg_m2 / h;
-        let drag = inertia + k * half + c + slope;
-        let bend = (to.velocity_m_s - state.encoder_m_s) * dt_s / rig.radius_m;
+        let inertia = self.inertia_kg_m2.times(2.0) / h;
+        let inverse_drag = T::ONE / (inertia + k * half + c + slope);
+        // What the encoder side pushes with, from where it was: at first, what a straight line
+        // adds, and what the bend of its path takes away.
+        let change_m_s = to.velocity_m_s - state.encoder_m_s;
+        let first = c * (state.encoder_m_s * inverse_radius);
+        let line = k * (to.angle_rad - state.encoder_rad) + c * (change_m_s * inverse_radius);
+        let bend = k * (change_m_s * dt_s * inverse_radius);
+        let from = state.angle_rad - state.encoder_rad;
+        let mut ahead = from;
         let mut direction = T::ZERO;
         let mut before = state.speed_rad_s;
         for i in 0..steps as u32 {
-            let share = T::of((f64::from(i) + 0.5) / steps);
-            let line = |a: T, b: T| a + (b - a) * share;
-            let encoder_rad = line(state.encoder_rad, to.angle_rad) - sag(share) * bend;
-            let encoder_m_s = line(state.encoder_m_s, to.velocity_m_s);
-            let push = inertia * state.speed_rad_s
-                + k * (encoder_rad - state.angle_rad)
-                + c * (encoder_m_s / rig.radius_m);
+            let share = (f64::from(i) + 0.5) * inverse_steps;
+            let pushed = first + line.times(share) - bend.times(sag(share));
+            let push = inertia * state.speed_rad_s - k * ahead + pushed;
             before = state.speed_rad_s;
-            if push > hold {
+            let held = if push > hold {
                 direction = T::ONE;
+                hold
             } else if push < -hold {
                 direction = -T::ONE;
+                -hold
             } else {
                 direction = T::ZERO;
                 state.speed_rad_s = T::ZERO;
                 continue;
-            }
-            let speed = (push - hold * direction) / drag;
-            state.angle_rad += speed * h;
+            };
+            let speed = (push - held) * inverse_drag;
+            ahead += speed * h;
             let after = speed + speed - state.speed_rad_s;
             // A midpoint step must not carry the journal through rest: it stops there first.
             state.speed_rad_s = if after.value() * direction.value() < 0.0 {
@@ -159,10 +169,14 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
                 after
             };
         }
+        // A stuck journal stays where it is, to the bit.
+        if ahead != from {
+            state.angle_rad = state.encoder_rad + ahead;
+        }
         if direction == T::ZERO {
             // Stuck: the friction is whatever holds the journal.
             let torque =
-                k * (to.angle_rad - state.angle_rad) + c * (to.velocity_m_s / rig.radius_m);
+                k * (to.angle_rad - state.angle_rad) + c * (to.velocity_m_s * inverse_radius);
             let hold = arm * end.level_n;
             if hold > T::ZERO {
                 direction = (torque / hold).max(-T::ONE).min(T::ONE);

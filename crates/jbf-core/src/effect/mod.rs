@@ -30,6 +30,9 @@ pub trait Effect<T: Real>: Copy {
     /// True where a parameter moves the instants at which friction jumps: no fit may lean on the
     /// samples next to such a jump.
     const MOVES_JUMPS: bool = false;
+    /// A parameter along which the likelihood of a record has peak beside peak: a fit looks for
+    /// higher ones.
+    const PEAKS: Option<&'static str> = None;
     /// What the effect remembers; `()` for most.
     type State: Copy;
 

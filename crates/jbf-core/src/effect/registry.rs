@@ -222,6 +222,15 @@ macro_rules! signal_chain {
             }
         }
 
+        /// The parameter of the effect of that name along which likelihoods have many peaks; see
+        /// [`Effect::PEAKS`].
+        pub fn peaks(name: &str) -> Option<&'static str> {
+            match name {
+                $(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::PEAKS,)*
+                _ => None,
+            }
+        }
+
         impl<T: Real> Effects<T> {
             /// No effect at all: the bare law.
             pub const NONE: Self = Self { $($module: None,)* own: Nothing };

@@ -38,7 +38,7 @@ def other_peaks(
     places = places[(places > lower) & (places < upper)]
 
     def moved(place: float) -> Array:
-        there = values.copy()
+        there: Array = values.copy()
         there[which] = place
         return there
 

@@ -1,5 +1,5 @@
-"""Structure that nothing in the catalogue explains: patterns along an axis, tones, bursts, and what
-comes again with the motion.
+"""Structure that nothing in the catalogue explains: patterns along an axis, tones, bursts, what
+comes again with the motion, and runs that disagree on the parameters.
 
 Everything is tested on innovations (the residual less what the noise's own memory foretells),
 so that coloured noise is no structure. A pattern must be both beyond chance and large enough to
@@ -16,6 +16,7 @@ from jbf.axes import all_axes, force_axis
 from jbf.catalogue import transition_speed
 from jbf.comparison import Failure, _failure
 from jbf.diagnosis.bursts import find_bursts
+from jbf.diagnosis.constancy import find_disagreement
 from jbf.diagnosis.repeats import find_repeats
 from jbf.diagnosis.result import Remainder
 from jbf.fitting import Problem, Solution
@@ -43,6 +44,7 @@ def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...
     found += _tones(problem, innovations, [-r for r in solution.residuals])
     found += find_repeats(problem, solution)
     found += find_bursts(problem, innovations)
+    found += find_disagreement(problem, solution)
     return tuple(sorted(found, key=lambda r: -r.share))
 
 

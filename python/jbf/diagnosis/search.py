@@ -19,6 +19,7 @@ import numpy.typing as npt
 from jbf.campaign import Campaign
 from jbf.catalogue import effects as catalogue
 from jbf.comparison import compare_prepared
+from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose, propose_to_see, unseen
 from jbf.diagnosis.holdout import holdout_rms
@@ -64,6 +65,9 @@ reversals, that an effect needs."""
 DOUBT = 60.0
 """Evidence of a candidate that fits and does not predict from which on something of its kind must
 be there: noise does not reach it."""
+CLEAR = 20.0
+"""Effects beside which the runs ask for different parameters must have gained so many times what
+that disagreement is worth, or they are stand-ins, too."""
 LEAST_EXPLAINED = 0.8
 """Where structure remains, effects that explain less of the excess than this are stand-ins for
 what is really there, and are not named."""
@@ -376,7 +380,7 @@ def diagnose(
     remains = _remainder(search, present)
     if round_.leader is None:
         remains = (*remains, *_refused(search, search.solve(frozenset(present))))
-    if remains and present and _explained(search, present, noise) < LEAST_EXPLAINED:
+    if remains and present and not _stands(search, present, noise):
         present, steps = (), [_withdrawn(steps[0])]
         remains = _remainder(search, present) or remains
     equal = alternatives(search, present)
@@ -442,11 +446,19 @@ def _refused(search: Search, base: Solution) -> list[Remainder]:
     return [Remainder("run", where, max(1.0 - (rms / bare) ** 2, 0.0))]
 
 
-def _explained(search: Search, present: tuple[str, ...], noise_n: float) -> float:
-    """Share of the bare law's excess over the noise that the effects took away."""
-    bare = root_mean_square(search.solve(frozenset()).residuals, search.campaign) ** 2
-    now = root_mean_square(search.solve(frozenset(present)).residuals, search.campaign) ** 2
-    return (bare - now) / max(bare - noise_n**2, 1e-300)
+def _stands(search: Search, present: tuple[str, ...], noise_n: float) -> bool:
+    """True where effects are worth their names though structure remains: they took most of the
+    bare law's excess over the noise, and far more than the runs still disagree by."""
+    empty, whole = search.solve(frozenset()), search.solve(frozenset(present))
+    bare = root_mean_square(empty.residuals, search.campaign) ** 2
+    now = root_mean_square(whole.residuals, search.campaign) ** 2
+    if (bare - now) / max(bare - noise_n**2, 1e-300) < LEAST_EXPLAINED:
+        return False
+    left = disagreement(search.problem(present), whole)
+    if not left.beyond_chance:
+        return True
+    gain = float(np.subtract(*costs(empty, whole))) * independent(whole)
+    return gain > CLEAR * (left.gain - left.degrees)
 
 
 def _withdrawn(step: Step) -> Step:

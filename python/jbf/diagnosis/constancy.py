@@ -1,0 +1,91 @@
+"""Do the runs agree on the parameters? A right model has one set of them; of a stand-in each run
+asks for its own.
+
+The score test of parameter constancy (Nyblom 1989, with runs for groups): at the fit to all runs,
+what one Gauss-Newton step would gain for each run alone is chi-square, as many degrees of freedom
+as the runs have parameters to themselves less those that they share. It costs no fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from jbf.diagnosis.result import Remainder
+from jbf.fitting import Problem, Solution
+
+CHANCE = 1e-8
+"""Probability that runs of one model differ so,"""
+TIMES = 2.5
+"""and how many times its degrees of freedom the chi-square must be, besides: noise is never quite
+what it is taken for."""
+FELT = 1e-3
+"""A direction in which a run feels the parameters less than this share of its best is none."""
+NAMED = 3
+"""Runs named in the description."""
+
+
+@dataclass(frozen=True)
+class Disagreement:
+    """How far the runs disagree on the parameters.
+
+    Attributes
+    ----------
+    gain
+        What parameters of their own would gain the runs, in twice the log likelihood.
+    degrees
+        How much of it chance gives.
+    by_run
+        Run to its gain over its degrees of freedom, largest first.
+    """
+
+    gain: float
+    degrees: int
+    by_run: dict[str, float]
+
+    @property
+    def beyond_chance(self) -> bool:
+        """True where one set of parameters cannot be right for all runs."""
+        if self.gain <= TIMES * self.degrees:
+            return False
+        return bool(stats.chi2.sf(self.gain, self.degrees) < CHANCE)
+
+
+def disagreement(problem: Problem, solution: Solution) -> Disagreement:
+    """How far the runs disagree on the parameters of a solution."""
+    problem = problem.on(solution.campaign)
+    parts = [
+        problem.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        for i in range(len(solution.residuals))
+    ]
+    size = np.sqrt(np.sum([np.sum(j**2, axis=0) for _, j in parts], axis=0))
+    scale = np.where(size > 0.0, size, 1.0)
+    gain, degrees, by_run = 0.0, 0, {}
+    for (r, j), p in zip(parts, solution.campaign.prepared, strict=True):
+        directions, felt, _ = np.linalg.svd(j / scale, full_matrices=False)
+        clear = felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)
+        if len(r) <= clear.sum():
+            continue
+        own = float(np.sum((directions[:, clear].T @ r) ** 2)) * len(r) / max(float(r @ r), 1e-300)
+        gain += own
+        degrees += int(clear.sum())
+        by_run[p.run.name] = own / max(int(clear.sum()), 1)
+    ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
+    shared = int(np.sum(size > 0.0))
+    return Disagreement(gain, max(degrees - shared, 1), ranked)
+
+
+def find_disagreement(problem: Problem, solution: Solution) -> list[Remainder]:
+    """That the runs ask for different parameters, if they do."""
+    found = disagreement(problem, solution)
+    if not found.beyond_chance:
+        return []
+    samples = sum(int(p.trusted.sum()) for p in solution.campaign.prepared)
+    runs = ", ".join(list(found.by_run)[:NAMED])
+    where = (
+        f"the runs ask for parameters that differ ({found.gain / found.degrees:.0f} times as much "
+        f"as by chance), most of all {runs}"
+    )
+    return [Remainder("parameters", where, min((found.gain - found.degrees) / samples, 1.0))]

@@ -1,0 +1,52 @@
+"""Whether the runs agree on the parameters."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from campaigns import campaign
+from jbf import Rig, Run, diagnose
+from jbf.campaign import Campaign
+from jbf.diagnosis.constancy import disagreement, find_disagreement
+from jbf.fitting import Problem, Solution
+
+
+def _solved(rig: Rig, runs: list[Run], effects: tuple[str, ...] = ()) -> tuple[Problem, Solution]:
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", effects)
+    return problem, problem.solve([{}])
+
+
+@pytest.mark.parametrize("coloured", [False, True])
+@pytest.mark.parametrize("effects", [(), ("sensor_lag",), ("wear_in",)])
+def test_runs_of_one_rig_agree(effects: tuple[str, ...], coloured: bool) -> None:
+    rig, runs, _ = campaign(11, effects, coloured=coloured)
+    problem, solution = _solved(rig, runs, effects)
+    found = disagreement(problem, solution)
+    # A chi-square is within four of its standard deviations of its mean.
+    assert abs(found.gain - found.degrees) < 4.0 * np.sqrt(2.0 * found.degrees), found
+    assert 0 < found.degrees <= (len(runs) - 1) * len(solution.values)
+    assert find_disagreement(problem, solution) == []
+
+
+def test_the_run_of_another_rig_is_named() -> None:
+    rig, runs, _ = campaign(11)
+    assert runs[2].friction_n is not None
+    # A cell calibrated anew before the third run.
+    mixed = [*runs[:2], replace(runs[2], friction_n=1.08 * runs[2].friction_n), *runs[3:]]
+    problem, solution = _solved(rig, mixed)
+    found = disagreement(problem, solution)
+    assert found.beyond_chance
+    (said,) = find_disagreement(problem, solution)
+    assert said.axis == "parameters"
+    assert runs[2].name in said.where
+    d = diagnose(rig, mixed)
+    assert d.verdict == "unexplained"
+    assert d.effects == ()
+
+
+def test_one_run_cannot_disagree() -> None:
+    rig, runs, _ = campaign(11)
+    problem, solution = _solved(rig, runs[:1])
+    assert find_disagreement(problem, solution) == []

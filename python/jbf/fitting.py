@@ -150,7 +150,7 @@ class Problem:
         residuals = [
             f - p.friction_n for (f, _), p in zip(rows, self.campaign.prepared, strict=True)
         ]
-        return residuals, [j * scale for _, j in rows]
+        return residuals, [_scaled(j, scale) for _, j in rows]
 
     def stacked(
         self,
@@ -385,6 +385,16 @@ class Problem:
         if singular:
             return "not separately known: another parameter does the same in these runs"
         return None
+
+
+def _scaled(jacobian: Array, scale: Array) -> Array:
+    """Derivatives by the search's variables; none where a step too coarse for wild parameters let
+    them grow without bound, so that the search turns back by its residuals."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found: Array = jacobian * scale
+        if np.isfinite(np.sum(np.abs(found))):
+            return found
+    return np.where(np.abs(found) < 1e100, found, 0.0)
 
 
 def costs(a: Solution, b: Solution) -> tuple[float, float]:

@@ -25,6 +25,10 @@ HUM = 0.02
 """Speeds below this share of the top are no motion to take a scale from."""
 
 
+FASTEST_FILM = 5.0
+"""A search looks for transition speeds up to so many times the fastest on record."""
+
+
 @dataclass(frozen=True)
 class Scales:
     """The sizes of a campaign.
@@ -132,13 +136,25 @@ _LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
 """The same for a drive on a linear axis, whose catalogue values are those of a shaft."""
 
 
+def _bounded(pages: dict[str, Parameter], campaign: Campaign) -> dict[str, Parameter]:
+    """Pages of parameters that the data bound: a film that carries the load only at several times
+    the fastest speed on record never shows, and its equations grow stiff."""
+    name = "U_tr_m_s"
+    if name not in pages:
+        return {}
+    top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
+    page = pages[name]
+    upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
+    return {name: replace(page, upper=upper)}
+
+
 def with_starts(pages: dict[str, Parameter], campaign: Campaign) -> dict[str, Parameter]:
     """The pages of a problem's parameters, their starting values taken from the data.
 
     A law that scales with the load keeps the catalogue's: its coefficients know no newtons.
     """
     if "F_c_n" not in pages:
-        return pages
+        return pages | _bounded(pages, campaign)
     rules = dict(_RULES)
     if campaign.rig.bearing is None:
         rules |= _LINEAR_RULES

@@ -133,3 +133,16 @@ def test_comparison_points_at_the_right_axis() -> None:
     assert clean.rms_n == pytest.approx(truth["noise_n"], rel=0.04)
     assert clean.noise_n == pytest.approx(truth["noise_n"], rel=0.05)
     assert len(clean.runs) == len(SHORT.motions)
+
+
+def test_wild_parameters_cost_no_more_time_than_they_are_worth() -> None:
+    rig, runs, _ = campaign(60)
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ())
+    upper = problem.parameters["U_tr_m_s"].upper
+    top = max(float(np.max(np.abs(run.velocity_m_s))) for run in runs)
+    assert upper == pytest.approx(5.0 * top, rel=0.02)
+    # The corner of the bounds where a film is stiffest: steps are cut, numbers stay finite.
+    values = np.array([10.0, upper, 1e9, 1e5])
+    residuals, jacobian = problem.linearise(values)
+    assert all(np.isfinite(r).all() for r in residuals)
+    assert all(np.isfinite(j).all() for j in jacobian)

@@ -34,6 +34,8 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
+BOUNDLESS = 1e100
+"""A derivative beyond this has grown without bound."""
 MOST_FORGIVEN = 2.0
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
 TRIAL_EVALUATIONS = 6
@@ -392,9 +394,9 @@ def _scaled(jacobian: Array, scale: Array) -> Array:
     them grow without bound, so that the search turns back by its residuals."""
     with np.errstate(over="ignore", invalid="ignore"):
         found: Array = jacobian * scale
-        if np.isfinite(np.sum(np.abs(found))):
+        if np.max(np.abs(found), initial=0.0) < BOUNDLESS:
             return found
-    return np.where(np.abs(found) < 1e100, found, 0.0)
+    return np.where(np.abs(found) < BOUNDLESS, found, 0.0)
 
 
 def costs(a: Solution, b: Solution) -> tuple[float, float]:

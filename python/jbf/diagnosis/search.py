@@ -56,6 +56,9 @@ CONTENDER = 60.0
 """How far behind in evidence a candidate may be after screening and still go on,"""
 CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
+CHANCE = 0.5
+"""Share of the leader's evidence from which on an effect whose likelihood has many peaks gets a second
+look."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
 LEAST_FORESEEN = 0.5
@@ -157,8 +160,6 @@ class Search:
         if effects not in self.settled:
             self.solved[effects] = self.problem(effects).settle(self.screen(effects, near))
             self.settled.add(effects)
-            if any(catalogue()[e].peaks for e in effects - set(near.effects if near else ())):
-                self.look_again(effects)
         return self.solved[effects]
 
     def look_again(self, effects: frozenset[str]) -> None:
@@ -241,6 +242,14 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
         # At its null an effect leaves the model as it was: no candidate is worse than that.
         least = -search.price(len(search.problem(effects).names) - base.free)
         found.append((max(search.evidence(solution, base), least), name, solution))
+    found.sort(key=lambda t: -t[0])
+    # One that might lead from a higher peak gets its chance.
+    for i, (evidence, name, _) in enumerate(found):
+        if catalogue()[name].peaks and evidence > max(CHANCE * found[0][0], 0.0):
+            effects = frozenset((*present, name))
+            search.look_again(effects)
+            solution = search.solve(effects)
+            found[i] = (search.evidence(solution, base), name, solution)
     found.sort(key=lambda t: -t[0])
     leader, best, ties, trials = None, 0.0, [], []
     bare = root_mean_square(base.residuals, base.campaign)

@@ -57,8 +57,8 @@ CONTENDER = 60.0
 CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
 CHANCE = 0.5
-"""Share of the leader's evidence from which on an effect whose likelihood has many peaks gets a second
-look."""
+"""Share of the leader's evidence from which on an effect whose likelihood has many peaks gets a
+second look."""
 MOST_EFFECTS = 5
 """A record that asks for more effects than this is telling something else."""
 LEAST_FORESEEN = 0.5

@@ -52,7 +52,8 @@ pub(super) fn motion<T: Real>(
     let push = f * push_fb - load;
     let (radial, turn) = (g * push, h * push - q * f * y + 0.5 * ub.value());
     // By eps^2, then by x and y, eps^2 among what moves with them.
-    let push_e2 = -0.5 * (f * x * by_e * by_e2 + stiffness * by_e + FOUR_OVER_PI * f * y * by_root * by_d);
+    let push_e2 =
+        -0.5 * (f * x * by_e * by_e2 + stiffness * by_e + FOUR_OVER_PI * f * y * by_root * by_d);
     let radial_e2 = g * push_e2 - radial * (2.5 * by_d + 0.5 * by_e2 + bend);
     let turn_e2 = h * (push_e2 - push * (2.0 * by_d + bend)) + q * f * y * (1.5 * by_d + by_e2);
     let push_x = f * by_e;
@@ -147,7 +148,10 @@ mod tests {
         assert_eq!(got.value.to_bits(), exact.value.to_bits());
         for (i, (a, b)) in got.slope.iter().zip(&exact.slope).enumerate() {
             // Differences of large terms: what rounding leaves of the largest.
-            let size = exact.slope.iter().fold(b.abs(), |m, s| m.max(1e-6 * s.abs()));
+            let size = exact
+                .slope
+                .iter()
+                .fold(b.abs(), |m, s| m.max(1e-6 * s.abs()));
             assert!((a - b).abs() <= 1e-9 * size, "input {i}: {a} {b}");
         }
     }
@@ -210,8 +214,13 @@ mod tests {
     /// The value does not depend on whether derivatives are carried.
     #[test]
     fn values_are_those_of_plain_numbers() {
-        let plain = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)
-            .expect("valid");
+        let plain = Journal::new(
+            &Bearing::THESIS,
+            104.0,
+            &Parameters::TABLE_4_2,
+            Clock::Journal,
+        )
+        .expect("valid");
         let p = Parameters::TABLE_4_2;
         let lifted = Parameters {
             f_m: Dual::<2>::parameter(p.f_m, 0),

@@ -110,7 +110,12 @@ impl<T: Real> Journal<T> {
         let per_load = loaded.inverse_load_number;
         if T::HAS_SLOPES {
             let (f_m, viscous_s_m) = (self.f_m, self.viscous_s_m);
-            return film_slopes::sliding([f_m, viscous_s_m, per_load], &asperities, e2, velocity_m_s);
+            return film_slopes::sliding(
+                [f_m, viscous_s_m, per_load],
+                &asperities,
+                e2,
+                velocity_m_s,
+            );
         }
         let gap = Gap::at(e2);
         Sliding {

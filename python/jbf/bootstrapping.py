@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from jbf.campaign import Campaign, Prepared
 from jbf.catalogue import Parameter
@@ -138,12 +137,8 @@ def recorded_again(
     """The run as its instruments would show it once more, were the prediction right."""
     run, motion = prepared.run, prepared.motion
     n = len(run)
-    innovations = random.normal(0.0, sigma_n, n)
-    if noise.colour > 0.0 and noise.memory_s > 0.0:
-        phi = np.exp(-prepared.step_s / noise.memory_s)
-        theta = -phi * (1.0 - noise.colour)
-        innovations = signal.lfilter([1.0, theta], [1.0, -phi], innovations)
-    friction = np.where(np.isfinite(prepared.friction_n), friction_n + innovations, np.nan)
+    error = noise.coloured(random.normal(0.0, sigma_n, n), prepared.step_s)
+    friction = np.where(np.isfinite(prepared.friction_n), friction_n + error, np.nan)
     # The recorded errors of the speed with other signs: as large as they were, where they were.
     off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting

@@ -42,12 +42,22 @@ class Noise:
 
     def innovations(self, values: Array, step_s: float) -> Array:
         """Whiten values of shape (n,) or (n, k) along the first axis."""
-        if self.colour <= 0.0 or self.memory_s <= 0.0:
-            return values
-        phi = np.exp(-step_s / self.memory_s)
-        theta = -phi * (1.0 - self.colour)
-        out: Array = signal.lfilter([1.0, -phi], [1.0, theta], values, axis=0)
+        now, before = self._filter(step_s)
+        out: Array = signal.lfilter(now, before, values, axis=0) if before else values
         return out
+
+    def coloured(self, innovations: Array, step_s: float) -> Array:
+        """The noise whose innovations these are; undoes :meth:`innovations`."""
+        now, before = self._filter(step_s)
+        out: Array = signal.lfilter(before, now, innovations, axis=0) if before else innovations
+        return out
+
+    def _filter(self, step_s: float) -> tuple[list[float], list[float]]:
+        """Coefficients of the filter that whitens; none of white noise."""
+        if self.colour <= 0.0 or self.memory_s <= 0.0:
+            return [], []
+        phi = float(np.exp(-step_s / self.memory_s))
+        return [1.0, -phi], [1.0, -phi * (1.0 - self.colour)]
 
     def coloured_share(self, step_s: float) -> float:
         """Share of the variance that the coloured part has, 0 to 1."""

@@ -151,7 +151,8 @@ def _bounded(pages: dict[str, Parameter], campaign: Campaign) -> dict[str, Param
 def with_starts(pages: dict[str, Parameter], campaign: Campaign) -> dict[str, Parameter]:
     """The pages of a problem's parameters, their starting values taken from the data.
 
-    A law that scales with the load keeps the catalogue's: its coefficients know no newtons.
+    A law that scales with the load keeps the catalogue's: its coefficients know no newtons. Of a
+    law with a film the data bound the transition speed.
     """
     if "F_c_n" not in pages:
         return pages | _bounded(pages, campaign)

@@ -69,12 +69,12 @@ def test_a_simulated_record_has_the_instruments_of_the_measured_one() -> None:
 def test_what_was_held_stays_held() -> None:
     rig, runs, _ = campaign(5, ("coulomb_drag",))
     fitted = fit(rig, runs, ["coulomb_drag"], fixed={"gamma": 30.0})
-    found = bootstrap(fitted, runs, repeats=10)
+    found = bootstrap(fitted, runs, repeats=19)
     assert set(found.values["gamma"]) == {30.0}
     assert found.fit.parameters["gamma"].stderr is None
 
 
 def test_too_few_repeats_are_refused() -> None:
     rig, runs, _ = campaign(5)
-    with pytest.raises(InputError, match="10 or more"):
-        bootstrap(fit(rig, runs), runs, repeats=9)
+    with pytest.raises(InputError, match="19 or more"):
+        bootstrap(fit(rig, runs), runs, repeats=18)

@@ -357,5 +357,5 @@ def test_demo_wants_a_folder(refused: Refused) -> None:
 def test_too_few_fits_for_an_error(refused: Refused) -> None:
     line = refused("fit", "rig.toml", "runs", "--bootstrap", "3", "--out", "new.toml")
     assert line == (
-        "jbf: --bootstrap 3 is too few to tell an error; ask for 10 or more; 40 will do"
+        "jbf: --bootstrap 3 is too few to tell an error; ask for 19 or more; 40 tell it better"
     )

@@ -35,7 +35,7 @@ def add(commands: Commands) -> None:
         "--bootstrap",
         metavar="N",
         type=int,
-        help="take the errors from N fits of simulated records of the same runs (40 will do; "
+        help="take the errors from N fits of simulated records of the same runs (19 or more; "
         "takes N times as long)",
     )
     parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")

@@ -16,6 +16,8 @@ Array = npt.NDArray[np.float64]
 RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 SHARES = (1.0, 0.3, 0.1, 0.02)
 """Amplitudes tried, as shares of the largest speed."""
+STOP_SHARES = (0.4, 1.0)
+"""The same of stops and goes."""
 REST_S = 8.0
 USUAL_RATE_RAD_S = 2.0
 """A drive that reaches a speed is taken to reach it in a sine of this rate, too."""
@@ -105,19 +107,54 @@ def _motions(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
     for share in SHARES:
         for w in RATES_RAD_S:
             if w * duration > 4.0 * np.pi:
-                name = f"a two-way sine of {share * top:.3g} m/s at {w:g} rad/s"
-                yield name, share * top * np.sin(w * t)
+                yield _sine(share * top, w), share * top * np.sin(w * t)
     for w in RATES_RAD_S:
         if w * duration > 4.0 * np.pi:
             name = f"a one-way sine from {0.1 * top:.3g} to {top:.3g} m/s at {w:g} rad/s"
             yield name, top * start * (0.55 + 0.45 * np.sin(w * t))
     for share in (1.0, 0.3):
         yield f"a run at a constant {share * top:.3g} m/s", share * top * start
-    for share in (0.4, 1.0):
-        ramp = max(1.0, 1.05 * share * top / sharp)
-        cycle = 2.0 * ramp + 3.0 + REST_S
-        phase = np.mod(t, cycle)
-        height = np.clip(np.minimum(phase - REST_S, cycle - phase) / ramp, 0.0, 1.0)
-        way = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
-        name = f"stop and go to {share * top:.3g} m/s, both ways, with rests of {REST_S:g} s"
-        yield name, share * top * height * way
+    for share in STOP_SHARES:
+        yield _stops(share * top), _stop_and_go(t, share * top, sharp)[0]
+    yield from _mixed(t, top, sharp)
+
+
+def _sine(speed: float, w: float) -> str:
+    return f"a two-way sine of {speed:.3g} m/s at {w:g} rad/s"
+
+
+def _stops(speed: float) -> str:
+    return f"stop and go to {speed:.3g} m/s, both ways, with rests of {REST_S:g} s"
+
+
+def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
+    """Rests and strokes, and how long one there and one back take, s."""
+    ramp = max(1.0, 1.05 * speed / sharp)
+    cycle = 2.0 * ramp + 3.0 + REST_S
+    phase = np.mod(t, cycle)
+    height = np.clip(np.minimum(phase - REST_S, cycle - phase) / ramp, 0.0, 1.0)
+    way = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
+    return speed * height * way, 2.0 * cycle
+
+
+def _mixed(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
+    """Something of everything, one after the other: stop and go, a fast sine, a short and quick
+    one. Each ends at rest, so that the next can begin there."""
+    duration = float(t[-1]) if len(t) else 0.0
+    # The quickest that the acceleration allows.
+    quick = {s: max((w for w in RATES_RAD_S if s * top * w <= sharp), default=0.0) for s in SHARES}
+    for share in STOP_SHARES:
+        first, after_s = _stop_and_go(t, share * top, sharp)
+        for short in SHARES[1:]:
+            if not quick[1.0] or not quick[short]:
+                continue
+            # Half of what is left, in whole half-waves.
+            left_s = 0.5 * (duration - after_s)
+            waves = np.floor(left_s * quick[1.0] / np.pi)
+            if waves < 2.0:
+                continue
+            then_s = after_s + waves * np.pi / quick[1.0]
+            velocity = np.where(t < after_s, first, top * np.sin(quick[1.0] * (t - after_s)))
+            last = short * top * np.sin(quick[short] * (t - then_s))
+            parts = (_stops(share * top), _sine(top, quick[1.0]), _sine(short * top, quick[short]))
+            yield ", then ".join(parts), np.where(t < then_s, velocity, last)

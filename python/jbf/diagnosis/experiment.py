@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from scipy import stats
 
 from jbf import _core
 from jbf.catalogue import find_effect
@@ -32,6 +33,8 @@ SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
 ENOUGH = 25.0
 """Expected evidence below which a run would hardly part anything."""
 MOST_SAMPLES = 6000
+STRENGTHS = (0.6, 1.0, 1.5)
+"""What an effect may be of its usual strength."""
 
 
 @dataclass(frozen=True)
@@ -216,32 +219,46 @@ def propose_to_see(
     limits, step_s = _filled(search, limits)
     base = _Model(search.problem(present), search.solve(frozenset(present)))
     richer = {name: _with_usual(search, present, name) for name in hidden}
-    best: tuple[int, float] = (0, 0.0)
-    chosen: tuple[Excitation, Run, list[str]] | None = None
+    prices = {
+        name: search.price(len(problem.names) - base.solution.free)
+        for name, (problem, _) in richer.items()
+    }
+    best: tuple[float, float] = (0.0, 0.0)
+    chosen: tuple[Excitation, Run, dict[str, float]] | None = None
     for excitation, run, motion in _motions(search, limits, step_s):
         own = base.at(motion)
         shown = {
             name: base.evidence(own, (problem.chain.predict(values, [motion])[0], own[1]), step_s)
             for name, (problem, values) in richer.items()
         }
-        names = [name for name, evidence in shown.items() if evidence > 2.0 * ENOUGH]
-        rank = (len(names), sum(np.log(max(shown[name], 1.0)) for name in names))
+        chances = sum(_chance(shown[name], prices[name]) for name in hidden)
+        rank = (round(chances, 2), sum(np.log1p(evidence) for evidence in shown.values()))
         if rank > best:
-            best, chosen = rank, (excitation, run, names)
+            best, chosen = rank, (excitation, run, shown)
     listed = ", ".join(hidden)
-    if chosen is None:
+    clear = {}
+    if chosen is not None:
+        clear = {name: evidence for name, evidence in chosen[2].items() if evidence > 2.0 * ENOUGH}
+    if chosen is None or not clear:
         return (
             f"these runs could not show {listed} at a usual strength, nor could any motion within "
             "the limits"
         )
-    excitation, run, names = chosen
-    which = "them" if len(names) == len(hidden) else ", ".join(names)
+    excitation, run, _ = chosen
+    which = "them" if len(clear) == len(hidden) else ", ".join(clear)
     words = (
         f"these runs could not show {listed} at a usual strength: record {excitation.words} for "
         f"{limits.duration_s:g} s, which would show {which}"
     )
-    sigma = float(np.sqrt(np.exp(best[1] / best[0]) / len(run)))
-    return Experiment(words, run, sigma * base.noise_n, sigma, float(np.exp(best[1] / best[0])))
+    usual = float(np.exp(np.mean(np.log(list(clear.values())))))
+    sigma = float(np.sqrt(usual / len(run)))
+    return Experiment(words, run, sigma * base.noise_n, sigma, usual)
+
+
+def _chance(evidence: float, price: float) -> float:
+    """How likely an effect is found that is worth so much evidence at its usual strength, and is
+    anything from weak to strong."""
+    return float(np.mean(stats.ncx2.sf(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)))
 
 
 def _with_usual(search: Search, present: tuple[str, ...], name: str) -> tuple[Problem, Array]:

@@ -82,8 +82,8 @@ def bootstrap(
     fitted
         What :func:`jbf.fit` made of `runs`.
     repeats
-        How often. Intervals are right from 19 on, and of an even width with more: one from 19 answers
-        may be a fifth too wide or too narrow, from 40 a seventh.
+        How often. Intervals are right from 19 on, and of an even width with more: one from 19
+        answers may be a fifth too wide or too narrow, from 40 a seventh.
     seed
         The same seed gives the same answers.
     start
@@ -184,8 +184,8 @@ def _with_error(value: ParameterValue, answers: Array, page: Parameter) -> Param
     off = answers - value.value
     if page.period is not None:
         off -= page.period * np.round(off / page.period)
-    # The rank that one more answer passes once in 20 times, however the answers are spread: with peak
-    # beside peak they follow no bell (conformal prediction: Vovk, Gammerman, Shafer 2005, ch. 2).
+    # The rank that one more answer passes once in 20 times, however the answers are spread: with
+    # peak beside peak they follow no bell (conformal prediction: Vovk, Gammerman, Shafer 2005).
     rank = min(math.ceil(0.95 * (len(off) + 1)), len(off))
     reach = float(np.sort(np.abs(off))[rank - 1])
     return replace(value, stderr=reach / HALF_WIDTH)

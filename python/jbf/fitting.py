@@ -24,7 +24,7 @@ from jbf.doubt import without_jumps
 from jbf.errors import InputError
 from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
-from jbf.noise import WHITE, Noise, estimate_noise, independent_share, innovation_cost
+from jbf.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.peaks import other_peaks
 from jbf.record import Run
 from jbf.rig import Rig
@@ -262,8 +262,17 @@ class Problem:
 
     def without_doubt(self, values: Array) -> Problem:
         """The problem with the weights that the model at these values leaves to the samples."""
-        sure = without_jumps(self.campaign, self.effects, self.predict(values))
+        sure = without_jumps(self.campaign, self.at_work(values), self.predict(values))
         return self if sure is self.campaign else self.on(sure)
+
+    def at_work(self, values: Array) -> list[str]:
+        """The effects that are not at their null."""
+        idle = {
+            name.split(".")[0]
+            for (name, page), value in zip(self.parameters.items(), values, strict=True)
+            if "." in name and page.null == value
+        }
+        return [effect for effect in self.effects if effect not in idle]
 
     def on(self, campaign: Campaign) -> Problem:
         """The same problem on other samples."""
@@ -397,39 +406,6 @@ def _scaled(jacobian: Array, scale: Array) -> Array:
         if np.max(np.abs(found), initial=0.0) < BOUNDLESS:
             return found
     return np.where(np.abs(found) < BOUNDLESS, found, 0.0)
-
-
-def costs(a: Solution, b: Solution) -> tuple[float, float]:
-    """The costs of two solutions, each sample with the smaller of the weights they give it."""
-    if a.campaign is b.campaign:
-        return a.cost, b.cost
-    pairs = zip(a.campaign.prepared, b.campaign.prepared, strict=True)
-    weights = [np.minimum(p.weight, q.weight) for p, q in pairs]
-    steps = [p.step_s for p in a.campaign.prepared]
-
-    def cost(solution: Solution) -> float:
-        weighted = [r * w for r, w in zip(solution.residuals, weights, strict=True)]
-        return innovation_cost(solution.noise, weighted, steps, [w > 0.0 for w in weights])
-
-    return cost(a), cost(b)
-
-
-def independent(solution: Solution) -> float:
-    """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
-    prepared = solution.campaign.prepared
-    pairs = zip(solution.residuals, prepared, strict=True)
-    left = [solution.noise.innovations(r * p.weight, p.step_s) * (p.weight > 0.0) for r, p in pairs]
-    return independent_share(left, [p.step_s for p in prepared])
-
-
-def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:
-    """Gain in twice the log likelihood that one full Gauss-Newton step from `values` promises."""
-    r, j = problem.stacked(*problem.linearise(values), noise)
-    size = np.linalg.norm(j, axis=0)
-    unit = j[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(unit, r, rcond=1e-10)
-    left = r - unit @ step
-    return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(float(left @ left), 1e-300)))
 
 
 @dataclass(frozen=True)

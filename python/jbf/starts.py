@@ -117,6 +117,8 @@ _RULES: dict[str, Callable[[Scales], Starts]] = {
     "v_d_m_s": lambda s: (s.usual_m_s,),
     "sigma_0_n_m": _stiffness,
     "k_t_n_m": _stiffness,
+    # A law in newtons presses with one.
+    "presliding.sigma_1_m": _stiffness,
     "sigma_1_n_s_m": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),
     "coulomb_drag.F_d_n": lambda s: (0.1 * s.kinetic_n,),
 }

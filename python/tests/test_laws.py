@@ -137,10 +137,6 @@ def test_a_linear_axis_has_no_angle() -> None:
         soft.predict(bare)
 
 
-@pytest.mark.xfail(
-    reason="names presliding, then inertia_leak too: with the whole catalogue the error of the "
-    "estimated motion near reversals still buys a second effect at this very low noise"
-)
 def test_a_hidden_effect_is_found_beside_a_law_in_newtons() -> None:
     p = {"fc": 6.0, "s0": 3e4, "exponent": 1.0, "fv": 40.0}
     runs = runs_of("dahl", 2e-3, 0.05, **p)

@@ -233,10 +233,11 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             &mut sliding,
             dt_s,
         );
-        let magnitude = if L::HAS_BRISTLE {
-            sliding.level
+        // What bends a bristle, and what acts beside it.
+        let (magnitude, beside) = if L::BENDS_WHOLE {
+            (sliding.level + sliding.viscous.abs(), T::ZERO)
         } else {
-            sliding.level + sliding.viscous.abs()
+            (sliding.level, sliding.viscous)
         };
         let before = if dt_s > T::ZERO {
             state.magnitude
@@ -244,14 +245,13 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             magnitude
         };
         let levels = [before, magnitude];
-        // A law's own bristle bends towards the level; one beside a law takes all its friction.
         let bent = if L::HAS_BRISTLE {
-            let bristle = law.bend(&mut state.law, &state.journal, &journal, levels, dt_s);
-            Some(bristle + sliding.viscous)
+            Some(law.bend(&mut state.law, &state.journal, &journal, levels, dt_s))
         } else {
             self.effects
                 .bristle(&mut state.effects, &state.journal, &journal, levels, dt_s)
         };
+        let bent = bent.map(|bristle| bristle + beside);
         let coefficient = bent.unwrap_or_else(|| sliding.coefficient(journal.direction));
         let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
         // A bristle turns the contact's jump into a slope.

@@ -11,10 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import stats
 
 from jbf.diagnosis.result import Remainder
 from jbf.fitting import Problem, Solution
+
+Array = npt.NDArray[np.float64]
 
 CHANCE = 1e-8
 """Probability that runs of one model differ so,"""
@@ -36,7 +39,7 @@ class Disagreement:
     gain
         What parameters of their own would gain the runs, in twice the log likelihood.
     degrees
-        How much of it chance gives.
+        How much of it chance gives; zero where there is but one run.
     by_run
         Run to its gain over its degrees of freedom, largest first.
     """
@@ -48,7 +51,7 @@ class Disagreement:
     @property
     def beyond_chance(self) -> bool:
         """True where one set of parameters cannot be right for all runs."""
-        if self.gain <= TIMES * self.degrees:
+        if self.degrees == 0 or self.gain <= TIMES * self.degrees:
             return False
         return bool(stats.chi2.sf(self.gain, self.degrees) < CHANCE)
 
@@ -63,18 +66,29 @@ def disagreement(problem: Problem, solution: Solution) -> Disagreement:
     size = np.sqrt(np.sum([np.sum(j**2, axis=0) for _, j in parts], axis=0))
     scale = np.where(size > 0.0, size, 1.0)
     gain, degrees, by_run = 0.0, 0, {}
+    together: list[tuple[Array, Array]] = []
     for (r, j), p in zip(parts, solution.campaign.prepared, strict=True):
         directions, felt, _ = np.linalg.svd(j / scale, full_matrices=False)
         clear = felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)
         if len(r) <= clear.sum():
             continue
-        own = float(np.sum((directions[:, clear].T @ r) ** 2)) * len(r) / max(float(r @ r), 1e-300)
+        sigma = max(float(np.sqrt(np.mean(r**2))), 1e-150)
+        own = float(np.sum((directions[:, clear].T @ (r / sigma)) ** 2))
         gain += own
         degrees += int(clear.sum())
         by_run[p.run.name] = own / max(int(clear.sum()), 1)
+        together.append((r / sigma, j / scale / sigma))
     ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
+    if len(together) < 2:
+        return Disagreement(0.0, 0, ranked)
+    # What parameters in common would gain is no disagreement: at a bound, or where the colour of
+    # the noise is not all forgiven, the fit does not stand on the top.
+    r, j = (np.concatenate(a) for a in zip(*together, strict=True))
+    directions, felt, _ = np.linalg.svd(j, full_matrices=False)
+    clear = felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)
+    common = float(np.sum((directions[:, clear].T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
-    return Disagreement(gain, max(degrees - shared, 1), ranked)
+    return Disagreement(max(gain - common, 0.0), max(degrees - shared, 1), ranked)
 
 
 def find_disagreement(problem: Problem, solution: Solution) -> list[Remainder]:

@@ -25,15 +25,8 @@ from jbf.diagnosis.experiment import Experiment, propose, propose_to_see, unseen
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import (
-    Problem,
-    Solution,
-    costs,
-    finish,
-    first_step_gain,
-    independent,
-    root_mean_square,
-)
+from jbf.fitting import Problem, Solution, finish, root_mean_square
+from jbf.gains import costs, first_step_gain, independent
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -194,7 +187,12 @@ class Search:
         if self.trace(effects, near) <= TRACE:
             return of(near)
         first = of(self.screen(effects, near))
-        return of(self.solve(effects, near)) if first < CONTENDER else first
+        if first >= CONTENDER:
+            return first
+        solution = self.solve(effects, near)
+        # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples of
+        # which it is sure.
+        return of(solution if self.evidence(solution, near) > 0.0 else near)
 
     def hold_out(self, effects: frozenset[str]) -> float:
         """RMS over runs left out of the fit one at a time, N."""

@@ -1,5 +1,6 @@
 //! Bristles: `z' = v - |v| sigma z / f`, friction coefficient `sigma z`, with f the
-//! coefficient that the contact would have in sliding.
+//! coefficient that the contact would have in sliding. Of a law in newtons only the dry part
+//! bends, and the viscous one adds to it, as in Dahl's and LuGre's laws.
 //!
 //! Source: Dahl (1968); Canudas de Wit et al. (1995); Cohn (1998), section 2.1.3. A
 //! reversal becomes a slope over the distance f / sigma.
@@ -38,7 +39,8 @@ impl<T: Real> Effect<T> for Presliding<T> {
         name: "presliding",
         stage: Stage::Contact,
         summary: "the contact bends before it slides: a reversal is a slope over distance",
-        equation: "z' = v - |v| sigma z / f; friction coefficient sigma z",
+        equation: "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
+                   (of a law in newtons its dry part: the viscous one adds)",
         source: "Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3",
         limits: "one stiffness, no memory of inner loops, drifts under small vibration; \
                  elasto-plastic forms do better below the break-away distance",
@@ -47,7 +49,7 @@ impl<T: Real> Effect<T> for Presliding<T> {
             unit: "1/m",
             meaning: "contact stiffness over load",
             lower: 1.0,
-            upper: 1e8,
+            upper: 1e12,
             null: Some(f64::INFINITY),
             starts: &[3e3, 3e2, 3e4, 3e5],
             log: true,

@@ -51,6 +51,10 @@ pub trait Law<T: Real> {
     /// sign of the motion.
     const HAS_BRISTLE: bool = false;
 
+    /// True where a contact that bends before it slides bends under all of the friction; false
+    /// where the viscous part acts beside it, as it does beside a law's own bristle.
+    const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
+
     /// The state at which every run starts.
     fn start(&self, load_n: T) -> Self::State;
 

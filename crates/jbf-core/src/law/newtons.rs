@@ -110,6 +110,9 @@ pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
 /// The methods of [`super::Law`] that are the same for every law in newtons.
 macro_rules! in_newtons {
     () => {
+        /// Its viscous part is another place's (a seal, grease), as Dahl's and LuGre's is.
+        const BENDS_WHOLE: bool = false;
+
         /// One newton: the coefficient of this law is a force.
         #[inline(always)]
         fn pressed_n(&self, _load_n: T) -> T {

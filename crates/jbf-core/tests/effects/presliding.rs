@@ -3,6 +3,10 @@
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
 use crate::common::{chain_round, readings, LOAD_N};
+use jbf_core::law::coulomb::Coulomb;
+use jbf_core::law::dahl::Dahl;
+use jbf_core::law::Named;
+use jbf_core::Clock;
 
 const F: f64 = 0.2;
 const SIGMA_1_M: f64 = 3e3;
@@ -82,5 +86,27 @@ fn a_run_that_begins_in_motion_begins_sliding() {
         assert!(got
             .iter()
             .all(|r| (r - F * LOAD_N * speed.signum()).abs() < 1e-12));
+    }
+}
+
+/// Beside a law in newtons only the dry part bends: on Coulomb's law, Dahl's with exponent 1.
+#[test]
+fn on_coulombs_law_it_is_dahls() {
+    let (kinetic_n, stiffness_n_m, viscous_n_s_m) = (6.0, 3e4, 400.0);
+    let coulomb =
+        Coulomb::build(None, None, &[kinetic_n, 9.0, viscous_n_s_m], Clock::Journal).unwrap();
+    let dahl = Dahl::build(
+        None,
+        None,
+        &[kinetic_n, stiffness_n_m, 1.0, viscous_n_s_m],
+        Clock::Journal,
+    )
+    .unwrap();
+    let speed = |t: f64| constant::<f64>(0.01 * (3.0 * t).sin() - 0.004 * (7.1 * t).sin(), t);
+    let bent = chain_round(coulomb, &[("presliding", &[stiffness_n_m])]);
+    let ours = readings(&bent, 1e-3, 5000, speed);
+    let theirs = readings(&chain_round(dahl, &[]), 1e-3, 5000, speed);
+    for (i, (a, b)) in ours.iter().zip(&theirs).enumerate() {
+        assert!((a - b).abs() < 1e-9 * kinetic_n, "{i}: {a} {b}");
     }
 }

@@ -8,7 +8,7 @@ as the runs have parameters to themselves less those that they share. It costs n
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -58,7 +58,11 @@ class Disagreement:
 
 def disagreement(problem: Problem, solution: Solution) -> Disagreement:
     """How far the runs disagree on the parameters of a solution."""
-    problem = problem.on(solution.campaign)
+    # Samples beside a jump whose instant is fitted tell that instant with errors of their own.
+    sure = [
+        replace(p, weight=np.where(p.trusted, p.weight, 0.0)) for p in solution.campaign.prepared
+    ]
+    problem = problem.on(solution.campaign.of(sure))
     parts = [
         problem.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
         for i in range(len(solution.residuals))

@@ -214,9 +214,9 @@ class Problem:
             bounds=(low, high),
             method="dogbox",
             x_scale="jac",
-            # A thousandth of a unit of chi-square is far below what any verdict turns on.
+            # A hundredth of a unit of chi-square is far below what any verdict turns on.
             xtol=1e-7,
-            ftol=1e-7,
+            ftol=1e-6,
             gtol=1e-12,
             max_nfev=evaluations,
         )
@@ -234,6 +234,8 @@ class Problem:
         seeds: Sequence[Mapping[str, float]],
         evaluations: int,
         least: float = np.inf,
+        *,
+        each: bool = False,
     ) -> Solution:
         """Search from the best of all starting points, as if the noise were white.
 
@@ -246,9 +248,13 @@ class Problem:
         least
             A sum of squares, N^2, that the first steps must come below: a search that leads nowhere
             is not followed.
+        each
+            Follow the best of each seed, not the best of all.
         """
-        starts = [s for seed in seeds for s in self.starts({**seed, **self.fixed})]
-        starts.sort(key=self.square)
+        groups = [self.starts({**seed, **self.fixed}) for seed in seeds]
+        if each:
+            groups = [[min(group, key=self.square)] for group in groups]
+        starts = sorted(itertools.chain.from_iterable(groups), key=self.square)
         best = starts[0]
         if len(starts) > 1:
             short = [self.search(s, WHITE, TRIAL_EVALUATIONS)[0] for s in starts[:FOLLOWED]]

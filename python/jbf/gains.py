@@ -36,7 +36,19 @@ def independent(solution: Solution) -> float:
 
 def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:
     """Gain in twice the log likelihood that one full Gauss-Newton step from `values` promises."""
-    r, j = problem.stacked(*problem.linearise(values), noise)
+    return _promised(*problem.stacked(*problem.linearise(values), noise))
+
+
+def next_step_gain(problem: Problem, solution: Solution) -> float:
+    """The same of a step from a solution: nothing where it has converged."""
+    return _promised(
+        *problem.on(solution.campaign).stacked(
+            solution.residuals, solution.jacobian, solution.noise
+        )
+    )
+
+
+def _promised(r: Array, j: Array) -> float:
     size = np.linalg.norm(j, axis=0)
     unit = j[:, size > 0.0] / size[size > 0.0]
     step, *_ = np.linalg.lstsq(unit, r, rcond=1e-10)

@@ -10,7 +10,7 @@ is no longer needed goes, one that another would replace better is exchanged.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from jbf.campaign import Campaign
 from jbf.catalogue import effects as catalogue
+from jbf.catalogue import find_effect
 from jbf.comparison import compare_prepared
 from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.excitations import Limits
@@ -26,7 +27,7 @@ from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
 from jbf.fitting import Problem, Solution, finish, root_mean_square
-from jbf.gains import costs, first_step_gain, independent
+from jbf.gains import costs, first_step_gain, independent, next_step_gain
 from jbf.model import check_rig
 from jbf.record import Run
 from jbf.rig import Rig
@@ -49,6 +50,8 @@ CONTENDER = 60.0
 """How far behind in evidence a candidate may be after screening and still go on,"""
 CLOSE = 0.6
 """beyond this share of the leader's: what is far from converged may still be the truth."""
+HOPE = 5.0
+"""A search may gain so many times what its next step promises, not more."""
 CHANCE = 0.5
 """Share of the leader's evidence from which on an effect whose likelihood has many peaks gets a
 second look."""
@@ -81,6 +84,7 @@ class Search:
     glanced: dict[frozenset[str], float] = field(default_factory=dict)
     settled: set[frozenset[str]] = field(default_factory=set)
     held_out: dict[frozenset[str], float] = field(default_factory=dict)
+    looked: set[frozenset[str]] = field(default_factory=set)
 
     @property
     def candidates(self) -> list[str]:
@@ -110,10 +114,14 @@ class Search:
             if near is not None:
                 names = self.problem(near.effects).names
                 law = dict(zip(names, near.values, strict=True))
-                # A law that had to make up for a missing effect may be a poor start.
-                seeds = [law, {n: v for n, v in law.items() if "." in n}]
+                # A law that had to make up for a missing effect may be a poor start; of an effect
+                # with many peaks the one that it had to climb is no start at all.
+                anew = many_peaks(near.effects)
+                kept = {} if anew else {n: v for n, v in law.items() if "." in n}
+                seeds = [law, kept]
             least = self._least(near)
-            self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS, least)
+            each = near is not None and many_peaks(near.effects)
+            self.solved[effects] = problem.approach(seeds, SCREEN_EVALUATIONS, least, each=each)
         return self.solved[effects]
 
     def _least(self, near: Solution | None) -> float:
@@ -157,11 +165,33 @@ class Search:
 
     def look_again(self, effects: frozenset[str]) -> None:
         """Look for a higher peak of the likelihood, now that these effects are together: what was
-        missing before may have led the search to another."""
+        missing before may have led the search to another. Once for each set of effects."""
+        if effects in self.looked:
+            return
+        self.looked.add(effects)
         near = self.solve(effects)
-        found = self.problem(effects).look_around(near)
+        problem = self.problem(effects)
+        found = problem.look_around(near)
+        if len(effects) > 1 and many_peaks(effects):
+            # As if nothing had been found before.
+            fresh = problem.approach([{}], SCREEN_EVALUATIONS)
+            if np.subtract(*costs(fresh, found)) < CONTENDER:
+                fresh = problem.look_around(problem.settle(fresh))
+                found = fresh if np.subtract(*costs(fresh, found)) < 0.0 else found
         if found is not near:
             self.solved[effects] = found
+            self.held_out.pop(effects, None)
+
+    def come_down(self, effects: frozenset[str], whole: Solution) -> None:
+        """Fit fewer effects from where they are in a richer model, too: it may have found its way
+        past a valley in which they are caught."""
+        near, problem = self.solve(effects), self.problem(effects)
+        known = dict(zip(self.problem(whole.effects).names, whole.values, strict=True))
+        start = np.array([known[name] for name in problem.names])
+        sure = problem.without_doubt(start)
+        there = sure.settle(sure.solution(start, near.noise, False))
+        if np.subtract(*costs(there, near)) < 0.0:
+            self.solved[effects] = there
             self.held_out.pop(effects, None)
 
     def price(self, parameters: int) -> float:
@@ -206,6 +236,11 @@ class Search:
             self.progress(message, done, total)
 
 
+def many_peaks(effects: Iterable[str]) -> bool:
+    """True where the likelihood of these effects has peak beside peak."""
+    return any(find_effect(name).peaks for name in effects)
+
+
 @dataclass
 class Round:
     """One round of trials beside a model."""
@@ -236,15 +271,19 @@ def try_all(search: Search, present: tuple[str, ...]) -> Round:
         if first[name] == -np.inf:
             solution = base
         else:
-            solution = search.solve(effects, base) if first[name] > line else search.screen(effects)
+            solution = search.screen(effects)
+            problem = search.problem(effects)
+            hope = first[name] + HOPE * next_step_gain(problem, solution) * share
+            if first[name] > line and hope > 0.0:
+                solution = search.solve(effects)
         # At its null an effect leaves the model as it was: no candidate is worse than that.
         least = -search.price(len(search.problem(effects).names) - base.free)
         found.append((max(search.evidence(solution, base), least), name, solution))
     found.sort(key=lambda t: -t[0])
     # One that might lead from a higher peak gets its chance.
     for i, (evidence, name, _) in enumerate(found):
-        if catalogue()[name].peaks and evidence > max(CHANCE * found[0][0], 0.0):
-            effects = frozenset((*present, name))
+        effects = frozenset((*present, name))
+        if many_peaks(effects) and evidence > max(CHANCE * found[0][0], 0.0):
             search.look_again(effects)
             solution = search.solve(effects)
             found[i] = (search.evidence(solution, base), name, solution)
@@ -281,6 +320,8 @@ def question(search: Search, present: tuple[str, ...]) -> tuple[str, ...]:
         if len(current) < 2 or name not in current:
             continue
         rest = tuple(e for e in current if e != name)
+        search.look_again(frozenset(rest))
+        search.come_down(frozenset(rest), search.solve(frozenset(current)))
         simpler = search.solve(frozenset(rest))
         if search.evidence(search.solve(frozenset(current)), simpler) < 0:
             current = rest

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import stats
 
+from jbf.catalogue import find_effect
 from jbf.diagnosis.result import Remainder
 from jbf.fitting import Problem, Solution
 
@@ -63,8 +64,13 @@ def disagreement(problem: Problem, solution: Solution) -> Disagreement:
         replace(p, weight=np.where(p.trusted, p.weight, 0.0)) for p in solution.campaign.prepared
     ]
     problem = problem.on(solution.campaign.of(sure))
+    many = {name for name in problem.effects if find_effect(name).peaks}
+    rings = [problem.names[i].split(".")[0] in many for i in problem.open]
     parts = [
-        problem.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        _apart(
+            *problem.stacked(solution.residuals, solution.jacobian, solution.noise, [i]),
+            np.array(rings),
+        )
         for i in range(len(solution.residuals))
     ]
     size = np.sqrt(np.sum([np.sum(j**2, axis=0) for _, j in parts], axis=0))
@@ -93,6 +99,18 @@ def disagreement(problem: Problem, solution: Solution) -> Disagreement:
     common = float(np.sum((directions[:, clear].T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
     return Disagreement(max(gain - common, 0.0), max(degrees - shared, 1), ranked)
+
+
+def _apart(r: Array, j: Array, aside: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Residuals and derivatives with what the parameters set aside could explain taken out: of an
+    effect whose likelihood has peak beside peak each run may have the one that its errors of
+    motion choose."""
+    if not aside.any():
+        return r, j
+    directions, felt, _ = np.linalg.svd(j[:, aside], full_matrices=False)
+    taken = directions[:, felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)]
+    rest = j[:, ~aside]
+    return r - taken @ (taken.T @ r), rest - taken @ (taken.T @ rest)
 
 
 def find_disagreement(problem: Problem, solution: Solution) -> list[Remainder]:

@@ -49,4 +49,26 @@ def test_the_run_of_another_rig_is_named() -> None:
 def test_one_run_cannot_disagree() -> None:
     rig, runs, _ = campaign(11)
     problem, solution = _solved(rig, runs[:1])
-    assert find_disagreement(problem, solution) == []
+    # Wherever the parameters stand: what they would gain is no disagreement.
+    off = problem.solution(1.05 * solution.values, solution.noise)
+    for there in (solution, off):
+        assert disagreement(problem, there).degrees == 0
+        assert find_disagreement(problem, there) == []
+
+
+def test_parameters_in_common_that_are_off_are_no_disagreement() -> None:
+    rig, runs, _ = campaign(11)
+    problem, solution = _solved(rig, runs)
+    at = disagreement(problem, solution)
+    off = problem.solution(solution.values * [1.02, 1.0, 1.0, 1.0], solution.noise)
+    # The runs would gain much, but all the same.
+    assert disagreement(problem, off).gain < at.gain + 4.0 * np.sqrt(2.0 * at.degrees)
+
+
+def test_each_run_may_have_its_peak_of_a_ringing_drive() -> None:
+    rig, runs, _ = campaign(34, ("drive_compliance",))
+    problem, solution = _solved(rig, runs, ("drive_compliance",))
+    found = disagreement(problem, solution)
+    # Of seven parameters four are asked of the runs.
+    assert 0 < found.degrees <= 4 * (len(runs) - 1)
+    assert not found.beyond_chance

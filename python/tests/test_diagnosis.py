@@ -67,6 +67,15 @@ def test_two_hidden_effects_are_both_named() -> None:
     assert d.steps[-1].holdout_rms_n < 1.05 * truth["noise_n"]
 
 
+@pytest.mark.slow
+def test_a_drive_that_rings_does_not_hide_what_is_beside_it() -> None:
+    rig, runs, truth = campaign(202, ("drive_compliance", "time_delay"))
+    d = diagnose(rig, runs)
+    assert d.effects == ("drive_compliance", "time_delay"), d.summary()
+    assert d.verdict == "missing"
+    assert d.steps[-1].rms_n < 1.05 * truth["noise_n"]
+
+
 def test_a_tone_is_described_and_nothing_is_named() -> None:
     rig, runs, truth = campaign(13, foreign=("hum",))
     d = diagnose(rig, runs)

@@ -61,6 +61,23 @@ def test_the_motion_keeps_to_the_limits() -> None:
     assert {e.load_n for e in seen} == {80.0, 120.0}
 
 
+def test_a_mixed_motion_has_rests_a_fast_and_a_quick_part() -> None:
+    limits = Limits(0.1, 0.5, 60.0)
+    mixed = [e for e in excitations(limits, 0.01) if e.words.count(", then ") == 2]
+    assert mixed
+    for excitation in mixed:
+        v = excitation.velocity_m_s
+        third = len(v) // 3
+        assert np.mean(v[:third] == 0.0) > 0.3
+        assert np.max(v) == pytest.approx(0.1, rel=0.01)
+        assert np.min(v) == pytest.approx(-0.1, rel=0.01)
+        turns = np.flatnonzero(np.diff(np.sign(v[-third // 2 :])))
+        assert len(turns) > 4
+    # A run too short for a rest there and back has no such motion.
+    short = excitations(Limits(0.1, 0.5, 12.0), 0.01)
+    assert not any(", then " in e.words for e in short)
+
+
 def test_what_slow_sweeps_cannot_show_is_said_and_the_next_run_shows_it() -> None:
     sweeps = (sweep("sweep", 0.13, 60.0), sine("slow", 140.0, 0.127, 0.045))
     rig, runs, _ = campaign(67, ("inertia_leak",), motions=sweeps)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import InputError, Model, compare, fit
+from jbf.campaign import Campaign
 from jbf.doubt import jumps, moves_jumps, without_jumps
+from jbf.fitting import Problem
 
 
 def test_only_a_jump_is_in_doubt() -> None:
@@ -56,6 +58,16 @@ def test_the_delay_of_the_start_does_not_matter() -> None:
     for start in (0.5 * tau, 2.0 * tau, 0.004):
         fitted = fit(rig, runs, ["time_delay"], start={"time_delay.tau_s": start})
         assert fitted.parameters["time_delay.tau_s"].value == pytest.approx(tau, abs=0.003)
+
+
+def test_an_effect_at_its_null_casts_no_doubt() -> None:
+    rig, runs, _ = campaign(6)
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("time_delay",))
+    values = problem.starts({})[0]
+    assert problem.without_doubt(values).campaign.samples < problem.campaign.samples
+    values[problem.names.index("time_delay.tau_s")] = 0.0
+    assert problem.at_work(values) == []
+    assert problem.without_doubt(values) is problem
 
 
 def test_load_dependence_needs_several_loads() -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from jbf._core import __version__
 from jbf.batching import batch
 from jbf.catalogue import Parameter, effects, laws
-from jbf.errors import InputError, JbfError
+from jbf.errors import FilmWarning, InputError, JbfError
 from jbf.model import Model
 from jbf.model_file import ParameterValue
 from jbf.own_effects import forget_effect, load_effects, register_effect
@@ -53,6 +53,7 @@ __all__ = [
     "Comparison",
     "Diagnosis",
     "Experiment",
+    "FilmWarning",
     "Fit",
     "InputError",
     "JbfError",

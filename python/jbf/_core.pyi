@@ -10,6 +10,8 @@ Array = npt.NDArray[np.float64]
 Array32 = npt.NDArray[np.float32]
 
 __version__: str
+FASTEST_FILM_1_S: float
+FASTEST_FILM_1_S: float
 
 class ParameterPage(TypedDict):
     name: str
@@ -82,6 +84,7 @@ class Chain:
     @property
     def parameter_names(self) -> list[str]: ...
     def predict(self, parameters: Array, motions: Sequence[Motion]) -> list[Array]: ...
+    def film_rate_1_s(self, parameters: Array, motions: Sequence[Motion]) -> float: ...
     def jacobian(
         self, parameters: Array, motions: Sequence[Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]: ...

@@ -185,10 +185,11 @@ def _words(axis: Binned, means: Array, counts: npt.NDArray[np.intp]) -> str:
 
 def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     """`compare` for runs that are ready."""
-    from jbf.model import chain
+    from jbf.model import chain, warn_of_fast_film
 
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
+    warn_of_fast_film(core, model.values, motions)
     predictions = core.predict(model.values, motions)
     campaign = without_jumps(campaign, model.effects, predictions)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]

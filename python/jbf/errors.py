@@ -21,6 +21,10 @@ class JbfError(Exception):
     """Base of every error that jbf raises on purpose."""
 
 
+class FilmWarning(UserWarning):
+    """A film too fast for a prediction to follow: see :meth:`jbf.Model.predict`."""
+
+
 class InputError(JbfError, ValueError):
     """Bad input; ``str(error)`` is one line.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -19,7 +20,7 @@ from jbf.catalogue import (
     vocabulary,
 )
 from jbf.conditioning import ImposedMotion, impose
-from jbf.errors import InputError
+from jbf.errors import FilmWarning, InputError
 from jbf.model_file import (
     ModelFile,
     ParameterValue,
@@ -74,6 +75,21 @@ def core_bearing(rig: Rig) -> _core.BearingSizes | None:
 def core_load_n(rig: Rig) -> float | None:
     """The load on one bearing, N; None where the rig has none."""
     return None if rig.load is None else rig.load.normal_n
+
+
+def warn_of_fast_film(
+    core: _core.Chain | OwnChain, values: Array, motions: list[_core.Motion]
+) -> None:
+    """Say it where a prediction does not follow the film."""
+    rate = core.film_rate_1_s(values, motions)
+    if rate > _core.FASTEST_FILM_1_S:
+        warnings.warn(
+            f"the film of this model answers at {rate:.2g} 1/s; a prediction follows it up to "
+            f"{_core.FASTEST_FILM_1_S:.2g} 1/s and holds it inside the bearing beyond: are "
+            "U_tr_m_s, K0 and the load those of a bearing?",
+            FilmWarning,
+            stacklevel=4,
+        )
 
 
 def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain | OwnChain:
@@ -219,7 +235,11 @@ class Model:
         return np.array([p.value for p in self.parameters.values()])  # type: ignore[union-attr]
 
     def predict(self, run: Run) -> Array:
-        """Friction reading of one bearing under the run's motion, N, shape (n,)."""
+        """Friction reading of one bearing under the run's motion, N, shape (n,).
+
+        Warns (:class:`jbf.FilmWarning`) where the film is faster than 28,000 1/s: that is held
+        inside the bearing, and the friction is not to be relied on.
+        """
         return self.predict_many([run])[0]
 
     def predict_many(self, runs: Iterable[Run]) -> list[Array]:
@@ -228,7 +248,9 @@ class Model:
         for run in runs:
             self.require_columns(run)
         motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
-        return chain(self.rig, self.law, self.clock, self.effects).predict(self.values, motions)
+        core = chain(self.rig, self.law, self.clock, self.effects)
+        warn_of_fast_film(core, self.values, motions)
+        return core.predict(self.values, motions)
 
     def require_columns(self, run: Run) -> None:
         """An InputError where a run lacks a column that an effect of this model needs."""

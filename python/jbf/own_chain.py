@@ -53,6 +53,10 @@ class OwnChain:
         inner = self.core.predict(self._inner(parameters), motions)
         return [f + self._added(parameters, m)[0] for f, m in zip(inner, motions, strict=True)]
 
+    def film_rate_1_s(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
+        """Fastest rate of the law's film, 1/s."""
+        return self.core.film_rate_1_s(self._inner(parameters), motions)
+
     def jacobian(
         self, parameters: Array, motions: Sequence[_core.Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import jbf
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from jbf import InputError, Model, Rig, Run, _core
 from jbf.catalogue import effects
+from jbf.cli import main
 
 TABLE_4_2 = {"f_m": 0.26, "U_tr": 0.06, "K0": 7.5e5, "gamma": 33.0}
 
@@ -140,3 +142,25 @@ def test_arrays_that_make_no_motion_are_refused() -> None:
 
 def test_version_is_told() -> None:
     assert jbf.__version__ == _core.__version__
+
+
+def test_a_film_too_fast_to_follow_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = sine_run(duration_s=1.0)
+    usual = Model(Rig.thesis("4.2"), parameters=TABLE_4_2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        usual.predict(run)
+    # It would carry the load at a thousand times the speed of the record.
+    fast = Model(Rig.thesis("4.2"), parameters={**TABLE_4_2, "U_tr": 100.0})
+    with pytest.warns(jbf.FilmWarning, match="U_tr_m_s, K0 and the load"):
+        friction = fast.predict(run)
+    assert np.all(np.isfinite(friction))
+    fast.save(tmp_path / "fast.toml")
+    run.write_csv(tmp_path / "run.csv")
+    files = [str(tmp_path / name) for name in ("fast.toml", "run.csv", "out.csv")]
+    assert main(["predict", *files[:2], "--out", files[2]]) == 0
+    said = capsys.readouterr().err
+    assert said.startswith("jbf: the film of this model answers at ")
+    assert said.count("\n") == 1

@@ -12,6 +12,10 @@ use crate::real::Real;
 /// to 28,000 1/s; a faster one is held inside the bearing, which its state tells.
 pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 
+/// Rate of a film, 1/s, up to which steps of [`SHORTEST_FILM_STEP_S`] follow it; see
+/// [`film_rate_1_s`].
+pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
+
 /// The imposed motion of a run, one value a sample; all slices of one length.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
@@ -62,12 +66,7 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
     let Some(mut from) = record.sample(0) else {
         return;
     };
-    let top = record
-        .velocity_m_s
-        .iter()
-        .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
-    let film_s = chain.longest_film_step_s(record, top) / chain.effects.fastest_film();
-    let film_s = film_s.max(SHORTEST_FILM_STEP_S);
+    let film_s = film_step_s(chain, record).max(SHORTEST_FILM_STEP_S);
     let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
     let radius_m = chain.rig.radius_m.value();
     let mut state = chain.start(&from.lift());
@@ -84,6 +83,28 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
         }
         from = to;
     }
+}
+
+/// Fastest rate, 1/s, at which the law's film answers to this record; zero of a law without one.
+/// Beyond [`FASTEST_FILM_1_S`] a prediction holds the film inside the bearing and does not follow
+/// it.
+pub fn film_rate_1_s<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
+    record: &Record<'_>,
+) -> f64 {
+    1.0 / film_step_s(chain, record)
+}
+
+/// Longest step, s, that follows the film.
+fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(
+    chain: &Chain<T, L, O>,
+    record: &Record<'_>,
+) -> f64 {
+    let top = record
+        .velocity_m_s
+        .iter()
+        .fold(0.0_f64, |top, &v| top.max(libm::fabs(v)));
+    chain.longest_film_step_s(record, top) / chain.effects.fastest_film()
 }
 
 /// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines

@@ -111,6 +111,30 @@ impl<T: Real, R: Reader<T>> Visitor<T> for Runs<'_, T, R> {
     }
 }
 
+/// The fastest rate of the film along any of the motions, 1/s.
+struct FilmRate<'a> {
+    effects: Effects<f64>,
+    rig: Rig<f64>,
+    motions: &'a [&'a Motion],
+}
+
+impl Visitor<f64> for FilmRate<'_> {
+    type Output = f64;
+
+    fn visit<L: Named<f64>>(self, law: L) -> f64 {
+        let chain = jbf_core::Chain {
+            law,
+            effects: self.effects,
+            rig: self.rig,
+        };
+        let rates = self
+            .motions
+            .iter()
+            .map(|motion| run::film_rate_1_s(&chain, &motion.record()));
+        rates.fold(0.0, f64::max)
+    }
+}
+
 impl Chain {
     fn count(&self) -> usize {
         let theirs = self.effects.iter().map(|e| e.parameters.len());
@@ -124,7 +148,21 @@ impl Chain {
         run: R,
         motions: &[&Motion],
     ) -> Result<Vec<R::Read>, ParameterError> {
-        let (own, mut rest) = p.split_at(self.law.parameters.len());
+        let (effects, rig) = self.around(p)?;
+        let max_step_s = self.max_step_s;
+        let visitor = Runs {
+            effects,
+            rig,
+            run,
+            max_step_s,
+            motions,
+        };
+        self.with_law(p, visitor)
+    }
+
+    /// What stands round the law: effects with their parameters, and the rig.
+    fn around<T: Real>(&self, p: &[T]) -> Result<(Effects<T>, Rig<T>), ParameterError> {
+        let mut rest = &p[self.law.parameters.len()..];
         let mut effects = Effects::NONE;
         for info in &self.effects {
             let (values, after) = rest.split_at(info.parameters.len());
@@ -137,19 +175,19 @@ impl Chain {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
             count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
         };
-        let max_step_s = self.max_step_s;
-        let visitor = Runs {
-            effects,
-            rig,
-            run,
-            max_step_s,
-            motions,
-        };
+        Ok((effects, rig))
+    }
+
+    fn with_law<T: Real, V: Visitor<T>>(
+        &self,
+        p: &[T],
+        visitor: V,
+    ) -> Result<V::Output, ParameterError> {
         with_law(
             self.law.name,
-            bearing,
+            self.bearing.as_ref(),
             self.load_n,
-            own,
+            &p[..self.law.parameters.len()],
             self.clock,
             visitor,
         )
@@ -270,6 +308,24 @@ impl Chain {
             .detach(|| on_pool(|| self.runs(p, Values, &motions)))
             .map_err(refused)?;
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
+    }
+
+    /// Fastest rate of the law's film along any of the motions, 1/s. Beyond
+    /// `FASTEST_FILM_1_S` a prediction does not follow it.
+    fn film_rate_1_s(
+        &self,
+        parameters: PyReadonlyArray1<'_, f64>,
+        motions: Vec<Py<Motion>>,
+    ) -> PyResult<f64> {
+        let p = self.checked(&parameters)?;
+        let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
+        let (effects, rig) = self.around(p).map_err(refused)?;
+        let visitor = FilmRate {
+            effects,
+            rig,
+            motions: &motions,
+        };
+        self.with_law(p, visitor).map_err(refused)
     }
 
     /// Readings (N) and their derivatives with respect to the parameters `which`: for each

@@ -20,6 +20,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;
     m.add_class::<batch::BatchRig>()?;

@@ -9,9 +9,10 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from jbf.errors import InputError, did_you_mean
 
@@ -81,10 +82,17 @@ def _dispatch(arguments: list[str]) -> int:
     try:
         for file in getattr(chosen, "effects_from", []):
             import_module("jbf.own_effects").load_effects(file)
-        code: int = run(chosen)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show
+            code: int = run(chosen)
     except InputError as error:
         return _refuse(error)
     return code
+
+
+def _show(message: Warning | str, *_: Any, **__: Any) -> None:
+    """A warning as one line, like an error."""
+    print(f"jbf: {message}", file=sys.stderr)
 
 
 def _refuse(error: InputError) -> int:

@@ -40,7 +40,8 @@ class Bootstrap:
     Attributes
     ----------
     fit
-        The fit with each standard error half as wide as what holds the middle 68 % of the answers.
+        The fit with each standard error half as wide as what holds the middle 68 % of the answers,
+        and no smaller than the fit's own.
     values
         Parameter name to the answers, shape (repeats,).
     """
@@ -180,4 +181,6 @@ def _with_error(value: ParameterValue, answers: Array, page: Parameter) -> Param
         off -= page.period * np.round(off / page.period)
     # Of the middle of the answers: those that ended on a far peak would make it any size.
     low, high = np.quantile(off, [0.15866, 0.84134])
-    return replace(value, stderr=float(0.5 * (high - low)))
+    # No estimate is surer than the curvature has it (Cramer 1946, ch. 32), and few answers may lie
+    # closer together than they should.
+    return replace(value, stderr=max(float(0.5 * (high - low)), value.stderr))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.catalogue import find_effect
 from jbf.fitting import Problem, Solution
 
 Array = npt.NDArray[np.float64]
@@ -40,10 +41,15 @@ def doubtful(
             sd[k] = error / abs(solution.values[i]) if problem.log[i] else error
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
     found = []
+    # Catalogued as having many: one standard error away may still be the same peak.
+    many = {effect for effect in problem.effects if find_effect(effect).peaks}
     for k, i in enumerate(problem.open):
         # Where the likelihood is highest with this parameter one standard error off.
         way = correlations[:, k] * sd
         if not np.isfinite(sd[k]):
+            continue
+        if problem.names[i].split(".")[0] in many:
+            found.append(problem.names[i])
             continue
         way = np.where(np.isfinite(way), way, 0.0)
         for side in (1.0, -1.0):

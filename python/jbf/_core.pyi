@@ -11,7 +11,6 @@ Array32 = npt.NDArray[np.float32]
 
 __version__: str
 FASTEST_FILM_1_S: float
-FASTEST_FILM_1_S: float
 
 class ParameterPage(TypedDict):
     name: str

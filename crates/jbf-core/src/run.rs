@@ -96,10 +96,7 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, O: Own<T>>(
 }
 
 /// Longest step, s, that follows the film.
-fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
-    record: &Record<'_>,
-) -> f64 {
+fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(chain: &Chain<T, L, O>, record: &Record<'_>) -> f64 {
     let top = record
         .velocity_m_s
         .iter()

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from jbf.axes import Binned, all_axes
 from jbf.campaign import Campaign
-from jbf.catalogue import transition_speed
-from jbf.doubt import without_jumps
+from jbf.catalogue import parameters_of, transition_speed
+from jbf.doubt import at_work, without_jumps
 from jbf.model import Model
 from jbf.noise import noise_floor
 from jbf.record import PathLike, Run
@@ -191,7 +191,9 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
     predictions = core.predict(model.values, motions)
-    campaign = without_jumps(campaign, model.effects, predictions)
+    pages = parameters_of(model.law, tuple(model.effects))
+    effects = at_work(model.effects, pages, model.values)
+    campaign = without_jumps(campaign, effects, predictions)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign)
     runs = tuple(

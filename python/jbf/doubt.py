@@ -9,14 +9,14 @@ A fit weighs the sample by it, and no verdict looks at it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.campaign import Campaign, Prepared
-from jbf.catalogue import find_effect
+from jbf.catalogue import Parameter, find_effect
 
 Array = npt.NDArray[np.float64]
 
@@ -30,6 +30,19 @@ the record resolves, such as a mass set going, is none."""
 def moves_jumps(effects: Iterable[str]) -> bool:
     """True where one of the effects moves the instants of jumps."""
     return any(find_effect(name).moves_jumps for name in effects)
+
+
+def at_work(
+    effects: Iterable[str], pages: Mapping[str, Parameter], values: Iterable[float]
+) -> list[str]:
+    """The effects that are not at their null; `pages` and `values` by the parameters' full names,
+    in one order."""
+    idle = {
+        name.split(".")[0]
+        for (name, page), value in zip(pages.items(), values, strict=True)
+        if "." in name and page.null == value
+    }
+    return [effect for effect in effects if effect not in idle]
 
 
 def jumps(prediction: Array) -> Array:

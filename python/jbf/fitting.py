@@ -20,7 +20,7 @@ from jbf.catalogue import (
     in_chain_order,
     parameters_of,
 )
-from jbf.doubt import without_jumps
+from jbf.doubt import at_work, without_jumps
 from jbf.errors import InputError
 from jbf.model import Model, chain, check_rig, require_record
 from jbf.model_file import ParameterValue
@@ -268,17 +268,9 @@ class Problem:
 
     def without_doubt(self, values: Array) -> Problem:
         """The problem with the weights that the model at these values leaves to the samples."""
-        sure = without_jumps(self.campaign, self.at_work(values), self.predict(values))
+        effects = at_work(self.effects, self.parameters, values)
+        sure = without_jumps(self.campaign, effects, self.predict(values))
         return self if sure is self.campaign else self.on(sure)
-
-    def at_work(self, values: Array) -> list[str]:
-        """The effects that are not at their null."""
-        idle = {
-            name.split(".")[0]
-            for (name, page), value in zip(self.parameters.items(), values, strict=True)
-            if "." in name and page.null == value
-        }
-        return [effect for effect in self.effects if effect not in idle]
 
     def on(self, campaign: Campaign) -> Problem:
         """The same problem on other samples."""

@@ -7,7 +7,7 @@ import pytest
 from campaigns import campaign
 from jbf import InputError, Model, compare, fit
 from jbf.campaign import Campaign
-from jbf.doubt import jumps, moves_jumps, without_jumps
+from jbf.doubt import at_work, jumps, moves_jumps, without_jumps
 from jbf.fitting import Problem
 
 
@@ -66,8 +66,12 @@ def test_an_effect_at_its_null_casts_no_doubt() -> None:
     values = problem.starts({})[0]
     assert problem.without_doubt(values).campaign.samples < problem.campaign.samples
     values[problem.names.index("time_delay.tau_s")] = 0.0
-    assert problem.at_work(values) == []
+    assert at_work(["time_delay"], problem.parameters, values) == []
     assert problem.without_doubt(values) is problem
+    # A comparison sees as many samples as that of the law alone.
+    law = dict(zip(problem.names, values, strict=True))
+    late = compare(Model(rig, effects=["time_delay"], parameters=law), runs)
+    assert late.campaign.samples == compare(Model(rig), runs).campaign.samples
 
 
 def test_load_dependence_needs_several_loads() -> None:

@@ -78,15 +78,15 @@ def disagreement(problem: Problem, solution: Solution) -> Disagreement:
     gain, degrees, by_run = 0.0, 0, {}
     together: list[tuple[Array, Array]] = []
     for (r, j), p in zip(parts, solution.campaign.prepared, strict=True):
-        directions, felt, _ = np.linalg.svd(j / scale, full_matrices=False)
-        clear = felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)
-        if len(r) <= clear.sum():
+        clear = _felt(j / scale)
+        count = clear.shape[1]
+        if len(r) <= count:
             continue
         sigma = max(float(np.sqrt(np.mean(r**2))), 1e-150)
-        own = float(np.sum((directions[:, clear].T @ (r / sigma)) ** 2))
+        own = float(np.sum((clear.T @ (r / sigma)) ** 2))
         gain += own
-        degrees += int(clear.sum())
-        by_run[p.run.name] = own / max(int(clear.sum()), 1)
+        degrees += count
+        by_run[p.run.name] = own / max(count, 1)
         together.append((r / sigma, j / scale / sigma))
     ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
     if len(together) < 2:
@@ -94,11 +94,16 @@ def disagreement(problem: Problem, solution: Solution) -> Disagreement:
     # What parameters in common would gain is no disagreement: at a bound, or where the colour of
     # the noise is not all forgiven, the fit does not stand on the top.
     r, j = (np.concatenate(a) for a in zip(*together, strict=True))
-    directions, felt, _ = np.linalg.svd(j, full_matrices=False)
-    clear = felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)
-    common = float(np.sum((directions[:, clear].T @ r) ** 2))
+    common = float(np.sum((_felt(j).T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
     return Disagreement(max(gain - common, 0.0), max(degrees - shared, 1), ranked)
+
+
+def _felt(j: Array) -> Array:
+    """Directions of the record, orthonormal columns, that the parameters move it in."""
+    directions, felt, _ = np.linalg.svd(j, full_matrices=False)
+    found: Array = directions[:, felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)]
+    return found
 
 
 def _apart(r: Array, j: Array, aside: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
@@ -107,8 +112,7 @@ def _apart(r: Array, j: Array, aside: npt.NDArray[np.bool_]) -> tuple[Array, Arr
     motion choose."""
     if not aside.any():
         return r, j
-    directions, felt, _ = np.linalg.svd(j[:, aside], full_matrices=False)
-    taken = directions[:, felt > FELT * max(float(felt.max(initial=0.0)), 1e-300)]
+    taken = _felt(j[:, aside])
     rest = j[:, ~aside]
     return r - taken @ (taken.T @ r), rest - taken @ (taken.T @ rest)
 

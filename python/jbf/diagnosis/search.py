@@ -178,9 +178,7 @@ class Search:
             if np.subtract(*costs(fresh, found)) < CONTENDER:
                 fresh = problem.look_around(problem.settle(fresh))
                 found = fresh if np.subtract(*costs(fresh, found)) < 0.0 else found
-        if found is not near:
-            self.solved[effects] = found
-            self.held_out.pop(effects, None)
+        self._replace(effects, found)
 
     def come_down(self, effects: frozenset[str], whole: Solution) -> None:
         """Fit fewer effects from where they are in a richer model, too: it may have found its way
@@ -191,7 +189,11 @@ class Search:
         sure = problem.without_doubt(start)
         there = sure.settle(sure.solution(start, near.noise, False))
         if np.subtract(*costs(there, near)) < 0.0:
-            self.solved[effects] = there
+            self._replace(effects, there)
+
+    def _replace(self, effects: frozenset[str], better: Solution) -> None:
+        if better is not self.solved[effects]:
+            self.solved[effects] = better
             self.held_out.pop(effects, None)
 
     def price(self, parameters: int) -> float:

@@ -16,9 +16,9 @@ from pathlib import Path
 import jbf
 import numpy as np
 from jbf import _core
-from jbf.campaign import Campaign
-from jbf.fitting import Problem
-from jbf.model import MAX_STEP_S, core_bearing, core_load_n
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem
+from jbf.models.chain import MAX_STEP_S, core_bearing, core_load_n
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 

@@ -12,8 +12,8 @@ import time
 from dataclasses import replace
 
 from jbf import Model, control
-from jbf.catalogue import effects
 from jbf.control.bench import THESIS_RIG
+from jbf.models.catalogue import effects
 
 TASK = replace(control.TASKS["velocity sine"], seconds=100.0)
 RUNS = 9

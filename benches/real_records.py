@@ -15,7 +15,7 @@ from pathlib import Path
 
 import jbf
 import numpy as np
-from jbf.conditioning import impose
+from jbf.records.motion.imposed import impose
 
 MASS_KG, OFFSET_N = 95.1, -3.2
 """Of the ball-screw axis, from its publication: taken off by hand until effects do it."""

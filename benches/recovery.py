@@ -20,7 +20,7 @@ from pathlib import Path
 
 import jbf
 import numpy as np
-from jbf.catalogue import find_parameter, parameters_of
+from jbf.models.catalogue import find_parameter, parameters_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import jbf
 import numpy as np
-from jbf.catalogue import Effect, Parameter
-from jbf.text import NEEDS, refused_words
+from jbf.models.catalogue import Effect, Parameter, built_in
+from jbf.reporting.catalogue_text import NEEDS, refused_words
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -189,7 +189,7 @@ def index() -> str:
 
 def catalogue() -> dict[str, Effect]:
     """The library's own effects."""
-    return jbf.catalogue.built_in()
+    return built_in()
 
 
 def texts() -> dict[Path, str]:

@@ -11,40 +11,42 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from jbf._core import __version__
-from jbf.batching import batch
-from jbf.catalogue import Parameter, effects, laws
 from jbf.errors import FilmWarning, InputError, JbfError
-from jbf.model import Model
-from jbf.model_file import ParameterValue
-from jbf.own_effects import forget_effect, load_effects, register_effect
-from jbf.record import Run, read_run, read_runs
-from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
-from jbf.trajectory import Trajectory, trajectories, trajectory
+from jbf.models.batch import batch
+from jbf.models.catalogue import Parameter, effects, laws
+from jbf.models.model import Model
+from jbf.models.own_effects import forget_effect, load_effects, register_effect
+from jbf.models.parameter_value import ParameterValue
+from jbf.models.trajectory import Trajectory, trajectories, trajectory
+from jbf.records.csv_file import read_run
+from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
+from jbf.records.run import Run
+from jbf.records.run_files import read_runs
 
 if TYPE_CHECKING:
     from jbf import control
-    from jbf.bootstrapping import Bootstrap, bootstrap
-    from jbf.comparison import Comparison, compare
+    from jbf.comparison.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
-    from jbf.fitting import Fit, fit
-    from jbf.trajectory_fit import TrajectoryFit, fit_trajectories
+    from jbf.estimation.bootstrap import Bootstrap, bootstrap
+    from jbf.estimation.fit import Fit, fit
+    from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.
 _LATER = {
-    "Bootstrap": "jbf.bootstrapping",
-    "bootstrap": "jbf.bootstrapping",
-    "Comparison": "jbf.comparison",
-    "compare": "jbf.comparison",
+    "Bootstrap": "jbf.estimation.bootstrap",
+    "bootstrap": "jbf.estimation.bootstrap",
+    "Comparison": "jbf.comparison.comparison",
+    "compare": "jbf.comparison.comparison",
     "Diagnosis": "jbf.diagnosis",
     "Experiment": "jbf.diagnosis",
     "Limits": "jbf.diagnosis",
     "diagnose": "jbf.diagnosis",
     "diagnose_many": "jbf.diagnosis",
-    "Fit": "jbf.fitting",
-    "fit": "jbf.fitting",
-    "TrajectoryFit": "jbf.trajectory_fit",
-    "fit_trajectories": "jbf.trajectory_fit",
+    "Fit": "jbf.estimation.fit",
+    "fit": "jbf.estimation.fit",
+    "TrajectoryFit": "jbf.estimation.trajectory_fit",
+    "fit_trajectories": "jbf.estimation.trajectory_fit",
 }
 
 __all__ = [

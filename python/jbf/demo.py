@@ -15,10 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from jbf.comparison import compare
+from jbf.comparison.comparison import compare
 from jbf.diagnosis import Diagnosis, diagnose
-from jbf.record import PathLike, read_runs
-from jbf.rig import read_rig
+from jbf.records.rig import read_rig
+from jbf.records.run import PathLike
+from jbf.records.run_files import read_runs
 
 Say = Callable[[str], None]
 Progress = Callable[[str, int, int], None]

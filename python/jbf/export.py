@@ -11,10 +11,11 @@ import math
 from dataclasses import dataclass
 
 from jbf import _core
-from jbf.catalogue import find_effect, find_law
 from jbf.errors import InputError
-from jbf.model import Model, core_bearing, core_load_n
-from jbf.own_effects import OwnEffect
+from jbf.models.catalogue import find_effect, find_law
+from jbf.models.chain import core_bearing, core_load_n
+from jbf.models.model import Model
+from jbf.models.own_effects import OwnEffect
 
 BEARING_FIELDS = ("radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_pa_s")
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import InputError, bootstrap, fit
-from jbf.bootstrapping import recorded_again
-from jbf.campaign import Campaign
-from jbf.noise import Noise, noise_of
+from jbf.estimation.bootstrap import recorded_again
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import Noise, noise_of
 
 
 def test_errors_of_a_plain_fit_are_those_of_the_curvature() -> None:

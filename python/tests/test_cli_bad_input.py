@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import jbf.comparison
-import jbf.fitting
+import jbf.comparison.comparison
+import jbf.estimation.fit
 import pytest
 from jbf import Fit
 from jbf.cli import main
@@ -326,8 +326,8 @@ def test_outputs_are_refused_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("the long work began")
 
-    monkeypatch.setattr(jbf.fitting, "fit", work)
-    monkeypatch.setattr(jbf.comparison, "compare", work)
+    monkeypatch.setattr(jbf.estimation.fit, "fit", work)
+    monkeypatch.setattr(jbf.comparison.comparison, "compare", work)
     monkeypatch.setattr(jbf.diagnosis, "diagnose", work)
     for option, command in [
         ("--out", ("fit", "rig.toml", "runs")),

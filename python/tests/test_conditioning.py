@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import Run, conditioning
-from jbf.conditioning import impose, noise_of
+from jbf import Run
+from jbf.records.motion import smoothing
+from jbf.records.motion.imposed import impose
+from jbf.records.motion.roughness import noise_of
 
 RADIUS_M = 0.0127
 STEP_RAD = 1.0 / 2387.3
@@ -165,9 +167,9 @@ def test_even_samples_share_their_windows(half: int, monkeypatch: pytest.MonkeyP
     time = np.round(0.02 * np.arange(120), 3)
     speed = np.sin(time) + 1e-3 * random.standard_normal(120)
     path = 1.0 - np.cos(time) + 1e-4 * random.standard_normal(120)
-    short = conditioning._local_fit(time, path, speed, 1e-4, 1e-3, half)
-    monkeypatch.setattr(conditioning, "_even", lambda time: False)
+    short = smoothing.local_fit(time, path, speed, 1e-4, 1e-3, half)
+    monkeypatch.setattr(smoothing, "_even", lambda time: False)
     for got, expected in zip(
-        short, conditioning._local_fit(time, path, speed, 1e-4, 1e-3, half), strict=True
+        short, smoothing.local_fit(time, path, speed, 1e-4, 1e-3, half), strict=True
     ):
         np.testing.assert_allclose(got, expected, rtol=1e-7, atol=1e-9)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import Rig, Run, diagnose
-from jbf.campaign import Campaign
 from jbf.diagnosis.constancy import disagreement, find_disagreement
-from jbf.fitting import Problem, Solution
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem, Solution
 
 
 def _solved(rig: Rig, runs: list[Run], effects: tuple[str, ...] = ()) -> tuple[Problem, Solution]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from jbf.catalogue import built_in
+from jbf.models.catalogue import built_in
 
 ROOT = Path(__file__).resolve().parents[2]
 

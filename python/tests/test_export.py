@@ -10,9 +10,9 @@ import jbf
 import numpy as np
 import pytest
 from jbf import cli, export
-from jbf.catalogue import Parameter
 from jbf.errors import InputError
-from jbf.model import MAX_STEP_S, imposed
+from jbf.models.catalogue import Parameter
+from jbf.models.chain import MAX_STEP_S, imposed
 
 ROOT = Path(__file__).resolve().parents[2]
 

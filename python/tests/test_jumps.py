@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import InputError, Model, compare, fit
-from jbf.campaign import Campaign
-from jbf.doubt import at_work, jumps, moves_jumps, without_jumps
-from jbf.fitting import Problem
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem
+from jbf.estimation.jumps import at_work, jumps, moves_jumps, without_jumps
 
 
 def test_only_a_jump_is_in_doubt() -> None:

@@ -9,8 +9,8 @@ import jbf
 import numpy as np
 import pytest
 from jbf import InputError, Model, Rig, Run, _core
-from jbf.catalogue import effects
 from jbf.cli import main
+from jbf.models.catalogue import effects
 
 TABLE_4_2 = {"f_m": 0.26, "U_tr": 0.06, "K0": 7.5e5, "gamma": 33.0}
 

@@ -9,14 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jbf.errors import InputError
-from jbf.model_file import (
-    ModelFile,
-    ParameterValue,
-    Vocabulary,
-    read_model_file,
-    write_model_file,
-)
-from jbf.rig import Rig
+from jbf.models.model_file import read_model_file, write_model_file
+from jbf.models.parameter_value import ParameterValue
+from jbf.models.vocabulary import ModelFile, Vocabulary
+from jbf.records.rig import Rig
 
 GOOD = """\
 format = 1

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from campaigns import campaign
-from jbf.campaign import Campaign
-from jbf.noise import WHITE, Noise, estimate_noise, noise_floor, period_samples
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import WHITE, Noise, estimate_noise, noise_floor, period_samples
 
 Array = npt.NDArray[np.float64]
 STEP_S = 0.02

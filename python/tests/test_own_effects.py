@@ -13,7 +13,8 @@ from campaigns import campaign
 from conftest import make_runs
 from jbf import InputError, Model, Parameter, Rig, Run
 from jbf.cli import main
-from jbf.model import chain, core_motion, imposed
+from jbf.models import catalogue
+from jbf.models.chain import chain, core_motion, imposed
 
 HEAT = Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
 TRUTH = 0.35
@@ -27,7 +28,7 @@ def cooler(temperature_c: np.ndarray, velocity_m_s: np.ndarray, k_n_k: float) ->
 @pytest.fixture(autouse=True)
 def _clean() -> Iterator[None]:
     yield
-    for name in list(jbf.catalogue.own()):
+    for name in list(catalogue.own()):
         jbf.forget_effect(name)
 
 
@@ -144,7 +145,7 @@ def test_a_function_of_real_numbers_gets_differences() -> None:
         Parameter("v_m_s", "m/s", lower=1e-3, upper=1.0, starts=(0.02,), log=True),
     ]
     effect = jbf.register_effect(stepped, parameters=pages)
-    assert isinstance(effect, jbf.own_effects.OwnEffect)
+    assert isinstance(effect, jbf.models.own_effects.OwnEffect)
     slopes, found = _slopes(["stepped"], np.array([0.26, 0.055, 6.5e5, 33.0, 1.5, 0.03]), run)
     assert np.max(np.abs(slopes - found)[:, 4:] / np.max(np.abs(found), axis=0)[4:]) < 1e-6
     assert effect.analytic == {"a_n": False, "v_m_s": False}
@@ -156,7 +157,7 @@ def test_a_function_of_real_numbers_gets_differences() -> None:
 
 def test_complex_step_is_exact() -> None:
     effect = jbf.register_effect(cooler, parameters=[HEAT])
-    assert isinstance(effect, jbf.own_effects.OwnEffect)
+    assert isinstance(effect, jbf.models.own_effects.OwnEffect)
     columns = {"temperature_c": np.array([41.0, 45.0]), "velocity_m_s": np.array([0.1, -0.01])}
     columns["time_s"] = np.arange(2.0)
     expected = np.array([1.0, 5.0]) * np.tanh(np.array([10.0, -1.0]))
@@ -182,7 +183,7 @@ def test_a_wrong_registration_is_refused(change: dict[str, object], message: str
     good: dict[str, object] = {"parameters": [HEAT]}
     with pytest.raises(InputError, match=message):
         jbf.register_effect(cooler, **(good | change))  # type: ignore[arg-type]
-    assert not jbf.catalogue.own()
+    assert not catalogue.own()
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from campaigns import campaign
-from jbf.campaign import Campaign
-from jbf.catalogue import find_effect
-from jbf.fitting import Problem
-from jbf.peaks import other_peaks
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem
+from jbf.estimation.peaks import other_peaks
+from jbf.models.catalogue import find_effect
 
 
 def test_the_best_of_the_other_minima_are_found() -> None:

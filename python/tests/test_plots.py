@@ -8,12 +8,12 @@ from typing import cast
 import numpy as np
 import pytest
 from jbf import Comparison, Fit, Run, compare
-from jbf.axes import all_axes
-from jbf.bin_axes import bin_axis
-from jbf.comparison import Failure
+from jbf.comparison.axes import all_axes
+from jbf.comparison.comparison import Failure
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
-from jbf.plots import plot_comparison, plot_diagnosis, plot_run
+from jbf.reporting.bin_axes import bin_axis
+from jbf.reporting.plots import plot_comparison, plot_diagnosis, plot_run
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -111,5 +111,5 @@ def test_pictures_do_not_touch_pyplot(bad: Comparison) -> None:
     import subprocess
     import sys
 
-    code = "import jbf.plots, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import jbf.reporting.plots, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jbf.errors import InputError
-from jbf.record import Run, read_run, read_runs, require
+from jbf.records.csv_file import read_run
+from jbf.records.run import Run, require
+from jbf.records.run_files import read_runs
 
 HEADER = "time_s,angle_rad,velocity_m_s,friction_n,load_n"
 ROWS = [f"{0.02 * i:.3f},{0.1 * i:.5f},0.01,{0.5 - 0.1 * i:.4f},104.0" for i in range(12)]

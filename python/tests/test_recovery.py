@@ -12,7 +12,7 @@ import pytest
 import recovery
 import rigsim
 from campaigns import SHORT
-from jbf.catalogue import find_effect
+from jbf.models.catalogue import find_effect
 
 REPEATS = 8
 

@@ -11,12 +11,12 @@ import numpy.typing as npt
 import pytest
 from campaigns import campaign
 from jbf import diagnose
-from jbf.campaign import Campaign
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.repeats import find_repeats
-from jbf.fitting import Problem, Solution
-from jbf.noise import Noise
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem, Solution
+from jbf.estimation.noise import Noise
 
 Array = npt.NDArray[np.float64]
 SIGMA_N = 0.3

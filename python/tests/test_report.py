@@ -13,7 +13,7 @@ import pytest
 from jbf import Fit, Run, compare
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
-from jbf.report import write_comparison, write_diagnosis
+from jbf.reporting.page import write_comparison, write_diagnosis
 
 VOID = {"meta", "img", "br", "link"}
 

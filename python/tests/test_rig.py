@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from jbf.errors import InputError
-from jbf.rig import Bearing, Load, Lubricant, Rig, read_rig
+from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
 
 GOOD = """\
 [bearing]

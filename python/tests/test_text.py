@@ -7,11 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from jbf import Fit, Rig, Run, compare, fit
-from jbf.catalogue import effects, find_effect
 from jbf.diagnosis.result import Diagnosis
-from jbf.model_file import ParameterValue
-from jbf.text import comparison_report, diagnosis_report, effect_page, effects_page, fit_report
-from jbf.words import listed, measured, number, percent, verdict_sentence
+from jbf.models.catalogue import effects, find_effect
+from jbf.models.parameter_value import ParameterValue
+from jbf.reporting.catalogue_text import effect_page, effects_page
+from jbf.reporting.text import comparison_report, diagnosis_report, fit_report
+from jbf.reporting.words import listed, measured, number, percent, verdict_sentence
 
 VERDICTS = ("adequate", "missing", "ambiguous", "unexplained")
 

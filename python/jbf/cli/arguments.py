@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeAlias
 
-from jbf.catalogue import laws
+from jbf.models.catalogue import laws
 
 if TYPE_CHECKING:
     from jbf.cli import Parser

@@ -28,13 +28,13 @@ def run(arguments: argparse.Namespace) -> int:
     runs = inputs.runs(arguments.runs, first="MODEL")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
-    from jbf.comparison import compare
+    from jbf.comparison.comparison import compare
 
     texts = {}
     with shown("comparing"):
         comparison = compare(model, runs)
         if arguments.report:
-            from jbf.report import comparison_page
+            from jbf.reporting.page import comparison_page
 
             texts[arguments.report] = comparison_page(comparison)
     if arguments.json:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from jbf.cli import Parser
     from jbf.control import Bench, Motion
     from jbf.control.thesis_tables import Tables
-    from jbf.model import Model
+    from jbf.models.model import Model
 
 _DEFAULT = "none,learning,coulomb,observed"
 
@@ -155,7 +155,7 @@ def _run(arguments: argparse.Namespace) -> int:
 def _asked(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
     """The task, and what else a recorded motion brings."""
     from jbf.control import Motion, follow, thesis_model
-    from jbf.record import read_run
+    from jbf.records.csv_file import read_run
 
     if arguments.motion is None:
         return Motion(task_of(arguments), None, None)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from jbf.catalogue import find_law
 from jbf.cli import diagnose_many, inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
+from jbf.models.catalogue import find_law
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
             progress=report,
         )
         if arguments.report:
-            from jbf.report import diagnosis_page
+            from jbf.reporting.page import diagnosis_page
 
             texts[arguments.report] = diagnosis_page(diagnosis)
     if arguments.json:

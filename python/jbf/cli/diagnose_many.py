@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from jbf.cli import outputs
 from jbf.cli.progress import shown
 from jbf.errors import InputError
-from jbf.text import columns
-from jbf.words import number
+from jbf.reporting.paragraphs import columns
+from jbf.reporting.words import number
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
@@ -80,7 +80,7 @@ def _files(
     if arguments.out:
         found[str(Path(arguments.out) / f"{name}.toml")] = result.model.to_toml()
     if arguments.report:
-        from jbf.report import diagnosis_page
+        from jbf.reporting.page import diagnosis_page
 
         found[str(Path(arguments.report) / f"{name}.html")] = diagnosis_page(result)
     return found

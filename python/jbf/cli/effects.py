@@ -6,9 +6,9 @@ import argparse
 from dataclasses import asdict, fields
 from typing import Any
 
-from jbf.catalogue import Effect, effects, find_effect, find_law
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
+from jbf.models.catalogue import Effect, effects, find_effect, find_law
 
 
 def add(commands: Commands) -> None:
@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
-    from jbf.text import effect_page, effects_page
+    from jbf.reporting.catalogue_text import effect_page, effects_page
 
     wanted = {"--json": arguments.json}
     outputs.check(wanted)

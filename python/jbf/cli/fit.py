@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 
-from jbf.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError, quoted
+from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
 
 
 def add(commands: Commands) -> None:
@@ -53,17 +53,17 @@ def run(arguments: argparse.Namespace) -> int:
     runs = inputs.runs(arguments.runs, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
-    from jbf.fitting import fit
+    from jbf.estimation.fit import fit
 
     repeats = arguments.bootstrap
     if repeats is not None:
-        from jbf.bootstrapping import check_repeats
+        from jbf.estimation.bootstrap import check_repeats
 
         check_repeats(repeats, "--bootstrap")
     with shown("fitting") as report:
         fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
         if repeats is not None:
-            from jbf.bootstrapping import bootstrap
+            from jbf.estimation.bootstrap import bootstrap
 
             fitted = bootstrap(fitted, runs, repeats=repeats, progress=report).fit
     outputs.write({arguments.out: fitted.model.to_toml()})

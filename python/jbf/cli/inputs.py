@@ -6,9 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jbf.errors import InputError
-from jbf.model import Model, check_rig
-from jbf.record import Run, read_run, read_runs
-from jbf.rig import Rig, read_rig, read_toml
+from jbf.models.chain import check_rig
+from jbf.models.model import Model
+from jbf.records.csv_file import read_run
+from jbf.records.rig import Rig, read_rig
+from jbf.records.run import Run
+from jbf.records.run_files import read_runs
+from jbf.records.toml_file import read_toml
 
 _RIG_SECTIONS = {"bearing", "lubricant", "load"}
 

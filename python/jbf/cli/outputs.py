@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from jbf.errors import InputError, write_text
+from jbf.errors import InputError
+from jbf.text_files import write_text
 
 STDOUT = "-"
 

@@ -12,7 +12,7 @@ from jbf.control.bench import thesis_model
 from jbf.control.schemes import LISTED_VOLTS, Coulomb, Learning
 from jbf.control.task import TASKS
 from jbf.control.thesis_tables import Tables, fit_friction, standard_schemes, tables
-from jbf.model import Model
+from jbf.models.model import Model
 
 Report = Callable[[str, int, int], None]
 

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from jbf import catalogue
 from jbf.errors import InputError
-from jbf.model import Model, core_bearing, core_load_n
-from jbf.own_effects import OwnEffect
-from jbf.rig import Bearing, Load, Lubricant, Rig
+from jbf.models import catalogue
+from jbf.models.chain import core_bearing, core_load_n
+from jbf.models.model import Model
+from jbf.models.own_effects import OwnEffect
+from jbf.records.rig import Bearing, Load, Lubricant, Rig
 
 if TYPE_CHECKING:
     from jbf import _core

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from jbf.control.bench import THESIS_BENCH, Bench
 from jbf.control.task import RECORDED, Task
 from jbf.errors import InputError
-from jbf.record import Run
-from jbf.rig import Rig
+from jbf.records.rig import Rig
+from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 

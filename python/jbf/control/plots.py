@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from jbf.control.robustness import Outcome
 from jbf.control.run import FALLBACK, Result
 from jbf.control.thesis_tables import COLUMNS, Tables
-from jbf.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
+from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
 
 Array = npt.NDArray[np.float64]
 

@@ -13,17 +13,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jbf.catalogue import effects, laws
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model, with_noise
 from jbf.control.run import run
 from jbf.control.schemes import NoCompensation, Observed, Scheme
 from jbf.control.task import TASKS, Task
 from jbf.control.tuning import tune
-from jbf.fitting import fit
-from jbf.model import Model
-from jbf.own_effects import OwnEffect
-from jbf.record import Run
-from jbf.rig import Lubricant
+from jbf.estimation.fit import fit
+from jbf.models.catalogue import effects, laws
+from jbf.models.model import Model
+from jbf.models.own_effects import OwnEffect
+from jbf.records.rig import Lubricant
+from jbf.records.run import Run
 
 Report = Callable[[str, int, int], None]
 

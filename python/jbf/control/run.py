@@ -14,7 +14,8 @@ from jbf.control.schemes import Scheme, core_loop, scheme
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
-from jbf.model import Model, core_load_n
+from jbf.models.chain import core_load_n
+from jbf.models.model import Model
 
 Array = npt.NDArray[np.float64]
 

@@ -13,8 +13,9 @@ from jbf.control.settings import Settings
 from jbf.control.task import Task
 from jbf.control.tuning import friction_level_v, tune
 from jbf.errors import InputError, did_you_mean
-from jbf.model import Model, core_bearing, core_load_n
-from jbf.rig import Rig
+from jbf.models.chain import core_bearing, core_load_n
+from jbf.models.model import Model
+from jbf.records.rig import Rig
 
 POSITION_GAINS = (0.43764, -0.25164)
 VELOCITY_GAINS = (1.0, 0.295)

@@ -6,8 +6,10 @@ from dataclasses import asdict, dataclass, fields
 
 import tomlkit
 
-from jbf.errors import InputError, write_text
-from jbf.rig import PathLike, number, read_toml, refuse_unknown
+from jbf.errors import InputError
+from jbf.records.run import PathLike
+from jbf.records.toml_file import number, read_toml, refuse_unknown
+from jbf.text_files import write_text
 
 _HEADER = """\
 jbf control settings, in SI units; `jbf control tune MODEL` computes them from a fitted model."""

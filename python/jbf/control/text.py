@@ -9,9 +9,9 @@ from jbf.control.robustness import HARM, HELP, Outcome
 from jbf.control.run import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED, Result
 from jbf.control.task import RECORDED
 from jbf.control.thesis_tables import COLUMNS, Cell, Tables
-from jbf.model import Model
-from jbf.text import columns
-from jbf.words import number
+from jbf.models.model import Model
+from jbf.reporting.paragraphs import columns
+from jbf.reporting.words import number
 
 _TITLES = {"none": "no compensation", "learning": "dynamic model, learned", "coulomb": "Coulomb"}
 _FAR = 2.0

@@ -20,7 +20,7 @@ from jbf.control.bench import FITTED, THESIS_BENCH, THESIS_RIG, Bench, thesis_mo
 from jbf.control.run import Result, run
 from jbf.control.schemes import Coulomb, Learning, NoCompensation, Observed, Scheme
 from jbf.control.task import TASKS, Task
-from jbf.model import Model
+from jbf.models.model import Model
 
 Report = Callable[[str, int, int], None]
 Clock = Literal["journal", "thesis"]

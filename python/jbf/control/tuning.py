@@ -14,8 +14,8 @@ import numpy as np
 from jbf.control.bench import THESIS_BENCH, Bench
 from jbf.control.settings import Settings
 from jbf.errors import InputError
-from jbf.model import Model
-from jbf.record import Run
+from jbf.models.model import Model
+from jbf.records.run import Run
 
 _SHARE_OF_SAMPLING = 0.12
 """Observer's bandwidth times the step: its delay of half a step then costs 3.4 degrees."""

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.result import Remainder
-from jbf.fitting import Problem
+from jbf.estimation.fit import Problem
 
 Array = npt.NDArray[np.float64]
 

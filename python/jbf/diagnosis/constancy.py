@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import stats
 
-from jbf.catalogue import find_effect
 from jbf.diagnosis.result import Remainder
-from jbf.fitting import Problem, Solution
+from jbf.estimation.fit import Problem, Solution
+from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jbf.campaign import Campaign
 from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
 
 Array = npt.NDArray[np.float64]
 

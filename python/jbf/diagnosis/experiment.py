@@ -17,12 +17,12 @@ import numpy.typing as npt
 from scipy import stats
 
 from jbf import _core
-from jbf.catalogue import find_effect
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
-from jbf.fitting import Problem, Solution
-from jbf.model import core_load_n, core_motion, imposed
-from jbf.own_effects import ALWAYS
-from jbf.record import PathLike, Run
+from jbf.estimation.fit import Problem, Solution
+from jbf.models.catalogue import find_effect
+from jbf.models.chain import core_load_n, core_motion, imposed
+from jbf.models.own_effects import ALWAYS
+from jbf.records.run import PathLike, Run
 
 if TYPE_CHECKING:
     from jbf.diagnosis.search import Search

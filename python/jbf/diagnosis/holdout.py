@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.fitting import Problem, Solution
+from jbf.estimation.fit import Problem, Solution
 
 Array = npt.NDArray[np.float64]
 

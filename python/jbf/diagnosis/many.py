@@ -7,12 +7,13 @@ from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from typing import Any
 
-from jbf.catalogue import find_law
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.search import Progress, diagnose
 from jbf.errors import InputError, JbfError
-from jbf.record import PathLike, Run, read_runs
-from jbf.rig import Rig, read_rig
+from jbf.models.catalogue import find_law
+from jbf.records.rig import Rig, read_rig
+from jbf.records.run import PathLike, Run
+from jbf.records.run_files import read_runs
 
 Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""

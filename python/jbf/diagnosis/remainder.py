@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from jbf.axes import all_axes, force_axis
-from jbf.catalogue import transition_speed
-from jbf.comparison import Failure, _failure
+from jbf.comparison.axes import all_axes, force_axis
+from jbf.comparison.comparison import Failure, _failure
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.constancy import find_disagreement
 from jbf.diagnosis.repeats import find_repeats
 from jbf.diagnosis.result import Remainder
-from jbf.fitting import Problem, Solution
+from jbf.estimation.fit import Problem, Solution
+from jbf.models.catalogue import transition_speed
 
 Array = npt.NDArray[np.float64]
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.result import Remainder
-from jbf.fitting import Problem, Solution
-from jbf.noise import Noise, period_samples
+from jbf.estimation.fit import Problem, Solution
+from jbf.estimation.noise import Noise, period_samples
 
 Array = npt.NDArray[np.float64]
 

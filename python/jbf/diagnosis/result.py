@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from jbf.comparison import Comparison, Failure
-from jbf.fitting import Fit
-from jbf.model import Model
-from jbf.record import PathLike
+from jbf.comparison.comparison import Comparison, Failure
+from jbf.estimation.fit import Fit
+from jbf.models.model import Model
+from jbf.records.run import PathLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -160,18 +160,18 @@ class Diagnosis:
 
     def summary(self) -> str:
         """The story on a page of text."""
-        from jbf.text import diagnosis_report
+        from jbf.reporting.text import diagnosis_report
 
         return diagnosis_report(self)
 
     def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
         """The error falling step by step, and friction against speed; matplotlib axes."""
-        from jbf.plots import plot_diagnosis
+        from jbf.reporting.plots import plot_diagnosis
 
         return plot_diagnosis(self, axes)
 
     def report(self, path: PathLike) -> None:
         """Write a self-contained HTML page with pictures."""
-        from jbf.report import write_diagnosis
+        from jbf.reporting.page import write_diagnosis
 
         write_diagnosis(self, path)

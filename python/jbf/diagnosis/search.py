@@ -16,21 +16,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.campaign import Campaign
-from jbf.catalogue import effects as catalogue
-from jbf.catalogue import find_effect
-from jbf.comparison import compare_prepared
+from jbf.comparison.comparison import compare_prepared
 from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose, propose_to_see, unseen
 from jbf.diagnosis.holdout import holdout_rms
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
-from jbf.fitting import Problem, Solution, finish, root_mean_square
-from jbf.gains import costs, first_step_gain, independent, next_step_gain
-from jbf.model import check_rig
-from jbf.record import Run
-from jbf.rig import Rig
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Problem, Solution, finish, root_mean_square
+from jbf.estimation.likelihood import costs, first_step_gain, independent, next_step_gain
+from jbf.models.catalogue import effects as catalogue
+from jbf.models.catalogue import find_effect
+from jbf.models.chain import check_rig
+from jbf.records.rig import Rig
+from jbf.records.run import Run
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]

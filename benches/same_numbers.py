@@ -1,0 +1,156 @@
+"""Do two versions of jbf give the same numbers? Recorded by one, compared by the other.
+
+    python benches/same_numbers.py record before.json      # on the one
+    python benches/same_numbers.py compare before.json     # on the other
+
+Simulated campaigns of every kind (each effect alone, pairs, nothing, something foreign, ties,
+other laws) are diagnosed, fitted and compared; all numbers and words of the answers must agree,
+numbers to `--to` relative (1e-9). Record and compare on one machine: processors round differently.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import jbf
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "simulator"), str(ROOT / "benches")]
+
+from rigruns import rig_of, runs_of  # noqa: E402
+from rigsim import CATALOGUE, simulate_campaign  # noqa: E402
+
+Row = dict[str, Any]
+SEED = 8101
+SLACK = 1e-9
+VOLATILE = ("elapsed_s", "policy")
+"""What an answer says of itself and not of the runs."""
+
+
+def campaigns() -> dict[str, dict[str, Any]]:
+    """Name to what is simulated and how it is diagnosed."""
+    found: dict[str, dict[str, Any]] = {}
+    for i, name in enumerate(sorted(CATALOGUE)):
+        plan = "loads" if name == "load_dependence" else "short"
+        found[name] = {"effects": (name,), "campaign": plan, "coloured": i % 2 == 1}
+    found["none"] = {}
+    found["none coloured"] = {"coloured": True}
+    found["pair"] = {"effects": ("coulomb_drag", "sensor_lag")}
+    found["pair with a drive"] = {"effects": ("presliding", "thermal_thinning"), "coloured": True}
+    found["foreign"] = {"foreign": ("hum",)}
+    found["foreign cell"] = {"foreign": ("cubic_cell",), "strength": 1.5}
+    found["tied"] = {"effects": ("coulomb_drag",), "campaign": "one_way"}
+    found["slow"] = {"effects": ("sensor_lag",), "campaign": "slow"}
+    found["stribeck"] = {"effects": ("coulomb_drag",), "law": "stribeck"}
+    found["lugre"] = {"law": "lugre"}
+    return found
+
+
+def answers(name: str, options: dict[str, Any], seed: int) -> Row:
+    """Everything that jbf says of one campaign, as numbers and words."""
+    law = options.get("law", "journal")
+    records, truth = simulate_campaign(
+        seed,
+        options.get("effects", ()),
+        strength=options.get("strength", 1.0),
+        coloured=options.get("coloured", False),
+        campaign=options.get("campaign", "short"),
+        foreign=options.get("foreign", ()),
+    )
+    rig, runs = rig_of(truth["base"]["load_n"]), runs_of(records)
+    found = jbf.diagnose(rig, runs, law=law)
+    fit = jbf.fit(rig, runs, found.effects, law=law)
+    row: Row = {
+        "diagnosis": {k: v for k, v in found.to_dict().items() if k not in VOLATILE},
+        "before": found.before.to_dict(),
+        "after": found.after.to_dict(),
+        "fit": {
+            "parameters": {n: [p.value, p.stderr, p.note] for n, p in fit.parameters.items()},
+            "correlations": fit.correlations.tolist(),
+            "rms_n": fit.rms_n,
+            "noise": [fit.noise.memory_s, fit.noise.colour],
+            "samples": fit.samples,
+            "doubtful": list(fit.doubtful),
+            "residuals_n": [float(np.sqrt(np.mean(r**2))) for r in fit.residuals],
+        },
+        "predictions": [digest(f) for f in found.after.predictions],
+        "model": found.model.to_toml(),
+    }
+    if found.experiment is not None:
+        run = found.experiment.run
+        row["experiment"] = [
+            digest(run.time_s),
+            digest(run.velocity_m_s),
+            found.experiment.evidence,
+        ]
+    if name in ("coulomb_drag", "none"):
+        again = jbf.bootstrap(fit, runs, repeats=19)
+        row["bootstrap"] = {n: digest(v) for n, v in again.values.items()}
+        row["bootstrap errors"] = {n: p.stderr for n, p in again.fit.parameters.items()}
+    return json.loads(json.dumps(row))
+
+
+def digest(values: np.ndarray) -> list[float]:
+    """A few numbers that tell one array from another."""
+    weights = np.cos(np.arange(len(values)))
+    return [float(np.mean(values)), float(np.std(values)), float(values @ weights)]
+
+
+def differences(before: Any, after: Any, slack: float, place: str = "") -> list[str]:
+    """Where two answers differ, one line each."""
+    if isinstance(before, dict) and isinstance(after, dict):
+        lines = [f"{place}/{k}: only on one side" for k in before.keys() ^ after.keys()]
+        for key in before.keys() & after.keys():
+            lines += differences(before[key], after[key], slack, f"{place}/{key}")
+        return sorted(lines)
+    if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        pairs = enumerate(zip(before, after, strict=True))
+        return [x for i, (a, b) in pairs for x in differences(a, b, slack, f"{place}/{i}")]
+    numbers = (int, float)
+    if isinstance(before, numbers) and isinstance(after, numbers):
+        same = before == after or (before != before and after != after)
+        if same or abs(before - after) <= slack * max(abs(before), abs(after)):
+            return []
+    return [] if before == after else [f"{place}: {before!r} -> {after!r}"]
+
+
+def main() -> int:
+    """Record, or compare with a record."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("work", choices=("record", "compare"))
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--only", default="", help="names of campaigns, with commas")
+    parser.add_argument("--to", type=float, default=SLACK, help="relative difference let pass")
+    asked = parser.parse_args()
+    every = campaigns()
+    names = [n for n in asked.only.split(",") if n] or list(every)
+    found: dict[str, Row] = {}
+    recorded = json.loads(asked.file.read_text()) if asked.work == "compare" else {}
+    wrong = 0
+    for name in names:
+        found[name] = answers(name, every[name], SEED + list(every).index(name))
+        verdict = found[name]["diagnosis"]["verdict"]
+        if asked.work == "record":
+            print(f"{name}: {verdict}", flush=True)
+            asked.file.write_text(json.dumps(found, indent=1))
+            continue
+        lines = differences(recorded[name], found[name], asked.to)
+        print(
+            f"{name}: {verdict}: {'the same' if not lines else f'{len(lines)} differences'}",
+            flush=True,
+        )
+        for line in lines[:12]:
+            print(f"  {line[:200]}")
+        wrong += bool(lines)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

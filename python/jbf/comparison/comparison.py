@@ -1,0 +1,235 @@
+"""Model against measurement: how far, and where it fails."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.comparison.axes import Binned, all_axes
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.jumps import at_work, without_jumps
+from jbf.estimation.noise import noise_floor
+from jbf.models.catalogue import parameters_of, transition_speed
+from jbf.models.model import Model
+from jbf.records.run import PathLike, Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = npt.NDArray[np.float64]
+
+LEAST_SHARE = 0.01
+"""An axis that explains less of the residual than this is not worth a line."""
+SIGNIFICANCE = 6.0
+"""How many standard deviations the explained part must stand above chance."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One axis along which the residual has a pattern.
+
+    Attributes
+    ----------
+    axis
+        `velocity`, `direction`, `regime` (of a law without a film: `speed range`),
+        `acceleration`, `angle`, `time`, `run`, `time since a rest` or
+        `distance since a reversal`.
+    where
+        The pattern in words.
+    share
+        Part of the residual's mean square that the bins' means explain, 0 to 1.
+    labels, means_n, counts
+        The bins: name, mean of record minus prediction (N), samples.
+    """
+
+    axis: str
+    where: str
+    share: float
+    labels: tuple[str, ...]
+    means_n: Array
+    counts: npt.NDArray[np.intp]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
+
+
+@dataclass(frozen=True)
+class RunComparison:
+    """One run against the model."""
+
+    name: str
+    rms_n: float
+    samples: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model against runs.
+
+    Attributes
+    ----------
+    rms_n
+        Root mean square of record minus prediction over samples where the sign of the motion is
+        known, N.
+    noise_n
+        Noise floor of the record, from the data alone, N.
+    failures
+        Axes along which the residual has a pattern, strongest first.
+    predictions, residuals
+        One array a run, N; residual is record minus prediction.
+    """
+
+    model: Model
+    campaign: Campaign
+    rms_n: float
+    noise_n: float
+    runs: tuple[RunComparison, ...]
+    failures: tuple[Failure, ...]
+    predictions: list[Array]
+    residuals: list[Array]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "rms_n": self.rms_n,
+            "noise_n": self.noise_n,
+            "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],
+            "failures": [f.to_dict() for f in self.failures],
+        }
+
+    def summary(self) -> str:
+        """How far and where, as text."""
+        from jbf.reporting.text import comparison_report
+
+        return comparison_report(self)
+
+    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+        """Friction against speed, and the residual along its worst axis; two matplotlib axes."""
+        from jbf.reporting.plots import plot_comparison
+
+        return plot_comparison(self, axes)
+
+    def report(self, path: PathLike) -> None:
+        """Write a self-contained HTML page."""
+        from jbf.reporting.page import write_comparison
+
+        write_comparison(self, path)
+
+
+def find_failures(
+    campaign: Campaign, residuals: Sequence[Array], u_tr: float | None, noise_n: float
+) -> tuple[Failure, ...]:
+    """Axes along which record minus prediction has a pattern, strongest first."""
+    trusted = np.concatenate([p.trusted for p in campaign.prepared])
+    r = np.concatenate(list(residuals))[trusted]
+    total = float(r @ r)
+    found = []
+    for axis in all_axes(campaign, u_tr):
+        failure = _failure(axis, r, trusted, total, noise_n)
+        if failure is not None:
+            found.append(failure)
+    return tuple(sorted(found, key=lambda f: -f.share))
+
+
+def _failure(
+    axis: Binned, r: Array, trusted: npt.NDArray[np.bool_], total: float, noise_n: float
+) -> Failure | None:
+    bins = np.concatenate(axis.bins)[trusted]
+    known = bins >= 0
+    size = len(axis.labels)
+    counts = np.bincount(bins[known], minlength=size)
+    sums = np.bincount(bins[known], weights=r[known], minlength=size)
+    means = sums / np.maximum(counts, 1)
+    used = int(np.count_nonzero(counts))
+    explained = float(np.sum(counts * means**2))
+    # By chance each bin's mean takes one noise variance.
+    chance = used * noise_n**2
+    spread = np.sqrt(2.0 * used) * noise_n**2
+    share = (explained - chance) / total if total > 0 else 0.0
+    if share < LEAST_SHARE or explained < chance + SIGNIFICANCE * spread:
+        return None
+    return Failure(axis.axis, _words(axis, means, counts), share, axis.labels, means, counts)
+
+
+def _words(axis: Binned, means: Array, counts: npt.NDArray[np.intp]) -> str:
+    """The pattern of the means in words."""
+    weight = counts * means**2
+    strong = weight > 0.02 * weight.sum()
+    signs = np.array([1 if "v > 0" in x or "v = +" in x else -1 for x in axis.labels])
+    signed = all("v " in x for x in axis.labels)
+    if signed and np.all(np.sign(means[strong]) == signs[strong]) and strong.sum() > 1:
+        size = np.average(np.abs(means[strong]), weights=counts[strong])
+        lead = f"sign of v: record above the model by {size:.2g} N in the direction of motion"
+    elif signed and np.all(np.sign(means[strong]) == -signs[strong]) and strong.sum() > 1:
+        size = np.average(np.abs(means[strong]), weights=counts[strong])
+        lead = f"sign of v: record below the model by {size:.2g} N in the direction of motion"
+    elif np.all(means[strong] > 0) or np.all(means[strong] < 0):
+        size = np.average(means[strong], weights=counts[strong])
+        lead = f"one sign throughout: record minus model {size:+.2g} N"
+    else:
+        lead = ""
+    worst = np.argsort(-weight)[:2]
+    spots = "; ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
+    share = strong.sum() / max(np.count_nonzero(counts), 1)
+    scope = {
+        True: f"all of {axis.axis}, ",
+        False: "",
+    }[bool(lead) and share > 0.8]
+    return f"{scope}{lead}; most {spots}" if lead else f"most {spots}"
+
+
+def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
+    """`compare` for runs that are ready."""
+    from jbf.models.chain import chain, warn_of_fast_film
+
+    motions = campaign.motions
+    core = chain(model.rig, model.law, model.clock, model.effects)
+    warn_of_fast_film(core, model.values, motions)
+    predictions = core.predict(model.values, motions)
+    pages = parameters_of(model.law, tuple(model.effects))
+    effects = at_work(model.effects, pages, model.values)
+    campaign = without_jumps(campaign, effects, predictions)
+    residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
+    noise = noise_floor(campaign)
+    runs = tuple(
+        RunComparison(
+            p.run.name,
+            float(np.sqrt(np.mean(r[p.trusted] ** 2))),
+            int(p.trusted.sum()),
+        )
+        for p, r in zip(campaign.prepared, residuals, strict=True)
+    )
+    square = sum(r.rms_n**2 * r.samples for r in runs) / max(campaign.samples, 1)
+    u_tr = transition_speed(model.law, model.values.tolist())
+    return Comparison(
+        model=model,
+        campaign=campaign,
+        rms_n=float(np.sqrt(square)),
+        noise_n=noise,
+        runs=runs,
+        failures=find_failures(campaign, residuals, u_tr, noise),
+        predictions=predictions,
+        residuals=residuals,
+    )
+
+
+def compare(model: Model, runs: Sequence[Run]) -> Comparison:
+    """Compare a model with recorded runs.
+
+    Samples at which the sign of the motion cannot be known (within a few of a reversal) count
+    neither for the model nor against it.
+
+    Raises
+    ------
+    InputError
+        A run lacks friction or a column that the model needs, or nothing moves in it.
+    """
+    runs = list(runs)
+    for run in runs:
+        model.require_columns(run)
+    return compare_prepared(model, Campaign.prepare(model.rig, runs))

@@ -1,0 +1,204 @@
+"""Fit the bare law along known motions, to a tolerance, with exact derivatives.
+
+For motions that are known as such (a sine of the drive), not only as recorded samples: the
+driver takes as few steps as the tolerance allows, however densely or sparsely they were sampled.
+Records with effects, noise on the speed and unknown signs are :func:`jbf.fit`'s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.models.catalogue import find_parameter, parameters_of
+from jbf.models.parameter_value import ParameterValue
+from jbf.models.trajectory import Motion, is_record, trajectories
+from jbf.records.rig import Rig
+from jbf.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
+Array = npt.NDArray[np.float64]
+REST_SHARE = 1e-9
+"""Speeds below this share of the run's top are rest: friction is set-valued there."""
+
+
+@dataclass(frozen=True)
+class TrajectoryFit:
+    """Fitted parameters of the bare law.
+
+    Attributes
+    ----------
+    parameters
+        Name to value with standard error (residuals as independent noise of one size).
+    sum_of_squares
+        Of the residual friction coefficients.
+    samples
+        How many were fitted.
+    evaluations
+        Simulations of all runs, each with its derivatives.
+    converged, message
+        What the search says of itself.
+    """
+
+    parameters: dict[str, ParameterValue]
+    sum_of_squares: float
+    samples: int
+    evaluations: int
+    converged: bool
+    message: str
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Name to value."""
+        return {name: p.value for name, p in self.parameters.items()}
+
+
+@one_blas_thread
+def fit_trajectories(
+    rig: Rig,
+    runs: Sequence[Motion],
+    friction_coefficient: Sequence[npt.ArrayLike],
+    *,
+    start: Mapping[str, float] | None = None,
+    model: str = "journal",
+    clock: str = "journal",
+    tolerance: float = 1e-6,
+    eps: float | None = None,
+    phi_rad: float | None = None,
+) -> TrajectoryFit:
+    """Fit ``f_m``, ``U_tr_m_s``, ``K0`` and ``gamma`` to friction along known motions.
+
+    Parameters
+    ----------
+    runs, model, clock, tolerance, eps, phi_rad
+        As in :func:`jbf.trajectories`.
+    friction_coefficient
+        Measured friction over load, one array of shape (n,) a run; NaN where nothing was measured.
+        Samples at rest are left out: friction is set-valued there.
+    start
+        Where to start; the catalogue's values by default.
+
+    Raises
+    ------
+    InputError
+        As :func:`jbf.trajectories`; a run whose friction has another shape than its times, or too
+        few samples.
+    """
+    from scipy import optimize  # most of a second to import
+
+    pages = parameters_of("journal", ())
+    given = {find_parameter(name, pages): float(v) for name, v in (start or {}).items()}
+    first = np.array([given.get(name, page.starts[0]) for name, page in pages.items()])
+    low = np.log([page.lower for page in pages.values()])
+    high = np.log([page.upper for page in pages.values()])
+    measured = [np.asarray(f, dtype=float) for f in friction_coefficient]
+    keep = _usable(runs, measured)
+    data = np.concatenate(measured)[keep]
+    if len(data) <= len(first):
+        raise InputError(
+            problem=f"{len(data)} usable samples are too few for {len(first)} parameters",
+            mend="give more samples with motion",
+        )
+    evaluations = 0
+    last: tuple[bytes, Array, Array] | None = None
+
+    def evaluate(x: Array) -> tuple[Array, Array]:
+        """Residuals and their derivatives by the logarithms of the parameters."""
+        nonlocal evaluations, last
+        if last is None or last[0] != x.tobytes():
+            evaluations += 1
+            values = np.exp(np.clip(x, low, high))
+            done = trajectories(
+                rig,
+                dict(zip(pages, values.tolist(), strict=True)),
+                runs,
+                model=model,
+                clock=clock,
+                tolerance=tolerance,
+                eps=eps,
+                phi_rad=phi_rad,
+                derivatives=True,
+            )
+            f = np.concatenate([d.friction_coefficient for d in done])[keep]
+            by = np.concatenate([d.derivatives for d in done if d.derivatives is not None])
+            last = (x.tobytes(), f - data, by[keep] * values)
+        return last[1], last[2]
+
+    def residuals(x: Array) -> Array:
+        return evaluate(x)[0]
+
+    def slopes(x: Array) -> Array:
+        return evaluate(x)[1]
+
+    found = optimize.least_squares(
+        residuals,
+        np.clip(np.log(first), low, high),
+        jac=slopes,
+        method="lm",
+        xtol=1e-8,
+        ftol=1e-8,
+        gtol=1e-8,
+        max_nfev=200,
+    )
+    values = np.exp(found.x)
+    errors = _errors(found, values)
+    parameters = {
+        name: ParameterValue(float(v), float(e)) if np.isfinite(e) else ParameterValue(float(v))
+        for name, v, e in zip(pages, values, errors, strict=True)
+    }
+    return TrajectoryFit(
+        parameters=parameters,
+        sum_of_squares=2.0 * float(found.cost),
+        samples=len(data),
+        evaluations=evaluations,
+        converged=bool(found.status > 0),
+        message=str(found.message),
+    )
+
+
+def _errors(found: OptimizeResult, values: Array) -> Array:
+    """Standard errors of the parameters; NaN of one that the runs do not show."""
+    jacobian = np.asarray(found.jac)
+    size = np.linalg.norm(jacobian, axis=0)
+    size[size == 0.0] = np.nan
+    unit = jacobian / size
+    if not np.isfinite(unit).all() or np.linalg.cond(unit) > 1e6:
+        return np.full(len(values), np.nan)
+    variance = 2.0 * found.cost / (len(jacobian) - len(values))
+    covariance = variance * np.linalg.inv(unit.T @ unit)
+    errors: Array = np.sqrt(np.diag(covariance)) / size * values
+    return errors
+
+
+def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np.bool_]:
+    """True at samples that were measured and move, all runs in a row."""
+    if len(runs) != len(measured):
+        raise InputError(
+            problem=f"{len(runs)} runs and {len(measured)} frictions",
+            mend="give one array of friction coefficients a run",
+        )
+    found = []
+    for i, ((time, motion), friction) in enumerate(zip(runs, measured, strict=True)):
+        t = np.asarray(time, dtype=float)
+        if friction.shape != t.shape:
+            raise InputError(
+                problem=f"run {i}: friction of shape {friction.shape}, times of {t.shape}",
+                mend="give one friction coefficient a time (NaN where there is none)",
+            )
+        if is_record(motion):
+            speed = np.asarray(motion, dtype=float)
+        else:
+            amplitude, omega, bias = (float(x) for x in np.asarray(motion))
+            speed = bias + amplitude * np.sin(omega * t)
+        top = float(np.max(np.abs(speed), initial=0.0))
+        found.append(np.isfinite(friction) & (np.abs(speed) > REST_SHARE * top))
+    if not found:
+        raise InputError(problem="no run was given", mend="give at least one")
+    return np.concatenate(found)

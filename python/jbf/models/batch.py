@@ -1,0 +1,153 @@
+"""Many parameter sets of the journal law side by side: sweeps, clouds of samples, many starts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.errors import InputError
+from jbf.records.rig import Rig
+
+Array = npt.NDArray[Any]
+
+
+def _refuse(key: str, problem: str, mend: str) -> InputError:
+    return InputError(key=key, problem=problem, mend=mend)
+
+
+def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
+    try:
+        column = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise _refuse(key, "is not a number or numbers", "give one, or one a set") from None
+    if column.ndim > 1:
+        raise _refuse(key, f"has {column.ndim} dimensions", "give a number, or one a set")
+    return column
+
+
+def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
+    """One row a set, what is given once repeated."""
+    arrays = {key: _column(value, key) for key, value in columns.items()}
+    count = max((a.size for a in arrays.values() if a.ndim), default=1)
+    for key, a in arrays.items():
+        if a.ndim and a.size != count:
+            raise _refuse(key, f"has {a.size} values where another has {count}", "give one a set")
+    table = np.empty((count, len(arrays)))
+    for i, a in enumerate(arrays.values()):
+        table[:, i] = a
+    return table
+
+
+def _result(out: Array | None, shape: tuple[int, int], dtype: np.dtype[Any]) -> Array:
+    if out is None:
+        return np.empty(shape, dtype)
+    if out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous:
+        raise _refuse("out", "does not fit", f"make it np.empty({shape}, np.{dtype})")
+    return out
+
+
+def batch(
+    rig: Rig,
+    velocity_m_s: npt.ArrayLike,
+    dt_s: float,
+    *,
+    f_m: npt.ArrayLike,
+    U_tr_m_s: npt.ArrayLike,
+    K0: npt.ArrayLike,
+    gamma: npt.ArrayLike,
+    load_n: npt.ArrayLike | None = None,
+    clock: str = "journal",
+    method: str = "euler",
+    data: npt.ArrayLike | None = None,
+    dtype: npt.DTypeLike = np.float64,
+    out: Array | None = None,
+) -> Array:
+    """Friction coefficients of many parameter sets, or how far each is from a record.
+
+    Sets run side by side in the lanes of the best instruction set that the machine has, on all
+    cores, and give the same bits on any of them. Films start at the transition eccentricity.
+
+    Parameters
+    ----------
+    velocity_m_s : array, shape (n,) or (n, sets)
+        Surface speed at samples `dt_s` apart: one motion for all sets, or one a set.
+    dt_s : float
+        Step, s; nothing is stepped in between.
+    f_m, U_tr_m_s, K0, gamma, load_n : float or array of shape (sets,)
+        Parameters of the law, and load on one bearing, N (the rig's where not given).
+    clock : str
+        ``"journal"`` or ``"thesis"``.
+    method : str
+        ``"euler"`` or ``"rk4"``.
+    data : array, shape (n,), optional
+        Measured friction coefficients: the answer is then each set's sum of squares.
+    dtype : dtype
+        ``np.float64`` or ``np.float32``: the precision of steps and answer.
+    out : array, optional
+        Where to put the coefficients: filling an array again is faster than a fresh one.
+
+    Returns
+    -------
+    array, shape (n, sets), or (sets,) where `data` is given
+
+    Raises
+    ------
+    InputError
+        An array of the wrong shape or a parameter out of its range.
+    """
+    precision = np.dtype(dtype)
+    if precision not in (np.dtype(np.float64), np.dtype(np.float32)):
+        raise _refuse("dtype", f"is {precision}", "choose np.float64 or np.float32")
+    if not (isinstance(dt_s, int | float) and 0.0 < dt_s < math.inf):
+        raise _refuse("dt_s", f"{dt_s!r} is not above zero and finite", "give seconds")
+    if rig.bearing is None or rig.lubricant is None:
+        raise InputError(
+            problem="the rig lacks its [bearing] or its [lubricant]",
+            mend="the law journal needs both: add them",
+        )
+    if load_n is None and rig.load is None:
+        raise InputError(problem="the rig has no [load]", mend="add one, or give load_n")
+    load = rig.load.normal_n if load_n is None and rig.load is not None else load_n
+    assert load is not None
+    sets = _sets({"f_m": f_m, "U_tr_m_s": U_tr_m_s, "K0": K0, "gamma": gamma, "load_n": load})
+    speeds = np.ascontiguousarray(velocity_m_s, dtype=precision)
+    each = speeds.ndim == 2
+    if speeds.ndim not in (1, 2) or (each and speeds.shape[1] != len(sets)):
+        raise _refuse(
+            "velocity_m_s",
+            f"has shape {speeds.shape}",
+            f"give (samples,) or (samples, {len(sets)})",
+        )
+    if not np.isfinite(speeds).all():
+        raise _refuse("velocity_m_s", "is not finite throughout", "fill or cut the gaps")
+    b = rig.bearing
+    try:
+        core = _core.BatchRig(
+            radius_m=b.radius_m,
+            length_m=b.length_m,
+            clearance_m=b.clearance_m,
+            mass_kg=b.mass_kg,
+            count=b.count,
+            viscosity_pa_s=rig.lubricant.viscosity_pa_s,
+            clock=clock,
+            method=method,
+        )
+        single = precision == np.dtype(np.float32)
+        if data is not None:
+            wanted = np.ascontiguousarray(data, dtype=precision)
+            if wanted.shape != speeds.shape[:1]:
+                raise _refuse("data", f"has shape {wanted.shape}", "give one coefficient a sample")
+            squares = core.squares_f32 if single else core.squares_f64
+            return squares(sets, speeds.reshape(-1), each, dt_s, wanted)
+        result = _result(out, (len(speeds), len(sets)), precision)
+        friction = core.friction_f32 if single else core.friction_f64
+        friction(sets, speeds.reshape(-1), each, dt_s, result.reshape(-1))
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(problem=str(error), mend="correct the value") from None
+    return result

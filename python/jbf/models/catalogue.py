@@ -1,0 +1,229 @@
+"""Laws and effects as the core lists them: names, forms, bounds, starting values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from jbf import _core
+from jbf.errors import InputError, did_you_mean
+from jbf.models.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a law or an effect; `name` carries the unit.
+
+    Attributes
+    ----------
+    lower, upper
+        Bounds, in the unit.
+    null
+        The value at which the effect vanishes, where this parameter has one.
+    starts
+        Where a fit may start, likeliest first.
+    log
+        True where a fit should walk in the logarithm.
+    period
+        The period of an angle, for parameters that wrap.
+    """
+
+    name: str
+    unit: str = "-"
+    meaning: str = ""
+    lower: float = -np.inf
+    upper: float = np.inf
+    null: float | None = None
+    starts: tuple[float, ...] = ()
+    log: bool = False
+    period: float | None = None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """The page of one effect.
+
+    `needs` names what it needs of the law and of the record; `refused` tells for each law that
+    it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
+    instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
+    peaks, None for most. `columns` are those that an effect of one's own asks for.
+    """
+
+    name: str
+    stage: str
+    summary: str
+    equation: str
+    source: str
+    limits: str
+    needs: tuple[str, ...]
+    refused: Mapping[str, str]
+    moves_jumps: bool
+    peaks: str | None
+    longest_step_s: float
+    parameters: tuple[Parameter, ...]
+    columns: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Law:
+    """The page of one base law.
+
+    A law that does not need a bearing gives newtons and needs no load either. `rust_type` is the
+    name of its type in the core.
+    """
+
+    name: str
+    summary: str
+    equation: str
+    source: str
+    limits: str
+    needs_bearing: bool
+    has_film: bool
+    has_bristle: bool
+    rust_type: str
+    parameters: tuple[Parameter, ...]
+
+
+def _parameter(page: _core.ParameterPage) -> Parameter:
+    fields = dict(page)
+    fields["starts"] = tuple(page["starts"])
+    return Parameter(**fields)  # type: ignore[arg-type]
+
+
+@cache
+def built_in() -> dict[str, Effect]:
+    """The core's effects by name, in the order of the signal chain."""
+    pages = {}
+    for page in _core.effects():
+        fields = dict(page)
+        fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
+        fields["needs"] = tuple(page["needs"])
+        pages[page["name"]] = Effect(**fields)  # type: ignore[arg-type]
+    return pages
+
+
+_own: dict[str, Effect] = {}
+
+
+def own() -> dict[str, Effect]:
+    """Effects of one's own that are registered now."""
+    return _own
+
+
+def put(page: Effect) -> None:
+    """Take an effect of one's own in."""
+    _own[page.name] = page
+    vocabulary.cache_clear()
+
+
+def drop(name: str) -> bool:
+    """Take an effect of one's own out; False where there is none of that name."""
+    vocabulary.cache_clear()
+    return _own.pop(name, None) is not None
+
+
+def effects() -> dict[str, Effect]:
+    """Every effect by name, in the order of the signal chain; one's own come last."""
+    return {**built_in(), **_own}
+
+
+@cache
+def laws() -> dict[str, Law]:
+    """Every base law by name."""
+    pages = {}
+    for page in _core.laws():
+        fields = dict(page)
+        fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
+        pages[page["name"]] = Law(**fields)  # type: ignore[arg-type]
+    return pages
+
+
+def find_effect(name: str) -> Effect:
+    """The effect of that name.
+
+    Raises
+    ------
+    InputError
+        Names the unknown effect and the nearest known one.
+    """
+    known = effects()
+    if name not in known:
+        raise InputError(
+            problem=f'there is no effect "{name}"',
+            mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
+        )
+    return known[name]
+
+
+def find_law(name: str) -> Law:
+    """The law of that name; an InputError names an unknown one."""
+    known = laws()
+    if name not in known:
+        raise InputError(problem=f'there is no law "{name}"', mend=did_you_mean(name, known))
+    return known[name]
+
+
+def check_applies(law: str, names: Iterable[str]) -> None:
+    """An InputError where one of the effects does not go with a law."""
+    page = find_law(law)
+    for name in names:
+        reason = find_effect(name).refused.get(page.name)
+        if reason is not None:
+            raise InputError(
+                problem=f"the effect {name} does not apply: the law {page.name} {reason}",
+                mend=f"leave it out (`jbf effects --law {page.name}` lists what applies)",
+            )
+
+
+def transition_speed(law: str, values: Sequence[float]) -> float | None:
+    """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
+    names = [p.name for p in find_law(law).parameters]
+    return float(values[names.index("U_tr_m_s")]) if "U_tr_m_s" in names else None
+
+
+def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
+    """The effects in the order of the signal chain, each once."""
+    chosen = {find_effect(name).name for name in names}
+    return tuple(name for name in effects() if name in chosen)
+
+
+def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
+    """Dotted name to parameter: the law's first, then each effect's."""
+    found = {p.name: p for p in find_law(law).parameters}
+    for name in chosen:
+        found |= {f"{name}.{p.name}": p for p in find_effect(name).parameters}
+    return found
+
+
+def find_parameter(name: str, known: Mapping[str, Parameter]) -> str:
+    """The full dotted name of a parameter given with or without its unit.
+
+    `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.
+    """
+    if name in known:
+        return name
+    longer = [full for full in known if full.startswith(f"{name}_")]
+    if len(longer) == 1:
+        return longer[0]
+    raise InputError(problem=f'there is no parameter "{name}"', mend=did_you_mean(name, known))
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """What a model file may say."""
+
+    def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
+        return {p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters}
+
+    return Vocabulary(
+        laws=tuple(laws()),
+        effects={e.name: bounds(e.parameters) for e in effects().values()},
+        law_parameters={x.name: bounds(x.parameters) for x in laws().values()},
+    )
+
+
+def _null(parameter: Parameter) -> float:
+    return parameter.lower if parameter.null is None else parameter.null

@@ -1,0 +1,131 @@
+"""The core's chain for a rig, and a run's motion as the core takes it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.errors import FilmWarning, InputError
+from jbf.models.catalogue import check_applies, find_effect, find_law, in_chain_order
+from jbf.models.own_chain import OwnChain
+from jbf.models.own_effects import OwnEffect
+from jbf.records.motion.imposed import ImposedMotion, impose
+from jbf.records.rig import Rig
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+MAX_STEP_S = 0.02
+"""Longest inner step of a prediction. The core lands on every reversal and takes shorter steps
+where the law or an effect asks for them; at 0.02 s the bare law errs by some 1e-5 of its peak."""
+
+
+def check_rig(rig: Rig, law: str) -> None:
+    """An InputError where the rig lacks what a law needs."""
+    if not find_law(law).needs_bearing:
+        return
+    for section, there in (
+        ("bearing", rig.bearing),
+        ("lubricant", rig.lubricant),
+        ("load", rig.load),
+    ):
+        if there is None:
+            raise InputError(
+                problem=f"the rig has no [{section}]",
+                mend=f"the law {law} needs one: add a [{section}] section",
+            )
+
+
+def core_bearing(rig: Rig) -> _core.BearingSizes | None:
+    """The rig's bearing as the core takes it; None where the rig has none."""
+    b = rig.bearing
+    if b is None:
+        return None
+    return {
+        "radius_m": b.radius_m,
+        "length_m": b.length_m,
+        "clearance_m": b.clearance_m,
+        "mass_kg": b.mass_kg,
+        "count": b.count,
+        # A law with a film has been refused by now; any other takes the radius alone.
+        "viscosity_pa_s": 1.0 if rig.lubricant is None else rig.lubricant.viscosity_pa_s,
+    }
+
+
+def core_load_n(rig: Rig) -> float | None:
+    """The load on one bearing, N; None where the rig has none."""
+    return None if rig.load is None else rig.load.normal_n
+
+
+def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain | OwnChain:
+    """The core's chain for a rig.
+
+    Raises
+    ------
+    InputError
+        The rig lacks what the law needs, or an effect does not go with the law.
+    """
+    check_rig(rig, law)
+    check_applies(law, effects)
+    pages = [find_effect(name) for name in in_chain_order(effects)]
+    own = [page for page in pages if isinstance(page, OwnEffect)]
+    core = _core.Chain(
+        law=law,
+        bearing=core_bearing(rig),
+        load_n=core_load_n(rig),
+        clock=clock,
+        effects=[page.name for page in pages if page not in own],
+        max_step_s=MAX_STEP_S,
+    )
+    if not own:
+        return core
+    names = core.parameter_names
+    instrument = [
+        (page.name, [names.index(f"{page.name}.{p.name}") for p in page.parameters])
+        for page in pages
+        if page.stage == "instrument" and page not in own
+    ]
+    return OwnChain(core, instrument, own)
+
+
+def imposed(rig: Rig, run: Run) -> ImposedMotion:
+    """The motion that a run imposed on the rig's journal or slider."""
+    return impose(run, None if rig.bearing is None else rig.bearing.radius_m)
+
+
+def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
+    """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
+    load = run.load_n if run.load_n is not None else np.full(len(run), core_load_n(rig) or 1.0)
+    made = _core.Motion(
+        np.ascontiguousarray(run.time_s),
+        motion.velocity_m_s,
+        motion.acceleration_m_s2,
+        motion.angle_rad,
+        np.ascontiguousarray(load),
+    )
+    # What effects of one's own see: the record, its motion as the models are driven with it.
+    made.columns = run.columns() | {
+        "velocity_m_s": motion.velocity_m_s,
+        "acceleration_m_s2": motion.acceleration_m_s2,
+        "angle_rad": motion.angle_rad,
+        "load_n": load,
+    }
+    return made
+
+
+def warn_of_fast_film(
+    core: _core.Chain | OwnChain, values: Array, motions: list[_core.Motion]
+) -> None:
+    """Say it where a prediction does not follow the film."""
+    rate = core.film_rate_1_s(values, motions)
+    if rate > _core.FASTEST_FILM_1_S:
+        warnings.warn(
+            f"the film of this model answers at {rate:.2g} 1/s; a prediction follows it up to "
+            f"{_core.FASTEST_FILM_1_S:.2g} 1/s and holds it inside the bearing beyond: are "
+            "U_tr_m_s, K0 and the load those of a bearing?",
+            FilmWarning,
+            stacklevel=4,
+        )

@@ -1,0 +1,160 @@
+"""A model: a rig, a law, effects and their parameters. It predicts; it does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.errors import InputError
+from jbf.models.catalogue import (
+    find_law,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+    vocabulary,
+)
+from jbf.models.chain import (
+    chain,
+    core_bearing,
+    core_load_n,
+    core_motion,
+    imposed,
+    warn_of_fast_film,
+)
+from jbf.models.model_file import model_file_text, read_model_file, write_model_file
+from jbf.models.parameter_value import ParameterValue
+from jbf.models.requirements import require_record
+from jbf.models.vocabulary import ModelFile
+from jbf.records.rig import Rig
+from jbf.records.run import PathLike, Run
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A law with effects, ready to predict.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
+    law
+        Name of the base law (`jbf.laws()`).
+    effects
+        Names of effects, in any order; they act in the order of the signal chain.
+    parameters
+        Dotted name (`f_m`, `presliding.sigma_1_m`; the unit may be left off) to a value, or to a
+        value with its error. The law's missing ones take the catalogue's starting value; those
+        of effects their null, or the starting value where they have none.
+    clock
+        `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s).
+
+    Raises
+    ------
+    InputError
+        An unknown name, a value out of bounds, a rig without what the law needs, or an effect
+        that does not go with the law.
+    """
+
+    rig: Rig
+    law: str = "journal"
+    effects: Sequence[str] = ()
+    parameters: Mapping[str, float | ParameterValue] = field(default_factory=dict)
+    clock: str = "journal"
+    fit: Mapping[str, float | int | str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        find_law(self.law)
+        chosen = in_chain_order(self.effects)
+        known = parameters_of(self.law, chosen)
+        given = {
+            find_parameter(name, known): v if isinstance(v, ParameterValue) else ParameterValue(v)
+            for name, v in self.parameters.items()
+        }
+        values = {
+            name: given.get(name, ParameterValue(p.starts[0] if p.null is None else p.null))
+            for name, p in known.items()
+        }
+        object.__setattr__(self, "effects", chosen)
+        object.__setattr__(self, "parameters", values)
+        vocabulary().check(self._file())
+        chain(self.rig, self.law, self.clock, chosen)
+
+    @property
+    def values(self) -> Array:
+        """Parameter values in the core's order, shape (k,)."""
+        return np.array([p.value for p in self.parameters.values()])  # type: ignore[union-attr]
+
+    def predict(self, run: Run) -> Array:
+        """Friction reading of one bearing under the run's motion, N, shape (n,).
+
+        Warns (:class:`jbf.FilmWarning`) where the film is faster than 28,000 1/s: that is held
+        inside the bearing, and the friction is not to be relied on.
+        """
+        return self.predict_many([run])[0]
+
+    def predict_many(self, runs: Iterable[Run]) -> list[Array]:
+        """`predict` for several runs, on all cores."""
+        runs = list(runs)
+        for run in runs:
+            self.require_columns(run)
+        motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
+        core = chain(self.rig, self.law, self.clock, self.effects)
+        warn_of_fast_film(core, self.values, motions)
+        return core.predict(self.values, motions)
+
+    def require_columns(self, run: Run) -> None:
+        """An InputError where a run lacks a column that an effect of this model needs."""
+        require_record(self.rig, run, self.effects)
+
+    def steady_friction(self, velocity_m_s: npt.ArrayLike) -> Array:
+        """Steady friction force of the bare law (the Stribeck curve), N.
+
+        Speeds (m/s) of shape (n,), none of them zero; under the rig's load where the law needs one.
+        """
+        count = len(find_law(self.law).parameters)
+        return _core.steady_friction(
+            np.ascontiguousarray(velocity_m_s, dtype=float),
+            law=self.law,
+            parameters=self.values[:count].tolist(),
+            bearing=core_bearing(self.rig),
+            load_n=core_load_n(self.rig),
+        )
+
+    def _file(self) -> ModelFile:
+        return ModelFile(
+            law=self.law,
+            clock=self.clock,
+            effects=tuple(self.effects),
+            parameters=dict(self.parameters),  # type: ignore[arg-type]
+            rig=self.rig,
+            fit=dict(self.fit),
+        )
+
+    def to_toml(self) -> str:
+        """The text that `save` writes."""
+        return model_file_text(self._file())
+
+    def save(self, path: PathLike) -> None:
+        """Write the model as TOML; `Model.load` reads it back exactly."""
+        write_model_file(path, self._file())
+
+    @classmethod
+    def load(cls, path: PathLike) -> Model:
+        """Read a model file.
+
+        Raises
+        ------
+        InputError
+            Names the file, the key and the mend.
+        """
+        file = read_model_file(path, vocabulary())
+        try:
+            return cls(file.rig, file.law, file.effects, file.parameters, file.clock, file.fit)
+        except InputError as error:
+            raise error.within(file=path) from None

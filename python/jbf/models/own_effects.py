@@ -1,0 +1,326 @@
+"""Effects of one's own: a function of recorded columns, beside those of the catalogue.
+
+>>> import numpy as np
+>>> import jbf
+>>> def oil_cooler(temperature_c, k_n_k):
+...     return k_n_k * (temperature_c - 40.0)
+>>> jbf.register_effect(
+...     oil_cooler,
+...     parameters=[jbf.Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))],
+... ).name
+'oil_cooler'
+>>> jbf.forget_effect("oil_cooler")
+"""
+
+from __future__ import annotations
+
+import inspect
+import runpy
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError, JbfError, quoted
+from jbf.models import catalogue
+from jbf.models.catalogue import Effect, Parameter
+from jbf.records.run import PathLike
+
+Array = npt.NDArray[np.float64]
+
+ALWAYS = ("time_s", "velocity_m_s", "acceleration_m_s2", "load_n")
+"""Columns that every run has: recorded, estimated, or the rig's."""
+STAGES = {"other": "other friction", "instrument": "instrument"}
+AGREEMENT = 1e-5
+"""A complex step that differs from a difference quotient by more than this share is not one."""
+
+
+@dataclass(frozen=True)
+class OwnEffect(Effect):
+    """An effect of one's own: its page, and the function behind it."""
+
+    function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
+    analytic: dict[str, bool] = field(default_factory=dict, compare=False)
+
+    def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
+        """The force at every sample, N, shape (n,).
+
+        Raises
+        ------
+        InputError
+            The function fails, or gives something else than n finite numbers.
+        """
+        return self._checked(self._call(columns, values), len(columns["time_s"]), values)
+
+    def slope(self, columns: Mapping[str, Array], values: Sequence[float], which: int) -> Array:
+        """Derivative of the force with respect to parameter number `which`, shape (n,).
+
+        By a complex step where the function is one of complex numbers, else by differences of
+        the fourth order that stay within the bounds.
+        """
+        page = self.parameters[which]
+        if self.analytic.get(page.name) is None:
+            quotient = self._difference(columns, values, which)
+            step = self._complex_step(columns, values, which)
+            top = float(np.max(np.abs(quotient), initial=0.0))
+            good = step is not None and float(np.max(np.abs(step - quotient))) <= AGREEMENT * top
+            if top > 0.0:  # where it does nothing, nothing is learnt of it
+                self.analytic[page.name] = good
+            return quotient if step is None or not good else step
+        if self.analytic[page.name]:
+            step = self._complex_step(columns, values, which)
+            if step is not None:
+                return step
+        return self._difference(columns, values, which)
+
+    def _complex_step(
+        self, columns: Mapping[str, Array], values: Sequence[float], which: int
+    ) -> Array | None:
+        moved: list[complex] = [complex(v) for v in values]
+        size = 1e-30 * max(abs(values[which]), 1.0)
+        moved[which] += 1j * size
+        try:
+            with np.errstate(all="ignore"):
+                found = np.asarray(self.function(**self._arguments(columns, moved)))
+        except Exception:  # whatever a function of real numbers says to a complex one
+            return None
+        if found.dtype.kind != "c":
+            return None
+        whole: Array = np.broadcast_to(found.imag / size, np.shape(columns["time_s"])).copy()
+        return whole if np.all(np.isfinite(whole)) else None
+
+    def _difference(
+        self, columns: Mapping[str, Array], values: Sequence[float], which: int
+    ) -> Array:
+        page, x = self.parameters[which], values[which]
+        h = 1e-3 * max(abs(x), 1e-3 * (page.upper - page.lower))
+        h = min(h, 0.1 * (page.upper - page.lower))
+
+        def at(k: int) -> Array:
+            moved = list(values)
+            moved[which] = x + k * h
+            return self.force(columns, moved)
+
+        if page.lower <= x - 2 * h and x + 2 * h <= page.upper:
+            return (at(-2) - 8.0 * at(-1) + 8.0 * at(1) - at(2)) / (12.0 * h)
+        h = h if x + 4 * h <= page.upper else -h
+        ends = -25.0 * at(0) + 48.0 * at(1) - 36.0 * at(2) + 16.0 * at(3) - 3.0 * at(4)
+        return ends / (12.0 * h)
+
+    def _arguments(self, columns: Mapping[str, Array], values: Sequence[Any]) -> dict[str, Any]:
+        named = dict(zip([p.name for p in self.parameters], values, strict=True))
+        return {name: columns[name] for name in self.columns} | named
+
+    def _call(self, columns: Mapping[str, Array], values: Sequence[float]) -> Any:
+        for name in self.columns:
+            if name not in columns:
+                raise InputError(
+                    column=name,
+                    problem=f"is missing, and the effect {self.name} needs it",
+                    mend="add the column",
+                )
+        try:
+            return self.function(**self._arguments(columns, values))
+        except JbfError:
+            raise
+        except Exception as error:
+            raise InputError(
+                problem=f"the effect {self.name} fails: {type(error).__name__}: {error}",
+                mend="correct its function",
+            ) from error
+
+    def _checked(self, found: Any, n: int, values: Sequence[float]) -> Array:
+        def wrong(problem: str) -> InputError:
+            return InputError(
+                problem=f"the effect {self.name} {problem}",
+                mend="its function must give one finite force (N) a sample",
+            )
+
+        array = np.asarray(found)
+        if array.dtype.kind not in "fiub":
+            raise wrong(f"gives {array.dtype}")
+        if array.shape not in ((), (n,)):
+            raise wrong(f"gives shape {array.shape} for {n} samples")
+        force: Array = np.ascontiguousarray(np.broadcast_to(array.astype(float), (n,)))
+        bad = np.flatnonzero(~np.isfinite(force))
+        if bad.size:
+            named = zip(self.parameters, values, strict=True)
+            where = ", ".join(f"{p.name} = {v:g}" for p, v in named)
+            raise wrong(f"gives {force[bad[0]]} at sample {bad[0]} with {where}")
+        return force
+
+
+def register_effect(
+    function: Callable[..., Any],
+    *,
+    parameters: Sequence[Parameter],
+    name: str | None = None,
+    stage: str = "other",
+    summary: str = "",
+    equation: str = "",
+    source: str = "",
+    limits: str = "",
+) -> Effect:
+    """Put an effect of your own beside those of the catalogue.
+
+    It then takes part in fits, comparisons, predictions, diagnoses and `jbf.effects()` under its
+    name, until the process ends; a second effect of that name takes the first one's place.
+
+    Parameters
+    ----------
+    function
+        Gives the force of one bearing, N, at every sample: shape (n,), or a number. Its arguments
+        are found by name: `time_s` (s), `velocity_m_s` (signed), `acceleration_m_s2`, `angle_rad`,
+        `load_n`, `position_m`, `temperature_c`, any other column of the records, arrays of shape
+        (n,), and the parameters, numbers. Speed, acceleration and angle are the smooth estimates
+        that the models are driven with. It is not told where one run ends and the next begins:
+        it is called for each run alone.
+    parameters
+        Named, bounded parameters with starting values; one of them at least with a finite null
+        at which the force vanishes.
+    name
+        Its name; that of the function by default.
+    stage
+        `other`: friction beside the bearing's, which the instrument sees with its lag and delay.
+        `instrument`: added to the record as it is.
+    summary, equation, source, limits
+        For `jbf effects NAME`.
+
+    Raises
+    ------
+    InputError
+        A name that is taken or no identifier, an unknown stage, a parameter without bounds, start
+        or null, or an argument of the function that is neither parameter nor column name.
+    """
+    own = name if name is not None else function.__name__
+    pages = tuple(parameters)
+
+    def wrong(problem: str, mend: str) -> InputError:
+        return InputError(problem=f"the effect {quoted(own)} {problem}", mend=mend)
+
+    if not own.isidentifier():
+        raise wrong("has no proper name", "use letters, digits and _: name=...")
+    if own in catalogue.built_in():
+        raise wrong("is in the catalogue already", "choose another name")
+    if stage not in STAGES:
+        known = " or ".join(STAGES)
+        raise wrong(f"cannot act at the stage {quoted(stage)}", f"choose {known}")
+    _check_parameters(pages, wrong)
+    page = OwnEffect(
+        name=own,
+        stage=STAGES[stage],
+        summary=summary or (inspect.getdoc(function) or "an effect of one's own").splitlines()[0],
+        equation=equation or "a function of one's own",
+        source=source or f"{getattr(function, '__module__', 'unknown')}",
+        limits=limits or "as its author knows them",
+        needs=(),
+        refused={},
+        moves_jumps=False,
+        peaks=None,
+        longest_step_s=np.inf,
+        parameters=pages,
+        columns=_columns(function, pages, wrong),
+        function=function,
+    )
+    catalogue.put(page)
+    return page
+
+
+def forget_effect(name: str) -> None:
+    """Take an effect of your own out again; an InputError names one that is not there."""
+    if not catalogue.drop(name):
+        raise InputError(problem=f"{quoted(name)} is no effect of your own", mend="check the name")
+
+
+def _check_parameters(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
+    if not pages:
+        raise wrong("has no parameters", "give at least one jbf.Parameter with a null")
+    names = [p.name for p in pages]
+    if len(set(names)) < len(names):
+        raise wrong("has two parameters of one name", "rename one")
+    for p in pages:
+        place = f"has a parameter {quoted(p.name)}"
+        if not p.name.isidentifier():
+            raise wrong(f"{place} that is no name", "use letters, digits and _")
+        if not (np.isfinite(p.lower) and np.isfinite(p.upper) and p.lower < p.upper):
+            raise wrong(f"{place} without bounds", "give lower and upper, finite and in order")
+        if not p.starts:
+            raise wrong(f"{place} without a starting value", "give starts=(value,)")
+        if not all(p.lower <= s <= p.upper for s in p.starts):
+            raise wrong(f"{place} that starts out of its bounds", "start between lower and upper")
+        if p.log and p.lower <= 0.0:
+            raise wrong(
+                f"{place} whose logarithm does not exist", "raise lower above 0, or log=False"
+            )
+        if p.null is not None and not p.lower <= p.null <= p.upper:
+            raise wrong(f"{place} with its null out of its bounds", "widen the bounds to the null")
+    if all(p.null is None for p in pages):
+        raise wrong("never vanishes", "give one parameter null=VALUE, where the force is zero")
+
+
+def _columns(
+    function: Callable[..., Any],
+    pages: Sequence[Parameter],
+    wrong: Callable[[str, str], InputError],
+) -> tuple[str, ...]:
+    """The arguments that are columns."""
+    kinds = inspect.Parameter
+    names = {p.name for p in pages}
+    found = []
+    for argument in inspect.signature(function).parameters.values():
+        if argument.kind not in (kinds.POSITIONAL_OR_KEYWORD, kinds.KEYWORD_ONLY):
+            raise wrong(f"takes {argument}", "name every column and parameter in its function")
+        if argument.name in names:
+            names.remove(argument.name)
+        else:
+            found.append(argument.name)
+    if names:
+        missing = ", ".join(sorted(names))
+        raise wrong(f"does not take its parameter {missing}", "add it to the function's arguments")
+    return tuple(found)
+
+
+def load_effects(path: PathLike) -> None:
+    """Run a Python file that registers effects; the file can do anything that you can.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, fails, or registers nothing.
+    """
+    before = dict(catalogue.own())
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(file=file, problem="is no file", mend="name a Python file")
+    try:
+        runpy.run_path(str(file))
+    except InputError as error:
+        raise error.within(file=file) from None
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        raise InputError(
+            file=file,
+            row=_line_in(error, file),
+            problem=f"fails: {type(error).__name__}: {error}",
+            mend="correct the file",
+        ) from None
+    after = catalogue.own()
+    if all(before.get(name) is page for name, page in after.items()):
+        raise InputError(
+            file=file, problem="registers no effect", mend="call jbf.register_effect in it"
+        )
+
+
+def _line_in(error: BaseException, file: Path) -> int | None:
+    if isinstance(error, SyntaxError):
+        return error.lineno
+    row, trace = None, error.__traceback__
+    while trace is not None:
+        if Path(trace.tb_frame.f_code.co_filename) == file:
+            row = trace.tb_lineno
+        trace = trace.tb_next
+    return row

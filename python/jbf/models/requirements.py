@@ -1,0 +1,42 @@
+"""What a record must hold for an effect: columns, the shaft's angle, the path of the drive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from jbf.errors import InputError
+from jbf.models.catalogue import find_effect
+from jbf.models.own_effects import ALWAYS
+from jbf.records.rig import Rig
+from jbf.records.run import Run, require
+
+
+def has_angle(rig: Rig, run: Run) -> bool:
+    """True where the run tells the shaft's angle; on a linear axis there is none."""
+    return run.angle_rad is not None and (rig.bearing is not None or run.position_m is None)
+
+
+def has_path(rig: Rig, run: Run) -> bool:
+    """True where the run tells how far the drive has gone, in the units of its speed."""
+    return run.position_m is not None or (run.angle_rad is not None and rig.bearing is not None)
+
+
+def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
+    """An InputError where a run lacks a column that one of the effects needs."""
+    for name in effects:
+        needs = find_effect(name).needs
+        for column in find_effect(name).columns:
+            if column not in ALWAYS:
+                require(run, column, f"the effect {name}")
+        if "angle" in needs and not has_angle(rig, run):
+            require(run, "angle_rad", f"the effect {name}")
+            raise InputError(
+                file=run.path or run.name,
+                column="position_m",
+                problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
+                mend="drop position_m, or give the rig its [bearing]",
+            )
+        if "path" in needs and not has_path(rig, run):
+            if rig.bearing is not None:
+                require(run, "angle_rad", f"the effect {name}")
+            require(run, "position_m", f"without a bearing's radius the effect {name}")

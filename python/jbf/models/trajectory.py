@@ -1,0 +1,210 @@
+"""Trajectories to a tolerance: the bare law, reduced or with inertia, along a motion.
+
+A prediction of a whole rig with its effects is :class:`jbf.Model`'s; this is for analysis of the
+law itself, with an error that is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.errors import InputError, did_you_mean, quoted
+from jbf.records.rig import Rig
+
+Array = npt.NDArray[np.float64]
+Motion = tuple[npt.ArrayLike, npt.ArrayLike | tuple[float, float, float]]
+
+_NAMES = {"f_m": "f_m", "U_tr_m_s": "u_tr_m_s", "K0": "k0", "gamma": "gamma"}
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The film at each sample.
+
+    Attributes
+    ----------
+    time_s : array, shape (n,)
+    friction_coefficient : array, shape (n,)
+        With the sign of the speed; at rest without the asperities' part, set-valued there.
+    x, y : arrays, shape (n,)
+        ``eps cos(phi)`` and ``eps sin(phi)``.
+    steps : int
+        Steps that the driver took.
+    derivatives : array, shape (n, 4), or None
+        Of the friction coefficient by ``f_m``, ``U_tr_m_s`` (through eps_tr, too), ``K0`` and
+        ``gamma``, where they were asked for.
+    """
+
+    time_s: Array
+    friction_coefficient: Array
+    x: Array
+    y: Array
+    steps: int
+    derivatives: Array | None = None
+
+    @property
+    def eps(self) -> Array:
+        """Eccentricity ratio."""
+        return np.hypot(self.x, self.y)
+
+    @property
+    def phi_rad(self) -> Array:
+        """Attitude angle, rad."""
+        return np.arctan2(self.y, self.x)
+
+
+def trajectory(
+    rig: Rig,
+    parameters: Mapping[str, float],
+    time_s: npt.ArrayLike,
+    velocity_m_s: npt.ArrayLike | None = None,
+    *,
+    sine: tuple[float, float, float] | tuple[float, float] | None = None,
+    model: str = "journal",
+    clock: str = "journal",
+    tolerance: float = 1e-6,
+    eps: float | None = None,
+    phi_rad: float | None = None,
+    derivatives: bool = False,
+) -> Trajectory:
+    """Follow the law along one motion.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load.
+    parameters
+        ``f_m``, ``U_tr_m_s``, ``K0`` and ``gamma``.
+    time_s : array, shape (n,)
+        Sample times, rising, s.
+    velocity_m_s : array, shape (n,)
+        Surface speed at those times, m/s; straight lines between them. The run starts at the
+        first.
+    sine : (amplitude in m/s, omega in rad/s[, bias in m/s])
+        Instead of `velocity_m_s`: ``U = bias + amplitude sin(omega t)``. The run starts at time
+        zero.
+    model
+        ``journal`` (reduced) or ``journal_full`` (with the mass of the journal).
+    clock
+        ``journal`` (tbar = t U_tr/R) or ``thesis`` (tbar = t/1 s).
+    tolerance
+        Error of the friction coefficient. Any positive one works.
+    eps, phi_rad
+        Where the film starts: by default at eps_tr, 0.15 rad.
+    derivatives
+        True to have those of the friction coefficient by the parameters: exact ones of the steps
+        taken (dual numbers, not differences), so a fit that uses them converges.
+
+    Raises
+    ------
+    InputError
+        A rig without bearing, lubricant or load, an unknown name, or a value out of bounds.
+    """
+    if (velocity_m_s is None) == (sine is None):
+        raise InputError(
+            problem="a motion is either velocity_m_s or sine", mend="give one of the two"
+        )
+    motion: npt.ArrayLike | tuple[float, float, float]
+    if sine is not None:
+        motion = (sine[0], sine[1], sine[2] if len(sine) == 3 else 0.0)
+    else:
+        assert velocity_m_s is not None
+        motion = velocity_m_s
+    return trajectories(
+        rig,
+        parameters,
+        [(time_s, motion)],
+        model=model,
+        clock=clock,
+        tolerance=tolerance,
+        eps=eps,
+        phi_rad=phi_rad,
+        derivatives=derivatives,
+    )[0]
+
+
+def trajectories(
+    rig: Rig,
+    parameters: Mapping[str, float],
+    runs: Sequence[Motion],
+    *,
+    model: str = "journal",
+    clock: str = "journal",
+    tolerance: float = 1e-6,
+    eps: float | None = None,
+    phi_rad: float | None = None,
+    derivatives: bool = False,
+) -> list[Trajectory]:
+    """Follow the law along many motions, on all cores.
+
+    Parameters
+    ----------
+    runs
+        Pairs of sample times and either speeds at them (an array), or the tuple
+        ``(amplitude, omega, bias)`` of a sine. A tuple of three numbers is a sine.
+
+    Others as in :func:`trajectory`.
+    """
+    for section in ("bearing", "lubricant", "load"):
+        if getattr(rig, section) is None:
+            raise InputError(problem=f"the rig has no [{section}]", mend="add the section")
+    assert rig.bearing is not None
+    assert rig.lubricant is not None
+    assert rig.load is not None
+    for name in parameters:
+        if name not in _NAMES:
+            raise InputError(
+                problem=f"{quoted(name)} is no parameter of the law",
+                mend=did_you_mean(name, list(_NAMES)),
+            )
+    for name in _NAMES:
+        if name not in parameters:
+            raise InputError(problem=f"the parameter {name} is missing", mend="give its value")
+    times = [np.ascontiguousarray(time, dtype=np.float64) for time, _ in runs]
+    starts = [time[0] for (_, motion), time in zip(runs, times, strict=True) if is_record(motion)]
+    if len(set(starts)) > 1 or (starts and len(starts) < len(runs) and starts[0] != 0.0):
+        raise InputError(
+            problem="the runs start at different times", mend="shift them to start at zero"
+        )
+    b = rig.bearing
+    try:
+        done = _core.trajectories(
+            [(time, _motion(motion, time)) for (_, motion), time in zip(runs, times, strict=True)],
+            model=model,
+            clock=clock,
+            tolerance=tolerance,
+            start_time_s=float(starts[0]) if starts else None,
+            start_eps=eps,
+            start_phi_rad=phi_rad,
+            **{core: float(parameters[name]) for name, core in _NAMES.items()},
+            radius_m=b.radius_m,
+            length_m=b.length_m,
+            clearance_m=b.clearance_m,
+            mass_kg=b.mass_kg,
+            count=b.count,
+            viscosity_pa_s=rig.lubricant.viscosity_pa_s,
+            load_n=rig.load.normal_n,
+            derivatives=derivatives,
+        )
+    except ValueError as error:
+        raise InputError(problem=str(error), mend="correct the value") from None
+    return [Trajectory(time, *columns) for time, columns in zip(times, done, strict=True)]
+
+
+def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
+    """True of an array of speeds, False of the three numbers of a sine."""
+    return not (isinstance(motion, tuple) and len(motion) == 3)
+
+
+def _motion(
+    motion: npt.ArrayLike | tuple[float, float, float], time: Array
+) -> tuple[float, float, float] | tuple[Array, Array]:
+    if isinstance(motion, tuple) and len(motion) == 3:
+        amplitude, omega, bias = motion
+        return float(amplitude), float(omega), float(bias)
+    return time, np.ascontiguousarray(motion, dtype=np.float64)

@@ -1,0 +1,103 @@
+"""What a model file holds, and the names that it may use: data only, no physics."""
+
+from __future__ import annotations
+
+import numbers
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+
+from jbf.errors import InputError, did_you_mean, quoted
+from jbf.models.parameter_value import ParameterValue
+from jbf.records.rig import Rig
+from jbf.records.toml_file import number, refuse_unknown
+
+
+def _plain(value: object, key: str) -> float | int | str:
+    """A value that TOML can hold; numpy's scalars become Python's."""
+    if isinstance(value, str):
+        return str(value)
+    if isinstance(value, numbers.Integral) and not isinstance(value, bool):
+        return int(value)
+    return number(value, key)
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """What a model file holds.
+
+    Attributes
+    ----------
+    law, clock : str
+        Names of the friction law and of its clock.
+    effects : tuple of str
+        Names of the effects, in the order in which they were added.
+    parameters : dict of str to ParameterValue
+        The law's parameters by name, an effect's as ``"coulomb_drag.F_d_n"``.
+    rig : Rig
+        What the model was fitted on.
+    fit : dict of str to float, int or str
+        How it was fitted, for people to read.
+    """
+
+    law: str
+    clock: str = "journal"
+    effects: tuple[str, ...] = ()
+    parameters: dict[str, ParameterValue] = field(default_factory=dict)
+    rig: Rig = field(default_factory=Rig)
+    fit: dict[str, float | int | str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "effects", tuple(self.effects))
+        object.__setattr__(self, "fit", {k: _plain(v, f"fit.{k}") for k, v in self.fit.items()})
+        if len(set(self.effects)) < len(self.effects):
+            raise InputError(key="effects", problem="names one twice", mend="name each once")
+        for name in self.parameters:
+            effect, dot, parameter = name.partition(".")
+            if dot and effect not in self.effects:
+                problem = f"the effect {quoted(effect)} is not in the list of effects"
+                mend = "add it to effects or remove its parameters"
+            elif (dot and not parameter) or name in self.effects or "." in parameter:
+                problem, mend = "is not the name of a parameter", "write NAME or EFFECT.NAME"
+            else:
+                continue
+            raise InputError(key=f"parameters.{name}", problem=problem, mend=mend)
+
+
+Bounds = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """The names that a model file may use, and the bounds (lower, upper; both legal) of each."""
+
+    laws: Collection[str]
+    effects: Mapping[str, Mapping[str, Bounds]]
+    law_parameters: Mapping[str, Mapping[str, Bounds]]
+    clocks: Collection[str] = ("journal", "thesis")
+
+    def check(self, model: ModelFile) -> None:
+        """Check every name and value of a model; an absent parameter is not an error.
+
+        Raises
+        ------
+        InputError
+            A law, clock, effect or parameter is unknown, or a value is out of its bounds.
+        """
+        named = [("law", model.law, self.laws), ("clock", model.clock, self.clocks)]
+        named += [("effects", effect, list(self.effects)) for effect in model.effects]
+        for key, word, known in named:
+            if word not in known:
+                problem = f"{quoted(word)} is not known"
+                mend = did_you_mean(word, known)
+                if key == "effects":
+                    mend += "; one of your own is registered first: --effects-from FILE.py"
+                raise InputError(key=key, problem=problem, mend=mend)
+        for name, parameter in model.parameters.items():
+            effect, dot, short = name.rpartition(".")
+            bounds = self.effects[effect] if dot else self.law_parameters.get(model.law, {})
+            refuse_unknown([short], bounds, f"parameters.{effect}{dot}")
+            lower, upper = bounds[short]
+            if not lower <= parameter.value <= upper:
+                problem = f"{parameter.value} is out of range"
+                mend = f"choose from {lower} to {upper}"
+                raise InputError(key=f"parameters.{name}", problem=problem, mend=mend)

@@ -1,0 +1,124 @@
+"""What the columns of a run must hold, whether they come from arrays or from a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from textwrap import shorten
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+MIN_SAMPLES = 10
+COLUMNS = (
+    "time_s",
+    "angle_rad",
+    "position_m",
+    "velocity_m_s",
+    "friction_n",
+    "load_n",
+    "temperature_c",
+)
+"""Columns with a meaning, in the order in which `Run.write_csv` writes them."""
+
+
+def listed(names: Iterable[str]) -> str:
+    return shorten(", ".join(name for name in names if name), 160, placeholder=" ...")
+
+
+def frozen(values: npt.ArrayLike) -> Array:
+    array = np.array(values, dtype=np.float64, order="C")
+    array.flags.writeable = False
+    return array
+
+
+def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
+    def wrong(problem: str) -> InputError:
+        return InputError(
+            file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"
+        )
+
+    try:
+        array = np.asarray(values)
+        # Text, dates and complex numbers would convert to something nobody meant.
+        if array.dtype.kind not in "biufO":
+            raise wrong(f"holds {array.dtype}, not numbers")
+        array = frozen(array)
+    except InputError:
+        raise
+    except (TypeError, ValueError, OverflowError):
+        raise wrong("is not an array of numbers") from None
+    if array.ndim != 1:
+        raise wrong(f"has shape {array.shape}")
+    return array
+
+
+def check_columns(
+    name: str, columns: Mapping[str, Array], path: Path | None, rows: Sequence[int] | None
+) -> None:
+    """An InputError where a column does not hold what its name promises.
+
+    Parameters
+    ----------
+    name
+        What an error calls the run, where no file is known.
+    columns
+        Column name to values.
+    path, rows
+        The file they came from, and each sample's line in it.
+    """
+    file = path if rows is not None and path is not None else name
+
+    def wrong(column: str, index: int, problem: str, mend: str) -> InputError:
+        if rows is None:
+            return InputError(
+                file=file, column=column, problem=f"sample {index}: {problem}", mend=mend
+            )
+        return InputError(file=file, row=rows[index], column=column, problem=problem, mend=mend)
+
+    samples = len(columns["time_s"])
+    if samples < MIN_SAMPLES:
+        raise InputError(
+            file=file,
+            problem=f"has {samples} samples",
+            mend=f"a run needs at least {MIN_SAMPLES}",
+        )
+    for column, values in columns.items():
+        if len(values) != samples:
+            raise InputError(
+                file=file,
+                column=column,
+                problem=f"has {len(values)} samples where time_s has {samples}",
+                mend="give every column one value a sample",
+            )
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise wrong(
+                column,
+                int(bad[0]),
+                f"{values[bad[0]]} is not a finite number",
+                "correct the cell or drop the row",
+            )
+    time_s = columns["time_s"]
+    bad = np.flatnonzero(np.diff(time_s) <= 0.0)
+    if bad.size:
+        before, now = float(time_s[bad[0]]), float(time_s[bad[0] + 1])
+        raise wrong(
+            "time_s",
+            int(bad[0]) + 1,
+            f"time repeats at {now}" if now == before else f"time runs back from {before} to {now}",
+            "sort the rows and drop repeats; one file is one run",
+        )
+    if "load_n" in columns:
+        bad = np.flatnonzero(columns["load_n"] <= 0.0)
+        if bad.size:
+            raise wrong(
+                "load_n",
+                int(bad[0]),
+                f"a load of {columns['load_n'][bad[0]]} N is not above zero",
+                "correct the cell or drop the row",
+            )

@@ -1,0 +1,192 @@
+"""Reading a run from CSV.
+
+Each column is tried as numbers at once, and the bad cell looked for only when that fails: a good
+file costs a few milliseconds and a bad one still gets its row and column named.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError, closest, quoted
+from jbf.records.checks import COLUMNS, check_columns, frozen, listed
+from jbf.records.run import PathLike, Run
+from jbf.text_files import read_text
+
+Array = npt.NDArray[np.float64]
+
+_HEADER_EXAMPLE = "time_s,velocity_m_s,friction_n"
+_ALIASES = {
+    "t": "time_s",
+    "seconds": "time_s",
+    "v": "velocity_m_s",
+    "speed": "velocity_m_s",
+    "speed_m_s": "velocity_m_s",
+    "force": "friction_n",
+    "force_n": "friction_n",
+    "friction_force": "friction_n",
+    "temp_c": "temperature_c",
+    "theta": "angle_rad",
+    "theta_rad": "angle_rad",
+    "normal_n": "load_n",
+    "normal_load_n": "load_n",
+}
+"""Other names that people give a column, for the suggestion only."""
+
+
+def _near_miss(word: str, absent: Iterable[str]) -> str | None:
+    """The absent column that `word` looks like a slip of.
+
+    A word of more parts than the column (``position_ref_m``) is a quantity of its own.
+    """
+    absent = list(absent)
+    alias = _ALIASES.get(word.lower())
+    if alias in absent:
+        return alias
+    shorter = [c for c in absent if word.count("_") <= c.count("_")]
+    return closest(word, shorter, 0.7)
+
+
+def _checked_header(path: Path, row: int, header: Sequence[str], required: Sequence[str]) -> None:
+    def wrong(column: str | None, problem: str, mend: str) -> InputError:
+        return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
+
+    if all(_is_number(cell) for cell in header):
+        raise wrong(
+            None,
+            "holds numbers where the header should be",
+            f"put a line with the column names first, without #: {_HEADER_EXAMPLE}",
+        )
+    if len(header) == 1 and len(header[0].split()) > 1:
+        raise wrong(None, "the names are parted by blanks", "part the cells with commas")
+    for name in header:
+        if name and header.count(name) > 1:
+            raise wrong(name, "stands twice in the header", "keep one and rename or drop the other")
+    absent = [name for name in COLUMNS if name not in header]
+    misses = {
+        miss: name
+        for name in header
+        if name not in COLUMNS and (miss := _near_miss(name, absent)) is not None
+    }
+    for name in required:
+        if name in absent:
+            if name in misses:
+                mend = f"did you mean {quoted(misses[name])}? rename it to {name}"
+            else:
+                mend = f"add it; the header has {listed(header)}"
+            raise wrong(name, "is missing", mend)
+    for name, found in misses.items():
+        raise wrong(
+            found,
+            "is not a known column",
+            f"did you mean {quoted(name)}? rename it (mind the unit) or give it another name",
+        )
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _bad_cell(path: Path, row: int, column: str, cell: str) -> InputError:
+    if not cell.strip():
+        problem, mend = "the cell is empty", "fill it or drop the row"
+    elif re.fullmatch(r"\s*[+-]?\d*,\d+(e[+-]?\d+)?\s*", cell, re.IGNORECASE):
+        problem = f"{quoted(cell.strip())} has a decimal comma"
+        mend = "write every number with a decimal point"
+    else:
+        problem = f"{quoted(cell.strip())} is not a number"
+        mend = "correct the cell or drop the row"
+    return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
+
+
+def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]:
+    """Header, its line, the rows of cells, and the line of each row; blank lines are skipped."""
+    # Universal newlines, and no other character that str.splitlines would take for one.
+    lines = list(io.StringIO(read_text(path), newline=None))
+    first = 0
+    while first < len(lines) and (
+        not lines[first].strip() or lines[first].lstrip().startswith("#")
+    ):
+        first += 1
+    if first == len(lines):
+        raise InputError(
+            file=path, problem="is empty", mend=f"start with a header such as {_HEADER_EXAMPLE}"
+        )
+    reader = csv.reader(lines[first:], delimiter=max(",;\t", key=lines[first].count))
+    records: list[list[str]] = []
+    numbers: list[int] = []
+    line = first
+    try:
+        for cells in reader:
+            line += 1
+            if first + reader.line_num > line:
+                raise csv.Error("a quote is not closed")
+            if cells:
+                records.append(cells)
+                numbers.append(line)
+    except csv.Error as error:
+        raise InputError(
+            file=path, row=line, problem=str(error), mend="correct the row; one line is one row"
+        ) from None
+    header = [name.strip() for name in records[0]]
+    return header, numbers[0], records[1:], numbers[1:]
+
+
+def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
+    """Read one run from CSV.
+
+    The header names the columns; ``time_s``, ``velocity_m_s`` and ``friction_n`` must be there,
+    the other `COLUMNS` may be. Any further column whose cells are all finite numbers is kept in
+    `Run.extra`, any other is ignored. Comma, semicolon or tab part the cells; blank lines, and
+    lines before the header that start with ``#``, are skipped.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    need_friction : bool
+        False lets ``friction_n`` be absent, as in a motion to predict for.
+
+    Raises
+    ------
+    InputError
+        The file or a cell of it is wrong; the message names file, row, column and the mend.
+    """
+    path = Path(path)
+    header, header_row, rows, numbers = _read_table(path)
+    required = ["time_s", "velocity_m_s"] + (["friction_n"] if need_friction else [])
+    _checked_header(path, header_row, header, required)
+    if not rows:
+        raise InputError(file=path, problem="has a header but no samples", mend="add the samples")
+    if set(map(len, rows)) != {len(header)}:
+        at = next(i for i, cells in enumerate(rows) if len(cells) != len(header))
+        raise InputError(
+            file=path,
+            row=numbers[at],
+            problem=f"has {len(rows[at])} cells where the header has {len(header)}",
+            mend="give every row one cell a column, numbers with a decimal point",
+        )
+    columns: dict[str, Array] = {}
+    for name, cells in zip(header, zip(*rows, strict=True), strict=True):
+        try:
+            values = frozen(list(map(float, cells)))
+        except ValueError:
+            if name in COLUMNS:
+                at = next(i for i, cell in enumerate(cells) if not _is_number(cell))
+                raise _bad_cell(path, numbers[at], name, cells[at]) from None
+            continue
+        if name in COLUMNS or (name and np.isfinite(values).all()):
+            columns[name] = values
+    check_columns(path.stem, columns, path, numbers)
+    return Run.of_columns(path.stem, columns, path)

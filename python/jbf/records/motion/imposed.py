@@ -1,0 +1,134 @@
+"""From a recorded motion to the motion that was imposed.
+
+A recorded speed carries noise and a recorded angle carries the encoder's steps; the
+friction law needs the speed, its sign and its slope. Both records see the same motion, so a
+short polynomial is fitted to both at once round each sample, over the longest window that
+the data allow: windows grow while the speeds they give agree within their errors (the
+intersection of confidence intervals, Goldenshluger & Nemirovski 1997). So a sine is smoothed
+over many samples and the corner of a trapezoid over few.
+
+Records of real machines are less tidy than an encoder and a noise: positions finer than any step,
+speeds that a filter made from positions and that disagree with them, noise that comes and goes,
+rests in which the speed is a hum instead of zero. Each is looked for in the record itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.motion.agreement import contradiction_of, disagreement_of
+from jbf.records.motion.rests import place_rests, resting_samples, still_samples
+from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of, step_of
+from jbf.records.motion.smoothing import smooth
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+SIGN_SIGMA = 4.0
+"""A speed closer to zero than this many standard errors has no sign to rely on."""
+
+
+@dataclass(frozen=True)
+class ImposedMotion:
+    """The motion that a model is driven with; all arrays of shape (n,).
+
+    Attributes
+    ----------
+    velocity_m_s, acceleration_m_s2, angle_rad
+        Estimates at the samples.
+    velocity_error_m_s
+        Standard error of the speed.
+    resting
+        True where the shaft was at rest.
+    trusted
+        False where the sign of the motion, and so of the friction, cannot be known, and where the
+        records of path and speed contradict one another.
+    """
+
+    velocity_m_s: Array
+    acceleration_m_s2: Array
+    angle_rad: Array
+    velocity_error_m_s: Array
+    resting: Mask
+    trusted: Mask
+
+
+def impose(run: Run, radius_m: float | None) -> ImposedMotion:
+    """Estimate the imposed motion of a run.
+
+    Parameters
+    ----------
+    run
+        The record; its angle or position is used where it is there, else the speed alone.
+    radius_m
+        Journal radius, m: turns the angle into a path. None where it is not known: a position
+        then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
+        nothing of the speed.
+    """
+    time, speed = run.time_s, run.velocity_m_s
+    n = len(time)
+    path = _recorded_path(run, radius_m)
+    rest = resting_samples(speed)
+    step = 0.0 if path is None else step_of(path)
+    if path is not None:
+        rest |= still_samples(path, speed, step)
+    moving = ~rest
+    if path is None:
+        steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
+        path, sd_path = np.concatenate(([0.0], np.cumsum(steps))), 1e3
+    else:
+        sd_path, hum = step / np.sqrt(12.0), noise_of(path[moving])
+        # Where samples are finer than any encoder's, the smallest change on record is chance.
+        if hum > UNEVEN * sd_path:
+            sd_path = hum
+        sd_path = max(sd_path, 1e-9 * float(np.ptp(path)), 1e-15)
+    top = float(np.max(np.abs(speed))) if n else 0.0
+    sd_speed = noise_of(speed[moving]) if moving.any() else 0.0
+    sd_speed = max(sd_speed, 1e-7 * top, 1e-15)
+    beyond = disagreement_of(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
+    usual = max(sd_speed, beyond)
+
+    contradiction = np.zeros(n)
+    if n > 1:
+        contradiction = contradiction_of(time, path, speed, sd_path, usual)
+
+    velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
+    smooth_path, error = path.copy(), np.zeros(n)
+    edges = np.diff(np.concatenate(([0], moving.astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        part = slice(first, end)
+        if end - first < 3:
+            error[part] = usual
+            continue
+        local = local_noise(speed[part])
+        sd: Array | float = usual
+        if isinstance(local, np.ndarray):
+            sd = np.maximum(local, usual)
+        if contradiction[part].any():
+            # A position was read; a speed was made from positions, and the making has its ends.
+            sd = np.maximum(sd, contradiction[part])
+        smooth_path[part], velocity[part], acceleration[part], error[part] = smooth(
+            time[part], path[part], speed[part], sd_path, sd
+        )
+    place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
+    trusted = rest | (np.abs(velocity) > SIGN_SIGMA * error)
+    trusted &= contradiction == 0.0
+    # A contact that bends begins bent where the run begins in motion: noise is none.
+    if n and not trusted[0]:
+        velocity[0] = 0.0
+    angle = smooth_path / (radius_m or 1.0)
+    if radius_m is None and run.position_m is None and run.angle_rad is not None:
+        angle = np.unwrap(run.angle_rad)
+    return ImposedMotion(velocity, acceleration, angle, error, rest, trusted)
+
+
+def _recorded_path(run: Run, radius_m: float | None) -> Array | None:
+    """The path on record, m; None where only the speed tells of it."""
+    if run.angle_rad is not None and radius_m is not None:
+        path: Array = np.unwrap(run.angle_rad) * radius_m
+        return path
+    return run.position_m

@@ -1,0 +1,72 @@
+"""Where a shaft or a slider stands still, and where exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+REST_SAMPLES = 3
+"""So many zero speeds in a row are a rest, not a crossing."""
+STILL_SAMPLES = 20
+"""So many samples without a step of the encoder, at speeds of a hum, are a rest, too."""
+STILL_SHARE = 5e-3
+"""Largest hum of a rest, as a share of the top speed."""
+
+
+def resting_samples(velocity_m_s: Array) -> Mask:
+    """True in stretches of at least `REST_SAMPLES` speeds that are exactly zero."""
+    zero = velocity_m_s == 0.0
+    edges = np.diff(np.concatenate(([0], zero.astype(np.int8), [0])))
+    rest = np.zeros(len(zero), dtype=bool)
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        if end - first >= REST_SAMPLES:
+            rest[first:end] = True
+    return rest
+
+
+def still_samples(path: Array, velocity_m_s: Array, step: float) -> Mask:
+    """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
+    and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
+
+    Parameters
+    ----------
+    path
+        Recorded path, m.
+    step
+        The encoder's step, m.
+    """
+    n = len(path)
+    slow = np.abs(velocity_m_s) <= STILL_SHARE * np.max(np.abs(velocity_m_s), initial=0.0)
+    if n < STILL_SAMPLES or not slow.any():
+        return np.zeros(n, dtype=bool)
+    windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
+    calm = np.lib.stride_tricks.sliding_window_view(slow, STILL_SAMPLES)
+    begins = (np.ptp(windows, axis=1) <= 1.5 * step) & calm.all(axis=1)
+    ends = np.concatenate((np.zeros(STILL_SAMPLES), begins.astype(float)))
+    covered = np.cumsum(np.concatenate((begins, np.zeros(STILL_SAMPLES)))) - np.cumsum(ends)
+    resting: Mask = covered[:n] > 0.5
+    return resting
+
+
+def place_rests(
+    rest: Mask, path: Array, velocity: Array, acceleration: Array, half_step: float
+) -> None:
+    """Place each rest where the motions on either side end and begin, in `path`.
+
+    An encoder shows a rest to the nearest step; a stiff drive makes a force of the remainder.
+    The motion before says where it came to a stop, the one after where it started from.
+    """
+    edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        guesses = []
+        for neighbour, way in ((first - 1, 1.0), (end, -1.0)):
+            if 0 <= neighbour < len(path) and acceleration[neighbour] != 0.0:
+                v, a = velocity[neighbour], acceleration[neighbour]
+                guesses.append(path[neighbour] + way * 0.5 * v * abs(v) / abs(a))
+        if guesses:
+            recorded = path[first]
+            placed = np.clip(np.mean(guesses), recorded - half_step, recorded + half_step)
+            path[first:end] = placed

@@ -1,0 +1,180 @@
+"""A rig: the bearing, its lubricant and its load, as a TOML file and as frozen values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any, TypeVar
+
+import tomlkit
+
+from jbf.errors import InputError, quoted
+from jbf.records.toml_file import PathLike, number, read_toml, refuse_unknown, table
+from jbf.text_files import write_text
+
+_Section = TypeVar("_Section", "Bearing", "Lubricant", "Load")
+
+
+def _make_positive(section: object, *names: str) -> None:
+    for name in names:
+        value = number(getattr(section, name), name)
+        if not (0.0 < value < math.inf):
+            raise InputError(
+                key=name, problem=f"{value} is not above zero and finite", mend="correct the value"
+            )
+        object.__setattr__(section, name, value)
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """Geometry of one journal bearing and the shaft that turns in it.
+
+    Attributes
+    ----------
+    radius_m, length_m, clearance_m : float
+        Journal radius, length, radial clearance, m; the clearance is below the radius.
+    mass_kg : float
+        Rotating mass, kg.
+    count : int
+        Bearings on the shaft, at least 1.
+    """
+
+    radius_m: float
+    length_m: float
+    clearance_m: float
+    mass_kg: float
+    count: int
+
+    def __post_init__(self) -> None:
+        _make_positive(self, "radius_m", "length_m", "clearance_m", "mass_kg")
+        if self.clearance_m >= self.radius_m:
+            raise InputError(
+                key="clearance_m",
+                problem=f"{self.clearance_m} m is not below the radius of {self.radius_m} m",
+                mend="give both in metres",
+            )
+        if isinstance(self.count, bool) or not isinstance(self.count, int) or self.count < 1:
+            raise InputError(
+                key="count",
+                problem=f"{self.count!r} is not a whole number of at least 1",
+                mend="write how many bearings the shaft has, such as 4",
+            )
+
+
+@dataclass(frozen=True)
+class Lubricant:
+    """The lubricant; `viscosity_pa_s` is its dynamic viscosity, Pa s."""
+
+    viscosity_pa_s: float
+
+    def __post_init__(self) -> None:
+        _make_positive(self, "viscosity_pa_s")
+
+
+@dataclass(frozen=True)
+class Load:
+    """The load; `normal_n` is the normal load on one bearing, N."""
+
+    normal_n: float
+
+    def __post_init__(self) -> None:
+        _make_positive(self, "normal_n")
+
+
+def _section(
+    kind: type[_Section], mapping: Mapping[str, Any], name: str, prefix: str
+) -> _Section | None:
+    if name not in mapping:
+        return None
+    content = table(mapping[name], prefix + name)
+    known = [f.name for f in fields(kind)]
+    refuse_unknown(content, known, f"{prefix}{name}.")
+    for key in known:
+        if key not in content:
+            raise InputError(
+                key=f"{prefix}{name}.{key}",
+                problem="is missing",
+                mend=f"add it to [{prefix}{name}]",
+            )
+    try:
+        return kind(**content)
+    except InputError as error:
+        raise error.within(key_prefix=f"{prefix}{name}.") from None
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What a run was measured on; a law that needs no bearing leaves its sections None."""
+
+    bearing: Bearing | None = None
+    lubricant: Lubricant | None = None
+    load: Load | None = None
+
+    @classmethod
+    def from_mapping(
+        cls, mapping: Mapping[str, Any], *, file: PathLike | None = None, prefix: str = ""
+    ) -> Rig:
+        """A rig from the nested mapping that its TOML holds.
+
+        Parameters
+        ----------
+        file : path, optional
+            Named in an error.
+        prefix : str
+            Put before each key in an error, such as ``"rig."`` inside a model file.
+
+        Raises
+        ------
+        InputError
+            A key is unknown, missing, of the wrong type or out of range.
+        """
+        try:
+            refuse_unknown(mapping, [f.name for f in fields(cls)], prefix)
+            return cls(
+                _section(Bearing, mapping, "bearing", prefix),
+                _section(Lubricant, mapping, "lubricant", prefix),
+                _section(Load, mapping, "load", prefix),
+            )
+        except InputError as error:
+            raise error.within(file=file) from None
+
+    @classmethod
+    def thesis(cls, table: str = "4.2") -> Rig:
+        """The thesis's rig with the load of its table "4.2", "4.3", "4.4" or "4.5"."""
+        loads_n = {"4.2": 104.0, "4.3": 83.5, "4.4": 104.0, "4.5": 83.5}
+        if table not in loads_n:
+            raise InputError(
+                problem=f"{quoted(table)} is no parameter table of the thesis",
+                mend=f"choose from {', '.join(loads_n)}",
+            )
+        return cls(
+            Bearing(radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4),
+            Lubricant(viscosity_pa_s=0.002),
+            Load(normal_n=loads_n[table]),
+        )
+
+    def to_mapping(self) -> dict[str, dict[str, Any]]:
+        """The nested mapping of plain values; sections that are None are left out."""
+        return {name: section for name, section in asdict(self).items() if section is not None}
+
+    def write(self, path: PathLike) -> None:
+        """Write the rig as TOML, whole or not at all; reading it gives an equal rig.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written.
+        """
+        write_text(path, tomlkit.dumps(self.to_mapping()))
+
+
+def read_rig(path: PathLike) -> Rig:
+    """Read a rig from TOML.
+
+    Raises
+    ------
+    InputError
+        The file is not TOML, or a key is unknown, missing, of the wrong type or out of range.
+    """
+    return Rig.from_mapping(read_toml(path), file=path)

@@ -1,0 +1,209 @@
+"""A recorded run: its columns as checked arrays."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.records.checks import COLUMNS, as_array, check_columns, frozen, listed
+from jbf.text_files import write_text
+
+Array = npt.NDArray[np.float64]
+PathLike = str | os.PathLike[str]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Run:
+    """One recorded run; every array has shape (N,), is float64 and read-only.
+
+    The constructor trusts its arguments; `Run.from_arrays` and `read_run` check them.
+
+    Attributes
+    ----------
+    name : str
+        What reports call the run.
+    time_s : ndarray
+        Time, strictly increasing, s.
+    velocity_m_s : ndarray
+        Signed surface speed, m/s.
+    friction_n : ndarray or None
+        Tangential friction force of one bearing, N.
+    angle_rad, position_m : ndarray or None
+        Where the journal (rad) or the slider (m) is.
+    load_n : ndarray or None
+        Normal load on one bearing, above zero, N.
+    temperature_c : ndarray or None
+        Temperature, degrees Celsius.
+    extra : dict of str to ndarray
+        The other numeric columns, units as their names say.
+    path : Path or None
+        The file it came from.
+    """
+
+    name: str
+    time_s: Array
+    velocity_m_s: Array
+    friction_n: Array | None = None
+    angle_rad: Array | None = None
+    position_m: Array | None = None
+    load_n: Array | None = None
+    temperature_c: Array | None = None
+    extra: dict[str, Array] = field(default_factory=dict)
+    path: Path | None = None
+
+    def __repr__(self) -> str:
+        there = ", ".join(self.columns())
+        return f"Run({self.name!r}, {len(self)} samples, {self.duration_s:g} s: {there})"
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the first to the last sample, s; zero for an empty selection."""
+        return float(self.time_s[-1] - self.time_s[0]) if len(self) else 0.0
+
+    def columns(self) -> dict[str, Array]:
+        """The arrays that are there, by column name: known ones first, then `extra`."""
+        known = {name: getattr(self, name) for name in COLUMNS}
+        return {name: a for name, a in known.items() if a is not None} | self.extra
+
+    def select(self, which: slice | npt.ArrayLike) -> Run:
+        """The samples that a slice or a boolean mask of shape (N,) keeps, as a run.
+
+        A selection may be shorter than `MIN_SAMPLES`, and a mask may leave gaps in time.
+
+        Raises
+        ------
+        InputError
+            The mask is not boolean or not of shape (N,), or the slice runs backwards.
+        """
+        if isinstance(which, slice):
+            if which.step is not None and which.step < 1:
+                raise InputError(
+                    file=self.name,
+                    problem="a selection cannot run backwards",
+                    mend="use a step > 0",
+                )
+            index: Any = which
+        else:
+            index = np.asarray(which)
+            if index.dtype != np.bool_ or index.shape != (len(self),):
+                raise InputError(
+                    file=self.name,
+                    problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
+                    mend=f"give a slice or a boolean mask of shape ({len(self)},)",
+                )
+        kept = {name: frozen(a[index]) for name, a in self.columns().items()}
+        extra = {name: kept.pop(name) for name in self.extra}
+        return replace(self, **kept, extra=extra)  # type: ignore[arg-type]
+
+    @classmethod
+    def from_arrays(
+        cls,
+        time_s: npt.ArrayLike,
+        velocity_m_s: npt.ArrayLike,
+        friction_n: npt.ArrayLike | None = None,
+        *,
+        angle_rad: npt.ArrayLike | None = None,
+        position_m: npt.ArrayLike | None = None,
+        load_n: npt.ArrayLike | None = None,
+        temperature_c: npt.ArrayLike | None = None,
+        extra: Mapping[str, npt.ArrayLike] | None = None,
+        name: str = "run",
+        path: PathLike | None = None,
+    ) -> Run:
+        """A run from lists, arrays or pandas series of one length N, copied and checked.
+
+        Raises
+        ------
+        InputError
+            A column is not N finite numbers, N < `MIN_SAMPLES`, time does not increase, or a
+            load is not above zero. Samples are counted from 0.
+        """
+        given: dict[str, npt.ArrayLike | None] = {
+            "time_s": time_s,
+            "angle_rad": angle_rad,
+            "position_m": position_m,
+            "velocity_m_s": velocity_m_s,
+            "friction_n": friction_n,
+            "load_n": load_n,
+            "temperature_c": temperature_c,
+        }
+        for column in extra or {}:
+            if column in given:
+                raise InputError(
+                    file=name,
+                    column=column,
+                    problem="is a known column, not an extra one",
+                    mend="pass it as its own argument",
+                )
+        columns = {
+            column: as_array(values, column, name)
+            for column, values in (given | dict(extra or {})).items()
+            if values is not None
+        }
+        check_columns(name, columns, None, None)
+        return cls.of_columns(name, columns, None if path is None else Path(path))
+
+    @classmethod
+    def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
+        """A run of columns that have been checked."""
+        known = {column: values for column, values in columns.items() if column in COLUMNS}
+        extra = {column: values for column, values in columns.items() if column not in COLUMNS}
+        return cls(name=name, **known, extra=extra, path=path)
+
+    def write_csv(self, path: PathLike) -> None:
+        """Write the run as CSV, whole or not at all; reading it gives the same bits.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written.
+        """
+        write_text(path, self.to_csv())
+
+    def to_csv(self) -> str:
+        """The run as the text of a CSV file."""
+        columns = self.columns()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        # repr of a float is the shortest text that reads back to the same bits.
+        writer.writerows(zip(*(map(repr, a.tolist()) for a in columns.values()), strict=True))
+        return text.getvalue()
+
+
+def require(run: Run, columns: str | Iterable[str], why: str) -> None:
+    """Raise the one-line error when a run lacks a column that someone needs.
+
+    Parameters
+    ----------
+    columns : str or iterable of str
+        Column names, for example ``"angle_rad"``.
+    why : str
+        Who needs it, as a subject: ``"the effect position_ripple"``.
+
+    Raises
+    ------
+    InputError
+        A column is missing.
+    """
+    there = run.columns()
+    for column in [columns] if isinstance(columns, str) else columns:
+        if column not in there:
+            raise InputError(
+                file=run.path or run.name,
+                column=column,
+                problem=f"is missing, and {why} needs it",
+                mend=f"add the column (it has {listed(there)})",
+            )

@@ -1,0 +1,71 @@
+"""Runs from files, folders and patterns, each under a name of its own."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.records.csv_file import read_run
+from jbf.records.run import PathLike, Run
+
+
+def _expanded(item: PathLike) -> list[Path]:
+    path = Path(item)
+    if path.is_dir():
+        found = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
+        if not found:
+            raise InputError(
+                file=path, problem="the folder holds no .csv file", mend="name another"
+            )
+        return found
+    if not path.exists() and glob.has_magic(str(path)):
+        found = sorted(Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file())
+        if not found:
+            raise InputError(file=path, problem="no file matches", mend="correct the pattern")
+        return found
+    return [path]
+
+
+def _unique_names(paths: Sequence[Path]) -> list[str]:
+    """The stem of each path, with as many parent folders as tell equal stems apart."""
+    whole = [path.resolve() for path in paths]
+
+    def name(path: Path, depth: int) -> str:
+        return "/".join(path.with_suffix("").parts[-depth:])
+
+    names = []
+    for path in whole:
+        rivals = [p for p in whole if p.stem == path.stem and p != path]
+        depth = 1
+        while depth < len(path.parts) and name(path, depth) in {name(p, depth) for p in rivals}:
+            depth += 1
+        clash = name(path, depth) in {name(p, depth) for p in rivals}
+        names.append(path.name if clash else name(path, depth))
+    return names
+
+
+def read_runs(paths: PathLike | Iterable[PathLike], *, need_friction: bool = True) -> list[Run]:
+    """Read runs from files, folders (every .csv in it, sorted) and glob patterns.
+
+    Names are the file stems; runs with equal stems get parent folders too: ``a/sweep``.
+
+    Raises
+    ------
+    InputError
+        As `read_run`; also when nothing is found or a file comes twice.
+    """
+    items = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    files = [file for item in items for file in _expanded(item)]
+    if not files:
+        raise InputError(problem="no run is given", mend="name at least one CSV file or folder")
+    seen: set[Path] = set()
+    for file in files:
+        if file.resolve() in seen:
+            raise InputError(file=file, problem="is given twice", mend="name each run once")
+        seen.add(file.resolve())
+    runs = [read_run(file, need_friction=need_friction) for file in files]
+    return [replace(run, name=name) for run, name in zip(runs, _unique_names(files), strict=True)]

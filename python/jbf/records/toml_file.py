@@ -1,0 +1,80 @@
+"""TOML files, and checks of what stands in them that name the key."""
+
+from __future__ import annotations
+
+import numbers
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from jbf.errors import InputError, did_you_mean, quoted
+from jbf.text_files import read_text
+
+PathLike = str | os.PathLike[str]
+
+
+def number(value: object, key: str) -> float:
+    """A TOML number as float, infinity and nan included.
+
+    Raises
+    ------
+    InputError
+        Not a number; like all errors of this file's helpers it names `key` but no file.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        shown = quoted(value) if isinstance(value, str) else f"a {type(value).__name__}"
+        raise InputError(key=key, problem=f"{shown} is not a number", mend="write a plain number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise InputError(key=key, problem="is too large", mend="correct the value") from None
+
+
+def table(value: object, key: str) -> Mapping[str, Any]:
+    """A TOML table as a mapping; raises `InputError` when it is something else."""
+    if not isinstance(value, Mapping):
+        raise InputError(key=key, problem="is not a table", mend=f"write it as [{key}] with keys")
+    return value
+
+
+def refuse_unknown(found: Iterable[str], known: Iterable[str], prefix: str = "") -> None:
+    """Raise for the first key of `found` that is not in `known`, with the nearest known one.
+
+    Raises
+    ------
+    InputError
+        Names the key, `prefix` before it, but no file.
+    """
+    known = list(known)
+    for key in found:
+        if key not in known:
+            raise InputError(
+                key=prefix + str(key), problem="is not known", mend=did_you_mean(str(key), known)
+            )
+
+
+def read_toml(path: PathLike) -> dict[str, Any]:
+    """The content of a TOML file as plain Python values.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is not TOML; names the line.
+    """
+    text = read_text(path)
+    try:
+        return tomlkit.parse(text).unwrap()
+    except (TOMLKitError, ValueError, RecursionError) as error:
+        # tomlkit writes the end of the text as a null character, and its own line and column.
+        reason = (
+            str(error).partition(" at line ")[0].replace("character: '\\x00'", "end").rstrip(".")
+        )
+        raise InputError(
+            file=path,
+            row=getattr(error, "line", None),
+            problem=f"is not TOML ({reason[:1].lower()}{reason[1:]})",
+            mend="correct it; TOML is written key = value, each key once",
+        ) from None

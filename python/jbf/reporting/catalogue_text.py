@@ -1,0 +1,76 @@
+"""The catalogue as plain text: a line an effect, or all that it holds of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from jbf.models.catalogue import Effect, Parameter, built_in
+from jbf.reporting.paragraphs import columns, hanging
+
+NEEDS = {
+    "angle": "the column angle_rad in every run",
+    "path": "the column angle_rad, or position_m on a linear axis, in every run",
+    "loads": "runs under several loads",
+}
+
+
+def refused_words(effect: Effect) -> str:
+    """The laws that an effect does not go with, and why."""
+    reasons = dict.fromkeys(effect.refused.values())
+    return "; ".join(
+        f"{', '.join(law for law, r in effect.refused.items() if r == reason)} ({reason})"
+        for reason in reasons
+    )
+
+
+def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
+    """One line an effect, in the order of the signal chain, headed by stage.
+
+    With a law, those that do not go with it follow, each with the reason.
+    """
+    pages = list(pages)
+    if law is not None:
+        refused = {e.name: e.refused[law] for e in pages if law in e.refused}
+        there = effects_page(e for e in pages if e.name not in refused)
+        widest = max(map(len, refused), default=0)
+        reasons = [x for n, r in refused.items() for x in hanging(f"{n:<{widest}}  ", r)]
+        head = ["", f"[not with {law}: the law ...]"] if reasons else []
+        return "\n".join([there, *head, *reasons])
+    widest = max((len(e.name) for e in pages), default=0)
+    lines: list[str] = []
+    stage = None
+    for effect in pages:
+        own = "" if effect.name in built_in() else "your own, "
+        if own + effect.stage != stage:
+            stage = own + effect.stage
+            lines += ([""] if lines else []) + [f"[{stage}]"]
+        lines += hanging(f"{effect.name:<{widest}}  ", effect.summary)
+    return "\n".join(lines)
+
+
+def effect_page(effect: Effect) -> str:
+    """Everything the catalogue holds of one effect."""
+    lines = [f"{effect.name}: {effect.summary}", ""]
+    facts = [
+        ("stage", effect.stage),
+        ("equation", effect.equation),
+        ("source", effect.source),
+        ("limits", effect.limits),
+    ]
+    for need, words in NEEDS.items():
+        if need in effect.needs:
+            facts.append(("needs", words))
+    if effect.columns:
+        facts.append(("columns", ", ".join(effect.columns)))
+    if effect.refused:
+        facts.append(("not with", refused_words(effect)))
+    for name, words in facts:
+        lines += hanging(f"{name:<10}", words)
+    head = ("parameter", "unit", "from", "to", "vanishes at", "meaning")
+    rows = columns([head, *map(_parameter_row, effect.parameters)], "<<>>><")
+    return "\n".join([*lines, "", *rows])
+
+
+def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
+    null = "" if p.null is None else f"{p.null:g}"
+    return p.name, p.unit, f"{p.lower:g}", f"{p.upper:g}", null, p.meaning

@@ -1,0 +1,91 @@
+"""Rows of cells that both the text and the page show: parameters, correlations, the ledger."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.models.catalogue import parameters_of
+from jbf.reporting.words import measured, number, percent, step_name
+
+if TYPE_CHECKING:
+    from jbf.comparison.comparison import Comparison
+    from jbf.diagnosis.result import Diagnosis, Step, Trial
+    from jbf.estimation.fit import Fit
+    from jbf.models.model import Model
+    from jbf.models.parameter_value import ParameterValue
+
+LEAST_CORRELATION = 0.3
+"""Weaker correlations are not worth a line."""
+
+
+def parameter_rows(
+    model: Model, parameters: Mapping[str, ParameterValue]
+) -> list[tuple[str, str, str, str, str, str]]:
+    """Name, value, error, percent, unit and note of each parameter, as text."""
+    pages = parameters_of(model.law, tuple(model.effects))
+    rows = []
+    for name, p in parameters.items():
+        value, error = measured(p.value, p.stderr)
+        note = p.note or ("" if error else "no error known")
+        unit = pages[name].unit if name in pages else ""
+        rows.append((name, value, error, percent(p), "" if unit == "-" else unit, note))
+    return rows
+
+
+def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
+    """Pairs of parameters correlated above 0.3, strongest first."""
+    names = list(fit.parameters)
+    if len(fit.correlations) < len(names):  # parameters held fixed have no row
+        names = [n for n, p in fit.parameters.items() if p.note != "held fixed"]
+    found = [
+        (names[i], names[j], float(fit.correlations[i, j]))
+        for i in range(len(names))
+        for j in range(i + 1, len(names))
+        if np.isfinite(fit.correlations[i, j]) and abs(fit.correlations[i, j]) > LEAST_CORRELATION
+    ]
+    return sorted(found, key=lambda pair: -abs(pair[2]))
+
+
+def ratio(error_n: float, noise_n: float) -> str:
+    """An error over the noise to two decimals; empty where there is no noise."""
+    return f"{error_n / noise_n:.2f}" if noise_n > 0.0 else ""
+
+
+def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
+    """What each step brought, its fit and held-out RMS, the noise (N), and their ratio."""
+    return [
+        (
+            step_name(diagnosis, i),
+            number(s.rms_n),
+            number(s.holdout_rms_n),
+            number(s.noise_n),
+            ratio(s.holdout_rms_n, s.noise_n),
+        )
+        for i, s in enumerate(diagnosis.steps)
+    ]
+
+
+def trial_rows(diagnosis: Diagnosis, step: Step) -> list[tuple[str, str, str, str, str]]:
+    """Each candidate's effect, RMS (N), evidence, outcome and reason."""
+    return [
+        (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", _outcome(diagnosis, t), t.reason)
+        for t in step.trials
+    ]
+
+
+def _outcome(diagnosis: Diagnosis, trial: Trial) -> str:
+    # The search questions what it added again; the ledger should not claim what the verdict
+    # took back.
+    kept = trial.outcome != "added" or trial.effect in diagnosis.effects
+    return trial.outcome if kept else "withdrawn"
+
+
+def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
+    """Each run's name, trusted samples, RMS (N), and RMS over the noise."""
+    return [
+        (r.name, str(r.samples), number(r.rms_n), ratio(r.rms_n, comparison.noise_n))
+        for r in comparison.runs
+    ]

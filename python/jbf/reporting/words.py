@@ -1,0 +1,131 @@
+"""Sentences and numbers that the text, the page and the command line share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from jbf.models.catalogue import find_law
+
+if TYPE_CHECKING:
+    from jbf.comparison.comparison import Comparison
+    from jbf.diagnosis.result import Diagnosis
+    from jbf.models.model import Model
+    from jbf.models.parameter_value import ParameterValue
+
+BARE = "bare law"
+
+
+def listed(words: Iterable[str], last: str = "and") -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    items = list(words)
+    if len(items) < 2:
+        return "".join(items)
+    return f"{', '.join(items[:-1])} {last} {items[-1]}"
+
+
+def law_words(model: Model, join: str = " (") -> str:
+    """A model's law, with its clock where it has a film for the clock to drive."""
+    if not find_law(model.law).has_film:
+        return model.law
+    return f"{model.law}{join}clock {model.clock}" + (")" if "(" in join else "")
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number to so many significant digits, plain where plain is short."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    size = math.floor(math.log10(abs(value)))
+    if -4 <= size < 6:
+        return f"{value:.{max(digits - 1 - size, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def measured(value: float, stderr: float | None) -> tuple[str, str]:
+    """A value and its error to the same decimal: the error's second digit.
+
+    The error is empty where there is none.
+    """
+    if stderr is None or not math.isfinite(stderr) or stderr <= 0.0 or not math.isfinite(value):
+        return number(value, 5), ""
+    decimals = 1 - math.floor(math.log10(stderr))
+    if abs(value) >= 1e7 or decimals > 8:
+        return f"{value:.4e}", f"{stderr:.1e}"
+    places = max(decimals, 0)
+    return f"{round(value, decimals):.{places}f}", f"{round(stderr, decimals):.{places}f}"
+
+
+def percent(value: ParameterValue) -> str:
+    """The error as a share of the value, `0.46 %`; empty where it means nothing."""
+    if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):
+        return ""
+    return f"{number(100.0 * abs(value.stderr / value.value), 2)} %"
+
+
+def times(error_n: float, noise_n: float) -> str:
+    """An error as a multiple of the noise: `1.29 times`."""
+    return f"{error_n / noise_n:.2f} times" if noise_n > 0.0 else "above"
+
+
+def comparison_sentence(comparison: Comparison) -> str:
+    """How far a model is from its runs, and how that compares with the noise."""
+    rms, noise = comparison.rms_n, comparison.noise_n
+    return (
+        f"RMS {number(rms)} N against a noise floor of {number(noise)} N: "
+        f"{times(rms, noise)} the noise"
+    )
+
+
+def verdict_sentence(diagnosis: Diagnosis) -> str:
+    """What the diagnosis found, in one plain sentence or two."""
+    first, last = diagnosis.steps[0], diagnosis.steps[-1]
+    reached = (
+        f"{number(last.holdout_rms_n)} N, {times(last.holdout_rms_n, last.noise_n)} "
+        f"the noise of {number(last.noise_n)} N"
+    )
+    added = listed(diagnosis.effects)
+    fall = f"the held-out error falls from {number(first.holdout_rms_n)} N to {reached}"
+    if diagnosis.verdict == "adequate":
+        return (
+            f"Nothing is missing: the bare {diagnosis.model.law} law predicts runs that it was "
+            f"not fitted to within {reached}."
+        )
+    if diagnosis.verdict == "missing":
+        return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
+    if diagnosis.verdict == "ambiguous":
+        ties = "; ".join(
+            f"{listed((effect, *others), 'or')}"
+            for effect, others in diagnosis.alternatives.items()
+            if others
+        )
+        return (
+            f"Something is missing, and these runs cannot tell which: {ties}. "
+            f"With {added}, {fall}; the alternatives do as well."
+        )
+    along = listed(r.axis for r in diagnosis.unexplained)
+    where = f" along {along}" if along else ""
+    if diagnosis.effects:
+        return (
+            f"Part of what is missing is {added}: with {_it(diagnosis.effects)}, {fall}. But "
+            f"structure remains{where} that no effect in the catalogue explains."
+        )
+    return (
+        f"Structure remains{where} that no effect in the catalogue explains: the held-out error "
+        f"is {reached}."
+    )
+
+
+def _it(effects: tuple[str, ...]) -> str:
+    return "it" if len(effects) == 1 else "them"
+
+
+def step_name(diagnosis: Diagnosis, index: int) -> str:
+    """What step `index` of the ledger brought: the bare law, or `+ effect`."""
+    effects = diagnosis.steps[index].effects
+    if index == 0:
+        return f"{BARE} + {', '.join(effects)}" if effects else BARE
+    before = diagnosis.steps[index - 1].effects
+    new = [e for e in effects if e not in before]
+    gone = [e for e in before if e not in effects]
+    return ", ".join([f"+ {e}" for e in new] + [f"- {e}" for e in gone]) or "refitted"

@@ -17,7 +17,7 @@ import jbf
 import numpy as np
 from jbf import _core
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem
+from jbf.estimation.problem import Problem
 from jbf.models.chain import MAX_STEP_S, core_bearing, core_load_n
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jbf import Fit, Model, Rig, Run, compare, fit
-from jbf.diagnosis.result import Diagnosis, Remainder, Step, Trial
+from jbf.diagnosis import Diagnosis, Remainder, Step, Trial
 
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
 DRAG_N = 2.0

@@ -11,7 +11,8 @@ from campaigns import campaign
 from jbf import InputError, bootstrap, fit
 from jbf.estimation.bootstrap import recorded_again
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.noise import Noise, noise_of
+from jbf.estimation.noise import Noise
+from jbf.records.motion.roughness import noise_of
 
 
 def test_errors_of_a_plain_fit_are_those_of_the_curvature() -> None:

@@ -37,9 +37,9 @@ def test_a_sine_is_smoothed(omega: float) -> None:
     off = np.abs(m.velocity_m_s - v) / m.velocity_error_m_s
     assert np.mean(off < 3.0) > 0.95
     # Where the sign is trusted it is right.
-    sure = m.trusted & ~m.resting
+    sure = m.sign_known & ~m.resting
     np.testing.assert_array_equal(np.sign(m.velocity_m_s[sure]), np.sign(v[sure]))
-    assert np.mean(m.trusted) > 0.98
+    assert np.mean(m.sign_known) > 0.98
 
 
 def test_without_an_angle_the_speed_alone_is_smoothed() -> None:
@@ -148,7 +148,7 @@ def test_uneven_noise_is_uneven_error() -> None:
     quiet = (t > 22.0) & (t < 38.0)
     ratio = np.median(m.velocity_error_m_s[inside]) / np.median(m.velocity_error_m_s[quiet])
     assert ratio > 5.0
-    sure = m.trusted & ~m.resting
+    sure = m.sign_known & ~m.resting
     np.testing.assert_array_equal(np.sign(m.velocity_m_s[sure]), np.sign(v[sure]))
 
 

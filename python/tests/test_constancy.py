@@ -9,13 +9,16 @@ import pytest
 from campaigns import campaign
 from jbf import Rig, Run, diagnose
 from jbf.diagnosis.constancy import disagreement, find_disagreement
+from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem, Solution
+from jbf.estimation.minimum import minimum
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 
 
 def _solved(rig: Rig, runs: list[Run], effects: tuple[str, ...] = ()) -> tuple[Problem, Solution]:
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", effects)
-    return problem, problem.solve([{}])
+    return problem, minimum(problem, [{}])
 
 
 @pytest.mark.parametrize("coloured", [False, True])
@@ -27,7 +30,7 @@ def test_runs_of_one_rig_agree(effects: tuple[str, ...], coloured: bool) -> None
     # A chi-square is within four of its standard deviations of its mean.
     assert abs(found.gain - found.degrees) < 4.0 * np.sqrt(2.0 * found.degrees), found
     assert 0 < found.degrees <= (len(runs) - 1) * len(solution.values)
-    assert find_disagreement(problem, solution) == []
+    assert find_disagreement(problem, solution, DEFAULT) == []
 
 
 def test_the_run_of_another_rig_is_named() -> None:
@@ -37,8 +40,8 @@ def test_the_run_of_another_rig_is_named() -> None:
     mixed = [*runs[:2], replace(runs[2], friction_n=1.08 * runs[2].friction_n), *runs[3:]]
     problem, solution = _solved(rig, mixed)
     found = disagreement(problem, solution)
-    assert found.beyond_chance
-    (said,) = find_disagreement(problem, solution)
+    assert found.beyond_chance()
+    (said,) = find_disagreement(problem, solution, DEFAULT)
     assert said.axis == "parameters"
     assert runs[2].name in said.where
     d = diagnose(rig, mixed)
@@ -50,17 +53,18 @@ def test_one_run_cannot_disagree() -> None:
     rig, runs, _ = campaign(11)
     problem, solution = _solved(rig, runs[:1])
     # Wherever the parameters stand: what they would gain is no disagreement.
-    off = problem.solution(1.05 * solution.values, solution.noise)
+    off = problem.solution(1.05 * solution.values, solution.samples, solution.noise)
     for there in (solution, off):
         assert disagreement(problem, there).degrees == 0
-        assert find_disagreement(problem, there) == []
+        assert find_disagreement(problem, there, DEFAULT) == []
 
 
 def test_parameters_in_common_that_are_off_are_no_disagreement() -> None:
     rig, runs, _ = campaign(11)
     problem, solution = _solved(rig, runs)
     at = disagreement(problem, solution)
-    off = problem.solution(solution.values * [1.02, 1.0, 1.0, 1.0], solution.noise)
+    values = solution.values * [1.02, 1.0, 1.0, 1.0]
+    off = problem.solution(values, solution.samples, solution.noise)
     # The runs would gain much, but all the same.
     assert disagreement(problem, off).gain < at.gain + 4.0 * np.sqrt(2.0 * at.degrees)
 
@@ -71,4 +75,4 @@ def test_each_run_may_have_its_peak_of_a_ringing_drive() -> None:
     found = disagreement(problem, solution)
     # Of seven parameters four are asked of the runs.
     assert 0 < found.degrees <= 4 * (len(runs) - 1)
-    assert not found.beyond_chance
+    assert not found.beyond_chance()

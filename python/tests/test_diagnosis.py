@@ -7,7 +7,7 @@ import pytest
 from campaigns import campaign
 from jbf import Diagnosis, Rig, Run, diagnose
 from jbf import effects as catalogue
-from jbf.diagnosis.search import TIE
+from jbf.diagnosis import Policy
 
 LATER = ("backlash", "time_delay", "load_dependence")
 """Last, so that the seeds of the others stay what they were."""
@@ -128,7 +128,7 @@ def test_the_dictionary_keeps_the_contract() -> None:
     assert {"effects", "rms_n", "holdout_rms_n", "noise_n"} <= set(found["steps"][-1])
     assert {"axis", "where", "share"} <= set(found["failures"][0])
     assert found["parameters"]["f_m"]["stderr"] > 0.0
-    assert TIE > 0.0
+    assert Policy().tie > 0.0
 
 
 def _some_diagnosis() -> Diagnosis:

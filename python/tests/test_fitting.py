@@ -7,7 +7,7 @@ import pytest
 from campaigns import SHORT, campaign
 from jbf import InputError, Model, compare, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem
+from jbf.estimation.problem import Problem
 from jbf.models.catalogue import effects as catalogue
 
 BASE = {"f_m": "f_m", "U_tr_m_s": "U_tr", "K0": "K0", "gamma": "gamma"}

@@ -7,8 +7,9 @@ import pytest
 from campaigns import campaign
 from jbf import InputError, Model, compare, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem
-from jbf.estimation.jumps import at_work, jumps, moves_jumps, without_jumps
+from jbf.estimation.jumps import active_effects, jumps, moves_jumps
+from jbf.estimation.problem import Problem
+from jbf.models.catalogue import parameters_of
 
 
 def test_only_a_jump_is_in_doubt() -> None:
@@ -46,10 +47,10 @@ def test_recovers_what_moves_a_jump(name: str) -> None:
     assert found.stderr < 0.3 * value
     # The samples next to the moved jumps are left out, and few others.
     bare = compare(Model(rig), runs)
-    assert 0.97 * bare.campaign.samples < fitted.samples < bare.campaign.samples
+    assert 0.97 * bare.samples.count < fitted.samples < bare.samples.count
     after = compare(fitted.model, runs)
     assert after.rms_n < 1.03 * truth["noise_n"]
-    assert without_jumps(bare.campaign, [], bare.predictions) is bare.campaign
+    assert bare.samples is bare.campaign.samples
 
 
 def test_the_delay_of_the_start_does_not_matter() -> None:
@@ -64,14 +65,23 @@ def test_an_effect_at_its_null_casts_no_doubt() -> None:
     rig, runs, _ = campaign(6)
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("time_delay",))
     values = problem.starts({})[0]
-    assert problem.without_doubt(values).campaign.samples < problem.campaign.samples
+    every = problem.campaign.samples
+    assert problem.samples_at(values).count < every.count
     values[problem.names.index("time_delay.tau_s")] = 0.0
-    assert at_work(["time_delay"], problem.parameters, values) == []
-    assert problem.without_doubt(values) is problem
+    assert active_effects(["time_delay"], problem.parameters, values) == []
+    assert problem.samples_at(values) is every
     # A comparison sees as many samples as that of the law alone.
     law = dict(zip(problem.names, values, strict=True))
     late = compare(Model(rig, effects=["time_delay"], parameters=law), runs)
-    assert late.campaign.samples == compare(Model(rig), runs).campaign.samples
+    assert late.samples.count == compare(Model(rig), runs).samples.count
+
+
+def test_an_effect_acts_where_any_of_its_parameters_is_off_its_null() -> None:
+    pages = parameters_of("journal", ("load_dependence",))
+    law = [page.starts[0] for name, page in pages.items() if "." not in name]
+    for p, q in ((0.0, 1.5), (0.4, 0.0), (0.4, 1.5)):
+        assert active_effects(["load_dependence"], pages, [*law, p, q]) == ["load_dependence"]
+    assert active_effects(["load_dependence"], pages, [*law, 0.0, 0.0]) == []
 
 
 def test_load_dependence_needs_several_loads() -> None:

@@ -7,7 +7,9 @@ import numpy.typing as npt
 import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.noise import WHITE, Noise, estimate_noise, noise_floor, period_samples
+from jbf.estimation.noise import WHITE, Noise, estimate_noise
+from jbf.estimation.noise_floor import noise_floor
+from jbf.estimation.replicates import period_samples
 
 Array = npt.NDArray[np.float64]
 STEP_S = 0.02
@@ -54,7 +56,9 @@ def test_the_floor_of_a_record(is_coloured: bool, whole: float) -> None:
     ratios = []
     for seed in (3, 4, 5):
         rig, runs, truth = campaign(seed, coloured=is_coloured)
-        ratios.append(noise_floor(Campaign.prepare(rig, runs)) / truth["noise_n"])
+        prepared = Campaign.prepare(rig, runs)
+        floor = noise_floor(prepared.prepared, prepared.samples)
+        ratios.append(floor / truth["noise_n"])
     assert np.mean(ratios) == pytest.approx(whole, rel=0.06)
 
 

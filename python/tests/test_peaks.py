@@ -7,8 +7,9 @@ import numpy.typing as npt
 import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem
+from jbf.estimation.minimum import approach, search_peaks, settle
 from jbf.estimation.peaks import other_peaks
+from jbf.estimation.problem import Problem
 from jbf.models.catalogue import find_effect
 
 
@@ -35,8 +36,8 @@ def test_a_drive_that_rings_is_found_from_a_wrong_frequency() -> None:
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("drive_compliance",))
     right = truth["effects"]["drive_compliance"]["J"]
     start = {"drive_compliance.J_kg_m2": 5.0 * right}
-    stuck = problem.settle(problem.approach([start], 60))
-    found = problem.look_around(stuck)
+    stuck = settle(problem, approach(problem, [start], 60))
+    found = search_peaks(problem, stuck)
     which = problem.names.index("drive_compliance.J_kg_m2")
     assert problem.square(found.values) < problem.square(stuck.values)
     assert abs(found.values[which] / right - 1.0) < 0.15

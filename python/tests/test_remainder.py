@@ -12,11 +12,15 @@ import pytest
 from campaigns import campaign
 from jbf import diagnose
 from jbf.diagnosis.bursts import find_bursts
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.remainder import find_remainder
-from jbf.diagnosis.repeats import find_repeats
+from jbf.diagnosis.replicates import find_replicates
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import Problem, Solution
+from jbf.estimation.minimum import approach, settle
 from jbf.estimation.noise import Noise
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 SIGMA_N = 0.3
@@ -26,7 +30,7 @@ SIGMA_N = 0.3
 def _solved() -> tuple[Problem, Solution]:
     rig, runs, _ = campaign(7)
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ())
-    return problem, problem.settle(problem.approach([{}], 8))
+    return problem, settle(problem, approach(problem, [{}], 8))
 
 
 def _with(
@@ -40,6 +44,10 @@ def _with(
 
 def _white(random: np.random.Generator, run: int) -> Array:
     return random.normal(0.0, SIGMA_N, len(_solved()[1].residuals[run]))
+
+
+def _replicates(problem: Problem, solution: Solution) -> list[Remainder]:
+    return find_replicates(problem.campaign.prepared, solution, DEFAULT)
 
 
 def _phase(run: int) -> Array:
@@ -66,7 +74,7 @@ def test_coloured_noise_does_not_come_again(seed: int) -> None:
         return white + slow
 
     # What the noise model finds of it: about a fifth of the mean square, remembered 0.2 s.
-    assert find_repeats(*_with(coloured, seed, Noise(0.2, 0.5))) == []
+    assert _replicates(*_with(coloured, seed, Noise(0.2, 0.5))) == []
 
 
 def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:
@@ -76,7 +84,7 @@ def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:
         wave = np.sign(np.sin(5.0 * _phase(run)))
         return _white(random, run) + size_n * wave
 
-    (found,) = find_repeats(*_with(with_wave, 3))
+    (found,) = _replicates(*_with(with_wave, 3))
     assert found.axis == "period"
     assert found.share == pytest.approx(0.4**2 / (1.0 + 0.4**2), rel=0.25)
     assert "two_way_1" in found.where
@@ -84,18 +92,19 @@ def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:
 
 def test_bursts_are_told_with_their_times_and_two_outliers_are_not() -> None:
     problem, solution = _with(_white, 4)
-    innovations = [-r for r in solution.residuals]
-    assert find_bursts(problem, innovations) == []
+    prepared, samples = problem.campaign.prepared, solution.samples
+    innovations = [r.copy() for r in solution.residuals]
+    assert find_bursts(prepared, samples, innovations, DEFAULT) == []
 
     time = problem.campaign.prepared[0].run.time_s
     at = [int(np.searchsorted(time, t)) for t in (11.0, 23.0, 37.0, 44.0)]
     for k in at[:2]:
         innovations[0][k] += 12.0 * SIGMA_N
-    assert find_bursts(problem, innovations) == []
+    assert find_bursts(prepared, samples, innovations, DEFAULT) == []
 
     for k in at:
         innovations[0][k : k + 3] += 9.0 * SIGMA_N
-    (found,) = find_bursts(problem, innovations)
+    (found,) = find_bursts(prepared, samples, innovations, DEFAULT)
     assert found.axis == "time"
     assert found.where.startswith("4 bursts")
     assert "11.0 s in two_way_0.25" in found.where

@@ -13,7 +13,8 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.campaign import Campaign, Prepared
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.prepared import Prepared
 
 Array = npt.NDArray[np.float64]
 Bins = npt.NDArray[np.intp]

@@ -11,9 +11,11 @@ import numpy.typing as npt
 
 from jbf.comparison.axes import Binned, all_axes
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import at_work, without_jumps
-from jbf.estimation.noise import noise_floor
+from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps
+from jbf.estimation.noise_floor import noise_floor
+from jbf.estimation.samples import Samples
 from jbf.models.catalogue import parameters_of, transition_speed
+from jbf.models.chain import chain, warn_of_fast_film
 from jbf.models.model import Model
 from jbf.records.run import PathLike, Run
 
@@ -73,9 +75,10 @@ class Comparison:
 
     Attributes
     ----------
+    samples
+        Those that count: where the sign of the motion is known.
     rms_n
-        Root mean square of record minus prediction over samples where the sign of the motion is
-        known, N.
+        Root mean square of record minus prediction over the samples that count, N.
     noise_n
         Noise floor of the record, from the data alone, N.
     failures
@@ -86,6 +89,7 @@ class Comparison:
 
     model: Model
     campaign: Campaign
+    samples: Samples
     rms_n: float
     noise_n: float
     runs: tuple[RunComparison, ...]
@@ -122,24 +126,39 @@ class Comparison:
 
 
 def find_failures(
-    campaign: Campaign, residuals: Sequence[Array], u_tr: float | None, noise_n: float
+    campaign: Campaign,
+    samples: Samples,
+    residuals: Sequence[Array],
+    u_tr: float | None,
+    noise_n: float,
 ) -> tuple[Failure, ...]:
     """Axes along which record minus prediction has a pattern, strongest first."""
-    trusted = np.concatenate([p.trusted for p in campaign.prepared])
-    r = np.concatenate(list(residuals))[trusted]
-    total = float(r @ r)
-    found = []
-    for axis in all_axes(campaign, u_tr):
-        failure = _failure(axis, r, trusted, total, noise_n)
-        if failure is not None:
-            found.append(failure)
-    return tuple(sorted(found, key=lambda f: -f.share))
+    axes = all_axes(campaign, u_tr)
+    patterns = (pattern_along(axis, samples, residuals, noise_n) for axis in axes)
+    return tuple(sorted((f for f in patterns if f is not None), key=lambda f: -f.share))
 
 
-def _failure(
-    axis: Binned, r: Array, trusted: npt.NDArray[np.bool_], total: float, noise_n: float
+def pattern_along(
+    axis: Binned,
+    samples: Samples,
+    residuals: Sequence[Array],
+    noise_n: float,
+    least_share: float = LEAST_SHARE,
+    significance: float = SIGNIFICANCE,
 ) -> Failure | None:
-    bins = np.concatenate(axis.bins)[trusted]
+    """The pattern of residuals (record minus prediction, N) along an axis, where it stands out.
+
+    Parameters
+    ----------
+    noise_n
+        Standard deviation of what is no pattern, N.
+    least_share
+        Share of the mean square that the means of the bins must explain beyond chance.
+    significance
+        Standard deviations that this must stand above chance.
+    """
+    r, bins = samples.flat(residuals), samples.flat(axis.bins)
+    total = float(r @ r)
     known = bins >= 0
     size = len(axis.labels)
     counts = np.bincount(bins[known], minlength=size)
@@ -151,7 +170,7 @@ def _failure(
     chance = used * noise_n**2
     spread = np.sqrt(2.0 * used) * noise_n**2
     share = (explained - chance) / total if total > 0 else 0.0
-    if share < LEAST_SHARE or explained < chance + SIGNIFICANCE * spread:
+    if share < least_share or explained < chance + significance * spread:
         return None
     return Failure(axis.axis, _words(axis, means, counts), share, axis.labels, means, counts)
 
@@ -185,34 +204,35 @@ def _words(axis: Binned, means: Array, counts: npt.NDArray[np.intp]) -> str:
 
 def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     """`compare` for runs that are ready."""
-    from jbf.models.chain import chain, warn_of_fast_film
-
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
     predictions = core.predict(model.values, motions)
     pages = parameters_of(model.law, tuple(model.effects))
-    effects = at_work(model.effects, pages, model.values)
-    campaign = without_jumps(campaign, effects, predictions)
+    effects = active_effects(model.effects, pages, model.values)
+    samples = campaign.samples
+    if moves_jumps(effects):
+        samples = samples_beside_jumps(samples, campaign.prepared, predictions)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
-    noise = noise_floor(campaign)
+    noise = noise_floor(campaign.prepared, samples)
     runs = tuple(
         RunComparison(
             p.run.name,
-            float(np.sqrt(np.mean(r[p.trusted] ** 2))),
-            int(p.trusted.sum()),
+            float(np.sqrt(np.mean(r[counted] ** 2))),
+            int(counted.sum()),
         )
-        for p, r in zip(campaign.prepared, residuals, strict=True)
+        for p, r, counted in zip(campaign.prepared, residuals, samples.counted, strict=True)
     )
-    square = sum(r.rms_n**2 * r.samples for r in runs) / max(campaign.samples, 1)
+    square = sum(r.rms_n**2 * r.samples for r in runs) / max(samples.count, 1)
     u_tr = transition_speed(model.law, model.values.tolist())
     return Comparison(
         model=model,
         campaign=campaign,
+        samples=samples,
         rms_n=float(np.sqrt(square)),
         noise_n=noise,
         runs=runs,
-        failures=find_failures(campaign, residuals, u_tr, noise),
+        failures=find_failures(campaign, samples, residuals, u_tr, noise),
         predictions=predictions,
         residuals=residuals,
     )

@@ -2,42 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.result import Remainder
-from jbf.estimation.fit import Problem
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
 
-FAR_SIGMA = 5.0
-"""An innovation beyond this is one in two millions of Gaussian noise."""
-MOST_BY_CHANCE = 2
-"""So few of them are let pass."""
-LEAST_SHARE = 0.008
-"""Share of the mean square below which they do not matter."""
 APART_S = 0.5
 """Large innovations closer than this are one burst."""
 NAMED = 4
 """Bursts named in the description."""
 
 
-def find_bursts(problem: Problem, innovations: list[Array]) -> list[Remainder]:
+def find_bursts(
+    prepared: Sequence[Prepared], samples: Samples, innovations: Sequence[Array], policy: Policy
+) -> list[Remainder]:
     """Isolated bursts in the innovations (record minus prediction), if there are any."""
-    prepared = problem.campaign.prepared
-    every = np.concatenate([e[p.trusted] for e, p in zip(innovations, prepared, strict=True)])
+    every = samples.flat(innovations)
     if not len(every):
         return []
     # The middle of the distribution: bursts must not hide behind the spread that they cause.
     sigma = float(np.median(np.abs(every))) / 0.6745
-    far = np.abs(every) > FAR_SIGMA * sigma
+    far = np.abs(every) > policy.burst_sigma * sigma
     square = float(every @ every)
     share = float(np.sum(every[far] ** 2)) / max(square, 1e-300)
-    if int(far.sum()) <= MOST_BY_CHANCE or share < LEAST_SHARE:
+    if int(far.sum()) <= policy.bursts_by_chance or share < policy.burst_share:
         return []
     bursts: list[tuple[float, float, str]] = []
-    for e, p in zip(innovations, prepared, strict=True):
-        index = np.flatnonzero((np.abs(e) > FAR_SIGMA * sigma) & p.trusted)
+    for e, counted, p in zip(innovations, samples.counted, prepared, strict=True):
+        index = np.flatnonzero((np.abs(e) > policy.burst_sigma * sigma) & counted)
         time = p.run.time_s[index]
         for group in np.split(index, np.flatnonzero(np.diff(time) > APART_S) + 1):
             if len(group):

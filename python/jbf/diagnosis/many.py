@@ -7,8 +7,9 @@ from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from typing import Any
 
+from jbf.diagnosis.candidates import Progress
+from jbf.diagnosis.recipe import diagnose
 from jbf.diagnosis.result import Diagnosis
-from jbf.diagnosis.search import Progress, diagnose
 from jbf.errors import InputError, JbfError
 from jbf.models.catalogue import find_law
 from jbf.records.rig import Rig, read_rig

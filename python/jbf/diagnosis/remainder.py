@@ -8,123 +8,53 @@ matter.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from jbf.comparison.axes import all_axes, force_axis
-from jbf.comparison.comparison import Failure, _failure
+from jbf.comparison.comparison import Failure, pattern_along
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.constancy import find_disagreement
-from jbf.diagnosis.repeats import find_repeats
-from jbf.diagnosis.result import Remainder
-from jbf.estimation.fit import Problem, Solution
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.replicates import find_replicates
+from jbf.diagnosis.tones import find_tones
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
 
 Array = npt.NDArray[np.float64]
 
-LEAST_SHARE = 0.008
-"""A pattern that explains less of the residual's mean square than this is let pass."""
-LEAST_SHARE_OF_FORCE = 0.003
-"""Along the model's own force less will do: a law bends itself to hide what a cell that is not
-straight does to it, and right models leave half of this at most."""
-TONE_CHANCE = 1e-7
-"""Probability that noise alone shows so high a spectral line in any run."""
 
-
-def find_remainder(problem: Problem, solution: Solution) -> tuple[Remainder, ...]:
+def find_remainder(
+    problem: Problem, solution: Solution, policy: Policy = DEFAULT
+) -> tuple[Remainder, ...]:
     """What remains in the residuals of a solution, strongest first."""
-    problem = problem.on(solution.campaign)
-    campaign = problem.campaign
-    innovations = [
-        problem_innovations(r, p.trusted, p.step_s, solution)
-        for r, p in zip(solution.residuals, campaign.prepared, strict=True)
-    ]
-    found = [Remainder(f.axis, f.where, f.share) for f in _patterns(problem, solution, innovations)]
-    found += _tones(problem, innovations, [-r for r in solution.residuals])
-    found += find_repeats(problem, solution)
-    found += find_bursts(problem, innovations)
-    found += find_disagreement(problem, solution)
+    prepared, samples = problem.campaign.prepared, solution.samples
+    innovations = samples.innovations(solution.residuals, solution.noise)
+    patterns = find_patterns(problem, solution, innovations, policy)
+    found = [Remainder(f.axis, f.where, f.share) for f in patterns]
+    found += find_tones(prepared, samples, innovations, solution.residuals, policy)
+    found += find_replicates(prepared, solution, policy)
+    found += find_bursts(prepared, samples, innovations, policy)
+    found += find_disagreement(problem, solution, policy)
     return tuple(sorted(found, key=lambda r: -r.share))
 
 
-def problem_innovations(
-    residual: Array, trusted: npt.NDArray[np.bool_], step_s: float, solution: Solution
-) -> Array:
-    """Innovations of record minus prediction, zero where the sample says nothing."""
-    return solution.noise.innovations(-residual * trusted, step_s) * trusted
-
-
-def _patterns(problem: Problem, solution: Solution, innovations: list[Array]) -> list[Failure]:
-    campaign = problem.campaign
-    trusted = np.concatenate([p.trusted for p in campaign.prepared])
-    e = np.concatenate(innovations)[trusted]
-    total = float(e @ e)
-    size = float(np.sqrt(total / max(len(e), 1)))
+def find_patterns(
+    problem: Problem, solution: Solution, innovations: Sequence[Array], policy: Policy
+) -> list[Failure]:
+    """Axes along which the means of the innovations differ by more than chance and a share."""
+    e = solution.samples.flat(innovations)
+    size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
-    found = []
+    # Along the model's own force a cell that is not straight shows.
     force = force_axis(problem.predict(solution.values))
-    for axis in (*all_axes(campaign, u_tr), force):
-        failure = _failure(axis, e, trusted, total, size)
-        least = LEAST_SHARE_OF_FORCE if axis is force else LEAST_SHARE
-        if failure is not None and failure.share >= least:
-            found.append(failure)
-    return found
-
-
-def _tones(problem: Problem, innovations: list[Array], residuals: list[Array]) -> list[Remainder]:
-    """Spectral lines that stand out of the white spectrum of the innovations."""
-    lines: list[tuple[float, float, str]] = []
-    power = 0.0
-    for p, e, r in zip(problem.campaign.prepared, innovations, residuals, strict=True):
-        n = len(e)
-        if n < 64:
-            continue
-        f, spectrum = signal.periodogram(e, 1.0 / p.step_s, window="boxcar", detrend="constant")
-        # Slow structure belongs to the patterns; a line needs several turns within the run.
-        band = f > 8.0 / p.run.duration_s
-        if not band.any():
-            continue
-        level = float(np.median(spectrum[band]) / np.log(2.0))
-        k = int(np.argmax(np.where(band, spectrum, 0.0)))
-        if level <= 0.0 or spectrum[k] / level < -np.log(TONE_CHANCE / band.sum()):
-            continue
-        frequency, amplitude = _refine(p.run.time_s, r, p.trusted, float(f[k]), float(f[1]))
-        lines.append((frequency, amplitude, p.run.name))
-        power += 0.5 * amplitude**2 * n
-    if not lines:
-        return []
-    total = sum(
-        float(np.sum(r[p.trusted] ** 2))
-        for r, p in zip(residuals, problem.campaign.prepared, strict=True)
+    share, sigma = policy.pattern_share, policy.pattern_sigma
+    found = (
+        pattern_along(axis, solution.samples, innovations, size, share, sigma)
+        for axis in (*all_axes(problem.campaign, u_tr), force)
     )
-    middle = float(np.median([x[0] for x in lines]))
-    same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
-    share = power / max(total, 1e-300)
-    if share < LEAST_SHARE:
-        return []
-    every = len(lines) == len(problem.campaign.prepared)
-    scope = "in all runs" if every else "in " + ", ".join(x[2] for x in lines)
-    if len(same) == len(lines):
-        amplitude = float(np.median([x[1] for x in same]))
-        where = f"a {middle:.2f} Hz tone, amplitude {amplitude:.2g} N, {scope}"
-    else:
-        where = "tones: " + ", ".join(f"{x[0]:.2f} Hz of {x[1]:.2g} N in {x[2]}" for x in lines)
-    return [Remainder("frequency", where, min(share, 1.0))]
-
-
-def _refine(
-    time: Array, r: Array, trusted: npt.NDArray[np.bool_], near: float, width: float
-) -> tuple[float, float]:
-    """Frequency and amplitude of the sine that fits best near a spectral line."""
-    grid = near + width * np.linspace(-1.0, 1.0, 41)
-    t, y = time[trusted], r[trusted]
-    best, amplitude, gain = near, 0.0, -1.0
-    for f in grid:
-        phase = 2.0 * np.pi * f * t
-        pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
-        c, *_ = np.linalg.lstsq(pair, y, rcond=None)
-        now = float(np.sum((pair @ c) ** 2))
-        if now > gain:
-            best, amplitude, gain = float(f), float(np.hypot(*c)), now
-    return best, amplitude
+    return [failure for failure in found if failure is not None]

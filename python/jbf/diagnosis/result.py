@@ -7,84 +7,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from jbf.comparison.comparison import Comparison, Failure
+from jbf.diagnosis.experiment import Experiment
+from jbf.diagnosis.ledger import Remainder, Step
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.verdict import Verdict
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
 from jbf.records.run import PathLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from jbf.diagnosis.experiment import Experiment
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One candidate at one step of the ledger.
-
-    Attributes
-    ----------
-    effect
-        Name of the candidate.
-    rms_n
-        Fit RMS with it, N.
-    evidence
-        Twice the gain in log likelihood, less what chance and the candidate's parameters would
-        gain; above zero it is better than nothing.
-    outcome
-        `added`, `ties`, `rejected`, `useless` (no better than chance), or `withdrawn` (added,
-        until what remained showed it to be a stand-in).
-    reason
-        Why, in words.
-    """
-
-    effect: str
-    rms_n: float
-    evidence: float
-    outcome: str
-    reason: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return dict(vars(self))
-
-
-@dataclass(frozen=True)
-class Step:
-    """The model after one addition (the first: the bare law).
-
-    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs that each had no part
-    in the fit that predicts them; `noise_n` the noise floor; all N. `trials` are the candidates
-    that competed for the next place.
-    """
-
-    effects: tuple[str, ...]
-    rms_n: float
-    holdout_rms_n: float
-    noise_n: float
-    trials: tuple[Trial, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "effects": list(self.effects),
-            "rms_n": self.rms_n,
-            "holdout_rms_n": self.holdout_rms_n,
-            "noise_n": self.noise_n,
-            "tried": [t.to_dict() for t in self.trials],
-        }
-
-
-@dataclass(frozen=True)
-class Remainder:
-    """Structure that nothing in the catalogue explains."""
-
-    axis: str
-    where: str
-    share: float
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
 
 
 @dataclass(frozen=True)
@@ -117,9 +49,11 @@ class Diagnosis:
         Effects that could be there at a usual strength, and that these runs would still not show.
     experiment
         The motion of the next run, where a run would part rivals or show what could hide.
+    policy
+        The numbers that decided the verdict.
     """
 
-    verdict: str
+    verdict: Verdict
     effects: tuple[str, ...]
     alternatives: dict[str, tuple[str, ...]]
     steps: tuple[Step, ...]
@@ -133,6 +67,7 @@ class Diagnosis:
     not_tried: dict[str, str] = field(default_factory=dict)
     unseen: tuple[str, ...] = ()
     experiment: Experiment | None = None
+    policy: Policy = DEFAULT
 
     @property
     def model(self) -> Model:
@@ -155,6 +90,7 @@ class Diagnosis:
             },
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
+            "policy": self.policy.to_dict(),
             "elapsed_s": self.elapsed_s,
         }
 

@@ -18,9 +18,13 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.campaign import Campaign, Prepared
-from jbf.estimation.fit import Fit, Problem, named_values
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import Fit
+from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem, named_values
+from jbf.estimation.uncertainty import HELD
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.motion.roughness import encoder_step
@@ -95,7 +99,7 @@ def bootstrap(
     model = fitted.model
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}
-    held = {n: truth[n] for n, p in fitted.parameters.items() if p.note == "held fixed"}
+    held = {n: truth[n] for n, p in fitted.parameters.items() if p.note == HELD}
     problem = Problem(campaign, model.law, model.clock, model.effects, held)
     random = np.random.default_rng(seed)
     predictions = problem.predict(np.array([truth[name] for name in problem.names]))
@@ -111,7 +115,7 @@ def bootstrap(
         other = Problem(
             Campaign.prepare(model.rig, again), model.law, model.clock, model.effects, held
         )
-        answers.append(other.solve([named_values(start, problem.parameters)]).values)
+        answers.append(minimum(other, [named_values(start, problem.parameters)]).values)
     values = dict(zip(problem.names, np.array(answers).T, strict=True))
     parameters = {
         name: _with_error(p, values[name], problem.parameters[name])
@@ -125,10 +129,9 @@ def bootstrap(
 def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
     """Standard deviation of the innovations of each run, N; of all together where a run has few
     samples."""
-    pieces = [
-        fitted.noise.innovations(r * p.trusted, p.step_s)[p.trusted]
-        for r, p in zip(fitted.residuals, campaign.prepared, strict=True)
-    ]
+    samples = campaign.samples
+    whole = samples.innovations(fitted.residuals, fitted.noise)
+    pieces = [e[counted] for e, counted in zip(whole, samples.counted, strict=True)]
     usual = float(np.sqrt(np.mean(np.concatenate(pieces) ** 2)))
     return [float(np.sqrt(np.mean(e**2))) if len(e) >= 100 else usual for e in pieces]
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.fit import Problem, Solution
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
@@ -19,15 +20,13 @@ BENT = 0.3
 """How far the rise at one standard error may be off one."""
 
 
-def doubtful(
+def doubtful_errors(
     problem: Problem, solution: Solution, stderr: list[float | None], correlations: Array
 ) -> tuple[str, ...]:
     """Names of the parameters whose standard error is no error.
 
     Parameters
     ----------
-    problem
-        On the solution's samples.
     stderr
         One for each parameter of the problem; None where there is none.
     correlations : array, shape (k, k)
@@ -57,7 +56,7 @@ def doubtful(
             if np.any((there <= low) | (there >= high)):
                 continue
             residuals = problem.residuals(problem.decode(there, solution.values))
-            rise = problem.innovation_cost(residuals, solution.noise) - solution.cost
+            rise = solution.samples.cost(residuals, solution.noise) - solution.cost
             if abs(rise - 1.0) > BENT:
                 found.append(problem.names[i])
                 break

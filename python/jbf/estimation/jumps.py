@@ -1,10 +1,10 @@
 """Samples next to a jump whose instant is itself fitted.
 
 Friction jumps where the motion turns round. Of those samples a record does not tell the sign, and
-`conditioning` distrusts them. An effect that moves the jump elsewhere (a late record, a gap to
-be crossed first) moves the doubt with it: there the model has a ramp over a sample where the record
-has a jump somewhere within it. What that costs is known: some half of the change over the sample.
-A fit weighs the sample by it, and no verdict looks at it.
+they do not count (`Samples`). An effect that moves the jump elsewhere (a late record, a gap to be
+crossed first) moves the uncertainty with it: there the model has a ramp over a sample where the
+record has a jump somewhere within it. What that costs is known: some half of the change over the
+sample. A fit weighs the sample by it, and no test looks at it.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.campaign import Campaign, Prepared
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.samples import Samples
 from jbf.models.catalogue import Parameter, find_effect
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 JUMP = 0.1
 """A change within a sample by more than this share of the run's largest friction is a jump,"""
@@ -32,17 +34,19 @@ def moves_jumps(effects: Iterable[str]) -> bool:
     return any(find_effect(name).moves_jumps for name in effects)
 
 
-def at_work(
+def active_effects(
     effects: Iterable[str], pages: Mapping[str, Parameter], values: Iterable[float]
 ) -> list[str]:
-    """The effects that are not at their null; `pages` and `values` by the parameters' full names,
-    in one order."""
-    idle = {
-        name.split(".")[0]
-        for (name, page), value in zip(pages.items(), values, strict=True)
-        if "." in name and page.null == value
-    }
-    return [effect for effect in effects if effect not in idle]
+    """The effects that are not at their null: one of their parameters that have a null is off it.
+
+    `pages` and `values` are by the parameters' full names, in one order.
+    """
+    off: dict[str, bool] = {}
+    for (name, page), value in zip(pages.items(), values, strict=True):
+        effect, dot, _ = name.partition(".")
+        if dot and page.null is not None:
+            off[effect] = off.get(effect, False) or page.null != value
+    return [effect for effect in effects if off.get(effect, True)]
 
 
 def jumps(prediction: Array) -> Array:
@@ -62,21 +66,24 @@ def jumps(prediction: Array) -> Array:
     return found
 
 
-def without_jumps(
-    campaign: Campaign, effects: Iterable[str], predictions: Sequence[Array]
-) -> Campaign:
-    """The campaign with the doubt that a model with these effects casts on its samples."""
-    if not moves_jumps(effects):
-        return campaign
-    pairs = zip(campaign.prepared, predictions, strict=True)
-    return campaign.of(_doubted(p, f) for p, f in pairs)
+def samples_beside_jumps(
+    samples: Samples, prepared: Sequence[Prepared], predictions: Sequence[Array]
+) -> Samples:
+    """The samples as a model that moves jumps leaves them, by where its predictions jump."""
+    found = [
+        _uncertain(p, counted, weight, prediction)
+        for p, counted, weight, prediction in zip(
+            prepared, samples.counted, samples.weight, predictions, strict=True
+        )
+    ]
+    return replace(samples, counted=tuple(c for c, _ in found), weight=tuple(w for _, w in found))
 
 
-def _doubted(p: Prepared, prediction: Array) -> Prepared:
+def _uncertain(p: Prepared, counted: Mask, weight: Array, prediction: Array) -> tuple[Mask, Array]:
     change = jumps(prediction)
-    sure = p.trusted & (change == 0.0)
-    noise = float(np.sqrt(np.mean((prediction - p.friction_n)[sure] ** 2))) if sure.any() else 0.0
+    kept = counted & (change == 0.0)
+    noise = float(np.sqrt(np.mean((prediction - p.friction_n)[kept] ** 2))) if kept.any() else 0.0
     error = 0.5 * change
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(error > 0.0, noise / np.hypot(noise, error), 1.0)
-    return replace(p, trusted=sure, weight=p.weight * share)
+    return kept, weight * share

@@ -1,51 +1,73 @@
-"""What one solution gains over another, in units of the log likelihood."""
+"""What one solution gains over another, in units of twice the log likelihood; and score tests: what
+a step would gain, before it is made."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.fit import Problem, Solution
-from jbf.estimation.noise import Noise, independent_share, innovation_cost
+from jbf.estimation.noise import LONGEST_MEMORY_S
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import least_weights
+from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
 
-def costs(a: Solution, b: Solution) -> tuple[float, float]:
-    """The costs of two solutions, each sample with the smaller of the weights they give it."""
-    if a.campaign is b.campaign:
-        return a.cost, b.cost
-    pairs = zip(a.campaign.prepared, b.campaign.prepared, strict=True)
-    weights = [np.minimum(p.weight, q.weight) for p, q in pairs]
-    steps = [p.step_s for p in a.campaign.prepared]
-
-    def cost(solution: Solution) -> float:
-        weighted = [r * w for r, w in zip(solution.residuals, weights, strict=True)]
-        return innovation_cost(solution.noise, weighted, steps, [w > 0.0 for w in weights])
-
-    return cost(a), cost(b)
-
-
-def independent(solution: Solution) -> float:
-    """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
-    prepared = solution.campaign.prepared
-    pairs = zip(solution.residuals, prepared, strict=True)
-    left = [solution.noise.innovations(r * p.weight, p.step_s) * (p.weight > 0.0) for r, p in pairs]
-    return independent_share(left, [p.step_s for p in prepared])
-
-
-def first_step_gain(problem: Problem, values: Array, noise: Noise) -> float:
-    """Gain in twice the log likelihood that one full Gauss-Newton step from `values` promises."""
-    return _promised(*problem.stacked(*problem.linearise(values), noise))
-
-
-def next_step_gain(problem: Problem, solution: Solution) -> float:
-    """The same of a step from a solution: nothing where it has converged."""
-    return _promised(
-        *problem.on(solution.campaign).stacked(
-            solution.residuals, solution.jacobian, solution.noise
-        )
+def likelihood_gain(richer: Solution, simpler: Solution) -> float:
+    """Gain in twice the log likelihood, each sample with the smaller of the weights that the two
+    models give it."""
+    if richer.samples is simpler.samples:
+        return simpler.cost - richer.cost
+    shared = least_weights(richer.samples, simpler.samples)
+    richer_cost, simpler_cost = (
+        shared.cost(solution.residuals, solution.noise) for solution in (richer, simpler)
     )
+    return simpler_cost - richer_cost
+
+
+def effective_share(solution: Solution) -> float:
+    """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
+    samples = solution.samples
+    left = samples.weighted_innovations(solution.residuals, solution.noise)
+    return independent_share(left, samples.steps_s)
+
+
+def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:
+    """How many independent samples one sample of these innovations is worth, 0 to 1.
+
+    Innovations of noise alone are white. Those of a wrong model are not, and n samples of them tell
+    less than n (Bartlett 1946): the autocorrelations are summed until they sink into chance, or
+    are older than any noise.
+    """
+    count = max(sum(len(e) for e in innovations), 1)
+    longest = int(LONGEST_MEMORY_S / min(steps)) + 1
+    total = np.zeros(longest + 1)
+    middle = sum(float(np.sum(e)) for e in innovations) / count
+    for e in innovations:
+        n = len(e)
+        power = np.fft.irfft(np.abs(np.fft.rfft(e - middle, 2 * n)) ** 2)[: min(n, len(total))]
+        total[: len(power)] += power
+    if total[0] <= 0.0:
+        return 1.0
+    rho = total[1:] / total[0]
+    sunk = np.flatnonzero(rho < 2.0 / np.sqrt(count))
+    end = int(sunk[0]) if len(sunk) else len(rho)
+    return float(1.0 / (1.0 + 2.0 * np.sum(rho[:end])))
+
+
+def score_gain(problem: Problem, values: Array, near: Solution) -> float:
+    """The score test of a model at its null: the gain in twice the log likelihood that one full
+    Gauss-Newton step from `values` promises, under the noise of a solution nearby."""
+    samples = problem.campaign.samples
+    return _promised(*samples.stacked(*problem.linearise(values), near.noise))
+
+
+def next_step_gain(solution: Solution) -> float:
+    """The same of a step from a solution: nothing where it has converged."""
+    return _promised(*solution.stacked())
 
 
 def _promised(r: Array, j: Array) -> float:

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from jbf.comparison.comparison import Comparison, Failure
-    from jbf.diagnosis.result import Diagnosis, Remainder
-    from jbf.estimation.campaign import Campaign
+    from jbf.diagnosis.ledger import Remainder
+    from jbf.diagnosis.result import Diagnosis
     from jbf.models.model import Model
     from jbf.records.run import PathLike
 
@@ -85,10 +85,11 @@ def _patterns(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str, s
     return [(p.axis, f"{100 * p.share:.0f} %", p.where) for p in patterns]
 
 
-def _measurement(campaign: Campaign, noise_n: float) -> str:
-    duration = sum(p.run.duration_s for p in campaign.prepared)
+def _measurement(comparison: Comparison, noise_n: float) -> str:
+    runs = comparison.campaign.prepared
+    duration = sum(p.run.duration_s for p in runs)
     return (
-        f"{len(campaign.prepared)} runs of {duration:.0f} s in all, {campaign.samples} samples "
+        f"{len(runs)} runs of {duration:.0f} s in all, {comparison.samples.count} samples "
         f"where the sign of the motion is known, noise floor {number(noise_n)} N"
     )
 
@@ -106,7 +107,7 @@ def comparison_page(comparison: Comparison) -> str:
         sentence=comparison_sentence(comparison),
         axes=listed(f.axis for f in comparison.failures),
         law=_law(model),
-        measurement=_measurement(comparison.campaign, comparison.noise_n),
+        measurement=_measurement(comparison, comparison.noise_n),
         failures=_patterns(comparison.failures),
         picture=_picture(plot_comparison(comparison)),
         run_picture=_picture(plot_run(comparison)),
@@ -147,7 +148,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         verdict=diagnosis.verdict,
         sentence=verdict_sentence(diagnosis),
         next_experiment=diagnosis.next_experiment,
-        measurement=_measurement(before.campaign, bare.noise_n),
+        measurement=_measurement(before, bare.noise_n),
         ledger=ledger_rows(diagnosis),
         picture=_picture(plot_diagnosis(diagnosis)),
         before_picture=_picture(plot_run(before)) if diagnosis.failures else "",

@@ -59,7 +59,9 @@ def friction_speed(ax: Axes, comparison: Comparison, index: int, colour: str, ti
     # A line through a reversal, whose instant no sample tells, would show a slope that is not
     # the model's.
     turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)
-    shown = np.where(p.trusted & ~turns, comparison.predictions[index], np.nan)
+    shown = np.where(
+        comparison.samples.counted[index] & ~turns, comparison.predictions[index], np.nan
+    )
     ax.plot(speed, shown, color=colour, linewidth=1.3, label="model")
     dress(ax, title, "Surface speed (m/s)", "Friction of one bearing (N)")
     ax.legend(loc="upper left", frameon=False, markerscale=2)
@@ -75,10 +77,9 @@ def pattern_along(comparison: Comparison, axis: str | None) -> Failure:
     u_tr = transition_speed(model.law, model.values.tolist())
     found = {a.axis: a for a in all_axes(campaign, u_tr)}
     binned = found.get(axis or "velocity", found["velocity"])
-    trusted = np.concatenate([p.trusted for p in campaign.prepared])
-    bins = np.concatenate(binned.bins)
-    known = trusted & (bins >= 0)
-    r = np.concatenate(comparison.residuals)[known]
+    bins = comparison.samples.flat(binned.bins)
+    known = bins >= 0
+    r = comparison.samples.flat(comparison.residuals)[known]
     counts = np.bincount(bins[known], minlength=len(binned.labels))
     sums = np.bincount(bins[known], weights=r, minlength=len(binned.labels))
     means = sums / np.maximum(counts, 1)
@@ -155,7 +156,7 @@ def error_falling(ax: Axes, diagnosis: Diagnosis) -> None:
 def residual_in_time(ax: Axes, comparison: Comparison, index: int) -> None:
     """Record minus model of one run, where the sign of the motion is known."""
     p = comparison.campaign.prepared[index]
-    shown = np.where(p.trusted, comparison.residuals[index], np.nan)
+    shown = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
     noise_band(ax, comparison.noise_n)
     ax.plot(p.run.time_s, shown, ".", color=MODEL, markersize=2, label="record minus model")
     dress(ax, f"Residual, run {p.run.name}", "Time (s)", "Record minus model (N)")

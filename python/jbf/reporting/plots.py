@@ -56,9 +56,9 @@ def most_telling(comparison: Comparison, other: Comparison | None = None) -> int
     if other is None:
         return int(np.argmax([r.rms_n for r in comparison.runs]))
     gaps = [
-        float(np.mean((a - b)[p.trusted] ** 2))
-        for a, b, p in zip(
-            comparison.predictions, other.predictions, comparison.campaign.prepared, strict=True
+        float(np.mean((a - b)[counted] ** 2))
+        for a, b, counted in zip(
+            comparison.predictions, other.predictions, comparison.samples.counted, strict=True
         )
     ]
     return int(np.argmax(gaps)) if max(gaps) > 0.0 else most_telling(comparison)

@@ -12,7 +12,8 @@ from jbf.reporting.words import measured, number, percent, step_name
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
-    from jbf.diagnosis.result import Diagnosis, Step, Trial
+    from jbf.diagnosis.ledger import Step, Trial
+    from jbf.diagnosis.result import Diagnosis
     from jbf.estimation.fit import Fit
     from jbf.models.model import Model
     from jbf.models.parameter_value import ParameterValue
@@ -84,7 +85,7 @@ def _outcome(diagnosis: Diagnosis, trial: Trial) -> str:
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
-    """Each run's name, trusted samples, RMS (N), and RMS over the noise."""
+    """Each run's name, samples that count, RMS (N), and RMS over the noise."""
     return [
         (r.name, str(r.samples), number(r.rms_n), ratio(r.rms_n, comparison.noise_n))
         for r in comparison.runs

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from jbf.comparison.comparison import Comparison, Failure
-from jbf.diagnosis.result import Diagnosis, Remainder
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.fit import Fit
 from jbf.estimation.noise import Noise
 from jbf.models.model import Model
@@ -137,6 +138,7 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
 def diagnosis_report(diagnosis: Diagnosis) -> str:
     """The story on a page: verdict, measurement, miss, candidates, error falling, parameters."""
     campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
+    samples = diagnosis.before.samples.count
     model = diagnosis.model
     duration = sum(p.run.duration_s for p in campaign.prepared)
     lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
@@ -145,7 +147,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines += [
         "",
         "Measurement",
-        f"    {len(campaign.prepared)} runs of {duration:.0f} s in all, {campaign.samples} samples "
+        f"    {len(campaign.prepared)} runs of {duration:.0f} s in all, {samples} samples "
         f"where the sign of the motion is known",
         f"    noise floor {number(bare.noise_n)} N, estimated from the records alone",
         "",

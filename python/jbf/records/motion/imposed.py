@@ -44,7 +44,7 @@ class ImposedMotion:
         Standard error of the speed.
     resting
         True where the shaft was at rest.
-    trusted
+    sign_known
         False where the sign of the motion, and so of the friction, cannot be known, and where the
         records of path and speed contradict one another.
     """
@@ -54,7 +54,7 @@ class ImposedMotion:
     angle_rad: Array
     velocity_error_m_s: Array
     resting: Mask
-    trusted: Mask
+    sign_known: Mask
 
 
 def impose(run: Run, radius_m: float | None) -> ImposedMotion:
@@ -115,15 +115,15 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
             time[part], path[part], speed[part], sd_path, sd
         )
     place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
-    trusted = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    trusted &= contradiction == 0.0
+    sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
+    sign_known &= contradiction == 0.0
     # A contact that bends begins bent where the run begins in motion: noise is none.
-    if n and not trusted[0]:
+    if n and not sign_known[0]:
         velocity[0] = 0.0
     angle = smooth_path / (radius_m or 1.0)
     if radius_m is None and run.position_m is None and run.angle_rad is not None:
         angle = np.unwrap(run.angle_rad)
-    return ImposedMotion(velocity, acceleration, angle, error, rest, trusted)
+    return ImposedMotion(velocity, acceleration, angle, error, rest, sign_known)
 
 
 def _recorded_path(run: Run, radius_m: float | None) -> Array | None:

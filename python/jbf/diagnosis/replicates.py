@@ -7,30 +7,34 @@ residual with itself one period later is therefore the share of its mean square 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-import numpy.typing as npt
 
-from jbf.diagnosis.result import Remainder
-from jbf.estimation.fit import Problem, Solution
-from jbf.estimation.noise import Noise, period_samples
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.noise import Noise
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.replicates import period_samples
+from jbf.estimation.solution import Solution
 
-Array = npt.NDArray[np.float64]
-
-LEAST_SIGMA = 5.0
-"""Standard errors from zero that the correlation must be, over all runs together,"""
-LEAST_SHARE = 0.03
-"""and the least share of the mean square that is worth a word."""
 MIN_PAIRS = 100
+"""Pairs of replicates that a run must have to say something."""
 
 
-def find_repeats(problem: Problem, solution: Solution) -> list[Remainder]:
+def find_replicates(
+    prepared: Sequence[Prepared], solution: Solution, policy: Policy
+) -> list[Remainder]:
     """What of the residual comes again with the motion, over all periodic runs."""
     product, spread, square, names = 0.0, 0.0, 0.0, []
-    for residual, p in zip(solution.residuals, problem.campaign.prepared, strict=True):
+    least = policy.replicate_share
+    for residual, counted, p in zip(
+        solution.residuals, solution.samples.counted, prepared, strict=True
+    ):
         shift = period_samples(p.motion.velocity_m_s)
         if shift is None:
             continue
-        both = p.trusted[shift:] & p.trusted[:-shift]
+        both = counted[shift:] & counted[:-shift]
         first, second = residual[:-shift][both], residual[shift:][both]
         if len(first) < MIN_PAIRS:
             continue
@@ -39,12 +43,12 @@ def find_repeats(problem: Problem, solution: Solution) -> list[Remainder]:
         product += own
         square += level * len(first)
         spread += level**2 * len(first) * _fewer(solution.noise, p.step_s)
-        if own > LEAST_SHARE * level * len(first):
+        if own > least * level * len(first):
             names.append(p.run.name)
     if spread == 0.0:
         return []
     share = product / square
-    if share < LEAST_SHARE or product < LEAST_SIGMA * np.sqrt(spread):
+    if share < least or product < policy.replicate_sigma * np.sqrt(spread):
         return []
     size = float(np.sqrt(share))
     where = (

@@ -1,0 +1,232 @@
+"""The models that a diagnosis weighs, and how far each has been fitted.
+
+A set of effects goes through states: its score is tested, it is ranked (a few steps of a fit), it
+converges, and where its likelihood has many peaks the others are searched. Each state is reached
+once, and everything that asks for it later shares the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from jbf.diagnosis.left_out import left_out_rms
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.likelihood import likelihood_gain, score_gain
+from jbf.estimation.minimum import approach, search_peaks, settle
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.models.catalogue import effects as catalogue
+from jbf.models.catalogue import find_effect
+
+Progress = Callable[[str, int, int], None]
+State = Literal["posed", "ranked", "converged"]
+
+RANKING_EVALUATIONS = 8
+"""Steps after which candidates are ranked; only those that could win go on."""
+
+
+def many_peaks(effects: Iterable[str]) -> bool:
+    """True where the likelihood of these effects has peak beside peak."""
+    return any(find_effect(name).peaks for name in effects)
+
+
+@dataclass
+class Fitted:
+    """A set of effects beside the law, as far as it has been fitted.
+
+    Attributes
+    ----------
+    state
+        `posed`, `ranked` (a few steps) or `converged`.
+    score
+        What its score test promised beside the first model that asked, in twice the log
+        likelihood; infinite where the null is out of a step's reach.
+    peaks_searched
+        True once its other peaks were looked for.
+    left_out_rms_n
+        RMS over runs left out of the fit one at a time, N.
+    """
+
+    problem: Problem
+    state: State = "posed"
+    solution: Solution | None = None
+    score: float | None = None
+    peaks_searched: bool = False
+    left_out_rms_n: float | None = None
+
+    def found(self) -> Solution:
+        """The solution so far."""
+        assert self.solution is not None
+        return self.solution
+
+    def improve(self, better: Solution) -> None:
+        """Take a better solution of the same problem; what followed from the other is void."""
+        if better is not self.solution:
+            self.solution = better
+            self.left_out_rms_n = None
+
+    def named_values(self) -> dict[str, float]:
+        """Parameter name to value."""
+        return dict(zip(self.problem.names, self.found().values.tolist(), strict=True))
+
+
+class Candidates:
+    """A campaign under a law, the effects that could be missing, and every fit made so far."""
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        law: str,
+        clock: str,
+        policy: Policy = DEFAULT,
+        progress: Progress | None = None,
+    ) -> None:
+        self.campaign, self.law, self.clock = campaign, law, clock
+        self.policy, self.progress = policy, progress
+        self._fitted: dict[frozenset[str], Fitted] = {}
+
+    # ---- which effects ----------------------------------------------------------------------
+
+    @cached_property
+    def names(self) -> list[str]:
+        """Effects that go with the law and that these records could show."""
+        pages = (e for e in catalogue().values() if self.law not in e.refused)
+        return [e.name for e in pages if self.campaign.lacking(e) is None]
+
+    @cached_property
+    def not_tried(self) -> dict[str, str]:
+        """Effects that go with the law but that these records cannot show, and why."""
+        pages = [e for e in catalogue().values() if self.law not in e.refused]
+        reasons = {e.name: self.campaign.lacking(e) for e in pages}
+        return {name: reason for name, reason in reasons.items() if reason is not None}
+
+    def fitted(self, effects: Iterable[str]) -> Fitted:
+        """A set of effects in whatever state it is."""
+        key = frozenset(effects)
+        if key not in self._fitted:
+            problem = Problem(self.campaign, self.law, self.clock, tuple(key))
+            self._fitted[key] = Fitted(problem)
+        return self._fitted[key]
+
+    def one_more(self, effects: Iterable[str]) -> dict[str, Fitted]:
+        """Every fitted set that has one effect more, by that effect."""
+        here = frozenset(effects)
+        found = {}
+        for key, fitted in self._fitted.items():
+            if len(key) == len(here) + 1 and here < key and fitted.solution is not None:
+                (name,) = key - here
+                found[name] = fitted
+        return found
+
+    # ---- how far ----------------------------------------------------------------------------
+
+    def score_test(self, effects: Sequence[str], near: Solution) -> float:
+        """What the records show of effects beside a smaller model before any of them is fitted.
+
+        The gain in twice the log likelihood that one Gauss-Newton step promises from the effects'
+        null, the law free to move with them; the largest from any start. Infinite of an effect
+        whose null is out of a step's reach.
+        """
+        fitted = self.fitted(effects)
+        if fitted.score is None:
+            added = set(effects) - set(near.effects)
+            pages = {
+                name: page
+                for name, page in fitted.problem.parameters.items()
+                if name.split(".")[0] in added
+            }
+            nulls = {n: p.null for n, p in pages.items() if p.null is not None}
+            if not nulls or not all(np.isfinite(null) for null in nulls.values()):
+                fitted.score = np.inf
+            else:
+                known = self._values_of(near)
+                starts = fitted.problem.starts({**known, **nulls})
+                fitted.score = max(score_gain(fitted.problem, s, near) for s in starts)
+        return fitted.score
+
+    def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
+        """Fit these effects well enough to rank them, from a smaller model's solution."""
+        fitted = self.fitted(effects)
+        if fitted.state == "posed":
+            seeds: list[Mapping[str, float]] = [{}]
+            if near is not None:
+                law = self._values_of(near)
+                # A law that had to make up for a missing effect may be a poor start; of an effect
+                # with many peaks the one that it had to climb is no start at all.
+                anew = many_peaks(near.effects)
+                kept = {} if anew else {n: v for n, v in law.items() if "." in n}
+                seeds = [law, kept]
+            each = near is not None and many_peaks(near.effects)
+            least = self._least_square(near)
+            fitted.solution = approach(fitted.problem, seeds, RANKING_EVALUATIONS, least, each=each)
+            fitted.state = "ranked"
+        return fitted.found()
+
+    def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
+        """Fit these effects to convergence."""
+        fitted = self.fitted(effects)
+        if fitted.state != "converged":
+            fitted.solution = settle(fitted.problem, self.rank(effects, near))
+            fitted.state = "converged"
+        return fitted.found()
+
+    def search_peaks(self, effects: Sequence[str]) -> Solution:
+        """Look for a higher peak of the likelihood, now that these effects are together: what was
+        missing before may have led the search to another. Once for each set of effects."""
+        near, fitted = self.converge(effects), self.fitted(effects)
+        if fitted.peaks_searched:
+            return near
+        fitted.peaks_searched = True
+        found = search_peaks(fitted.problem, near)
+        if len(frozenset(effects)) > 1 and many_peaks(effects):
+            # As if nothing had been found before.
+            fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
+            if likelihood_gain(fresh, found) > -self.policy.contender:
+                fresh = search_peaks(fitted.problem, settle(fitted.problem, fresh))
+                found = fresh if likelihood_gain(fresh, found) > 0.0 else found
+        fitted.improve(found)
+        return found
+
+    def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
+        """Fit fewer effects from where they are in a richer model, too: it may have found its way
+        past a valley in which they are caught."""
+        near, fitted = self.converge(effects), self.fitted(effects)
+        self.converge(richer)
+        problem, known = fitted.problem, self.fitted(richer).named_values()
+        start = np.array([known[name] for name in problem.names])
+        samples = problem.samples_at(start)
+        there = problem.solution(start, samples, near.noise, False)
+        there = settle(problem, there, samples)
+        if likelihood_gain(there, near) > 0.0:
+            fitted.improve(there)
+        return fitted.found()
+
+    def left_out_rms(self, effects: Sequence[str]) -> float:
+        """RMS over runs left out of the fit one at a time, N."""
+        solution, fitted = self.converge(effects), self.fitted(effects)
+        if fitted.left_out_rms_n is None:
+            fitted.left_out_rms_n = left_out_rms(fitted.problem, solution)
+        return fitted.left_out_rms_n
+
+    def _values_of(self, near: Solution) -> dict[str, float]:
+        names = self.fitted(near.effects).problem.names
+        return dict(zip(names, near.values.tolist(), strict=True))
+
+    def _least_square(self, near: Solution | None) -> float:
+        """The sum of squares from which on something beside a smaller model shows in its score."""
+        if near is None:
+            return np.inf
+        square = self.fitted(near.effects).problem.square(near.values)
+        samples = self.campaign.samples.count
+        return square * float(np.exp(-self.policy.least_score / samples))
+
+    def tell(self, message: str, done: int, total: int) -> None:
+        """Report progress."""
+        if self.progress is not None:
+            self.progress(message, done, total)

@@ -1,0 +1,61 @@
+"""Evidence: what a model gains over another, less what it would gain by chance.
+
+In twice the log likelihood. The price of a model is the Bayesian information criterion's for its
+parameters, and two more terms: for the number of candidates tried, and for the prior odds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.estimation.solution import Solution
+
+
+def price(parameters: int, samples: int, candidates: int, policy: Policy) -> float:
+    """What so many parameters of the best of all candidates gain by chance."""
+    tried = 2.0 * np.log(max(candidates, 1))
+    return policy.margin + float(parameters * np.log(samples) + tried)
+
+
+def price_of(candidates: Candidates, parameters: int) -> float:
+    """The same in a campaign."""
+    samples, tried = candidates.campaign.samples.count, len(candidates.names)
+    return price(parameters, samples, tried, candidates.policy)
+
+
+def evidence(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
+    """Evidence for the richer of two models.
+
+    Where even the richer one leaves an error that is smooth, samples count for less.
+    """
+    gain = likelihood_gain(richer, simpler) * effective_share(richer)
+    return gain - price_of(candidates, richer.free - simpler.free)
+
+
+def swap_cost(
+    candidates: Candidates, effects: tuple[str, ...], whole: Solution, near: Solution
+) -> float:
+    """How much evidence is lost when these effects stand in place of those of `whole`.
+
+    Parameters
+    ----------
+    near
+        The model without the effect that is exchanged.
+    """
+
+    def cost(solution: Solution) -> float:
+        lost = likelihood_gain(whole, solution)
+        return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
+
+    if candidates.score_test(effects, near) <= candidates.policy.least_score:
+        return cost(near)
+    first = cost(candidates.rank(effects, near))
+    if first >= candidates.policy.contender:
+        return first
+    solution = candidates.converge(effects, near)
+    # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples that
+    # it leaves.
+    return cost(solution if evidence(candidates, solution, near) > 0.0 else near)

@@ -1,0 +1,76 @@
+"""The parts of a diagnosis: what was tried, what each step brought, what remains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One candidate at one step of the ledger.
+
+    Attributes
+    ----------
+    effect
+        Name of the candidate.
+    rms_n
+        Fit RMS with it, N.
+    evidence
+        Twice the gain in log likelihood, less what chance and the candidate's parameters would
+        gain; above zero it is better than nothing.
+    outcome
+        `added`, `ties`, `rejected`, `useless` (no better than chance), or `withdrawn` (added,
+        until what remained showed it to be a confounder).
+    reason
+        Why, in words.
+    """
+
+    effect: str
+    rms_n: float
+    evidence: float
+    outcome: str
+    reason: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
+class Step:
+    """The model after one addition (the first: the bare law).
+
+    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs that each had no part
+    in the fit that predicts them; `noise_n` the noise floor; all N. `trials` are the candidates
+    that competed for the next place.
+    """
+
+    effects: tuple[str, ...]
+    rms_n: float
+    holdout_rms_n: float
+    noise_n: float
+    trials: tuple[Trial, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effects": list(self.effects),
+            "rms_n": self.rms_n,
+            "holdout_rms_n": self.holdout_rms_n,
+            "noise_n": self.noise_n,
+            "tried": [t.to_dict() for t in self.trials],
+        }
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """Structure that nothing in the catalogue explains."""
+
+    axis: str
+    where: str
+    share: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}

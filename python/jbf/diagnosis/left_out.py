@@ -1,0 +1,82 @@
+"""The left-out error: prediction of runs that had no part in the fit, each left out once."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.minimum import search
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+EVALUATIONS = 12
+"""A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
+INSENSITIVE = 1e-4
+"""Runs say nothing of a parameter where they hold less than this share of what is known of it."""
+
+
+def left_out_rms(problem: Problem, solution: Solution) -> float:
+    """RMS over the samples that count of runs left out of the fit one at a time, N.
+
+    A parameter that the remaining runs say nothing of goes back to its null (or its starting
+    value): what only the left-out run could know must not leak into its prediction. With one run
+    there is nothing to leave out, and the halves of the run take turns.
+    """
+    campaign, samples = problem.campaign, solution.samples
+    count = len(campaign.prepared)
+    if count == 1:
+        return _halves_rms(problem, solution)
+    total, counted = 0.0, 0
+    for i in range(count):
+        rest = [k for k in range(count) if k != i]
+        part = Problem(campaign.only(rest), problem.law, problem.clock, problem.effects)
+        kept = samples.only(rest)
+        start = _without_leak(problem, solution, i)
+        if np.array_equal(start, solution.values):
+            # A law that misses the data badly is no place to extrapolate from.
+            step = _one_step(problem, solution, rest)
+            start = min((step, start), key=lambda v: part.square(v, kept))
+        values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
+        own = Problem(campaign.only([i]), problem.law, problem.clock, problem.effects)
+        residual = own.residuals(values)[0]
+        total += float(np.sum(residual[samples.counted[i]] ** 2))
+        counted += int(samples.counted[i].sum())
+    return float(np.sqrt(total / max(counted, 1)))
+
+
+def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
+    """The whole solution, less what only the left-out run knows."""
+    values: Array = solution.values.copy()
+    known = np.array(
+        [
+            np.sum(jacobian[counted] ** 2, axis=0)
+            for jacobian, counted in zip(solution.jacobian, solution.samples.counted, strict=True)
+        ]
+    )
+    whole = known.sum(axis=0)
+    for i, page in enumerate(problem.parameters.values()):
+        if whole[i] - known[left_out, i] < INSENSITIVE * whole[i]:
+            null = page.null if page.null is not None and np.isfinite(page.null) else None
+            values[i] = page.starts[0] if null is None else null
+    return values
+
+
+def _one_step(problem: Problem, solution: Solution, rest: list[int]) -> Array:
+    """The Gauss-Newton step to the rest of the runs, from derivatives that are there already."""
+    r, j = solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, rest)
+    step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
+    return problem.decode(problem.encode(solution.values) + step, solution.values)
+
+
+def _halves_rms(problem: Problem, solution: Solution) -> float:
+    """Each half of a single run predicted from a fit to the other."""
+    total, counted = 0.0, 0
+    first, second = solution.samples.halves()
+    for kept, left in ((first, second), (second, first)):
+        values, _, _ = search(problem, kept, solution.values, solution.noise, EVALUATIONS)
+        seen = left.counted[0]
+        total += float(np.sum(problem.residuals(values)[0][seen] ** 2))
+        counted += int(seen.sum())
+    return float(np.sqrt(total / max(counted, 1)))

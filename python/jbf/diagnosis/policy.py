@@ -1,0 +1,158 @@
+"""Every number that decides a verdict: what it decides, and where it comes from.
+
+No other file of the diagnosis has one. `Policy()` is what `jbf.diagnose` works with and what its
+JSON prints; a study that asks what a number does gives it another (`diagnose(..., policy=...)`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+from jbf.comparison.comparison import LEAST_SHARE, SIGNIFICANCE
+
+
+def _number(value: Any, decides: str, source: str) -> Any:
+    return field(default=value, metadata={"decides": decides, "source": source})
+
+
+@dataclass(frozen=True)
+class Policy:
+    """The numbers behind a verdict; evidence is in units of twice the log likelihood."""
+
+    # ---- evidence for an effect -------------------------------------------------------------
+    margin: float = _number(
+        20.0,
+        "evidence that even a candidate without parameters must bring",
+        "prior odds against any one effect, and room for noise that is not quite as described; "
+        "set before any campaign was seen",
+    )
+    tie: float = _number(
+        8.0,
+        "candidates closer in evidence than this fit equally well, and one replaces another only "
+        "if it gains more",
+        "odds of 55 : 1; less than one parameter costs",
+    )
+    most_effects: int = _number(
+        5, "effects after which no more are added", "a record that asks for more tells otherwise"
+    )
+    least_left_out_gain: float = _number(
+        0.5,
+        "share of a candidate's gain in the fit that it must gain on left-out runs, where its "
+        "evidence is weak",
+        "chosen on simulated campaigns",
+    )
+    weak: float = _number(
+        60.0,
+        "evidence up to which left-out runs must confirm so much of the gain, and from which a "
+        "candidate that fits and does not predict is structure that nothing explains",
+        "chosen on simulated campaigns; noise does not reach it",
+    )
+    # ---- which candidates are fitted --------------------------------------------------------
+    least_score: float = _number(
+        10.0,
+        "gain that a score test must promise before an effect is fitted at all",
+        "half of what the cheapest effect must bring in the end",
+    )
+    contender: float = _number(
+        60.0,
+        "how far behind the leader's share a ranked candidate may be and still converge, and how "
+        "far a fresh start of many peaks may be behind and still be followed",
+        "chosen for speed; never seen to change a verdict",
+    )
+    close: float = _number(
+        0.6, "share of the leader's evidence that a ranked candidate needs to converge", "as above"
+    )
+    promise: float = _number(
+        5.0,
+        "times what its next step promises that a ranked candidate may still gain",
+        "chosen on fits with a ringing drive",
+    )
+    peaks_share: float = _number(
+        0.5,
+        "share of the leader's evidence from which on an effect with many peaks is sought at the "
+        "others, too",
+        "chosen for speed",
+    )
+    # ---- names taken back -------------------------------------------------------------------
+    least_explained: float = _number(
+        0.8,
+        "share of the bare law's excess over the noise that effects must explain to keep their "
+        "names where structure remains",
+        "set before any campaign was seen",
+    )
+    clear: float = _number(
+        20.0,
+        "times what the runs' disagreement on parameters is worth that effects must have gained "
+        "to keep their names",
+        "chosen on simulated campaigns with effects that are in no catalogue",
+    )
+    # ---- what remains -----------------------------------------------------------------------
+    pattern_share: float = _number(
+        LEAST_SHARE,
+        "share of the innovations' mean square that a pattern along an axis must explain",
+        "the comparison's own",
+    )
+    pattern_sigma: float = _number(
+        SIGNIFICANCE,
+        "standard deviations that a pattern must stand above chance",
+        "the comparison's own",
+    )
+    tone_chance: float = _number(
+        1e-7,
+        "probability at which a spectral line is no chance, over all lines of a run",
+        "set before any campaign was seen",
+    )
+    tone_share: float = _number(
+        0.008, "share of the mean square that a tone must have", "set before any campaign was seen"
+    )
+    replicate_sigma: float = _number(
+        5.0,
+        "standard errors that the correlation between replicates must be off zero",
+        "a chance in two millions of Gaussian noise",
+    )
+    replicate_share: float = _number(
+        0.03, "share of the mean square that comes again and is worth a word", "simulated campaigns"
+    )
+    burst_sigma: float = _number(
+        5.0,
+        "standard deviations from which on an innovation is large",
+        "one in two millions of Gaussian noise",
+    )
+    bursts_by_chance: int = _number(2, "large innovations that are let pass", "simulated campaigns")
+    burst_share: float = _number(
+        0.008, "share of the mean square that large innovations must have", "simulated campaigns"
+    )
+    constancy_chance: float = _number(
+        1e-8,
+        "probability at which runs that ask for different parameters are no chance",
+        "set before any campaign was seen",
+    )
+    constancy_ratio: float = _number(
+        2.5,
+        "times its degrees of freedom that the chi-square of constancy must be, besides",
+        "simulated campaigns: noise is never quite what it is taken for",
+    )
+    # ---- the next run -----------------------------------------------------------------------
+    least_separation: float = _number(
+        25.0,
+        "evidence to be expected from a run that is worth proposing; twice that of one that "
+        "would show what could hide",
+        "five standard deviations",
+    )
+
+    def to_dict(self) -> dict[str, float]:
+        """For JSON."""
+        return asdict(self)
+
+    @classmethod
+    def explained(cls) -> dict[str, tuple[float, str, str]]:
+        """Name to number, what it decides, and where it comes from."""
+        default = cls()
+        return {
+            f.name: (getattr(default, f.name), f.metadata["decides"], f.metadata["source"])
+            for f in fields(cls)
+        }
+
+
+DEFAULT = Policy()

@@ -1,0 +1,192 @@
+"""The recipe of a diagnosis: rounds of selection until nothing is asked for, what remains, and the
+verdict."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+from jbf.comparison.comparison import compare_prepared
+from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.constancy import disagreement
+from jbf.diagnosis.evidence import evidence
+from jbf.diagnosis.excitations import Limits
+from jbf.diagnosis.experiment import Experiment, propose
+from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.remainder import find_remainder
+from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.selection import Names, alternatives, reconsider, try_candidates
+from jbf.diagnosis.unseen import propose_to_see, unseen
+from jbf.diagnosis.verdict import Explained, names_stand, verdict
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.fit import finish
+from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.models.chain import check_rig
+from jbf.records.rig import Rig
+from jbf.records.run import Run
+from jbf.threads import one_blas_thread
+
+
+@one_blas_thread
+def diagnose(
+    rig: Rig,
+    runs: Sequence[Run],
+    *,
+    law: str = "journal",
+    clock: str = "journal",
+    limits: Limits | None = None,
+    policy: Policy = DEFAULT,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find which effect of the catalogue a law lacks to explain the runs; add it; repeat.
+
+    Parameters
+    ----------
+    rig
+        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
+    runs
+        Recorded runs with friction; several different motions tell effects apart.
+    law, clock
+        Base law and its clock.
+    limits
+        What the rig may be asked to do in the next experiment; from the runs where not given.
+    policy
+        The numbers that decide the verdict.
+    progress
+        Called with a message, and how many of how many trials of the round are done.
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, effects, ledger, alternatives, what remains, and the final model.
+
+    Raises
+    ------
+    InputError
+        A run lacks friction, or nothing moves in it.
+    """
+    begun = time.monotonic()
+    check_rig(rig, law)
+    campaign = Campaign.prepare(rig, runs)
+    candidates = Candidates(campaign, law, clock, policy, progress)
+    bare = finish(candidates.fitted(()).problem, candidates.converge(()))
+    before = compare_prepared(bare.model, campaign)
+
+    present, steps, refused = _select(candidates, before.noise_n)
+    remains = (*_remainder(candidates, present), *refused)
+    if remains and present and not _stand(candidates, present, before.noise_n):
+        present, steps = (), [_withdrawn(steps[0])]
+        remains = _remainder(candidates, present) or remains
+    equal = alternatives(candidates, present)
+    fit = finish(candidates.fitted(present).problem, candidates.converge(present))
+    tied = {name: others for name, others in equal.items() if others}
+    answer = verdict(effects=len(present), alternatives=len(tied), remains=bool(remains))
+    hidden = () if remains else unseen(candidates, present)
+    proposal: Experiment | str | None = None
+    if answer == "adequate" and hidden:
+        proposal = propose_to_see(candidates, present, hidden, limits)
+    if tied:
+        rivals = [_rivals(present, name, others) for name, others in tied.items()]
+        proposal = propose(candidates, rivals, limits)
+    return Diagnosis(
+        verdict=answer,
+        effects=present,
+        alternatives=equal,
+        steps=tuple(steps),
+        failures=before.failures,
+        unexplained=remains,
+        next_experiment=proposal.words if isinstance(proposal, Experiment) else proposal,
+        experiment=proposal if isinstance(proposal, Experiment) else None,
+        fit=fit,
+        before=before,
+        after=compare_prepared(fit.model, campaign),
+        elapsed_s=time.monotonic() - begun,
+        not_tried=candidates.not_tried,
+        unseen=hidden,
+        policy=policy,
+    )
+
+
+def _select(
+    candidates: Candidates, noise_n: float
+) -> tuple[Names, list[Step], tuple[Remainder, ...]]:
+    """Rounds until no candidate leads: the effects added, the ledger, and what was refused."""
+    present: Names = ()
+    steps: list[Step] = []
+    visited = {frozenset[str]()}
+    while True:
+        found = try_candidates(candidates, present)
+        steps.append(_step(candidates, present, noise_n, found.trials))
+        if found.leader is None:
+            return present, steps, _refused(candidates, present)
+        if len(present) >= candidates.policy.most_effects:
+            return present, steps, ()
+        candidates.search_peaks((*present, found.leader))
+        grown = reconsider(candidates, (*present, found.leader))
+        if frozenset(grown) in visited:
+            return present, steps, ()
+        visited.add(frozenset(grown))
+        present = grown
+
+
+def _step(
+    candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]
+) -> Step:
+    rms, left_out = candidates.converge(effects).rms_n, candidates.left_out_rms(effects)
+    return Step(effects, rms, left_out, noise_n, trials)
+
+
+def _rivals(present: Names, name: str, others: Names) -> list[Names]:
+    """The models that fit equally well: with this effect, or another in its place."""
+    rest = tuple(e for e in present if e != name)
+    return [present, *((*rest, other) for other in others)]
+
+
+def _remainder(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    return find_remainder(problem, solution, candidates.policy)
+
+
+def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+    """What a candidate saw that helps where it was fitted and not in runs left out."""
+    base = candidates.converge(present)
+    found = [
+        (fitted.found().rms_n, name)
+        for name, fitted in candidates.one_more(present).items()
+        if evidence(candidates, fitted.found(), base) > candidates.policy.weak
+    ]
+    if not found:
+        return ()
+    rms, name = min(found)
+    where = (
+        f"{name} fits {base.rms_n:.3g} N down to {rms:.3g} N but predicts runs left out no better"
+    )
+    return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)
+
+
+def _stand(candidates: Candidates, present: Names, noise_n: float) -> bool:
+    """Whether effects keep their names though structure remains."""
+    empty, whole = candidates.converge(()), candidates.converge(present)
+    every = candidates.campaign.samples
+    left = disagreement(candidates.fitted(present).problem, whole)
+    beyond = left.beyond_chance(candidates.policy)
+    explained = Explained(
+        bare_n=every.rms(empty.residuals),
+        now_n=every.rms(whole.residuals),
+        noise_n=noise_n,
+        gain=likelihood_gain(whole, empty) * effective_share(whole),
+        disagreement=left.gain - left.degrees if beyond else None,
+    )
+    return names_stand(explained, candidates.policy)
+
+
+def _withdrawn(step: Step) -> Step:
+    """The first step, when what was added in it turned out to be a confounder."""
+    reason = "explains part of the error, but structure remains that it does not touch"
+    trials = tuple(
+        replace(t, outcome="withdrawn", reason=reason) if t.outcome in ("added", "ties") else t
+        for t in step.trials
+    )
+    return replace(step, trials=trials)

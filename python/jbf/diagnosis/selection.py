@@ -1,0 +1,164 @@
+"""Selection: rounds that add the effect the data ask for, and question those that are there.
+
+In a round every candidate is tried beside what the model already holds, in order of cost: a score
+test, a ranking, a converged fit. The leader is added if runs that it was not fitted to agree. Then
+the other effects are questioned again: one that is no longer needed goes, one that another would
+replace better is exchanged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jbf.diagnosis.candidates import Candidates, many_peaks
+from jbf.diagnosis.evidence import evidence, price_of, swap_cost
+from jbf.diagnosis.ledger import Trial
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.likelihood import effective_share, next_step_gain
+from jbf.estimation.solution import Solution
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A candidate beside a model: its evidence, and the solution that has it."""
+
+    evidence: float
+    effect: str
+    solution: Solution
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round of trials beside a model."""
+
+    trials: tuple[Trial, ...]
+    leader: str | None
+
+
+def left_out_confirms(evidence: float, gained_share: float, policy: Policy) -> bool:
+    """Do runs left out confirm what a candidate gains where it is fitted?
+
+    Any gain will do where the evidence is strong: one run alone may hold the rests, or the
+    reversals, that an effect needs.
+
+    Parameters
+    ----------
+    gained_share
+        Gain in mean square on left-out runs, as a share of that in the fit.
+    """
+    return gained_share > (0.0 if evidence > policy.weak else policy.least_left_out_gain)
+
+
+def try_candidates(candidates: Candidates, present: Names) -> Round:
+    """Fit every candidate beside the effects present, and say which should be added."""
+    base, policy = candidates.converge(present), candidates.policy
+    ranked = _rank(candidates, present, base)
+    leader, best, trials = None, 0.0, []
+    bare = base.rms_n
+    before = candidates.left_out_rms(present) if ranked and ranked[0].evidence > 0 else np.nan
+    for found in ranked:
+        name, gain = found.effect, found.evidence
+        rms = min(found.solution.rms_n, bare)
+        outcome, reason = "useless", "gains no more than chance would"
+        if gain > 0 and leader is None:
+            after = candidates.left_out_rms((*present, name))
+            gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
+            if left_out_confirms(gain, gained, policy):
+                leader, best = name, gain
+                outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
+            else:
+                outcome = "rejected"
+                reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+        elif gain > 0 and gain > best - policy.tie:
+            outcome, reason = "ties", f"fits as well as {leader}"
+        elif gain > 0:
+            outcome = "rejected"
+            reason = f"{leader} leads by {best - gain:.0f} in evidence"
+        trials.append(Trial(name, rms, float(gain), outcome, reason))
+    return Round(tuple(trials), leader)
+
+
+def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked]:
+    """Every candidate beside the effects present, most evidence first; those that could lead have
+    converged."""
+    policy = candidates.policy
+    rivals = [name for name in candidates.names if name not in present]
+    share = effective_share(base)
+    first: dict[str, float] = {}
+    for i, name in enumerate(rivals):
+        candidates.tell(f"trying {name}", i, len(rivals))
+        effects = (*present, name)
+        # Of a smooth error a sample tells less, and anything gains a little.
+        if candidates.score_test(effects, base) * share <= policy.least_score:
+            first[name] = -np.inf
+        else:
+            first[name] = evidence(candidates, candidates.rank(effects, base), base)
+    line = policy.close * max(max(first.values(), default=0.0), 0.0) - policy.contender
+    found: list[Ranked] = []
+    for name in rivals:
+        effects = (*present, name)
+        if first[name] == -np.inf:
+            solution = base
+        else:
+            solution = candidates.rank(effects)
+            promised = first[name] + policy.promise * next_step_gain(solution) * share
+            if first[name] > line and promised > 0.0:
+                solution = candidates.converge(effects)
+        # At its null an effect leaves the model as it was: no candidate is worse than that.
+        more = len(candidates.fitted(effects).problem.names) - base.free
+        gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
+        found.append(Ranked(gain, name, solution))
+    found.sort(key=lambda r: -r.evidence)
+    # One that might lead from a higher peak gets its chance.
+    for i, r in enumerate(found):
+        effects = (*present, r.effect)
+        least = max(policy.peaks_share * found[0].evidence, 0.0)
+        if many_peaks(effects) and r.evidence > least:
+            solution = candidates.search_peaks(effects)
+            found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
+    return sorted(found, key=lambda r: -r.evidence)
+
+
+def reconsider(candidates: Candidates, present: Names) -> Names:
+    """Take out effects that are no longer needed; exchange those that another replaces better."""
+    current = present
+    for name in present:
+        if len(current) < 2 or name not in current:
+            continue
+        rest = tuple(e for e in current if e != name)
+        candidates.search_peaks(rest)
+        simpler = candidates.refit_from(rest, current)
+        whole = candidates.converge(current)
+        if evidence(candidates, whole, simpler) < 0:
+            current = rest
+            continue
+        best, gain = name, candidates.policy.tie
+        for other in candidates.names:
+            if other in current:
+                continue
+            better = -swap_cost(candidates, (*rest, other), whole, simpler)
+            if better > gain:
+                best, gain = other, better
+        if best != name:
+            current = tuple(best if e == name else e for e in current)
+    return current
+
+
+def alternatives(candidates: Candidates, present: Names) -> dict[str, Names]:
+    """For each effect, the candidates that would fit as well in its place."""
+    whole = candidates.converge(present)
+    found: dict[str, Names] = {}
+    for name in present:
+        rest = tuple(e for e in present if e != name)
+        simpler = candidates.converge(rest)
+        found[name] = tuple(
+            other
+            for other in candidates.names
+            if other not in present
+            and swap_cost(candidates, (*rest, other), whole, simpler) < candidates.policy.tie
+        )
+    return found

@@ -1,0 +1,96 @@
+"""How far two models differ in a motion not yet recorded, once the wrong one is fitted again.
+
+What counts is what is left of their difference after a new fit to the old runs and the new one
+together (T-optimality, Atkinson & Fedorov 1975; here to first order): parameters that make up for a
+wrong effect must not be counted as evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.diagnosis.candidates import Candidates, Fitted
+from jbf.diagnosis.excitations import Excitation, Limits, excitations
+from jbf.models.chain import core_load_n, core_motion, imposed
+from jbf.models.own_effects import ALWAYS
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
+"""Columns that a motion to be proposed has."""
+MOST_SAMPLES = 6000
+"""Samples of a run to be proposed."""
+
+
+class Rival:
+    """A fitted model, and what the runs at hand already know of its parameters."""
+
+    def __init__(self, fitted: Fitted) -> None:
+        self.problem, self.solution = fitted.problem, fitted.found()
+        r, j = self.solution.stacked()
+        self.noise_n = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
+        self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
+
+    def at(self, motion: _core.Motion) -> tuple[Array, Array]:
+        """Friction, N, and its derivatives by the search's variables, under a motion."""
+        values = self.solution.values
+        ((friction, slopes),) = self.problem.chain.jacobian(values, [motion], self.problem.open)
+        scale = np.where(self.problem.log, values, 1.0)[self.problem.open]
+        return friction, slopes * scale
+
+    def separation(
+        self, own: tuple[Array, Array], truth: tuple[Array, Array], step_s: float
+    ) -> float:
+        """What is left, in squares of the noise, of another model's friction when this one is
+        fitted to it and to the old runs."""
+        noise = self.solution.noise
+        gap = noise.innovations(truth[0] - own[0], step_s)
+        slopes = noise.innovations(own[1], step_s)
+        design = np.concatenate([slopes, self.known])
+        target = np.concatenate([gap, np.zeros(len(self.known))])
+        return unexplained_square(design, target) / max(self.noise_n, 1e-300) ** 2
+
+
+def unexplained_square(design: Array, target: Array) -> float:
+    """Sum of squares of a target that linear combinations of a design's columns do not explain."""
+    size = np.linalg.norm(design, axis=0)
+    design = design[:, size > 0.0] / size[size > 0.0]
+    step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)
+    left = target - design @ step
+    return float(left @ left)
+
+
+def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:
+    """Limits without gaps, and the step of a run to be proposed, s."""
+    filled = (limits or Limits()).filled(candidates.campaign)
+    step_s = float(np.median([p.step_s for p in candidates.campaign.prepared]))
+    return filled, max(step_s, filled.duration_s / MOST_SAMPLES)
+
+
+def motions(
+    candidates: Candidates, limits: Limits, step_s: float
+) -> Iterator[tuple[Excitation, Run, _core.Motion]]:
+    """Every motion that the rig can make, as a run to play."""
+    rig = candidates.campaign.rig
+    for excitation in excitations(limits, step_s):
+        run = _run(candidates, excitation, step_s)
+        yield excitation, run, core_motion(rig, run, imposed(rig, run))
+
+
+def _run(candidates: Candidates, excitation: Excitation, step_s: float) -> Run:
+    campaign = candidates.campaign
+    velocity = excitation.velocity_m_s
+    time = np.arange(len(velocity)) * step_s
+    path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))
+    linear = any(p.run.position_m is not None for p in campaign.prepared)
+    bearing = campaign.rig.bearing
+    radius = 1.0 if bearing is None else bearing.radius_m
+    place = {"position_m": path} if linear else {"angle_rad": path / radius}
+    load_n = excitation.load_n or core_load_n(campaign.rig)
+    load = None if load_n is None else np.full(len(time), load_n)
+    return Run.from_arrays(time, velocity, load_n=load, name="next", **place)

@@ -1,0 +1,86 @@
+"""Structure at a frequency: spectral lines that stand out of the white spectrum of the innovations
+(Fisher 1929)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.samples import Samples
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+SHORTEST = 64
+"""Samples below which a run has no spectrum to speak of."""
+LEAST_TURNS = 8.0
+"""Turns that a line must make within the run: slow structure belongs to the patterns."""
+
+
+def find_tones(
+    prepared: Sequence[Prepared],
+    samples: Samples,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    policy: Policy,
+) -> list[Remainder]:
+    """Spectral lines in the innovations, with their size in the residuals, if there are any."""
+    lines: list[tuple[float, float, str]] = []
+    power = 0.0
+    for p, counted, e, r in zip(prepared, samples.counted, innovations, residuals, strict=True):
+        n = len(e)
+        if n < SHORTEST:
+            continue
+        f, spectrum = signal.periodogram(e, 1.0 / p.step_s, window="boxcar", detrend="constant")
+        band = f > LEAST_TURNS / p.run.duration_s
+        if not band.any():
+            continue
+        level = float(np.median(spectrum[band]) / np.log(2.0))
+        k = int(np.argmax(np.where(band, spectrum, 0.0)))
+        if level <= 0.0 or spectrum[k] / level < -np.log(policy.tone_chance / band.sum()):
+            continue
+        frequency, amplitude = _refine(p.run.time_s, r, counted, float(f[k]), float(f[1]))
+        lines.append((frequency, amplitude, p.run.name))
+        power += 0.5 * amplitude**2 * n
+    if not lines:
+        return []
+    total = sum(
+        float(np.sum(r[counted] ** 2))
+        for r, counted in zip(residuals, samples.counted, strict=True)
+    )
+    share = power / max(total, 1e-300)
+    if share < policy.tone_share:
+        return []
+    return [Remainder("frequency", _words(lines, len(prepared)), min(share, 1.0))]
+
+
+def _words(lines: list[tuple[float, float, str]], runs: int) -> str:
+    """One tone in many runs, or each with its own."""
+    middle = float(np.median([x[0] for x in lines]))
+    same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
+    scope = "in all runs" if len(lines) == runs else "in " + ", ".join(x[2] for x in lines)
+    if len(same) == len(lines):
+        amplitude = float(np.median([x[1] for x in same]))
+        return f"a {middle:.2f} Hz tone, amplitude {amplitude:.2g} N, {scope}"
+    return "tones: " + ", ".join(f"{x[0]:.2f} Hz of {x[1]:.2g} N in {x[2]}" for x in lines)
+
+
+def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:
+    """Frequency and amplitude of the sine that fits best near a spectral line."""
+    grid = near + width * np.linspace(-1.0, 1.0, 41)
+    t, y = time[counted], r[counted]
+    best, amplitude, gain = near, 0.0, -1.0
+    for f in grid:
+        phase = 2.0 * np.pi * f * t
+        pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
+        c, *_ = np.linalg.lstsq(pair, y, rcond=None)
+        now = float(np.sum((pair @ c) ** 2))
+        if now > gain:
+            best, amplitude, gain = float(f), float(np.hypot(*c)), now
+    return best, amplitude

@@ -1,0 +1,109 @@
+"""What could hide in the runs at hand, and the run that would show most of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.excitations import Excitation, Limits
+from jbf.diagnosis.experiment import Experiment
+from jbf.diagnosis.separation import (
+    SIMULATED,
+    Rival,
+    filled_limits,
+    motions,
+    unexplained_square,
+)
+from jbf.estimation.problem import Problem
+from jbf.models.catalogue import find_effect
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+Names = tuple[str, ...]
+
+STRENGTHS = (0.6, 1.0, 1.5)
+"""What an effect may be of its usual strength."""
+
+
+def unseen(candidates: Candidates, present: Names) -> Names:
+    """Candidates that could be at work at their usual strength and yet leave no evidence in these
+    runs: what the law's own parameters can absorb, or the noise covers."""
+    base = candidates.converge(present)
+    now = candidates.fitted(present).problem.predict(base.values)
+    noise, slopes = base.stacked()
+    level = max(float(noise @ noise) / len(noise), 1e-300)
+    found = []
+    for name in candidates.names:
+        if name in present or set(find_effect(name).columns) - SIMULATED:
+            continue
+        richer, values = _with_usual(candidates, present, name)
+        gaps = [a - b for a, b in zip(richer.predict(values), now, strict=True)]
+        gap, _ = base.samples.stacked(gaps, base.jacobian, base.noise)
+        evidence = unexplained_square(slopes, gap) / level
+        if evidence < price_of(candidates, len(richer.names) - base.free):
+            found.append(name)
+    return tuple(found)
+
+
+def propose_to_see(
+    candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
+) -> Experiment | str:
+    """The run that would show most of what could hide in the runs at hand."""
+    limits, step_s = filled_limits(candidates, limits)
+    candidates.converge(present)
+    base = Rival(candidates.fitted(present))
+    richer = {name: _with_usual(candidates, present, name) for name in hidden}
+    prices = {
+        name: price_of(candidates, len(problem.names) - base.solution.free)
+        for name, (problem, _) in richer.items()
+    }
+    best: tuple[float, float] = (0.0, 0.0)
+    chosen: tuple[Excitation, Run, dict[str, float]] | None = None
+    for excitation, run, motion in motions(candidates, limits, step_s):
+        own = base.at(motion)
+        shown = {
+            name: base.separation(own, (problem.chain.predict(values, [motion])[0], own[1]), step_s)
+            for name, (problem, values) in richer.items()
+        }
+        chances = sum(chance_to_name(shown[name], prices[name]) for name in hidden)
+        rank = (round(chances, 2), sum(np.log1p(evidence) for evidence in shown.values()))
+        if rank > best:
+            best, chosen = rank, (excitation, run, shown)
+    listed = ", ".join(hidden)
+    clear = {}
+    if chosen is not None:
+        least = 2.0 * candidates.policy.least_separation
+        clear = {name: evidence for name, evidence in chosen[2].items() if evidence > least}
+    if chosen is None or not clear:
+        return (
+            f"these runs could not show {listed} at a usual strength, nor could any motion within "
+            "the limits"
+        )
+    excitation, run, _ = chosen
+    which = "them" if len(clear) == len(hidden) else ", ".join(clear)
+    words = (
+        f"these runs could not show {listed} at a usual strength: record {excitation.words} for "
+        f"{limits.duration_s:g} s, which would show {which}"
+    )
+    usual = float(np.exp(np.mean(np.log(list(clear.values())))))
+    sigma = float(np.sqrt(usual / len(run)))
+    return Experiment(words, run, sigma * base.noise_n, sigma, usual)
+
+
+def chance_to_name(evidence: float, price: float) -> float:
+    """How likely an effect is found that is worth so much evidence at its usual strength, and is
+    anything from weak to strong."""
+    return float(np.mean(stats.ncx2.sf(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)))
+
+
+def _with_usual(candidates: Candidates, present: Names, name: str) -> tuple[Problem, Array]:
+    """A model with one effect more, at the first of its starting values."""
+    candidates.converge(present)
+    base = candidates.fitted(present).named_values()
+    problem = candidates.fitted((*present, name)).problem
+    return problem, next(iter(problem.starts(base)))

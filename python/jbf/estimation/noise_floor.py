@@ -1,0 +1,88 @@
+"""How large the noise on the friction record is, by what the records alone say."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.replicates import period_samples
+from jbf.estimation.samples import Samples
+from jbf.records.motion.roughness import noise_of
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+
+def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
+    """Standard deviation of the noise on the friction record, N, from the data alone.
+
+    The white part comes from third differences of the record. A coloured part hides from
+    differences; it shows where the same motion comes again a period later and where the shaft
+    rests, so the larger of the estimates stands where it is clearly larger.
+    """
+    floor, seen = _white(prepared, samples), _seen(prepared, samples)
+    if seen is None:
+        return floor
+    # Coloured noise leaves few independent samples: ask for a clear excess.
+    return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
+
+
+def most_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
+    """The most that the noise can be, N, colour and all; None where the records cannot tell."""
+    seen = _seen(prepared, samples)
+    return None if seen is None else max(seen, _white(prepared, samples))
+
+
+def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
+    """The white part, N, from third differences."""
+    pairs = zip(prepared, samples.counted, strict=True)
+    squares = [noise_of(p.friction_n[counted]) ** 2 for p, counted in pairs]
+    return float(np.sqrt(np.average(squares, weights=[int(c.sum()) for c in samples.counted])))
+
+
+def _seen(prepared: Sequence[Prepared], samples: Samples) -> float | None:
+    """All of it, N, from periods that come again and from rests; None where these are too few."""
+    whole, weight = 0.0, 0
+    for p, counted in zip(prepared, samples.counted, strict=True):
+        rests = _rest_squares(p.motion.resting, p.friction_n)
+        for square, count in (*rests, _repeat_square(p, counted)):
+            whole += square * count
+            weight += count
+    return None if weight < 300 else float(np.sqrt(whole / weight))
+
+
+def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
+    """Variance about its line in every long rest, with its length."""
+    edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
+    found = []
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        # The first moments of a rest may still settle.
+        begin = first + (end - first) // 4
+        if end - begin >= 60:
+            part = signal.detrend(values[begin:end])
+            found.append((float(part @ part) / (len(part) - 2), len(part)))
+    return found
+
+
+def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
+    """Variance of the noise from the same motion a period later, and the samples it used."""
+    shift = period_samples(prepared.motion.velocity_m_s)
+    if shift is None:
+        return 0.0, 0
+    # The first period still carries the start of the film.
+    values, begin = prepared.friction_n, shift // 2
+    gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
+    ok = counted[begin + shift :] & counted[begin:-shift]
+    gap = gap[ok]
+    if len(gap) < 100:
+        return 0.0, 0
+    # Slow drifts between periods are not noise: take them out. Half of the rest may do
+    # anything (reversals that do not line up).
+    size = max(len(gap) // 12, 25)
+    blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
+    spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
+    return float(np.median(spread) ** 2), len(gap)

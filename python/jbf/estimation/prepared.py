@@ -1,0 +1,59 @@
+"""One run made ready for many fits: the motion it imposed, and the core's copy of that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.errors import InputError
+from jbf.models.chain import core_motion, imposed
+from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.rig import Rig
+from jbf.records.run import Run, require
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """One run, ready; `step_s` is its usual step. Which of its samples count, `Samples` says."""
+
+    rig: Rig
+    run: Run
+    motion: ImposedMotion
+    friction_n: Array
+    step_s: float
+
+    @classmethod
+    def of(cls, rig: Rig, run: Run) -> Prepared:
+        """Estimate the motion of a run.
+
+        Raises
+        ------
+        InputError
+            The run has no friction, or nothing moves in it.
+        """
+        require(run, "friction_n", "a comparison with the model")
+        motion = imposed(rig, run)
+        assert run.friction_n is not None
+        if np.all(motion.resting) or not np.any(motion.sign_known):
+            raise InputError(
+                file=run.path or run.name,
+                problem="the shaft never moves",
+                mend="leave this run out, or record one with motion",
+            )
+        return cls(rig, run, motion, run.friction_n, float(np.median(np.diff(run.time_s))))
+
+    @cached_property
+    def core(self) -> _core.Motion:
+        """The core's copy of the motion."""
+        return core_motion(self.rig, self.run, self.motion)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What goes to another process: the core's copy is made again there."""
+        return {name: value for name, value in vars(self).items() if name != "core"}

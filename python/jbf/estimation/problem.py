@@ -1,0 +1,167 @@
+"""A campaign, a law and effects: predictions and derivatives in the search's variables.
+
+The search walks in the logarithm of parameters that are scales, so that a step is a proportion and
+no step can change a sign.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps
+from jbf.estimation.noise import Noise
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+from jbf.estimation.starts import with_starts
+from jbf.models.catalogue import Parameter, find_parameter, in_chain_order, parameters_of
+from jbf.models.chain import chain
+
+Array = npt.NDArray[np.float64]
+
+BOUNDLESS = 1e100
+"""A derivative beyond this has grown without bound."""
+
+
+class Problem:
+    """What is fitted: the parameters of a law and effects, some of them held, to a campaign."""
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        law: str,
+        clock: str,
+        effects: Sequence[str],
+        fixed: Mapping[str, float] | None = None,
+    ) -> None:
+        self.campaign = campaign
+        self.law, self.clock = law, clock
+        self.effects = in_chain_order(effects)
+        self.chain = chain(campaign.rig, law, clock, self.effects)
+        self.parameters: dict[str, Parameter] = with_starts(
+            parameters_of(law, self.effects), campaign
+        )
+        self.names = list(self.parameters)
+        self.fixed = dict(fixed or {})
+        self.open = [i for i, name in enumerate(self.names) if name not in self.fixed]
+        pages = list(self.parameters.values())
+        self.log = np.array([p.log for p in pages])
+        self.lower = np.array([p.lower for p in pages])
+        self.upper = np.array([p.upper for p in pages])
+
+    # ---- the search's variables -------------------------------------------------------------
+
+    def encode(self, values: Array) -> Array:
+        """Parameter values to search variables."""
+        inside = np.clip(values, self.lower, self.upper)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            search: Array = np.where(self.log, np.log(inside), inside)[self.open]
+        return search
+
+    def decode(self, x: Array, base: Array) -> Array:
+        """Search variables to parameter values; fixed ones from `base`."""
+        values: Array = base.copy()
+        log = self.log[self.open]
+        there = x.copy()
+        # The search may look far outside before it is called back.
+        there[log] = np.exp(np.minimum(x[log], 700.0))
+        # A logarithm and back may land a rounding error outside.
+        values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
+        return values
+
+    def wrapped(self, values: Array) -> Array:
+        """Angles brought back into (-period/2, period/2]."""
+        values = values.copy()
+        for i, page in enumerate(self.parameters.values()):
+            if page.period is not None:
+                values[i] -= page.period * np.round(values[i] / page.period)
+        return values
+
+    def starts(self, seed: Mapping[str, float]) -> list[Array]:
+        """Every combination of starting values for what `seed` lacks."""
+        choices = [
+            (seed[name],) if name in seed else page.starts for name, page in self.parameters.items()
+        ]
+        return [np.array(values, dtype=float) for values in itertools.product(*choices)]
+
+    # ---- predictions ------------------------------------------------------------------------
+
+    def predict(self, values: Array) -> list[Array]:
+        """Predictions, N, one array a run."""
+        return self.chain.predict(values, self.campaign.motions)
+
+    def residuals(self, values: Array) -> list[Array]:
+        """Record minus prediction, N, one array a run."""
+        return [
+            p.friction_n - f
+            for f, p in zip(self.predict(values), self.campaign.prepared, strict=True)
+        ]
+
+    def linearise(self, values: Array) -> tuple[list[Array], list[Array]]:
+        """Residuals, and the derivatives of the prediction by the search variables."""
+        scale = np.where(self.log, values, 1.0)[self.open]
+        rows = self.chain.jacobian(values, self.campaign.motions, self.open)
+        residuals = [
+            p.friction_n - f for (f, _), p in zip(rows, self.campaign.prepared, strict=True)
+        ]
+        return residuals, [_scaled(j, scale) for _, j in rows]
+
+    def square(self, values: Array, samples: Samples | None = None) -> float:
+        """Sum of squares of weighted residuals, N^2; over the campaign's samples by default."""
+        samples = self.campaign.samples if samples is None else samples
+        return samples.square(self.residuals(values))
+
+    def samples_at(self, values: Array) -> Samples:
+        """The samples that the model at these values leaves."""
+        samples = self.campaign.samples
+        effects = active_effects(self.effects, self.parameters, values)
+        if not moves_jumps(effects):
+            return samples
+        return samples_beside_jumps(samples, self.campaign.prepared, self.predict(values))
+
+    def solution(
+        self,
+        values: Array,
+        samples: Samples,
+        noise: Noise,
+        converged: bool = True,
+        message: str = "",
+    ) -> Solution:
+        """The solution at given values, on given samples."""
+        residuals, jacobian = self.linearise(values)
+        cost = samples.cost(residuals, noise)
+        return Solution(
+            self.effects, values, residuals, jacobian, noise, cost, converged, message, samples
+        )
+
+
+def _scaled(jacobian: Array, scale: Array) -> Array:
+    """Derivatives by the search's variables; none where a step too coarse for wild parameters let
+    them grow without bound, so that the search turns back by its residuals."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found: Array = jacobian * scale
+        if np.max(np.abs(found), initial=0.0) < BOUNDLESS:
+            return found
+    return np.where(np.abs(found) < BOUNDLESS, found, 0.0)
+
+
+def named_values(
+    values: Mapping[str, float] | None, known: Mapping[str, Parameter]
+) -> dict[str, float]:
+    """Full names and checked bounds."""
+    found = {}
+    for name, value in (values or {}).items():
+        full = find_parameter(name, known)
+        page = known[full]
+        if not (page.lower <= value <= page.upper or value == page.null):
+            raise InputError(
+                problem=f"{full} = {value} is out of range",
+                mend=f"choose from {page.lower:g} to {page.upper:g}",
+            )
+        found[full] = float(value)
+    return found

@@ -1,0 +1,39 @@
+"""Replicates: where a record shows the same motion again."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+def period_samples(velocity: Array) -> int | None:
+    """The period of a repeated motion in samples, or None."""
+    n = len(velocity)
+    if n < 100 or np.ptp(velocity) == 0.0:
+        return None
+    centred = velocity - velocity.mean()
+    power = np.fft.irfft(np.abs(np.fft.rfft(centred, 2 * n)) ** 2)[: n // 2 + n // 4]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rho = power / power[0] * n / (n - np.arange(len(power)))
+    falls = np.flatnonzero(rho < 0.0)
+    if not len(falls):
+        return None
+    start = int(falls[0])
+    inner = rho[start:-1]
+    tops = start + np.flatnonzero(
+        (inner > rho[start - 1 : -2]) & (inner >= rho[start + 1 :]) & (inner > 0.9)
+    )
+    if not len(tops):
+        return None
+    # The first repetition that is about as good as any, not a multiple of it.
+    peak = int(tops[np.flatnonzero(rho[tops] > 0.98 * np.max(rho[tops]))[0]])
+    # The correlation of a record with a ragged end peaks a little beside the period.
+    reach = max(peak // 30, 2)
+    gaps = {
+        shift: float(np.std(velocity[shift:] - velocity[:-shift]))
+        for shift in range(max(peak - reach, 1), min(peak + reach + 1, n - 1))
+    }
+    best = min(gaps, key=gaps.__getitem__)
+    return best if gaps[best] < 0.02 * float(np.std(velocity)) else None

@@ -1,0 +1,57 @@
+"""Where a search for the least squares ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.noise import Noise
+from jbf.estimation.samples import Samples
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Parameter values of a model, and what follows from them.
+
+    Attributes
+    ----------
+    values
+        Parameter values, shape (k,).
+    residuals
+        Record minus prediction, N, one array a run.
+    jacobian
+        Derivative of the prediction with respect to each search variable, one (n, k) a run.
+    cost
+        `n log(mean square innovation)` over weighted samples.
+    samples
+        Those that the model at these values leaves: fewer than the campaign's where an effect moves
+        the instants of jumps.
+    """
+
+    effects: tuple[str, ...]
+    values: Array
+    residuals: list[Array]
+    jacobian: list[Array]
+    noise: Noise
+    cost: float
+    converged: bool
+    message: str
+    samples: Samples
+
+    @property
+    def free(self) -> int:
+        """Number of parameters."""
+        return len(self.values)
+
+    @property
+    def rms_n(self) -> float:
+        """Root mean square of the residuals over the samples that count, N."""
+        return self.samples.rms(self.residuals)
+
+    def stacked(self) -> tuple[Array, Array]:
+        """Innovations of the residuals and of the derivatives, over weighted samples."""
+        return self.samples.stacked(self.residuals, self.jacobian, self.noise)

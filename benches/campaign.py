@@ -23,7 +23,7 @@ from jbf.models.chain import MAX_STEP_S, core_bearing, core_load_n
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 
 import rigsim
-from rigruns import rig_of, runs_of
+from rigruns import simulated
 
 EFFECTS = ("coulomb_drag", "sensor_lag")
 FINE_STEP_S, FINEST_STEP_S = 0.002, 0.0005
@@ -37,8 +37,8 @@ def campaign(seed: int) -> tuple[jbf.Rig, list[jbf.Run]]:
         *(full[n] for n in ("bi_w0.25", "bi_w1.0", "bi_w2.0", "uni_w0.25", "stopgo")),
     )
     plan = rigsim.Campaign("bench", motions)
-    records, truth = rigsim.simulate_campaign(seed, EFFECTS, campaign=plan)
-    return rig_of(truth["base"]["load_n"]), runs_of(records)
+    rig, runs, _ = simulated(seed, EFFECTS, campaign=plan)
+    return rig, runs
 
 
 def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]:

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import jbf
 import rigsim
+
+
+def simulated(
+    seed: int, effects: tuple[str, ...] = (), **options: Any
+) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
+    """A simulated campaign: the rig, its runs, and the truth behind them.
+
+    `options` are those of `rigsim.simulate_campaign`.
+    """
+    records, truth = rigsim.simulate_campaign(seed, effects, **options)
+    return rig_of(truth["base"]["load_n"]), runs_of(records), truth
 
 
 def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:

@@ -22,8 +22,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "simulator"), str(ROOT / "benches")]
 
-from rigruns import rig_of, runs_of  # noqa: E402
-from rigsim import CATALOGUE, simulate_campaign  # noqa: E402
+from rigruns import simulated  # noqa: E402
+from rigsim import CATALOGUE  # noqa: E402
 
 Row = dict[str, Any]
 SEED = 8101
@@ -54,7 +54,7 @@ def campaigns() -> dict[str, dict[str, Any]]:
 def answers(name: str, options: dict[str, Any], seed: int) -> Row:
     """Everything that jbf says of one campaign, as numbers and words."""
     law = options.get("law", "journal")
-    records, truth = simulate_campaign(
+    rig, runs, _ = simulated(
         seed,
         options.get("effects", ()),
         strength=options.get("strength", 1.0),
@@ -62,7 +62,6 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
         campaign=options.get("campaign", "short"),
         foreign=options.get("foreign", ()),
     )
-    rig, runs = rig_of(truth["base"]["load_n"]), runs_of(records)
     found = jbf.diagnose(rig, runs, law=law)
     fit = jbf.fit(rig, runs, found.effects, law=law)
     row: Row = {

@@ -9,8 +9,8 @@ from typing import Any
 import jbf
 from motion_errors import held_out
 from plan import Task
-from rigruns import rig_of, runs_of
-from rigsim import Campaign, simulate_campaign
+from rigruns import simulated
+from rigsim import Campaign
 from rigsim.campaign import standard
 from rigsim.motions import polyline
 from rivals import RULES, Rivals
@@ -19,9 +19,9 @@ from score import judge
 Row = dict[str, Any]
 
 
-def simulate(task: Task, campaign: str | Campaign) -> tuple[list[jbf.Run], dict[str, Any]]:
-    """Runs of a task and the truth behind them."""
-    records, truth = simulate_campaign(
+def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
+    """Rig and runs of a task, and the truth behind them."""
+    return simulated(
         task.seed,
         task.effects,
         strength=task.strength,
@@ -29,7 +29,6 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[list[jbf.Run], dict[
         campaign=campaign,
         foreign=task.foreign,
     )
-    return runs_of(records), truth
 
 
 def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
@@ -41,17 +40,16 @@ def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
     knots = zip(played.time_s[::5].tolist(), played.velocity_m_s[::5].tolist(), strict=True)
     first = standard(task.campaign)
     more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
-    runs, truth = simulate(task, more)
-    again = jbf.diagnose(rig_of(truth["base"]["load_n"]), runs)
+    rig, runs, _ = simulate(task, more)
+    again = jbf.diagnose(rig, runs)
     alternatives = {k: list(v) for k, v in again.alternatives.items()}
     return judge(task.effects, again.verdict, again.effects, alternatives)
 
 
 def work(task: Task, with_rivals: bool) -> Row:
     """Everything that the tables need of one campaign."""
-    runs, truth = simulate(task, task.campaign)
-    others, _ = simulate(task, "heldout")
-    rig = rig_of(truth["base"]["load_n"])
+    rig, runs, truth = simulate(task, task.campaign)
+    _, others, _ = simulate(task, "heldout")
     begun = time.monotonic()
     found = jbf.diagnose(rig, runs)
     seconds = time.monotonic() - begun

@@ -6,8 +6,8 @@ from functools import cache
 from typing import Any
 
 from jbf import Rig, Run
-from rigruns import rig_of, runs_of
-from rigsim import Campaign, simulate_campaign
+from rigruns import simulated
+from rigsim import Campaign
 from rigsim.campaign import standard
 from rigsim.motions import Motion
 
@@ -26,7 +26,7 @@ def campaign(
     loads: tuple[tuple[str, float], ...] = (),
 ) -> tuple[Rig, list[Run], dict[str, Any]]:
     """A rig, its runs, and the truth behind them."""
-    records, truth = simulate_campaign(
+    return simulated(
         seed,
         effects,
         strength=strength,
@@ -34,4 +34,3 @@ def campaign(
         foreign=foreign,
         campaign=Campaign("short", motions, dict(loads)),
     )
-    return rig_of(truth["base"]["load_n"]), runs_of(records), truth

@@ -1,0 +1,168 @@
+"""Draw the house: `.venv/bin/python docs/architecture.py`.
+
+`docs/images/rooms.png` has the rooms of `python/jbf` from top to bottom, with how many imports go
+from each to each: read off the source, so that the picture cannot be older than the house.
+`docs/images/way_of_data.png` has the way of the data through a diagnosis.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+import textwrap
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE, IMAGES = ROOT / "python" / "jbf", ROOT / "docs" / "images"
+INK, NOTE, ROOM, CORE, ARROW = "#222222", "#555555", "#e8f0f7", "#f6e7dc", "#7a8fa3"
+
+FLOORS: list[list[tuple[str, str]]] = [
+    [("cli", "arguments in, files out")],
+    [("reporting", "results in; words, tables,\npictures, pages, JSON out")],
+    [
+        ("control", "model in; loop, bench,\ncompensators out"),
+        ("diagnosis", "comparison in;\nwhat is missing out"),
+        ("export", "model in;\nRust, C out"),
+    ],
+    [("comparison", "record - prediction in;\nwhere it fails out")],
+    [("estimation", "model x runs in;\nparameters with errors out")],
+    [("models", "law + effects + parameters in;\nprediction out")],
+    [("records", "files in; runs, rig,\nimposed motion out")],
+    [("_core", "crates/jbf-py, jbf-batch, jbf-core: the physics, once, in Rust")],
+]
+
+
+def imports() -> Counter[tuple[str, str]]:
+    """How many imports go from one room to another."""
+    rooms = {name for floor in FLOORS for name, _ in floor}
+    found: Counter[tuple[str, str]] = Counter()
+    for path in PACKAGE.rglob("*.py"):
+        room = path.relative_to(PACKAGE).parts[0]
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.ImportFrom) or not node.module:
+                continue
+            names = [node.module.split(".")[1]] if node.module.startswith("jbf.") else []
+            if node.module == "jbf":
+                names = [a.name for a in node.names]
+            for name in names:
+                if room in rooms and name in rooms and name != room:
+                    found[room, name] += 1
+    return found
+
+
+def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, words: str) -> None:
+    """A room: its name, and what comes in and goes out."""
+    width, height = size
+    colour = CORE if title == "_core" else ROOM
+    corner = (x - width / 2, y - height / 2)
+    style = "round,pad=0.02,rounding_size=0.06"
+    ax.add_patch(FancyBboxPatch(corner, width, height, boxstyle=style, fc=colour, ec=INK, lw=1.0))
+    lines = words.count("\n") + 1
+    ax.text(x, y + 0.09 * lines, title, ha="center", va="center", weight="bold", color=INK)
+    ax.text(x, y - 0.14, words, ha="center", va="center", fontsize=8, color=INK)
+
+
+def canvas(width: float, height: float) -> tuple[Figure, Axes]:
+    """A figure in inches, its axes in the same."""
+    figure = Figure(figsize=(width, height))
+    ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    ax.set_xlim(0.0, width)
+    ax.set_ylim(0.0, height)
+    ax.set_axis_off()
+    return figure, ax
+
+
+def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float = 0.0) -> None:
+    """From one place to another."""
+    style = f"arc3,rad={bend}"
+    ax.add_patch(
+        FancyArrowPatch(
+            a, b, arrowstyle="-|>", mutation_scale=11, color=ARROW, lw=1.3, connectionstyle=style
+        )
+    )
+
+
+def rooms() -> Figure:
+    """The rooms from top to bottom, each importing only those below it."""
+    counts = imports()
+    figure, ax = canvas(9.4, 9.2)
+    places: dict[str, tuple[float, float]] = {}
+    order = [name for floor in FLOORS for name, _ in floor]
+    for k, floor in enumerate(FLOORS):
+        for i, (name, words) in enumerate(floor):
+            x, y = 4.3 + 2.8 * (i - (len(floor) - 1) / 2), 8.6 - 1.12 * k
+            places[name] = (x, y)
+            box(ax, x, y, (5.2, 0.62) if name == "_core" else (2.5, 0.74), name, words)
+            below = [f"{n} {counts[name, n]}" for n in order if counts[name, n]]
+            if below and len(floor) == 1:
+                said = textwrap.fill(", ".join(below), 46)
+                ax.text(x + 1.4, y, f"imports\n{said}", va="center", fontsize=7.5, color=NOTE)
+    for a, b in pairwise(FLOORS):
+        for name, _ in a:
+            for other, _ in b:
+                if counts[name, other]:
+                    (xa, ya), (xb, yb) = places[name], places[other]
+                    arrow(ax, (xa, ya - 0.4), (xb, yb + 0.4))
+    x, y = places["models"]
+    for name, side in (("control", -1.0), ("export", 1.0)):
+        if counts[name, "models"]:
+            arrow(ax, (places[name][0], places[name][1] - 0.4), (x + 1.3 * side, y + 0.25))
+    return figure
+
+
+STEPS: list[tuple[str, str]] = [
+    ("records", "CSV, TOML -> Run, Rig\nmotion: rests, smoothing,\nwhere the sign is known"),
+    ("Campaign, Samples", "runs made ready once;\nwhich samples count"),
+    (
+        "Problem, minimum",
+        "law + effects: residuals and\nderivatives from the core;\nleast squares of innovations",
+    ),
+    ("Comparison", "noise floor;\nwhere the bare law fails"),
+    ("candidates", "score test -> rank ->\nconverge -> search peaks"),
+    ("evidence, left_out", "likelihood gain less price;\nruns left out of the fit"),
+    ("selection", "add the leader; take out,\nexchange; ties"),
+    ("remainder", "patterns, tones, replicates,\nbursts, constancy"),
+    ("verdict, policy", "adequate, missing,\nambiguous, unexplained"),
+    ("Diagnosis", "ledger of errors, model,\nnext experiment -> reporting"),
+]
+
+
+def way_of_data() -> Figure:
+    """The steps of a diagnosis in their order: there along the top, back along the bottom."""
+    figure, ax = canvas(11.0, 3.9)
+    places = []
+    for k, (name, words) in enumerate(STEPS):
+        row, column = divmod(k, 5)
+        x, y = 1.15 + 2.17 * (4 - column if row else column), 3.1 - 2.2 * row
+        places.append((x, y))
+        box(ax, x, y, (1.9, 1.05), name, words)
+    for (xa, ya), (xb, yb) in pairwise(places):
+        if ya == yb:
+            side = 0.98 if xb > xa else -0.98
+            arrow(ax, (xa + side, ya), (xb - side, yb))
+        else:
+            arrow(ax, (xa, ya - 0.57), (xb, yb + 0.57))
+    (xa, ya), (xb, yb) = places[6], places[4]
+    arrow(ax, (xa, ya + 0.57), (xb - 0.6, yb - 0.57))
+    ax.text(
+        8.0, 1.93, "another round, until\nno candidate leads", fontsize=8, color=NOTE, ha="right"
+    )
+    return figure
+
+
+def main() -> int:
+    """Draw both."""
+    for name, figure in (("rooms", rooms()), ("way_of_data", way_of_data())):
+        figure.savefig(IMAGES / f"{name}.png", dpi=110)
+        print(f"docs/images/{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -15,8 +15,8 @@ import jbf.diagnosis
 import numpy as np
 import pytest
 from jbf.cli import COMMANDS, main
-from jbf.cli.outputs import json_text
 from jbf.diagnosis.result import Diagnosis
+from jbf.reporting.json import json_text
 
 
 @pytest.fixture

@@ -23,6 +23,25 @@ SATURATED, FROZEN, JUMPED, NOT_FINITE, FALLBACK = 1, 2, 4, 8, 16
 """Flags of `Result.status`."""
 
 _NEVER = 2**62
+_COLUMNS = (
+    "time_s",
+    "reference",
+    "angle_rad",
+    "velocity_rad_s",
+    "friction_v",
+    "measured_angle_rad",
+    "estimated_velocity_rad_s",
+    "error",
+    "base_v",
+    "compensation_v",
+    "estimated_friction_v",
+    "correction_v",
+    "forward_v",
+    "output_v",
+    "learned_0",
+    "learned_1",
+    "status",
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +93,16 @@ class Result:
             f"Result({self.scheme} on {self.task.control} {self.task.wave}: "
             f"RMS error {self.rms:.4g} {self.task.unit})"
         )
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """The arrays by name, in the order in which `to_csv` writes them."""
+        return {name: getattr(self, name) for name in _COLUMNS}
+
+    def to_csv(self) -> str:
+        """The run as the text of a CSV file."""
+        columns = self.columns()
+        rows = zip(*(a.tolist() for a in columns.values()), strict=True)
+        return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
     @property
     def response(self) -> Array:

@@ -1,4 +1,4 @@
-"""Options of `jbf control` that several of its actions share: the bench and the task."""
+"""Options of `jbf control` that several of its actions share: the bench, the task, the friction."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from jbf.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from jbf.cli import Parser
     from jbf.control import Bench, Task
+    from jbf.models.model import Model
 
 
 def add_bench(parser: Parser) -> None:
@@ -75,3 +76,11 @@ def task_of(arguments: argparse.Namespace) -> Task:
     names = ("control", "wave", "low", "high", "frequency_rad_s", "seconds", "skip_s")
     given = {n: getattr(arguments, n) for n in names if getattr(arguments, n) is not None}
     return replace(TASKS[arguments.task], **given)
+
+
+def model_of(path: str | None) -> Model:
+    """The friction of a model file; the thesis's bench's where none is named."""
+    from jbf.cli import inputs
+    from jbf.control import thesis_model
+
+    return thesis_model() if path is None else inputs.model(path)

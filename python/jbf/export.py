@@ -45,7 +45,7 @@ class Numbers:
             An effect of one's own is written in Python, which no target runs.
         """
         page = find_law(model.law)
-        values = {name: p.value for name, p in model.parameters.items()}  # type: ignore[union-attr]
+        values = {name: p.value for name, p in model.parameters.items()}
         groups = [(model.law, [p.name for p in page.parameters], "")]
         for name in model.effects:
             effect = find_effect(name)

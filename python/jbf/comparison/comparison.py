@@ -16,7 +16,8 @@ from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import Samples
 from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.chain import chain, warn_of_fast_film
-from jbf.models.model import Model
+from jbf.models.model import Model, the_model
+from jbf.records.arguments import list_of_runs
 from jbf.records.run import PathLike, Run
 
 if TYPE_CHECKING:
@@ -249,7 +250,8 @@ def compare(model: Model, runs: Sequence[Run]) -> Comparison:
     InputError
         A run lacks friction or a column that the model needs, or nothing moves in it.
     """
-    runs = list(runs)
+    the_model(model)
+    runs = list_of_runs(runs)
     for run in runs:
         model.require_columns(run)
     return compare_prepared(model, Campaign.prepare(model.rig, runs))

@@ -10,12 +10,13 @@ import numpy.typing as npt
 
 from jbf import _core
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
-from jbf.control.schemes import Scheme, core_loop, scheme
+from jbf.control.schemes import SCHEMES, Scheme, core_loop, scheme
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
-from jbf.models.chain import core_load_n
-from jbf.models.model import Model
+from jbf.models.chain import core_load_n, core_refusals
+from jbf.models.model import Model, the_model
+from jbf.records.arguments import described, of_kind
 
 Array = npt.NDArray[np.float64]
 
@@ -186,7 +187,8 @@ def run(
     InputError
         Something is out of range, or of the wrong length.
     """
-    truth = thesis_model() if model is None else model
+    truth = thesis_model() if model is None else the_model(model)
+    of_kind(task, Task, "the task", 'name one of control.TASKS: TASKS["velocity sine"]')
     chosen = _scheme(scheme, model if carried is None else carried, settings)
     believed = bench if told is None else told
     if believed.dt_s != bench.dt_s:
@@ -200,7 +202,7 @@ def run(
         "jump_at": _NEVER if jump is None else round(jump[0] / bench.dt_s),
         "jump_counts": 0 if jump is None else jump[1],
     }
-    try:
+    with core_refusals(_mend):
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
             core_loop(task, believed, chosen.guard(believed) if guard is None else guard),
@@ -211,19 +213,24 @@ def run(
             faults,
             precision=precision,
         )
-    except (ValueError, OverflowError) as error:
-        if isinstance(error, InputError):
-            raise
-        mend = "correct it"
-        if str(error).startswith("top_speed_rad_s"):
-            mend = "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
-        raise InputError(problem=str(error), mend=mend) from None
     time_s = np.arange(n, dtype=np.float64) * bench.dt_s
     return Result(task, chosen.name, time_s, value, **arrays)
 
 
+def _mend(problem: str) -> str:
+    """What to do about something that the core's loop refuses."""
+    if problem.startswith("top_speed_rad_s"):
+        return "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
+    return "correct it"
+
+
 def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | None) -> Scheme:
-    return scheme(given, carried, settings) if isinstance(given, str) else given
+    if isinstance(given, str):
+        return scheme(given, carried, settings)
+    if not hasattr(given, "core"):
+        mend = f"name one of {', '.join(SCHEMES)}"
+        raise InputError(problem=f"the scheme is {described(given)}", mend=mend)
+    return given
 
 
 def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:

@@ -128,7 +128,7 @@ class Learning(_Unguarded):
                 problem=f"the learning scheme runs the journal's film, this is {model.law}",
                 mend="choose another scheme",
             )
-        values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+        values = {n: p.value for n, p in model.parameters.items()}
         return cls(
             rig=model.rig,
             f_m=values["f_m"],

@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Literal
 
 import numpy as np
 
 from jbf import _core
 from jbf.errors import InputError, did_you_mean
-from jbf.models.vocabulary import Vocabulary
+from jbf.models.vocabulary import CLOCKS, Clock, Vocabulary
+from jbf.records.arguments import names as checked_names
+from jbf.records.arguments import one_of
+
+Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
+"""Where in the signal chain an effect acts."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +59,7 @@ class Effect:
     """
 
     name: str
-    stage: str
+    stage: Stage
     summary: str
     equation: str
     source: str
@@ -150,7 +156,7 @@ def find_effect(name: str) -> Effect:
         Names the unknown effect and the nearest known one.
     """
     known = effects()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise InputError(
             problem=f'there is no effect "{name}"',
             mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
@@ -161,9 +167,12 @@ def find_effect(name: str) -> Effect:
 def find_law(name: str) -> Law:
     """The law of that name; an InputError names an unknown one."""
     known = laws()
-    if name not in known:
-        raise InputError(problem=f'there is no law "{name}"', mend=did_you_mean(name, known))
-    return known[name]
+    return known[one_of(name, known, "law")]
+
+
+def find_clock(name: str) -> Clock:
+    """The clock of that name; an InputError names an unknown one."""
+    return one_of(name, CLOCKS, "clock")
 
 
 def check_applies(law: str, names: Iterable[str]) -> None:
@@ -186,7 +195,7 @@ def transition_speed(law: str, values: Sequence[float]) -> float | None:
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
     """The effects in the order of the signal chain, each once."""
-    chosen = {find_effect(name).name for name in names}
+    chosen = {find_effect(name).name for name in checked_names(names, "effects")}
     return tuple(name for name in effects() if name in chosen)
 
 

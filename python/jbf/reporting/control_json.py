@@ -12,7 +12,7 @@ from jbf.control.thesis_tables import Tables
 
 def tables_dict(tables: Tables, others: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
     """What `jbf control tables --json` writes."""
-    values = {n: p.value for n, p in tables.model.parameters.items()}  # type: ignore[union-attr]
+    values = {n: p.value for n, p in tables.model.parameters.items()}
     return {
         "friction": {"volts_per_n": tables.bench.volts_per_n, **values},
         "cells": [{**asdict(cell), "ratio": cell.ratio} for cell in tables.cells.values()],

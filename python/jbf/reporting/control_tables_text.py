@@ -24,7 +24,7 @@ def _ratio(cell: Cell) -> str:
 
 def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]:
     """The four fitted numbers."""
-    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    values = {n: p.value for n, p in model.parameters.items()}
     return columns(
         [
             ("friction scale", f"{number(volts_per_n * load_n, 4)} V", "for a coefficient of 1"),

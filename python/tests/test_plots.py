@@ -13,7 +13,8 @@ from jbf.comparison.comparison import Failure
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
 from jbf.reporting.bin_axes import bin_axis
-from jbf.reporting.plots import plot_comparison, plot_diagnosis, plot_run
+from jbf.reporting.comparison_plots import plot_comparison, plot_run
+from jbf.reporting.diagnosis_plot import plot_diagnosis
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -111,5 +112,5 @@ def test_pictures_do_not_touch_pyplot(bad: Comparison) -> None:
     import subprocess
     import sys
 
-    code = "import jbf.reporting.plots, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import jbf.reporting.pictures, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

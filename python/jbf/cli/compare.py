@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     with shown("comparing"):
         comparison = compare(model, runs)
         if arguments.report:
-            from jbf.reporting.page import comparison_page
+            from jbf.reporting.comparison_page import comparison_page
 
             texts[arguments.report] = comparison_page(comparison)
     if arguments.json:

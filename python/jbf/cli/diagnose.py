@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
             progress=report,
         )
         if arguments.report:
-            from jbf.reporting.page import diagnosis_page
+            from jbf.reporting.diagnosis_page import diagnosis_page
 
             texts[arguments.report] = diagnosis_page(diagnosis)
     if arguments.json:

@@ -81,7 +81,7 @@ def _files(
     if arguments.out:
         found[str(Path(arguments.out) / f"{name}.toml")] = result.model.to_toml()
     if arguments.report:
-        from jbf.reporting.page import diagnosis_page
+        from jbf.reporting.diagnosis_page import diagnosis_page
 
         found[str(Path(arguments.report) / f"{name}.html")] = diagnosis_page(result)
     return found

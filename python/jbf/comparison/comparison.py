@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,7 @@ from jbf.models.chain import chain, warn_of_fast_film
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import list_of_runs
 from jbf.records.run import PathLike, Run
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from jbf.results import Result
 
 Array = npt.NDArray[np.float64]
 
@@ -70,8 +68,8 @@ class RunComparison:
     samples: int
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Result):
     """A model against runs.
 
     Attributes
@@ -107,23 +105,9 @@ class Comparison:
             "failures": [f.to_dict() for f in self.failures],
         }
 
-    def summary(self) -> str:
-        """How far and where, as text."""
-        from jbf.reporting.text import comparison_report
-
-        return comparison_report(self)
-
-    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-        """Friction against speed, and the residual along its worst axis; two matplotlib axes."""
-        from jbf.reporting.plots import plot_comparison
-
-        return plot_comparison(self, axes)
-
     def report(self, path: PathLike) -> None:
-        """Write a self-contained HTML page."""
-        from jbf.reporting.page import write_comparison
-
-        write_comparison(self, path)
+        """As `save_html`."""
+        self.save_html(path)
 
 
 def find_failures(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf import _core
+from jbf import _core, results
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.schemes import SCHEMES, Scheme, core_loop, scheme
 from jbf.control.settings import Settings
@@ -46,7 +46,7 @@ _COLUMNS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
+class Result(results.Result):
     """Arrays of shape (n,), one value a step of the loop.
 
     Attributes
@@ -94,6 +94,16 @@ class Result:
             f"Result({self.scheme} on {self.task.control} {self.task.wave}: "
             f"RMS error {self.rms:.4g} {self.task.unit})"
         )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Task, scheme and errors, for JSON; `columns` has the arrays."""
+        return {
+            "task": asdict(self.task),
+            "scheme": self.scheme,
+            "rms": self.rms,
+            "peak": self.peak,
+            "true_rms": self.true_rms,
+        }
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """The arrays by name, in the order in which `to_csv` writes them."""

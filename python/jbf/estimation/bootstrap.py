@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +30,7 @@ from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.motion.roughness import encoder_step
 from jbf.records.run import Run
+from jbf.results import Result
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
@@ -37,8 +39,8 @@ LEAST_REPEATS = 19
 """The middle 68 % of fewer answers are too few to tell a width."""
 
 
-@dataclass(frozen=True)
-class Bootstrap:
+@dataclass(frozen=True, repr=False)
+class Bootstrap(Result):
     """Answers of repeated fits.
 
     Attributes
@@ -52,6 +54,10 @@ class Bootstrap:
 
     fit: Fit
     values: dict[str, Array]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON: the fit, and every answer."""
+        return {**self.fit.to_dict(), "answers": {n: v.tolist() for n, v in self.values.items()}}
 
 
 def check_repeats(repeats: int, name: str = "repeats") -> None:

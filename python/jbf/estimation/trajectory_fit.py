@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.estimates import Estimates
 from jbf.models.catalogue import find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Motion, is_record, trajectories
@@ -29,8 +30,8 @@ REST_SHARE = 1e-9
 """Speeds below this share of the run's top are rest: friction is set-valued there."""
 
 
-@dataclass(frozen=True)
-class TrajectoryFit:
+@dataclass(frozen=True, repr=False)
+class TrajectoryFit(Estimates):
     """Fitted parameters of the bare law.
 
     Attributes
@@ -54,10 +55,15 @@ class TrajectoryFit:
     converged: bool
     message: str
 
-    @property
-    def values(self) -> dict[str, float]:
-        """Name to value."""
-        return {name: p.value for name, p in self.parameters.items()}
+    def facts(self) -> Mapping[str, Any]:
+        """What `to_dict` says beside the parameters."""
+        return {
+            "sum_of_squares": self.sum_of_squares,
+            "samples": self.samples,
+            "evaluations": self.evaluations,
+            "converged": self.converged,
+            "message": self.message,
+        }
 
 
 @one_blas_thread

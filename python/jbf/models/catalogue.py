@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
+from textwrap import shorten
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -17,6 +18,14 @@ from jbf.records.arguments import one_of
 
 Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
 """Where in the signal chain an effect acts."""
+
+
+class _Summed(Protocol):
+    @property
+    def summary(self) -> str: ...
+
+
+Page = TypeVar("Page", bound=_Summed)
 
 
 @dataclass(frozen=True)
@@ -48,7 +57,18 @@ class Parameter:
     period: float | None = None
 
 
-@dataclass(frozen=True)
+class Pages(dict[str, Page]):
+    """Pages by name, shown as a short table."""
+
+    def __repr__(self) -> str:
+        widest = max(map(len, self), default=0)
+        return "\n".join(
+            f"{name:<{widest}}  {shorten(page.summary, 60, placeholder=' ...')}"
+            for name, page in self.items()
+        )
+
+
+@dataclass(frozen=True, repr=False)
 class Effect:
     """The page of one effect.
 
@@ -72,8 +92,11 @@ class Effect:
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"Effect({self.name}, {self.stage}: {self.summary})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Law:
     """The page of one base law.
 
@@ -91,6 +114,9 @@ class Law:
     has_bristle: bool
     rust_type: str
     parameters: tuple[Parameter, ...]
+
+    def __repr__(self) -> str:
+        return f"Law({self.name}: {self.summary})"
 
 
 def _parameter(page: _core.ParameterPage) -> Parameter:
@@ -131,15 +157,15 @@ def drop(name: str) -> bool:
     return _own.pop(name, None) is not None
 
 
-def effects() -> dict[str, Effect]:
+def effects() -> Pages[Effect]:
     """Every effect by name, in the order of the signal chain; one's own come last."""
-    return {**built_in(), **_own}
+    return Pages({**built_in(), **_own})
 
 
 @cache
-def laws() -> dict[str, Law]:
+def laws() -> Pages[Law]:
     """Every base law by name."""
-    pages = {}
+    pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
         fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
@@ -207,7 +233,7 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
     return found
 
 
-def find_parameter(name: str, known: Mapping[str, Parameter]) -> str:
+def find_parameter(name: str, known: Collection[str]) -> str:
     """The full dotted name of a parameter given with or without its unit.
 
     `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from textwrap import shorten
 from types import MappingProxyType
 from typing import Any
 
@@ -42,7 +43,7 @@ Array = npt.NDArray[np.float64]
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Model:
     """A law with effects, ready to predict.
 
@@ -108,6 +109,11 @@ class Model:
             object.__setattr__(self, name, value)
         chain(rig, law, self.clock, chosen)
         vocabulary().check(self._file())
+
+    def __repr__(self) -> str:
+        sum_ = shorten(" + ".join([self.law, *self.effects]), 100, placeholder=" ...")
+        named = ", ".join(f"{name} = {p.value:.5g}" for name, p in self.parameters.items())
+        return f"Model({sum_}; {shorten(named, 150, placeholder=' ...')})"
 
     @property
     def values(self) -> Array:

@@ -38,7 +38,7 @@ AGREEMENT = 1e-5
 """A complex step that differs from a difference quotient by more than this share is not one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class OwnEffect(Effect):
     """An effect of one's own: its page, and the function behind it."""
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jbf.control.run import FALLBACK, Result
-from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
+from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, axes_or_new, dress
 
 Array = npt.NDArray[np.float64]
 
@@ -32,6 +32,13 @@ def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure
     for column, result in enumerate(results):
         _column([grid[row][column] for row in range(5)], result, first=column == 0)
     return made
+
+
+def plot_run_of_loop(run: Result, axes: Sequence[Axes] | None = None) -> list[Axes]:
+    """One run: response, error, friction against speed, friction in time, learned; five axes."""
+    found = axes_or_new(axes, 5, 1, (7.0, 12.5))
+    _column(found, run, first=True)
+    return found
 
 
 def _column(axes: Sequence[Axes], r: Result, *, first: bool) -> None:

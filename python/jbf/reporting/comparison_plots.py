@@ -1,4 +1,4 @@
-"""Pictures of a comparison, a diagnosis and a run, on matplotlib axes.
+"""Pictures of a comparison and of one run in it, on matplotlib axes.
 
 Every function draws on the axes it is given, or on a new figure's, and returns them; none opens
 a window. `axes[0].figure.savefig(...)` writes the picture.
@@ -7,48 +7,27 @@ a window. `axes[0].figure.savefig(...)` writes the picture.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from jbf.comparison.comparison import Comparison
 from jbf.errors import InputError
 from jbf.reporting.plot_parts import (
-    BEFORE,
     MEASURED,
     MODEL,
-    bin_means,
+    axes_or_new,
     dress,
-    error_falling,
-    friction_speed,
     legend_on_top,
     noise_band,
+)
+from jbf.reporting.residual_parts import (
+    bin_means,
+    friction_speed,
     pattern_along,
     residual_in_time,
 )
-
-if TYPE_CHECKING:
-    from jbf.diagnosis.result import Diagnosis
-
-
-def _axes(
-    axes: Sequence[Axes] | None, rows: int, columns: int, size: tuple[float, float]
-) -> list[Axes]:
-    """The axes given, or those of a new figure."""
-    wanted = rows * columns
-    if axes is None:
-        figure = Figure(figsize=size, layout="constrained")
-        found = list(np.ravel(figure.subplots(rows, columns)))
-    else:
-        found = list(np.ravel(np.asarray(axes, dtype=object)))
-    if len(found) != wanted:
-        raise InputError(
-            problem=f"{len(found)} axes were given", mend=f"this picture needs {wanted}"
-        )
-    return found
 
 
 def most_telling(comparison: Comparison, other: Comparison | None = None) -> int:
@@ -74,7 +53,7 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
     axes
         Two matplotlib axes to draw on; a new figure's by default.
     """
-    left, right = _axes(axes, 1, 2, (10.0, 4.2))
+    left, right = axes_or_new(axes, 1, 2, (10.0, 4.2))
     index = most_telling(comparison)
     friction_speed(left, comparison, index, MODEL, f"Run {comparison.runs[index].name}")
     noise_band(right, comparison.noise_n)
@@ -84,38 +63,6 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
         right.set_title("No pattern in the residual", loc="left", fontsize="medium")
     legend_on_top(right)
     return [left, right]
-
-
-def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """The error falling, the residual before and after, and friction against speed.
-
-    The last of the four axes shows the final model, or, where no effect was added, the residual
-    of the run in time.
-
-    Parameters
-    ----------
-    diagnosis
-        From `jbf.diagnose`.
-    axes
-        Four matplotlib axes to draw on; a new figure's by default.
-    """
-    falling, residual, first, last = _axes(axes, 2, 2, (10.0, 8.0))
-    before, after = diagnosis.before, diagnosis.after
-    error_falling(falling, diagnosis)
-    pattern = pattern_along(before, None)
-    noise_band(residual, before.noise_n)
-    bin_means(residual, pattern, BEFORE, "bare law" if diagnosis.effects else "")
-    index = most_telling(before, after)
-    name = before.runs[index].name
-    friction_speed(first, before, index, BEFORE, f"Bare law, run {name}")
-    if diagnosis.effects:
-        bin_means(residual, pattern_along(after, pattern.axis), MODEL, "final")
-        friction_speed(last, after, index, MODEL, f"Final model, run {name}")
-        last.set_ylim(first.get_ylim())
-    else:
-        residual_in_time(last, before, index)
-    legend_on_top(residual)
-    return [falling, residual, first, last]
 
 
 def plot_run(
@@ -137,7 +84,7 @@ def plot_run(
     InputError
         The comparison has no such run.
     """
-    top, bottom = _axes(axes, 2, 1, (10.0, 6.0))
+    top, bottom = axes_or_new(axes, 2, 1, (10.0, 6.0))
     index = _index(comparison, run)
     p = comparison.campaign.prepared[index]
     time_s = p.run.time_s

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from jbf.comparison.comparison import Comparison, Failure
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.patterns import Failure
 from jbf.diagnosis.experiment import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
 from jbf.diagnosis.policy import DEFAULT, Policy

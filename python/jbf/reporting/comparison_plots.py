@@ -23,9 +23,9 @@ from jbf.reporting.plot_parts import (
     noise_band,
 )
 from jbf.reporting.residual_parts import (
-    bin_means,
+    draw_bin_means,
     friction_speed,
-    pattern_along,
+    means_along,
     residual_in_time,
 )
 
@@ -57,8 +57,8 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
     index = most_telling(comparison)
     friction_speed(left, comparison, index, MODEL, f"Run {comparison.runs[index].name}")
     noise_band(right, comparison.noise_n)
-    failure = pattern_along(comparison, None)
-    bin_means(right, failure, MODEL)
+    failure = means_along(comparison, None)
+    draw_bin_means(right, failure, MODEL)
     if not comparison.failures:
         right.set_title("No pattern in the residual", loc="left", fontsize="medium")
     legend_on_top(right)

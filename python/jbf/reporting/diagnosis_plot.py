@@ -19,9 +19,9 @@ from jbf.reporting.plot_parts import (
     noise_band,
 )
 from jbf.reporting.residual_parts import (
-    bin_means,
+    draw_bin_means,
     friction_speed,
-    pattern_along,
+    means_along,
     residual_in_time,
 )
 from jbf.reporting.words import step_name
@@ -43,14 +43,14 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
     falling, residual, first, last = axes_or_new(axes, 2, 2, (10.0, 8.0))
     before, after = diagnosis.before, diagnosis.after
     error_falling(falling, diagnosis)
-    pattern = pattern_along(before, None)
+    pattern = means_along(before, None)
     noise_band(residual, before.noise_n)
-    bin_means(residual, pattern, BEFORE, "bare law" if diagnosis.effects else "")
+    draw_bin_means(residual, pattern, BEFORE, "bare law" if diagnosis.effects else "")
     index = most_telling(before, after)
     name = before.runs[index].name
     friction_speed(first, before, index, BEFORE, f"Bare law, run {name}")
     if diagnosis.effects:
-        bin_means(residual, pattern_along(after, pattern.axis), MODEL, "final")
+        draw_bin_means(residual, means_along(after, pattern.axis), MODEL, "final")
         friction_speed(last, after, index, MODEL, f"Final model, run {name}")
         last.set_ylim(first.get_ylim())
     else:

@@ -19,7 +19,8 @@ from jbf import _core
 from jbf.reporting.words import number
 
 if TYPE_CHECKING:
-    from jbf.comparison.comparison import Comparison, Failure
+    from jbf.comparison.comparison import Comparison
+    from jbf.comparison.patterns import Failure
     from jbf.diagnosis.ledger import Remainder
 
 PIXELS_PER_INCH = 130

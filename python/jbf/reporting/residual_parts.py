@@ -6,8 +6,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from jbf.comparison import patterns
 from jbf.comparison.axes import all_axes
-from jbf.comparison.comparison import Comparison, Failure
+from jbf.comparison.bins import Binned
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.patterns import Failure
 from jbf.models.catalogue import transition_speed
 from jbf.reporting.bin_axes import bin_axis
 from jbf.reporting.plot_parts import MEASURED, MODEL, dress, legend_on_top, noise_band, plain
@@ -41,7 +44,7 @@ def friction_speed(ax: Axes, comparison: Comparison, index: int, colour: str, ti
     ax.legend(loc="upper left", frameon=False, markerscale=2)
 
 
-def pattern_along(comparison: Comparison, axis: str | None) -> Failure:
+def means_along(comparison: Comparison, axis: str | None) -> Failure:
     """Bin means of a comparison's residual along an axis, also where it does not fail."""
     for failure in comparison.failures:
         if axis in (None, failure.axis):
@@ -49,18 +52,13 @@ def pattern_along(comparison: Comparison, axis: str | None) -> Failure:
     campaign = comparison.campaign
     model = comparison.model
     u_tr = transition_speed(model.law, model.values.tolist())
-    found = {a.axis: a for a in all_axes(campaign, u_tr)}
+    found: dict[str, Binned] = {a.axis: a for a in all_axes(campaign, u_tr)}
     binned = found.get(axis or "velocity", found["velocity"])
-    bins = comparison.samples.flat(binned.bins)
-    known = bins >= 0
-    r = comparison.samples.flat(comparison.residuals)[known]
-    counts = np.bincount(bins[known], minlength=len(binned.labels))
-    sums = np.bincount(bins[known], weights=r, minlength=len(binned.labels))
-    means = sums / np.maximum(counts, 1)
-    return Failure(binned.axis, "no pattern", 0.0, binned.labels, means, counts)
+    means, counts = patterns.bin_means(binned, comparison.samples, comparison.residuals)
+    return Failure(binned.axis, "no pattern", 0.0, binned.bins, means, counts)
 
 
-def bin_means(ax: Axes, failure: Failure, colour: str, label: str = "") -> None:
+def draw_bin_means(ax: Axes, failure: Failure, colour: str, label: str = "") -> None:
     """Means of record minus model in the bins, a line for each direction of motion."""
     place = bin_axis(failure)
     directions = list(dict.fromkeys(place.series))

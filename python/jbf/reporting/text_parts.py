@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from jbf.comparison.comparison import Failure
+from jbf.comparison.patterns import Failure
 from jbf.diagnosis.ledger import Remainder
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting.paragraphs import columns, hanging

@@ -70,6 +70,23 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "batch's clock": (lambda: jbf.batch(RIG, T, 0.1, clock="Thesis", **LAW), '"thesis"?'),
     "batch's method": (lambda: jbf.batch(RIG, T, 0.1, method="rk5", **LAW), '"rk4"?'),
     "batch's speeds": (lambda: jbf.batch(RIG, RUN, 0.1, **LAW), "no array of numbers"),
+    "fit a run": (lambda: jbf.fit(RIG, RUN), "runs is a single run; write a list of one: [run]"),
+    "diagnose paths": (lambda: jbf.diagnose(RIG, ["a.csv"]), 'jbf.read_run("a.csv")'),
+    "diagnose's clock": (lambda: jbf.diagnose(RIG, [RUN], clock="Thesis"), '"thesis"?'),
+    "limits": (lambda: jbf.diagnose(RIG, [RUN], limits=3), "limits is an int"),
+    "progress": (lambda: jbf.diagnose(RIG, [RUN], progress=3), "progress is an int"),
+    "start a list": (lambda: jbf.fit(RIG, [RUN], start=[1.0]), "parameters is a list"),
+    "start a text": (lambda: jbf.fit(RIG, [RUN], start={"f_m": "a"}), '"a" is not a number'),
+    "bootstrap a model": (lambda: jbf.bootstrap(MODEL, [RUN]), "the fit is a Model"),
+    "bootstrap's repeats": (lambda: jbf.bootstrap(MODEL, [RUN], repeats="a"), 'repeats is "a"'),
+    "trajectories to fit": (lambda: jbf.fit_trajectories(RIG, [RUN], [T]), "run 0 is a Run"),
+    "frictions to fit": (
+        lambda: jbf.fit_trajectories(RIG, [(T, T)], ["a"]),
+        "the friction of run 0 is no array of numbers",
+    ),
+    "many's campaigns": (lambda: jbf.diagnose_many([RIG]), "campaigns is a list; give a dict"),
+    "many's option": (lambda: jbf.diagnose_many({}, effects=[]), "there is no option"),
+    "many's clock": (lambda: jbf.diagnose_many({}, clock="Thesis"), '"thesis"?'),
     "no path": (lambda: jbf.read_rig(ANYTHING), "None is not a path"),
     "no path of a run": (lambda: jbf.read_run(ANYTHING), "None is not a path"),
     "no paths": (lambda: jbf.read_runs(ANYTHING), "None is not a path"),
@@ -86,6 +103,13 @@ def test_a_wrong_argument_is_one_clear_line(name: str) -> None:
         call()
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_campaign_that_is_none_ends_as_its_own_error() -> None:
+    given: Any = {"number": 3, "three": (1, 2, 3), "run": (RIG, RUN)}
+    found = jbf.diagnose_many(given)
+    assert {name: type(error) for name, error in found.items()} == dict.fromkeys(given, InputError)
+    assert "write a list of one" in str(found["run"])
 
 
 def test_a_model_takes_bare_numbers_and_holds_values_with_errors() -> None:

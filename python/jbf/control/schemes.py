@@ -15,6 +15,7 @@ from jbf.control.tuning import friction_level_v, tune
 from jbf.errors import InputError, did_you_mean
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
+from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
 POSITION_GAINS = (0.43764, -0.25164)
@@ -111,7 +112,7 @@ class Learning(_Unguarded):
     gamma_gain: float | None = None
     k0_bounds: tuple[float, float] = (1.0, 1e8)
     gamma_bounds: tuple[float, float] = (1e-3, 1e4)
-    clock: str = "thesis"
+    clock: Clock = "thesis"
     name: str = "learning"
 
     @classmethod

@@ -9,14 +9,18 @@ from typing import Any
 from jbf.diagnosis.candidates import Progress
 from jbf.diagnosis.recipe import diagnose
 from jbf.diagnosis.result import Diagnosis
-from jbf.errors import JbfError
-from jbf.models.catalogue import find_law
+from jbf.errors import InputError, JbfError
+from jbf.models.catalogue import find_clock, find_law
+from jbf.records.arguments import check_callable, described, one_of
 from jbf.records.folder import read_campaign
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 
 Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""
+
+OPTIONS = ("law", "clock", "limits", "policy")
+"""What of `diagnose` may be asked for all of them."""
 
 
 def diagnose_many(
@@ -39,7 +43,7 @@ def diagnose_many(
     progress
         Called with a campaign's name and verdict, and how many of how many are done.
     options
-        As for `diagnose`: `law`, `clock`, `limits`.
+        As for `diagnose`: `law`, `clock`, `limits`, `policy`.
 
     Returns
     -------
@@ -51,7 +55,16 @@ def diagnose_many(
     InputError
         An option that is wrong for all of them.
     """
+    for option in options:
+        one_of(option, OPTIONS, "option")
     find_law(options.get("law", "journal"))
+    find_clock(options.get("clock", "journal"))
+    check_callable(progress, "progress")
+    if not isinstance(campaigns, Mapping):
+        raise InputError(
+            problem=f"campaigns is {described(campaigns)}",
+            mend="give a dict: name to (rig, runs), or to a folder",
+        )
     found: dict[str, Diagnosis | JbfError] = {}
 
     def keep(name: str, result: Diagnosis | JbfError) -> None:
@@ -75,7 +88,12 @@ def diagnose_many(
 
 def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError:
     try:
-        rig, runs = given if isinstance(given, tuple) else read_campaign(given)
+        pair = given if isinstance(given, tuple) else read_campaign(given)
+        if len(pair) != 2:
+            raise InputError(
+                problem=f"a campaign is {len(pair)} things", mend="give a rig and a list of runs"
+            )
+        rig, runs = pair
         return diagnose(rig, runs, **options)
     except JbfError as error:
         return error

@@ -28,6 +28,7 @@ from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.uncertainty import HELD
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.arguments import check_callable, of_kind, whole_number
 from jbf.records.motion.roughness import encoder_step
 from jbf.records.run import Run
 from jbf.results import Result
@@ -62,7 +63,7 @@ class Bootstrap(Result):
 
 def check_repeats(repeats: int, name: str = "repeats") -> None:
     """An InputError where so few tell no error."""
-    if repeats < LEAST_REPEATS:
+    if whole_number(repeats, name) < LEAST_REPEATS:
         raise InputError(
             problem=f"{name} {repeats} is too few to tell an error",
             mend=f"ask for {LEAST_REPEATS} or more; 40 tell it better",
@@ -102,6 +103,9 @@ def bootstrap(
         Fewer than 19 repeats, or runs that cannot be prepared.
     """
     check_repeats(repeats)
+    whole_number(seed, "seed")
+    check_callable(progress, "progress")
+    of_kind(fitted, Fit, "the fit", "give what jbf.fit made of these runs")
     model = fitted.model
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}

@@ -23,6 +23,7 @@ from jbf.models.chain import check_rig
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
+from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
@@ -130,7 +131,7 @@ def fit(
     effects: Sequence[str] = (),
     *,
     law: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     start: Mapping[str, float] | None = None,
     fixed: Mapping[str, float] | None = None,
 ) -> Fit:

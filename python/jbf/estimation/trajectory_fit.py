@@ -7,7 +7,7 @@ Records with effects, noise on the speed and unknown signs are :func:`jbf.fit`'s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +18,11 @@ from jbf.errors import InputError
 from jbf.estimation.estimates import Estimates
 from jbf.models.catalogue import find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
-from jbf.models.trajectory import Motion, is_record, trajectories
+from jbf.models.trajectory import Motion, is_record, motions_of, trajectories
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import by_name, described, numbers
 from jbf.records.rig import Rig
+from jbf.records.toml_file import number
 from jbf.threads import one_blas_thread
 
 if TYPE_CHECKING:
@@ -74,7 +77,7 @@ def fit_trajectories(
     *,
     start: Mapping[str, float] | None = None,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -100,11 +103,18 @@ def fit_trajectories(
     from scipy import optimize  # most of a second to import
 
     pages = parameters_of("journal", ())
-    given = {find_parameter(name, pages): float(v) for name, v in (start or {}).items()}
+    given = {
+        find_parameter(name, pages): number(value, f"start.{name}")
+        for name, value in by_name(start or {}, "start").items()
+    }
     first = np.array([given.get(name, page.starts[0]) for name, page in pages.items()])
     low = np.log([page.lower for page in pages.values()])
     high = np.log([page.upper for page in pages.values()])
-    measured = [np.asarray(f, dtype=float) for f in friction_coefficient]
+    runs = motions_of(runs)
+    if isinstance(friction_coefficient, str) or not isinstance(friction_coefficient, Iterable):
+        said = described(friction_coefficient)
+        raise InputError(problem=f"the friction is {said}", mend="give a list, one array a run")
+    measured = [numbers(f, f"the friction of run {i}") for i, f in enumerate(friction_coefficient)]
     keep = _usable(runs, measured)
     data = np.concatenate(measured)[keep]
     if len(data) <= len(first):

@@ -12,6 +12,7 @@ from jbf import _core
 from jbf.errors import InputError
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import core_refusals
+from jbf.models.vocabulary import Clock
 from jbf.records.arguments import numbers, one_of, the_rig
 from jbf.records.rig import Rig
 
@@ -66,7 +67,7 @@ def batch(
     K0: npt.ArrayLike,
     gamma: npt.ArrayLike,
     load_n: npt.ArrayLike | None = None,
-    clock: str = "journal",
+    clock: Clock = "journal",
     method: str = "euler",
     data: npt.ArrayLike | None = None,
     dtype: npt.DTypeLike = np.float64,

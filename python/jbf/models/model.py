@@ -84,7 +84,7 @@ class Model:
         law: str = "journal",
         effects: Iterable[str] = (),
         parameters: Mapping[str, float | ParameterValue] = NONE,
-        clock: str = "journal",
+        clock: Clock = "journal",
         fit: Mapping[str, float | int | str] = NONE,
     ) -> None:
         find_law(law)
@@ -187,7 +187,8 @@ class Model:
         """
         file = read_model_file(path, vocabulary())
         try:
-            return cls(file.rig, file.law, file.effects, file.parameters, file.clock, file.fit)
+            clock = find_clock(file.clock)
+            return cls(file.rig, file.law, file.effects, file.parameters, clock, file.fit)
         except InputError as error:
             raise error.within(file=path) from None
 

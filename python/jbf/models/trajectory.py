@@ -16,6 +16,7 @@ from jbf import _core
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import core_refusals
+from jbf.models.vocabulary import Clock
 from jbf.records.arguments import by_name, described, numbers, the_rig
 from jbf.records.rig import Rig
 from jbf.records.toml_file import number
@@ -70,7 +71,7 @@ def trajectory(
     *,
     sine: tuple[float, float, float] | tuple[float, float] | None = None,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -138,7 +139,7 @@ def trajectories(
     runs: Sequence[Motion],
     *,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -172,7 +173,7 @@ def trajectories(
         if name not in given:
             raise InputError(problem=f"the parameter {name} is missing", mend="give its value")
     values = {core: number(given[name], f"parameters.{name}") for name, core in _NAMES.items()}
-    pairs = [_pair(i, run) for i, run in enumerate(_listed(runs))]
+    pairs = motions_of(runs)
     times = [time for time, _ in pairs]
     starts = [float(time[0]) for time, motion in pairs if is_record(motion) and len(time)]
     if len(set(starts)) > 1 or (starts and len(starts) < len(pairs) and starts[0] != 0.0):
@@ -207,12 +208,15 @@ def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
     return not (isinstance(motion, tuple) and len(motion) == 3)
 
 
-def _listed(runs: object) -> list[object]:
+def motions_of(
+    runs: object,
+) -> list[tuple[Array, npt.ArrayLike | tuple[float, float, float]]]:
+    """Pairs of times and motion as arrays and numbers; an InputError names the run that is none."""
     if isinstance(runs, str) or not isinstance(runs, Iterable):
         raise InputError(
             problem=f"runs is {described(runs)}", mend="give a list of pairs (times, motion)"
         )
-    return list(runs)
+    return [_pair(i, run) for i, run in enumerate(runs)]
 
 
 def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, float, float]]:

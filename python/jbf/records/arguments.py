@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from numbers import Integral, Real
 from typing import Any, TypeVar
 
 import numpy as np
@@ -109,6 +110,20 @@ def names(value: object, what: str) -> tuple[str, ...]:
                 problem=f"{what} holds {described(name)}", mend="write names, in quotes"
             )
     return found
+
+
+def whole_number(value: object, what: str, least: int = 0) -> int:
+    """A whole number, not below `least`."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        shown = str(value) if isinstance(value, Real) else described(value)
+        raise InputError(problem=f"{what} is {shown}", mend=f"give a whole number from {least} on")
+    return int(value)
+
+
+def check_callable(value: object, what: str) -> None:
+    """An InputError where this is neither None nor a function."""
+    if value is not None and not callable(value):
+        raise InputError(problem=f"{what} is {described(value)}", mend="give a function, or None")
 
 
 def one_of(value: object, known: Iterable[Word], what: str) -> Word:

@@ -8,6 +8,7 @@ from jbf.errors import InputError
 from jbf.records.rig import Rig, read_rig
 from jbf.records.run import PathLike, Run
 from jbf.records.run_files import read_runs
+from jbf.text_files import path_of
 
 
 def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
@@ -18,7 +19,7 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
     InputError
         There is no rig, no run, or one of them is wrong.
     """
-    folder = Path(folder)
+    folder = path_of(folder)
     path = folder / "rig.toml"
     if not path.is_file():
         raise InputError(

@@ -40,6 +40,27 @@ def one_way(
     return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
 
 
+def wandering(
+    name: str, friction: Friction, *, way: float, rate: float, noise_n: float, seed: int
+) -> Run:
+    """The same with two rates that have no common period: nothing comes again."""
+    t = np.arange(0.0, 10.0 + 0.5 * STEP_S, STEP_S)
+    other = 0.6180340 * rate
+    v = way * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
+    a = way * (0.03 * rate * np.cos(rate * t) + 0.02 * other * np.cos(other * t + 1.0))
+    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
+
+
+def four_runs(friction: Friction, *, noise_n: float, seed: int = 0) -> list[Run]:
+    """Two wandering runs in each direction: any three of them tell what the fourth does."""
+    plan = (("a", 1.0, 12.0), ("b", -1.0, 14.0), ("c", 1.0, 10.0), ("d", -1.0, 16.0))
+    return [
+        wandering(name, friction, way=way, rate=rate, noise_n=noise_n, seed=4 * seed + i)
+        for i, (name, way, rate) in enumerate(plan)
+    ]
+
+
 def there_and_back(friction: Friction, *, noise_n: float = 0.0, seed: int = 0) -> list[Run]:
     """A run in each direction, each sample's sign known."""
     return [

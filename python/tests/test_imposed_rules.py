@@ -68,7 +68,5 @@ def test_an_angle_that_wraps_is_the_angle_that_does_not() -> None:
         np.testing.assert_allclose(b.velocity_m_s, a.velocity_m_s, atol=1e-9)
         np.testing.assert_allclose(b.angle_rad, a.angle_rad, atol=1e-6)
         assert b.sign_known.all()
-    ripple = Model(
-        Rig.thesis(), effects=["position_ripple"], parameters={"position_ripple.a": 0.2}
-    )
+    ripple = Model(Rig.thesis(), effects=["position_ripple"], parameters={"position_ripple.a": 0.2})
     np.testing.assert_allclose(ripple.predict(wraps), ripple.predict(whole), atol=1e-6)

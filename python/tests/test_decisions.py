@@ -67,8 +67,12 @@ def test_what_left_out_runs_must_confirm(strength: float, share: float, confirme
 def test_the_price_is_schwarzs_and_that_of_the_best_of_many() -> None:
     # Schwarz (1978): log n a parameter, in twice the log likelihood.
     assert price(0, 1000, 1, DEFAULT) == 20.0
-    assert price(3, 1000, 1, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(13.81551, abs=1e-4)
-    assert price(1, 1000, 12, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(4.96981, abs=1e-4)
+    assert price(3, 1000, 1, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
+        13.81551, abs=1e-4
+    )
+    assert price(1, 1000, 12, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
+        4.96981, abs=1e-4
+    )
 
 
 # ---- evidence ---------------------------------------------------------------------------------

@@ -38,9 +38,7 @@ def test_the_leader_is_added_and_those_close_behind_tie() -> None:
     )
     assert found.leader == "sensor_offset"
     assert [t.effect for t in found.trials] == FOUR
-    assert outcomes(found) == dict(
-        zip(FOUR, ("added", "ties", "rejected", "useless"), strict=True)
-    )
+    assert outcomes(found) == dict(zip(FOUR, ("added", "ties", "rejected", "useless"), strict=True))
     evidence = [t.evidence for t in found.trials]
     assert evidence == pytest.approx([g - PRICE for g in (200, 193, 190, 20)], abs=1e-6)
     assert found.trials[1].reason == "fits as well as sensor_offset"

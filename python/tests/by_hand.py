@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -134,7 +135,7 @@ TRIALS = (
 LEFT = (Remainder("frequency", "a 3.00 Hz tone", 0.12), Remainder("time", "2 bursts", 0.04))
 
 
-def diagnosis_by_hand(verdict: str) -> Diagnosis:
+def diagnosis_by_hand(verdict: Any) -> Diagnosis:
     """A diagnosis of each verdict; no two numbers in its tables are alike."""
     kept = verdict in ("missing", "ambiguous")
     effects = ("sensor_offset",) if kept else ()

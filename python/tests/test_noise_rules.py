@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
+from by_hand import coulomb, one_way
+from jbf import Rig, fit
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from scipy import signal
 
@@ -90,3 +92,18 @@ def test_a_little_colour_does_not_earn_its_parameters() -> None:
         r = slow + np.random.default_rng(100 + seed).normal(0.0, 0.5, n)
         kept += estimate_noise([r], [STEP_S], [np.ones(n, bool)]) == WHITE
     assert kept == 10
+
+
+def test_an_error_that_comes_again_is_not_forgiven_as_colour() -> None:
+    # A mass that the law knows nothing of, swung once a second: smooth, and no noise.
+    def heavy(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + 1.5 * a
+
+    swing = {"rate": 2.0 * np.pi, "noise_n": 0.1}
+    runs = [one_way("there", heavy, seed=1, **swing), one_way("back", heavy, way=-1.0, **swing)]
+    fitted = fit(Rig(), runs, law="coulomb")
+    assert fitted.rms_n > 2.0 * 0.1
+    # What comes again says that the noise is 0.1 N: so much of the square at most is coloured.
+    most = 0.1**2 / fitted.rms_n**2
+    assert fitted.noise.coloured_share(STEP_S) < 1.2 * most
+    assert fitted.noise.coloured_share(STEP_S) == pytest.approx(most, rel=0.2)

@@ -63,6 +63,11 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         assert source
 
 
+def with_number(name: str, value: float) -> Policy:
+    change: dict[str, Any] = {name: value}
+    return replace(DEFAULT, **change)
+
+
 # ---- decisions that turn where the number stands ----------------------------------------------
 
 
@@ -169,7 +174,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
 def test_a_number_turns_a_decision_where_it_stands(name: str) -> None:
     decide, below, above = TURNS[name]
     assert below <= getattr(DEFAULT, name) <= above
-    assert decide(replace(DEFAULT, **{name: below})) != decide(replace(DEFAULT, **{name: above}))
+    assert decide(with_number(name, below)) != decide(with_number(name, above))
 
 
 # ---- tests of what remains: the amplitude at which they speak ---------------------------------
@@ -261,8 +266,8 @@ def test_a_number_is_what_a_test_of_the_remainder_waits_for(name: str) -> None:
         middle = 0.5 * (quiet + loud)
         quiet, loud = (quiet, middle) if gate.finds(DEFAULT, middle) else (middle, loud)
     # Where the test begins to speak, it is this number that had kept it silent.
-    assert gate.finds(replace(DEFAULT, **{name: gate.loose}), quiet)
-    assert not gate.finds(replace(DEFAULT, **{name: gate.strict}), loud)
+    assert gate.finds(with_number(name, gate.loose), quiet)
+    assert not gate.finds(with_number(name, gate.strict), loud)
 
 
 # ---- the whole way ----------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from textwrap import dedent
 
 import pytest
@@ -34,6 +35,16 @@ def test_the_report_of_a_fit() -> None:
             C(F_c_n, F_v_n_s_m)          = -0.900
             C(F_c_n, sensor_offset.b_n)  = +0.450
     """)
+
+
+def test_correlations_where_nothing_is_held() -> None:
+    held = fit_by_hand(["sensor_offset"])
+    open_ = {n: p for n, p in held.parameters.items() if p.note is None}
+    lines = replace(held, parameters=open_).report().splitlines()
+    assert [line for line in lines if line.startswith("    C(")] == [
+        "    C(F_c_n, F_v_n_s_m)          = -0.900",
+        "    C(F_c_n, sensor_offset.b_n)  = +0.450",
+    ]
 
 
 def test_the_summary_of_a_comparison() -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from by_hand import Array, coulomb, four_runs, one_way, wandering
-from jbf import Model, Rig, Run
+from by_hand import Array, coulomb, four_runs, one_way
+from jbf import Parameter, Rig, Run, forget_effect, register_effect
 from jbf.diagnosis.left_out import left_out_rms
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
@@ -13,15 +16,20 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 
 NOISE_N = 0.1
-MASS_KG = 3.0
+PUSH = Parameter("k_n", "N", lower=-10.0, upper=10.0, null=0.0, starts=(0.5,))
+PUSH_N = 3.0
 
 
-def steady(name: str, speed: float, seed: int) -> Run:
-    """A run at one speed, which knows nothing of what acceleration does."""
-    t = np.arange(0.0, 10.01, 0.02)
-    noise = NOISE_N * np.random.default_rng(seed).standard_normal(len(t))
-    v = np.full(len(t), speed)
-    return Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=name)
+def pushed(push: Array, k_n: float) -> Array:
+    """A force that the run itself records: where it does not, nothing is known of it."""
+    return k_n * push
+
+
+@pytest.fixture
+def own_effect() -> Iterator[None]:
+    register_effect(pushed, parameters=[PUSH])
+    yield
+    forget_effect("pushed")
 
 
 def left_out(runs: list[Run], *effects: str) -> tuple[float, Problem, Array]:
@@ -30,22 +38,19 @@ def left_out(runs: list[Run], *effects: str) -> tuple[float, Problem, Array]:
     return left_out_rms(problem, solution), problem, solution.values
 
 
+@pytest.mark.usefixtures("own_effect")
 def test_what_only_the_left_out_run_knows_does_not_leak_into_its_prediction() -> None:
-    def heavy(t: Array, v: Array, a: Array) -> Array:
-        return coulomb(t, v, a) + MASS_KG * a
-
-    swung = wandering("swung", heavy, way=1.0, rate=8.0, noise_n=NOISE_N, seed=9)
-    runs = [swung, *(steady(f"s{i}", v, i) for i, v in enumerate((0.05, 0.15, -0.05, -0.15)))]
-    found, problem, values = left_out(runs, "inertia_leak")
-    where = problem.names.index("inertia_leak.m_e_kg")
-    assert values[where] == pytest.approx(MASS_KG, rel=0.05)
-    # Without the swung run nobody knows of a mass: its prediction misses all of it.
-    (plain,) = Model(Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0}).predict_many([swung])
-    missed = np.sum((np.asarray(swung.friction_n) - plain) ** 2)
-    samples = sum(len(run) for run in runs)
-    expected = np.sqrt((missed + (samples - len(swung)) * NOISE_N**2) / samples)
-    assert expected > 2.0 * NOISE_N
-    assert found == pytest.approx(expected, rel=0.02)
+    runs = []
+    for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
+        push = np.sign(np.sin(9.0 * run.time_s)) if i == 0 else np.zeros(len(run))
+        force = np.asarray(run.friction_n) + PUSH_N * push
+        runs.append(replace(run, friction_n=force, extra={"push": push}))
+    found, problem, values = left_out(runs, "pushed")
+    assert values[problem.names.index("pushed.k_n")] == pytest.approx(PUSH_N, rel=0.01)
+    # Without the first run nobody knows of a push: its prediction misses all of it.
+    missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
+    assert missed > 10.0 * NOISE_N
+    assert found == pytest.approx(missed, rel=0.02)
 
 
 def test_the_halves_of_a_single_run_take_turns() -> None:

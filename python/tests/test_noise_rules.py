@@ -99,8 +99,10 @@ def test_an_error_that_comes_again_is_not_forgiven_as_colour() -> None:
     def heavy(t: Array, v: Array, a: Array) -> Array:
         return coulomb(t, v, a) + 1.5 * a
 
-    swing = {"rate": 2.0 * np.pi, "noise_n": 0.1}
-    runs = [one_way("there", heavy, seed=1, **swing), one_way("back", heavy, way=-1.0, **swing)]
+    runs = [
+        one_way(name, heavy, way=way, rate=2.0 * np.pi, noise_n=0.1, seed=seed)
+        for name, way, seed in (("there", 1.0, 1), ("back", -1.0, 2))
+    ]
     fitted = fit(Rig(), runs, law="coulomb")
     assert fitted.rms_n > 2.0 * 0.1
     # What comes again says that the noise is 0.1 N: so much of the square at most is coloured.

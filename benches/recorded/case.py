@@ -24,6 +24,8 @@ class Case:
         White noise of the clean recording (1 s.d.), N.
     runs, held_out
         Folders: `rig.toml` and runs; clean runs of the same rig with other motions.
+    effect_over_noise
+        RMS of the weakest effect over the noise in the run that shows it best; 0 if not known.
     """
 
     key: str
@@ -33,6 +35,7 @@ class Case:
     noise_n: float
     runs: str
     held_out: str
+    effect_over_noise: float = 0.0
 
     @property
     def kind(self) -> str:

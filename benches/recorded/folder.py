@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 from case import Case
 
@@ -11,22 +12,18 @@ from case import Case
 def cases(folder: Path, held_out: Path) -> list[Case]:
     """The campaigns of a folder with `NAME/rig.toml`, `NAME/*.csv` and a truth beside them.
 
-    `truth.json` is in the folder or above it: name to `effects`, `artefacts`, `noise_n` and, where
-    it is known, `strength`. Raises FileNotFoundError, in words, where something is missing.
+    `truth.json` in the folder or above it has, by name, `effects`, `artefacts`, `noise_n` and,
+    where it is known, `strength`; or each campaign has a `NAME.json` beside its folder. Raises
+    FileNotFoundError, in words, where something is missing.
     """
-    places = [folder / "truth.json", folder.parent / "truth.json"]
-    truths = next((p for p in places if p.is_file()), None)
     for needed in (folder, held_out):
         if not needed.is_dir():
             raise FileNotFoundError(f"there is no folder {needed}")
-    if truths is None:
-        raise FileNotFoundError(f"there is no {places[0]}, nor {places[1]}")
     found = []
-    for name, truth in sorted(json.loads(truths.read_text(encoding="utf-8")).items()):
-        if not (folder / name).is_dir():
-            raise FileNotFoundError(
-                f"{truths} knows {name}, but there is no folder {folder / name}"
-            )
+    for name, truth in sorted(_truths(folder).items()):
+        for needed in (folder / name, held_out / name):
+            if not needed.is_dir():
+                raise FileNotFoundError(f"the truth knows {name}, but there is no {needed}")
         found.append(
             Case(
                 name,
@@ -39,3 +36,15 @@ def cases(folder: Path, held_out: Path) -> list[Case]:
             )
         )
     return found
+
+
+def _truths(folder: Path) -> dict[str, Any]:
+    places = [folder / "truth.json", folder.parent / "truth.json"]
+    for place in places:
+        if place.is_file():
+            truths: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
+            return truths
+    beside = [path for path in folder.glob("*.json") if path.with_suffix("").is_dir()]
+    if not beside:
+        raise FileNotFoundError(f"there is no {places[0]}, nor {places[1]}")
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in beside}

@@ -22,6 +22,7 @@ def scored(case: Case, limit_s: float) -> Row:
         "effects": list(case.effects),
         "artefacts": list(case.artefacts),
         "strength": case.strength,
+        "effect_over_noise": case.effect_over_noise,
     }
     begun = time.monotonic()
     try:

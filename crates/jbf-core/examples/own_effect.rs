@@ -18,27 +18,12 @@ struct Wiper<T> {
 }
 
 impl<T: Real> Effect<T> for Wiper<T> {
-    const INFO: Info = Info {
-        name: "wiper",
-        stage: Stage::Other,
-        summary: "a wiper that drags harder in one half of each turn",
-        equation: "+ F_w (1 + sin th)/2 sgn v",
-        source: "this example",
-        limits: "a stiff wiper: it does not bend before it slides",
-        parameters: &[Parameter {
-            name: "F_w_n",
-            unit: "N",
-            meaning: "largest drag",
-            lower: 0.0,
-            upper: 1e3,
-            null: Some(0.0),
-            starts: &[1.0],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("wiper", Stage::Other)
+        .summary("a wiper that drags harder in one half of each turn")
+        .equation("+ F_w (1 + sin th)/2 sgn v")
+        .source("this example")
+        .limits("a stiff wiper: it does not bend before it slides")
+        .parameters(&[Parameter::new("F_w_n", "N", "largest drag", [0.0, 1e3], &[1.0]).null(0.0)]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -45,6 +45,7 @@ pub mod film;
 pub mod law;
 pub mod motion;
 pub mod observer;
+pub mod page;
 pub mod plant;
 pub mod real;
 pub mod reference;

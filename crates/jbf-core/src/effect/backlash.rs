@@ -70,30 +70,27 @@ impl<T: Real> State<T> {
 }
 
 impl<T: Real> Effect<T> for Backlash<T> {
-    const INFO: Info = Info {
-        name: "backlash",
-        stage: Stage::Drive,
-        summary: "a gap in gear, key or coupling: after a turn the journal stands until it is \
+    const INFO: Info = Info::new("backlash", Stage::Drive)
+        .summary(
+            "a gap in gear, key or coupling: after a turn the journal stands until it is \
                   crossed",
-        equation: "th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'",
-        source: "Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996",
-        limits: "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
+        )
+        .equation("th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'")
+        .source("Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996")
+        .limits(
+            "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
                  flank closed; beside presliding the bristle keeps its force while the journal \
                  stands; on a linear axis the gap is in m",
-        parameters: &[Parameter {
-            name: "gap_rad",
-            unit: "rad",
-            meaning: "angle between the flanks",
-            lower: 0.0,
-            upper: 1.0,
-            null: Some(0.0),
-            starts: &[0.0215, 0.0043],
-            log: false,
-            period: None,
-        }],
-        needs: &[Need::NoBristle],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "gap_rad",
+            "rad",
+            "angle between the flanks",
+            [0.0, 1.0],
+            &[0.0215, 0.0043],
+        )
+        .null(0.0)])
+        .needs(&[Need::NoBristle]);
     const MOVES_JUMPS: bool = true;
     type State = State<T>;
 

@@ -16,27 +16,7 @@ pub struct DirectionAsymmetry<T> {
 }
 
 impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
-    const INFO: Info = Info {
-        name: "direction_asymmetry",
-        stage: Stage::Contact,
-        summary: "friction that is larger one way than the other",
-        equation: "f -> f (1 + a sgn(v))",
-        source: "Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)",
-        limits: "scales the whole friction; an offset of the cell shifts it instead, and is there at rest too",
-        parameters: &[Parameter {
-            name: "a",
-            unit: "-",
-            meaning: "share by which friction is larger in positive motion",
-            lower: -0.95,
-            upper: 0.95,
-            null: Some(0.0),
-            starts: &[0.05],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("direction_asymmetry", Stage::Contact).summary("friction that is larger one way than the other").equation("f -> f (1 + a sgn(v))").source("Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)").limits("scales the whole friction; an offset of the cell shifts it instead, and is there at rest too").parameters(&[Parameter::new("a", "-", "share by which friction is larger in positive motion", [-0.95, 0.95], &[0.05]).null(0.0).signed()]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

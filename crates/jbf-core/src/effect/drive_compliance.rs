@@ -16,6 +16,7 @@
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{sag, JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// Inner steps of one step at most. At steps of 5 ms they follow a free journal up to 230 Hz; of a
@@ -42,53 +43,12 @@ pub struct State<T> {
 }
 
 impl<T: Real> Effect<T> for DriveCompliance<T> {
-    const INFO: Info = Info {
-        name: "drive_compliance",
-        stage: Stage::Drive,
-        summary: "belt, coupling or shaft twist between encoder and journal",
-        equation: "J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')",
-        source: "Cohn 1998, section 5.1; Harnoy et al. 1994",
-        limits:
-            "one spring, one inertia; above the first torsional mode the drive is a chain of them; \
-             on a linear axis k is in N/m, c in N s/m, J in kg",
-        parameters: &[
-            Parameter {
-                name: "k_n_m_rad",
-                unit: "N m/rad",
-                meaning: "torsional stiffness between encoder and journal",
-                lower: 0.1,
-                upper: 1e7,
-                null: Some(f64::INFINITY),
-                starts: &[60.0, 600.0],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "c_n_m_s_rad",
-                unit: "N m s/rad",
-                meaning: "damping beside the spring",
-                lower: 1e-5,
-                upper: 1e3,
-                null: None,
-                starts: &[0.1],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "J_kg_m2",
-                unit: "kg m^2",
-                meaning: "inertia of the journal side",
-                lower: 1e-6,
-                upper: 1e2,
-                null: None,
-                starts: &[2e-3],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[Need::Path, Need::NoBristle],
-        longest_step_s: 0.005,
-    };
+    const INFO: Info = Info::new("drive_compliance", Stage::Drive).summary("belt, coupling or shaft twist between encoder and journal").equation("J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')").source("Cohn 1998, section 5.1; Harnoy et al. 1994").limits("one spring, one inertia; above the first torsional mode the drive is a chain of them; \
+             on a linear axis k is in N/m, c in N s/m, J in kg").parameters(&[
+            Parameter::new("k_n_m_rad", "N m/rad", "torsional stiffness between encoder and journal", [0.1, 1e7], &[60.0, 600.0]).log().null(f64::INFINITY).start(Start::DriveStiffness),
+            Parameter::new("c_n_m_s_rad", "N m s/rad", "damping beside the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
+            Parameter::new("J_kg_m2", "kg m^2", "inertia of the journal side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
+        ]).needs(&[Need::Path, Need::NoBristle]).longest_step_s(0.005);
     // It rings, often faster than half the rate of the samples: frequencies that these cannot tell
     // apart make a peak each.
     const PEAKS: Option<&'static str> = Some("J_kg_m2");

@@ -14,13 +14,15 @@ pub mod own;
 mod registry;
 pub mod relaxation;
 
-pub use info::{Info, Parameter, Stage};
+pub use crate::page::Parameter;
+pub use info::{Info, Stage};
 pub use need::Need;
 use own::{Nothing, Own};
 
 use crate::error::ParameterError;
 use crate::law::Sliding;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::{same, values_fit};
 use crate::real::Real;
 
 /// What every effect has: a page in the catalogue, a checked constructor, a state.
@@ -244,8 +246,8 @@ registry::signal_chain! {
 pub const fn fits(name: &str, values: &[f64]) -> bool {
     let mut i = 0;
     while i < CATALOGUE.len() {
-        if info::same(CATALOGUE[i].name, name) {
-            return info::values_fit(CATALOGUE[i].parameters, values);
+        if same(CATALOGUE[i].name, name) {
+            return values_fit(CATALOGUE[i].parameters, values);
         }
         i += 1;
     }

@@ -19,41 +19,27 @@ pub struct PositionRipple<T> {
 }
 
 impl<T: Real> Effect<T> for PositionRipple<T> {
-    const INFO: Info = Info {
-        name: "position_ripple",
-        stage: Stage::Contact,
-        summary: "friction that rises and falls once a turn (roundness, alignment)",
-        equation: "f -> f (1 + a cos(theta - theta_0))",
-        source: "Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991",
-        limits: "one harmonic only; belts and gears add others; \
+    const INFO: Info = Info::new("position_ripple", Stage::Contact)
+        .summary("friction that rises and falls once a turn (roundness, alignment)")
+        .equation("f -> f (1 + a cos(theta - theta_0))")
+        .source("Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991")
+        .limits(
+            "one harmonic only; belts and gears add others; \
                  the angle must be absolute or the same zero in every run",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "depth of the ripple",
-                lower: 0.0,
-                upper: 1.0,
-                null: Some(0.0),
-                starts: &[0.1],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "theta_0_rad",
-                unit: "rad",
-                meaning: "angle of the largest friction",
-                lower: -4.0 * PI,
-                upper: 4.0 * PI,
-                null: None,
-                starts: &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
-                log: false,
-                period: Some(TAU),
-            },
-        ],
-        needs: &[Need::Angle],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[
+            Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
+            Parameter::new(
+                "theta_0_rad",
+                "rad",
+                "angle of the largest friction",
+                [-4.0 * PI, 4.0 * PI],
+                &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
+            )
+            .period(TAU)
+            .signed(),
+        ])
+        .needs(&[Need::Angle]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -12,6 +12,7 @@ use super::relaxation::relax;
 use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// Elastic deflection of the contact before it slides.
@@ -35,29 +36,29 @@ impl<T: Real> Presliding<T> {
 }
 
 impl<T: Real> Effect<T> for Presliding<T> {
-    const INFO: Info = Info {
-        name: "presliding",
-        stage: Stage::Contact,
-        summary: "the contact bends before it slides: a reversal is a slope over distance",
-        equation: "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
+    const INFO: Info = Info::new("presliding", Stage::Contact)
+        .summary("the contact bends before it slides: a reversal is a slope over distance")
+        .equation(
+            "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
                    (of a law in newtons its dry part: the viscous one adds)",
-        source: "Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3",
-        limits: "one stiffness, no memory of inner loops, drifts under small vibration; \
+        )
+        .source("Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3")
+        .limits(
+            "one stiffness, no memory of inner loops, drifts under small vibration; \
                  elasto-plastic forms do better below the break-away distance",
-        parameters: &[Parameter {
-            name: "sigma_1_m",
-            unit: "1/m",
-            meaning: "contact stiffness over load",
-            lower: 1.0,
-            upper: 1e12,
-            null: Some(f64::INFINITY),
-            starts: &[3e3, 3e2, 3e4, 3e5],
-            log: true,
-            period: None,
-        }],
-        needs: &[Need::NoBristle],
-        longest_step_s: 0.01,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "sigma_1_m",
+            "1/m",
+            "contact stiffness over load",
+            [1.0, 1e12],
+            &[3e3, 3e2, 3e4, 3e5],
+        )
+        .log()
+        .null(f64::INFINITY)
+        .start(Start::Stiffness)])
+        .needs(&[Need::NoBristle])
+        .longest_step_s(0.01);
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

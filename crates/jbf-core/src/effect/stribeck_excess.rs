@@ -18,51 +18,30 @@ pub struct StribeckExcess<T> {
 }
 
 impl<T: Real> Effect<T> for StribeckExcess<T> {
-    const INFO: Info = Info {
-        name: "stribeck_excess",
-        stage: Stage::Contact,
-        summary: "boundary friction at low speed beyond the law's own",
-        equation: "f -> f + a exp(-(|v|/v_s)^n) sgn(v)",
-        source: "Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2",
-        limits: "no memory: a film that lags behind the speed is film_memory's; no dwell",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "friction coefficient added at rest",
-                lower: 0.0,
-                upper: 1e3,
-                null: Some(0.0),
-                starts: &[0.05],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "v_s_m_s",
-                unit: "m/s",
-                meaning: "speed at which it has fallen to 1/e",
-                lower: 1e-5,
-                upper: 1e2,
-                null: None,
-                starts: &[0.01, 0.04],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "n",
-                unit: "-",
-                meaning: "exponent of the fall",
-                lower: 0.2,
-                upper: 8.0,
-                null: None,
-                starts: &[1.5],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("stribeck_excess", Stage::Contact)
+        .summary("boundary friction at low speed beyond the law's own")
+        .equation("f -> f + a exp(-(|v|/v_s)^n) sgn(v)")
+        .source("Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2")
+        .limits("no memory: a film that lags behind the speed is film_memory's; no dwell")
+        .parameters(&[
+            Parameter::new(
+                "a",
+                "-",
+                "friction coefficient added at rest",
+                [0.0, 1e3],
+                &[0.05],
+            )
+            .null(0.0),
+            Parameter::new(
+                "v_s_m_s",
+                "m/s",
+                "speed at which it has fallen to 1/e",
+                [1e-5, 1e2],
+                &[0.01, 0.04],
+            )
+            .log(),
+            Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
+        ]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -19,40 +19,30 @@ pub struct ThermalThinning<T> {
 }
 
 impl<T: Real> Effect<T> for ThermalThinning<T> {
-    const INFO: Info = Info {
-        name: "thermal_thinning",
-        stage: Stage::Lubricant,
-        summary: "friction warms the oil, and warm oil carries less",
-        equation: "Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau",
-        source: "Reynolds's viscosity law; Cohn 1998, section 4.2",
-        limits: "one lumped temperature, exponential viscosity, cold at the start of each run",
-        parameters: &[
-            Parameter {
-                name: "beta_q_1_j",
-                unit: "1/J",
-                meaning: "loss of log viscosity per joule of friction work",
-                lower: 0.0,
-                upper: 1e3,
-                null: Some(0.0),
-                starts: &[0.03, 0.3],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "tau_s",
-                unit: "s",
-                meaning: "time in which the film cools",
-                lower: 0.1,
-                upper: 1e5,
-                null: None,
-                starts: &[60.0],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[Need::Film],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("thermal_thinning", Stage::Lubricant)
+        .summary("friction warms the oil, and warm oil carries less")
+        .equation("Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau")
+        .source("Reynolds's viscosity law; Cohn 1998, section 4.2")
+        .limits("one lumped temperature, exponential viscosity, cold at the start of each run")
+        .parameters(&[
+            Parameter::new(
+                "beta_q_1_j",
+                "1/J",
+                "loss of log viscosity per joule of friction work",
+                [0.0, 1e3],
+                &[0.03, 0.3],
+            )
+            .null(0.0),
+            Parameter::new(
+                "tau_s",
+                "s",
+                "time in which the film cools",
+                [0.1, 1e5],
+                &[60.0],
+            )
+            .log(),
+        ])
+        .needs(&[Need::Film]);
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

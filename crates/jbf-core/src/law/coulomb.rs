@@ -25,18 +25,13 @@ pub struct Coulomb<T> {
 }
 
 impl<T: Real> Named<T> for Coulomb<T> {
-    const INFO: Info = Info {
-        name: "coulomb",
-        summary: "static, Coulomb and viscous friction",
-        equation: "F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest",
-        source: "Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1",
-        limits: "no memory, no fall of friction with speed; F_s shows only through a soft drive",
-        parameters: &[F_C, F_S, F_V],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: false,
-        has_dry_level: true,
-    };
+    const INFO: Info = Info::new::<T, Self>("coulomb")
+        .summary("static, Coulomb and viscous friction")
+        .equation("F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest")
+        .source("Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1")
+        .limits("no memory, no fall of friction with speed; F_s shows only through a soft drive")
+        .parameters(&[F_C, F_S, F_V])
+        .with_a_dry_level();
 
     fn build(
         _bearing: Option<&Bearing>,

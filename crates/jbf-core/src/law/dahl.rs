@@ -77,13 +77,12 @@ impl<T: Real> Dahl<T> {
 }
 
 impl<T: Real> Named<T> for Dahl<T> {
-    const INFO: Info = Info {
-        name: "dahl",
-        summary: "a contact that bends before it slides, by way alone",
-        equation: "dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v",
-        source: "Dahl 1968, 1977; Cohn 1998, section 2.1.3",
-        limits: "no Stribeck fall, no static friction above F_c; inner loops drift",
-        parameters: &[
+    const INFO: Info = Info::new::<T, Self>("dahl")
+        .summary("a contact that bends before it slides, by way alone")
+        .equation("dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v")
+        .source("Dahl 1968, 1977; Cohn 1998, section 2.1.3")
+        .limits("no Stribeck fall, no static friction above F_c; inner loops drift")
+        .parameters(&[
             F_C,
             stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
@@ -93,12 +92,7 @@ impl<T: Real> Named<T> for Dahl<T> {
                 &[1.0],
             ),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,

@@ -23,6 +23,7 @@ use crate::clock::Clock;
 use crate::effect::relaxation::relax;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
+use crate::page::Start;
 use crate::real::Real;
 
 /// The LuGre law.
@@ -68,27 +69,24 @@ impl<T: Real> LuGre<T> {
 }
 
 impl<T: Real> Named<T> for LuGre<T> {
-    const INFO: Info = Info {
-        name: "lugre",
-        summary: "bristles with a Stribeck curve: presliding, breakaway and frictional lag",
-        equation: "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
+    const INFO: Info = Info::new::<T, Self>("lugre")
+        .summary("bristles with a Stribeck curve: presliding, breakaway and frictional lag")
+        .equation(
+            "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
                    sigma_0 g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
-        source: "Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1",
-        limits: "drifts under small vibration; its lag in sliding is that of the bristle alone",
-        parameters: &[
+        )
+        .source("Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1")
+        .limits("drifts under small vibration; its lag in sliding is that of the bristle alone")
+        .parameters(&[
             F_C,
             F_S,
             V_S,
             stiffness("sigma_0_n_m", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
-            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]),
-            speed("v_d_m_s", "speed at which the damping has died", &[0.1]),
+            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]).start(Start::Damping),
+            speed("v_d_m_s", "speed at which the damping has died", &[0.1])
+                .start(Start::UsualSpeed),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,

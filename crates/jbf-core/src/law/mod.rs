@@ -137,8 +137,8 @@ registry::laws! {
 pub const fn fits(name: &str, values: &[f64]) -> bool {
     let mut i = 0;
     while i < CATALOGUE.len() {
-        if crate::effect::info::same(CATALOGUE[i].name, name) {
-            return crate::effect::info::values_fit(CATALOGUE[i].parameters, values);
+        if crate::page::same(CATALOGUE[i].name, name) {
+            return crate::page::values_fit(CATALOGUE[i].parameters, values);
         }
         i += 1;
     }

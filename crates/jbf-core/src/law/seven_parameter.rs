@@ -24,6 +24,7 @@ use crate::clock::Clock;
 use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
+use crate::page::{Parameter, Start};
 use crate::real::Real;
 
 /// The seven-parameter model.
@@ -95,15 +96,15 @@ impl<T: Real> SevenParameter<T> {
 }
 
 impl<T: Real> Named<T> for SevenParameter<T> {
-    const INFO: Info = Info {
-        name: "seven_parameter",
-        summary: "spring, Stribeck curve with a pure delay, static friction that rises at rest",
-        equation:
+    const INFO: Info = Info::new::<T, Self>("seven_parameter")
+        .summary("spring, Stribeck curve with a pure delay, static friction that rises at rest")
+        .equation(
             "stuck: F = k_t x; sliding: F = [F_c + F_v |v| + F_s(t_2)/(1 + (v(t-tau_L)/v_s)^2)] \
                    sgn(v); F_s(t_2) = F_sa + (F_s_inf - F_sa) t_2/(t_2 + gamma)",
-        source: "Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1",
-        limits: "switches between stuck and sliding; rising static friction needs tau_L > 0",
-        parameters: &[
+        )
+        .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
+        .limits("switches between stuck and sliding; rising static friction needs tau_L > 0")
+        .parameters(&[
             stiffness(
                 "k_t_n_m",
                 "stiffness of the stuck contact",
@@ -115,10 +116,13 @@ impl<T: Real> Named<T> for SevenParameter<T> {
                 "F_s_inf_n",
                 "Stribeck friction after a long rest; breakaway is at F_c + F_s",
                 &[3.0],
-            ),
+            )
+            .start(Start::BreakawayExcess),
             V_S,
-            time(
+            // It may be zero: no scale.
+            Parameter::new(
                 "tau_L_s",
+                "s",
                 "delay of friction behind speed",
                 [0.0, 1.0],
                 &[0.01, 0.1],
@@ -129,12 +133,7 @@ impl<T: Real> Named<T> for SevenParameter<T> {
                 [1e-4, 1e5],
                 &[1.0],
             ),
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,

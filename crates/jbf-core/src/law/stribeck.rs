@@ -22,14 +22,15 @@ pub struct Stribeck<T> {
 }
 
 impl<T: Real> Named<T> for Stribeck<T> {
-    const INFO: Info = Info {
-        name: "stribeck",
-        summary: "friction that falls from a static level, then grows with speed",
-        equation: "F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)",
-        source: "Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2",
-        limits: "a curve without memory: the same friction on the way up and on the way down; \
+    const INFO: Info = Info::new::<T, Self>("stribeck")
+        .summary("friction that falls from a static level, then grows with speed")
+        .equation("F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)")
+        .source("Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2")
+        .limits(
+            "a curve without memory: the same friction on the way up and on the way down; \
                  F_s may come out below F_c, as for way lubricants",
-        parameters: &[
+        )
+        .parameters(&[
             F_C,
             F_S,
             V_S,
@@ -40,12 +41,8 @@ impl<T: Real> Named<T> for Stribeck<T> {
                 &[2.0, 1.0],
             ),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: false,
-        has_dry_level: true,
-    };
+        ])
+        .with_a_dry_level();
 
     fn build(
         _bearing: Option<&Bearing>,

@@ -13,7 +13,7 @@ use crate::effect::{Effects, Resistance, Rig, Signal, States};
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
-use crate::run::Record;
+use crate::record::Record;
 
 /// A step shorter than this, s, is one of no length: its inverse leaves single precision.
 pub const SHORTEST_STEP_S: f64 = 1e-12;

@@ -4,8 +4,10 @@ use crate::chain::{Chain, State};
 use crate::effect::own::Own;
 use crate::effect::{Effects, Rig, Signal};
 use crate::law::Law;
-use crate::motion::Motion;
+use crate::motion::{crossing, Motion};
 use crate::real::Real;
+
+pub use crate::record::Record;
 
 /// However fast a film is, its steps are no shorter, s: a search that strays to parameters of no
 /// bearing must come back in finite time. Explicit steps of this length are stable on films of up
@@ -15,40 +17,6 @@ pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 /// Rate of a film, 1/s, up to which steps of [`SHORTEST_FILM_STEP_S`] follow it; see
 /// [`film_rate_1_s`].
 pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
-
-/// The imposed motion of a run, one value a sample; all slices of one length.
-#[derive(Clone, Copy, Debug)]
-pub struct Record<'a> {
-    /// Time, s, rising; where it starts does not matter.
-    pub time_s: &'a [f64],
-    /// Surface speed, m/s.
-    pub velocity_m_s: &'a [f64],
-    /// Its rate of change, m/s^2.
-    pub acceleration_m_s2: &'a [f64],
-    /// Shaft angle, unwrapped, rad.
-    pub angle_rad: &'a [f64],
-    /// Load on one bearing, N.
-    pub load_n: &'a [f64],
-}
-
-impl Record<'_> {
-    /// The motion at sample `i`; none past the shortest slice.
-    #[inline(always)]
-    pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
-        Some(self.sample(i)?.lift())
-    }
-
-    #[inline(always)]
-    fn sample(&self, i: usize) -> Option<Motion<f64>> {
-        Some(Motion {
-            time_s: *self.time_s.get(i)? - *self.time_s.first()?,
-            velocity_m_s: *self.velocity_m_s.get(i)?,
-            acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
-            angle_rad: *self.angle_rad.get(i)?,
-            load_n: *self.load_n.get(i)?,
-        })
-    }
-}
 
 /// Run `chain` along `record` with inner steps of at most `max_step_s` (shorter where the law
 /// asks for it, down to [`SHORTEST_FILM_STEP_S`]; landing on every reversal), and hand each
@@ -74,7 +42,7 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
         // To the reversal first, where there is one; from there no sign changes.
-        let zero = crossing(&from, &sample, radius_m);
+        let zero = reversal(&from, &sample, radius_m);
         let to = zero.unwrap_or(sample);
         between(chain, &mut state, &from, &to, max_step_s);
         if zero.is_none() {
@@ -145,12 +113,9 @@ pub fn read_force<T: Real>(
 /// The instant between two samples at which the speed is zero, if it changes sign there:
 /// friction jumps at it, so a step must land on it.
 #[inline(always)]
-fn crossing(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
-    let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-    if v0 * v1 >= 0.0 {
-        return None;
-    }
-    let mut zero = from.towards(to, v0 / (v0 - v1), radius_m);
+fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
+    let share = crossing(from.velocity_m_s, to.velocity_m_s)?;
+    let mut zero = from.towards(to, share, radius_m);
     zero.velocity_m_s = 0.0;
     Some(zero)
 }

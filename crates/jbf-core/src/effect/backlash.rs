@@ -14,7 +14,7 @@
 
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
-use crate::motion::{JournalMotion, Motion};
+use crate::motion::{crossing, JournalMotion, Motion};
 use crate::real::Real;
 
 /// A gap between the drive's flanks.
@@ -126,9 +126,8 @@ impl<T: Real> Drive<T> for Backlash<T> {
         let (v0, v1) = (state.speed_m_s, to.velocity_m_s);
         state.speed_m_s = v1;
         let half_s = T::of(0.5) * dt_s;
-        let mut driven = if v0.value() * v1.value() < 0.0 {
-            // The speed crosses zero on a straight line: out, then back.
-            let share = v0 / (v0 - v1);
+        let mut driven = if let Some(share) = crossing(v0, v1) {
+            // Out, then back.
             state.advance(v0 * share * half_s, half_m);
             state.advance(v1 * (T::ONE - share) * half_s, half_m)
         } else {

@@ -12,8 +12,8 @@ pub mod info;
 mod need;
 pub mod own;
 mod registry;
-pub mod relaxation;
 
+pub use crate::law::Scales;
 pub use crate::page::Parameter;
 pub use info::{Info, Stage};
 pub use need::Need;
@@ -103,15 +103,6 @@ pub trait Drive<T: Real>: Effect<T> {
         let _ = (state, motion, rig);
         None
     }
-}
-
-/// How a law's own parameters stand under a load, against those under the rig's load.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales<T> {
-    /// Factor on the transition speed U_tr.
-    pub transition_speed: T,
-    /// Factor on the asperity stiffness K0.
-    pub stiffness: T,
 }
 
 /// Changes the law's own parameters with the load.

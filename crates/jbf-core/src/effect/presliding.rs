@@ -8,31 +8,18 @@
 //! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance, so a step
 //! is solved exactly in the distance slid and no stiffness is too large.
 
-use super::relaxation::relax;
 use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::law::bristle::bent;
 use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
+use crate::path::legs;
 use crate::real::Real;
 
 /// Elastic deflection of the contact before it slides.
 #[derive(Clone, Copy, Debug)]
 pub struct Presliding<T> {
     stiffness_1_m: T,
-}
-
-impl<T: Real> Presliding<T> {
-    /// Slide `distance_m` in one direction, f going between two magnitudes.
-    #[inline(always)]
-    fn slide(&self, c: T, direction: T, magnitude: [T; 2], distance_m: T) -> T {
-        if distance_m.value() <= 0.0 {
-            return c;
-        }
-        let floor = T::of(1e-9);
-        let mean = ((magnitude[0] + magnitude[1]) * T::of(0.5)).max(floor);
-        let target = [magnitude[0] * direction, magnitude[1] * direction];
-        relax(c, target, self.stiffness_1_m * distance_m / mean)
-    }
 }
 
 impl<T: Real> Effect<T> for Presliding<T> {
@@ -88,19 +75,9 @@ impl<T: Real> Bristle<T> for Presliding<T> {
         magnitude: [T; 2],
         dt_s: T,
     ) -> T {
-        let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-        let half = T::of(0.5) * dt_s;
-        if v0.value() * v1.value() < 0.0 {
-            // The speed crosses zero on a straight line: slide out, then back.
-            let share = v0 / (v0 - v1);
-            let middle = magnitude[0] + (magnitude[1] - magnitude[0]) * share;
-            let out = v0.abs() * share * half;
-            let back = v1.abs() * (T::ONE - share) * half;
-            let c = self.slide(*state, v0.sign(), [magnitude[0], middle], out);
-            *state = self.slide(c, v1.sign(), [middle, magnitude[1]], back);
-        } else {
-            let sum = v0 + v1;
-            *state = self.slide(*state, sum.sign(), magnitude, sum.abs() * half);
+        let turning = |share| magnitude[0] + (magnitude[1] - magnitude[0]) * share;
+        for leg in legs(from, to, magnitude, turning, dt_s).iter().flatten() {
+            *state = bent(*state, leg, self.stiffness_1_m);
         }
         *state
     }

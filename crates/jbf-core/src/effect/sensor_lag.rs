@@ -2,11 +2,11 @@
 //!
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
-use super::relaxation::relax;
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
+use crate::relaxation::relax;
 
 /// First-order low pass of the load cell.
 #[derive(Clone, Copy, Debug)]

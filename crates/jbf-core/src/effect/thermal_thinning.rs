@@ -5,11 +5,11 @@
 //! eps_tr stay. Only the product beta q can be seen in a friction record, so the state is
 //! `beta T` and the product is the parameter.
 
-use super::relaxation::relax;
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
+use crate::relaxation::relax;
 
 /// Viscosity that falls as friction warms the oil.
 #[derive(Clone, Copy, Debug)]

@@ -11,13 +11,14 @@
 //! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
 //! ```
 
-use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::bristle::LEAST_LEVEL;
 use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
 use super::{Info, Law, Named, Sliding, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
+use crate::path::{legs, Leg};
 use crate::real::Real;
 
 /// A bristle that bends before it slides, by way alone.
@@ -37,7 +38,7 @@ impl<T: Real> Dahl<T> {
             return force_n;
         }
         let way = leg.direction;
-        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
+        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL));
         let ratio = self.stiffness_n_m * leg.distance_m / mean;
         // A way so short that its ratio rounds to zero.
         if ratio <= T::ZERO {
@@ -150,7 +151,7 @@ impl<T: Real> Law<T> for Dahl<T> {
             *state = level[1] * to.velocity_m_s.sign();
             return *state;
         }
-        let turning = || (level[0] + level[1]) * T::of(0.5);
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
         for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
             *state = self.slide(*state, leg);
         }

@@ -15,15 +15,15 @@
 //! at the rate `1/g`: it is solved exactly in the way, with the level on a straight line, so any
 //! step is stable and short ones are exact to second order.
 
-use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::bristle::{bent, LEAST_LEVEL};
 use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
 use super::{Info, Law, Named, Sliding, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::effect::relaxation::relax;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::page::Start;
+use crate::path::legs;
 use crate::real::Real;
 
 /// The LuGre law.
@@ -48,22 +48,11 @@ impl<T: Real> LuGre<T> {
         self.coulomb_n * (T::ONE - still) + self.static_n * still
     }
 
-    /// The bristle's force at the end of a leg.
-    #[inline(always)]
-    fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
-        if leg.distance_m.value() <= 0.0 {
-            return force_n;
-        }
-        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
-        let target = leg.level.map(|level| level * leg.direction);
-        relax(force_n, target, self.stiffness_n_m * leg.distance_m / mean)
-    }
-
     /// `sigma_1(v) z'`, N, with the bristle at `force_n`.
     #[inline(always)]
     fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
         let share = velocity_m_s / self.damping_speed_m_s;
-        let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL_N));
+        let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL));
         self.damping_n_s_m * (-share * share).exp() * rate
     }
 }
@@ -150,12 +139,12 @@ impl<T: Real> Law<T> for LuGre<T> {
         } else {
             // At the turn the law is at its static level, times what contact effects made of
             // the levels at the ends.
-            let turning = || {
+            let turning = |_| {
                 let own = self.level(from.velocity_m_s) + self.level(v);
                 self.level(T::ZERO) * (level[0] + level[1]) / own
             };
             for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
-                *state = self.slide(*state, leg);
+                *state = bent(*state, leg, self.stiffness_n_m);
             }
         }
         *state + self.damping(*state, v, level[1])

@@ -7,18 +7,19 @@
 //! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], and name it in
 //! `laws!` below.
 
-mod bristle;
+pub(crate) mod bristle;
 pub mod info;
 mod newtons;
 mod registry;
+mod scales;
 mod steady;
 
 pub use info::{Info, Named, SteadyCurve, Visitor};
+pub use scales::Scales;
 pub use steady::Steady;
 
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::effect::Scales;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::real::Real;

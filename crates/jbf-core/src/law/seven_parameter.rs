@@ -16,7 +16,6 @@
 //!
 //! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
 
-use super::bristle::{legs, Leg};
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
 use super::{Info, Law, Named, Sliding, SteadyCurve};
 use crate::bearing::Bearing;
@@ -25,6 +24,7 @@ use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::motion::JournalMotion;
 use crate::page::{Parameter, Start};
+use crate::path::{legs, Leg};
 use crate::real::Real;
 
 /// The seven-parameter model.
@@ -220,7 +220,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
             state.force_n = level[1] * state.way;
             return state.force_n;
         }
-        let turning = || (level[0] + level[1]) * T::of(0.5);
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
         for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
             self.slide(state, leg);
         }

@@ -30,8 +30,8 @@ pub use state::{Loaded, State};
 
 use super::{Law, Sliding};
 use crate::clock::Clock;
-use crate::effect::Scales;
 use crate::film::PI_LESS_8_OVER_PI;
+use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;

@@ -37,7 +37,7 @@ pub use state::State;
 
 use super::journal::{Journal, Loaded, START_PHI_RAD};
 use super::{Law, Sliding};
-use crate::effect::Scales;
+use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;

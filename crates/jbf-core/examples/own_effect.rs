@@ -9,7 +9,7 @@ use jbf_core::effect::own::Beside;
 use jbf_core::effect::{Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::motion::JournalMotion;
-use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError, Real};
+use jbf_core::{Bearing, Chain, Clock, Friction, Motion, ParameterError, Real};
 
 /// `F_w (1 + sin th)/2` against the motion.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +37,12 @@ impl<T: Real> Effect<T> for Wiper<T> {
 }
 
 impl<T: Real> OtherFriction<T> for Wiper<T> {
-    fn level_n(&self) -> T {
-        T::ZERO
-    }
-
-    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
         let share = (T::ONE + journal.angle_rad.sin()) * T::of(0.5);
-        self.force_n * share * journal.direction
+        Friction {
+            jump: self.force_n * share,
+            smooth: T::ZERO,
+        }
     }
 }
 

@@ -31,7 +31,7 @@ fn main() -> Result<(), ParameterError> {
             law.advance_with(&Rk4, &mut state, at, 1.0, dt_s);
             let f = law
                 .friction(&state, speed(0.0))
-                .coefficient(speed(0.0).signum());
+                .along(speed(0.0).signum());
             worst = worst.max((f - exact).abs());
         }
         println!(

@@ -10,6 +10,7 @@
 
 use crate::effect::own::{Nothing, Own};
 use crate::effect::{Effects, Resistance, Rig, Signal, States};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
@@ -68,38 +69,30 @@ impl<T: Real, S, O: Own<T>> State<T, S, O> {
     }
 }
 
-/// What resists the commanded side, N a bearing: `jump sgn(v) + smooth`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt<T> {
-    /// The part that takes the sign of the motion, unsigned; at rest it holds up to this.
-    pub jump_n: T,
-    /// The rest, signed.
-    pub smooth_n: T,
-}
-
 impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
-    /// What resists whoever moves the shaft: friction itself, or behind a soft drive its spring.
+    /// What resists whoever moves the shaft, N a bearing: friction itself, or behind a soft drive
+    /// its spring.
     #[inline]
-    pub fn felt(&self, state: &State<T, L::State, O>) -> Felt<T> {
+    pub fn felt(&self, state: &State<T, L::State, O>) -> Friction<T> {
         if let Some(smooth_n) = self
             .effects
             .transmitted_n(&state.effects, &state.motion, &self.rig)
         {
-            return Felt {
-                jump_n: T::ZERO,
-                smooth_n,
+            return Friction {
+                jump: T::ZERO,
+                smooth: smooth_n,
             };
         }
         let direction = state.journal.direction;
         // In the gap of a drive nothing of the journal is felt.
         let loose = self.effects.has_drive() && state.motion.velocity_m_s != T::ZERO;
-        Felt {
-            jump_n: if loose {
+        Friction {
+            jump: if loose {
                 state.jump_n * direction.abs()
             } else {
                 state.jump_n
             },
-            smooth_n: state.force_n - state.jump_n * direction,
+            smooth: state.force_n - state.jump_n * direction,
         }
     }
 
@@ -235,9 +228,9 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         );
         // What bends a bristle, and what acts beside it.
         let (magnitude, beside) = if L::BENDS_WHOLE {
-            (sliding.level + sliding.viscous.abs(), T::ZERO)
+            (sliding.jump + sliding.smooth.abs(), T::ZERO)
         } else {
-            (sliding.level, sliding.viscous)
+            (sliding.jump, sliding.smooth)
         };
         let before = if dt_s > T::ZERO {
             state.magnitude
@@ -252,26 +245,26 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
                 .bristle(&mut state.effects, &state.journal, &journal, levels, dt_s)
         };
         let bent = bent.map(|bristle| bristle + beside);
-        let coefficient = bent.unwrap_or_else(|| sliding.coefficient(journal.direction));
-        let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
+        let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
+        let beside_n = self.effects.other(&state.effects, &journal);
         // A bristle turns the contact's jump into a slope.
         let contact_n = if bent.is_some() {
             T::ZERO
         } else {
-            sliding.level * load_n
+            sliding.jump * load_n
         };
-        state.jump_n = contact_n + level_n;
-        state.force_n = coefficient * load_n + level_n * journal.direction + smooth_n;
+        state.jump_n = contact_n + beside_n.jump;
+        state.force_n = coefficient * load_n + beside_n.jump * journal.direction + beside_n.smooth;
         state.magnitude = magnitude;
         let speed = journal.velocity_m_s;
         if self.effects.has_drive() {
             let slope = if speed == T::ZERO {
                 T::ZERO
             } else {
-                (sliding.viscous * load_n / speed).max(T::ZERO)
+                (sliding.smooth * load_n / speed).max(T::ZERO)
             };
             let resistance = Resistance {
-                level_n: sliding.level * load_n + level_n,
+                level_n: sliding.jump * load_n + beside_n.jump,
                 slope_n_s_m: slope,
             };
             // A run begins with a resistance that has not changed.

@@ -17,6 +17,7 @@
 
 use crate::chain::{self, Chain};
 use crate::error::{check, positive, ParameterError};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -91,12 +92,6 @@ struct Before<T: Real, S> {
     /// Speed at the end if there were no friction, rad/s.
     free: T,
     load_n: T,
-}
-
-/// Friction at the end of a trial, V.
-struct Felt<T> {
-    jump_v: T,
-    smooth_v: T,
 }
 
 impl<T: Real, L: Law<T>> Plant<T, L> {
@@ -188,13 +183,13 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     #[inline]
     fn leave_rest(&self, state: &mut State<T, L::State>, before: &Before<T, L::State>) {
         let still = self.attempt(state, before, T::ZERO);
-        let push = before.free - self.gain * still.smooth_v;
-        let hold = self.gain * still.jump_v;
+        let push = before.free - self.gain * still.smooth;
+        let hold = self.gain * still.jump;
         let side = push.sign();
         if push.abs() <= hold {
             // In the gap of a drive nothing holds: it moves as if there were no friction.
             if self.chain.effects.has_drive() && side != T::ZERO {
-                if self.attempt(state, before, push).jump_v == T::ZERO {
+                if self.attempt(state, before, push).jump == T::ZERO {
                     return;
                 }
                 self.attempt(state, before, T::ZERO);
@@ -220,10 +215,8 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         side: T,
     ) {
         let direction = |v: T| if side == T::ZERO { v.sign() } else { side };
-        let missed = |v: T, felt: &Felt<T>| {
-            let friction_v = felt.jump_v * direction(v) + felt.smooth_v;
-            v - before.free + self.gain * friction_v
-        };
+        let missed =
+            |v: T, felt_v: &Friction<T>| v - before.free + self.gain * felt_v.along(direction(v));
         let mut here = guess;
         let mut miss = missed(here, &self.attempt(state, before, here));
         let mut slope = T::ONE;
@@ -243,14 +236,15 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         }
     }
 
-    /// Take the chain from where it was before the step to one that ends with a speed.
+    /// Take the chain from where it was before the step to one that ends with a speed; gives the
+    /// friction there, V.
     #[inline]
     fn attempt(
         &self,
         state: &mut State<T, L::State>,
         before: &Before<T, L::State>,
         speed_rad_s: T,
-    ) -> Felt<T> {
+    ) -> Friction<T> {
         let radius_m = self.chain.rig.radius_m;
         let h = self.step_s;
         let way_rad = (before.speed_rad_s + speed_rad_s) * (h * T::of(0.5));
@@ -264,12 +258,9 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         };
         state.chain = before.chain;
         self.chain.step(&mut state.chain, &to, h);
-        let felt = self.chain.felt(&state.chain);
+        let felt_n = self.chain.felt(&state.chain);
         state.speed_rad_s = speed_rad_s;
         state.angle_rad = angle_rad;
-        Felt {
-            jump_v: felt.jump_n * self.volts_per_n,
-            smooth_v: felt.smooth_n * self.volts_per_n,
-        }
+        felt_n.times(self.volts_per_n)
     }
 }

@@ -2,18 +2,10 @@
 //! friction in volts, in the part that takes the sign of the motion and the rest.
 
 use crate::chain::{self, Chain};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
-
-/// Friction in volts: `level sgn(v) + smooth`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction<T> {
-    /// Unsigned; at rest friction holds up to this.
-    pub level_v: T,
-    /// Signed.
-    pub smooth_v: T,
-}
 
 /// A friction model in a loop.
 pub trait Carried<T: Real> {
@@ -26,7 +18,7 @@ pub trait Carried<T: Real> {
     /// Move on by `dt_s` to a speed (rad/s) and an angle (rad).
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
 
-    /// Friction at the speed that the model was last moved to.
+    /// Friction at the speed that the model was last moved to, V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
 }
 
@@ -75,10 +67,7 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
     fn friction(&self, state: &Self::State) -> Friction<T> {
         let sliding = self.law.friction(&state.law, state.velocity_m_s);
         let volts = self.volts_per_n * self.law.pressed_n(self.load_n);
-        Friction {
-            level_v: sliding.level * volts,
-            smooth_v: sliding.viscous * volts,
-        }
+        sliding.times(volts)
     }
 }
 
@@ -116,10 +105,6 @@ impl<T: Real, L: Law<T>> Carried<T> for Whole<T, L> {
 
     #[inline]
     fn friction(&self, state: &Self::State) -> Friction<T> {
-        let felt = self.chain.felt(state);
-        Friction {
-            level_v: felt.jump_n * self.volts_per_n,
-            smooth_v: felt.smooth_n * self.volts_per_n,
-        }
+        self.chain.felt(state).times(self.volts_per_n)
     }
 }

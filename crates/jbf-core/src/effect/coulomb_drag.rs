@@ -4,6 +4,7 @@
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
@@ -46,11 +47,10 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
 
 impl<T: Real> OtherFriction<T> for CoulombDrag<T> {
     #[inline(always)]
-    fn level_n(&self) -> T {
-        self.force_n
-    }
-    #[inline(always)]
-    fn smooth_n(&self, _state: &(), _journal: &JournalMotion<T>) -> T {
-        T::ZERO
+    fn friction_n(&self, _state: &(), _journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: self.force_n,
+            smooth: T::ZERO,
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -31,7 +31,7 @@ impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
 
 impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         // At rest the motion may go either way: the direction that holds the journal decides.
         let way = if journal.velocity_m_s == T::ZERO {
             journal.direction.sign()
@@ -39,8 +39,8 @@ impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
             journal.velocity_m_s.sign()
         };
         let factor = T::ONE + self.share * way;
-        sliding.level *= factor;
-        sliding.viscous *= factor;
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -82,13 +82,13 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
 
 impl<T: Real> Contact<T> for DwellStiction<T> {
     #[inline(always)]
-    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         if state.rest_s.value() <= 0.0 {
             return;
         }
         let grown = T::ONE - (-(state.rest_s * self.inverse_time_1_s).powf(self.exponent)).exp();
         let left = (-(state.slid_m * self.inverse_distance_1_m)).exp();
-        sliding.level += self.height * grown * left;
+        sliding.jump += self.height * grown * left;
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@
 
 use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -42,11 +43,10 @@ impl<T: Real> Effect<T> for InertiaLeak<T> {
 
 impl<T: Real> OtherFriction<T> for InertiaLeak<T> {
     #[inline(always)]
-    fn level_n(&self) -> T {
-        T::ZERO
-    }
-    #[inline(always)]
-    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
-        self.mass_kg * journal.acceleration_m_s2
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: T::ZERO,
+            smooth: self.mass_kg * journal.acceleration_m_s2,
+        }
     }
 }

@@ -20,7 +20,7 @@ pub use need::Need;
 use own::{Nothing, Own};
 
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::page::{same, values_fit};
 use crate::real::Real;
@@ -58,6 +58,9 @@ pub struct Rig<T> {
 }
 
 /// What holds the journal back, as the drive feels it: `level sgn(v) + slope v`, N a bearing.
+///
+/// A line over the speed, not [`Friction`] at one: a drive solves for the speed that the journal
+/// will have, and must know what friction is at another than now.
 #[derive(Clone, Copy, Debug)]
 pub struct Resistance<T> {
     /// Largest force that takes the sign of the motion, N.
@@ -130,7 +133,7 @@ pub trait Film<T: Real>: Effect<T> {
 /// Changes the friction between the surfaces.
 pub trait Contact<T: Real>: Effect<T> {
     /// Change the sliding friction.
-    fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Sliding<T>);
+    fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Friction<T>);
     /// Advance over `dt_s` before `apply`.
     fn step(
         &self,
@@ -159,10 +162,8 @@ pub trait Bristle<T: Real>: Effect<T> {
 
 /// Friction that is not the bearing's.
 pub trait OtherFriction<T: Real>: Effect<T> {
-    /// Force that takes the sign of the motion, N, unsigned.
-    fn level_n(&self) -> T;
-    /// Any other force, N, signed.
-    fn smooth_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
+    /// The friction, N.
+    fn friction_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T>;
 }
 
 /// The force during a step, as an instrument meets it.

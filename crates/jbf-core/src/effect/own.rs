@@ -9,7 +9,7 @@
 //! `cargo run --example own_effect` shows the whole of it.
 
 use super::{Contact, Instrument, OtherFriction, Rig, Signal};
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::fmt::Debug;
@@ -30,17 +30,17 @@ pub trait Own<T: Real>: Copy + Debug {
         state: &mut Self::State,
         from: &JournalMotion<T>,
         to: &JournalMotion<T>,
-        sliding: &mut Sliding<T>,
+        sliding: &mut Friction<T>,
         dt_s: T,
     ) {
         let _ = (state, from, to, sliding, dt_s);
     }
 
-    /// Other friction, N: what takes the motion's sign, and the rest.
+    /// Other friction, N.
     #[inline(always)]
-    fn other(&self, state: &Self::State, journal: &JournalMotion<T>) -> (T, T) {
+    fn other(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T> {
         let _ = (state, journal);
-        (T::ZERO, T::ZERO)
+        Friction::NONE
     }
 
     /// Instrument: the first reading, N.
@@ -94,7 +94,7 @@ where
         state: &mut E::State,
         from: &JournalMotion<T>,
         to: &JournalMotion<T>,
-        sliding: &mut Sliding<T>,
+        sliding: &mut Friction<T>,
         dt_s: T,
     ) {
         self.0.step(state, from, to, dt_s);
@@ -111,8 +111,8 @@ where
         self.0.start(motion, rig)
     }
     #[inline(always)]
-    fn other(&self, state: &E::State, journal: &JournalMotion<T>) -> (T, T) {
-        (self.0.level_n(), self.0.smooth_n(state, journal))
+    fn other(&self, state: &E::State, journal: &JournalMotion<T>) -> Friction<T> {
+        self.0.friction_n(state, journal)
     }
 }
 
@@ -145,19 +145,22 @@ impl<T: Real, A: Own<T>, B: Own<T>> Own<T> for (A, B) {
         state: &mut Self::State,
         from: &JournalMotion<T>,
         to: &JournalMotion<T>,
-        sliding: &mut Sliding<T>,
+        sliding: &mut Friction<T>,
         dt_s: T,
     ) {
         self.0.contact(&mut state.0, from, to, sliding, dt_s);
         self.1.contact(&mut state.1, from, to, sliding, dt_s);
     }
     #[inline(always)]
-    fn other(&self, state: &Self::State, journal: &JournalMotion<T>) -> (T, T) {
+    fn other(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T> {
         let (a, b) = (
             self.0.other(&state.0, journal),
             self.1.other(&state.1, journal),
         );
-        (a.0 + b.0, a.1 + b.1)
+        Friction {
+            jump: a.jump + b.jump,
+            smooth: a.smooth + b.smooth,
+        }
     }
     #[inline(always)]
     fn first(&self, state: &mut Self::State, force_n: T) -> T {

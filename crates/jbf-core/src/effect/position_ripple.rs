@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -56,13 +56,13 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
 
 impl<T: Real> Contact<T> for PositionRipple<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         // cos(theta - theta_0) with the offset's own cosine and sine taken once.
         let wave =
             journal.angle_rad.cos() * self.cos_offset + journal.angle_rad.sin() * self.sin_offset;
         let factor = T::ONE + self.depth * wave;
-        sliding.level *= factor;
-        sliding.viscous *= factor;
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
     }
 
     #[inline(always)]

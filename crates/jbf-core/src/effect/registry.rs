@@ -122,7 +122,7 @@ macro_rules! signal_chain {
                 states: &mut States<T, O>,
                 from: &JournalMotion<T>,
                 to: &JournalMotion<T>,
-                sliding: &mut Sliding<T>,
+                sliding: &mut Friction<T>,
                 dt_s: T,
             ) {
                 $(if let (Some(e), Some(s)) = (&self.$contact, &mut states.$contact) {
@@ -152,19 +152,20 @@ macro_rules! signal_chain {
                 None
             }
 
-            /// Forces beside the bearing's: the level that takes the motion's sign, and the rest.
+            /// Friction beside the bearing's, N.
             #[inline(always)]
             pub(crate) fn other(
                 &self,
                 states: &States<T, O>,
                 journal: &JournalMotion<T>,
-            ) -> (T, T) {
-                let (mut level_n, mut smooth_n) = self.own.other(&states.own, journal);
+            ) -> Friction<T> {
+                let mut all_n = self.own.other(&states.own, journal);
                 $(if let (Some(e), Some(s)) = (&self.$other, &states.$other) {
-                    level_n += e.level_n();
-                    smooth_n += e.smooth_n(s, journal);
+                    let one_n = e.friction_n(s, journal);
+                    all_n.jump += one_n.jump;
+                    all_n.smooth += one_n.smooth;
                 })*
-                (level_n, smooth_n)
+                all_n
             }
 
             /// The first reading of a run.

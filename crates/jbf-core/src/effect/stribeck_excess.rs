@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -58,9 +58,9 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
 
 impl<T: Real> Contact<T> for StribeckExcess<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
-        sliding.level += self.height * (-speed.powf(self.exponent)).exp();
+        sliding.jump += self.height * (-speed.powf(self.exponent)).exp();
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -57,9 +57,9 @@ impl<T: Real> Effect<T> for WearIn<T> {
 
 impl<T: Real> Contact<T> for WearIn<T> {
     #[inline(always)]
-    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let fresh = (-(*state * self.inverse_distance_1_m)).exp();
-        sliding.level *= T::ONE + self.excess * fresh;
+        sliding.jump *= T::ONE + self.excess * fresh;
     }
 
     #[inline(always)]

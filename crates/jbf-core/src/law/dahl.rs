@@ -13,10 +13,11 @@
 
 use super::bristle::LEAST_LEVEL;
 use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
@@ -124,10 +125,10 @@ impl<T: Real> Law<T> for Dahl<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
-        Sliding {
-            level: self.coulomb_n,
-            viscous: self.viscous_n_s_m * velocity_m_s,
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.coulomb_n,
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -162,8 +163,6 @@ impl<T: Real> Law<T> for Dahl<T> {
 impl SteadyCurve for Dahl<f64> {
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
-        Ok(self
-            .friction(&0.0, velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+        Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }
 }

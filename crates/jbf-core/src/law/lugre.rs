@@ -17,10 +17,11 @@
 
 use super::bristle::{bent, LEAST_LEVEL};
 use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::page::Start;
 use crate::path::legs;
@@ -109,10 +110,10 @@ impl<T: Real> Law<T> for LuGre<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
-        Sliding {
-            level: self.level(velocity_m_s),
-            viscous: self.viscous_n_s_m * velocity_m_s,
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.level(velocity_m_s),
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -154,8 +155,6 @@ impl<T: Real> Law<T> for LuGre<T> {
 impl SteadyCurve for LuGre<f64> {
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
-        Ok(self
-            .friction(&0.0, velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+        Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }
 }

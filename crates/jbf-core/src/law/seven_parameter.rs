@@ -17,11 +17,12 @@
 //! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
 
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::page::{Parameter, Start};
 use crate::path::{legs, Leg};
@@ -174,16 +175,16 @@ impl<T: Real> Law<T> for SevenParameter<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
         // A run has no past yet at its first sample: it went on as it begins.
         let late = if state.line.is_empty() {
             velocity_m_s
         } else {
             state.late_m_s
         };
-        Sliding {
-            level: self.coulomb_n + state.grown_n * self.share(late),
-            viscous: self.viscous_n_s_m * velocity_m_s,
+        Friction {
+            jump: self.coulomb_n + state.grown_n * self.share(late),
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 

@@ -5,8 +5,7 @@
 //! cargo run --example own_effect
 //! ```
 
-use jbf_core::effect::own::Beside;
-use jbf_core::effect::{Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
+use jbf_core::effect::{Beside, Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::motion::JournalMotion;
 use jbf_core::{Bearing, Chain, Clock, Friction, Motion, ParameterError, Real};

@@ -16,6 +16,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::chain::{self, Chain};
+use crate::effect::EffectSet;
 use crate::error::{check, positive, ParameterError};
 use crate::friction::Friction;
 use crate::law::Law;

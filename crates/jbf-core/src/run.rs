@@ -1,8 +1,7 @@
 //! A whole recorded run through a chain: the samples as slices, inner steps between them.
 
 use crate::chain::{Chain, State};
-use crate::effect::own::Own;
-use crate::effect::{Effects, Rig, Signal};
+use crate::effect::{EffectSet, Rig, Signal};
 use crate::law::Law;
 use crate::motion::{crossing, Motion};
 use crate::real::Real;
@@ -25,8 +24,8 @@ pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 /// The whole of it is inlined into its caller, so that a caller who compiles for a wider
 /// instruction set gets all of it there.
 #[inline(always)]
-pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
+pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
     mut sink: impl FnMut(usize, T),
@@ -56,15 +55,18 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
 /// Fastest rate, 1/s, at which the law's film answers to this record; zero of a law without one.
 /// Beyond [`FASTEST_FILM_1_S`] a prediction holds the film inside the bearing and does not follow
 /// it.
-pub fn film_rate_1_s<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
+pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
     record: &Record<'_>,
 ) -> f64 {
     1.0 / film_step_s(chain, record)
 }
 
 /// Longest step, s, that follows the film.
-fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(chain: &Chain<T, L, O>, record: &Record<'_>) -> f64 {
+fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    record: &Record<'_>,
+) -> f64 {
     let top = record
         .velocity_m_s
         .iter()
@@ -75,7 +77,7 @@ fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(chain: &Chain<T, L, O>, record: &R
 /// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines
 /// between the samples; each sample's reading (N) goes to `sink` with its index.
 pub fn read_force<T: Real>(
-    effects: &Effects<T>,
+    effects: &impl EffectSet<T>,
     time_s: &[f64],
     force_n: &[f64],
     mut sink: impl FnMut(usize, T),
@@ -89,7 +91,7 @@ pub fn read_force<T: Real>(
     let mut last: Option<(f64, f64)> = None;
     for (i, (&t, &force)) in time_s.iter().zip(force_n).enumerate() {
         let Some((before_s, before_n)) = last.replace((t, force)) else {
-            sink(i, effects.first_reading(&mut states, T::of(force)));
+            sink(i, effects.first(&mut states, T::of(force)));
             continue;
         };
         let dt = t - before_s;
@@ -104,7 +106,9 @@ pub fn read_force<T: Real>(
                 now_n: at(end),
             };
             let time = T::of(before_s + dt * end - time_s[0]);
-            reading = effects.reading(&mut states, signal, time, T::of(dt / steps));
+            reading = effects
+                .reading(&mut states, signal, time, T::of(dt / steps))
+                .now_n;
         }
         sink(i, reading);
     }
@@ -123,9 +127,9 @@ fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
 /// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
 /// plain numbers until a step takes it.
 #[inline(always)]
-fn between<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
-    state: &mut State<T, L::State, O>,
+fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    state: &mut State<T, L::State, E>,
     from: &Motion<f64>,
     to: &Motion<f64>,
     max_step_s: f64,

@@ -64,7 +64,4 @@ impl<T: Real> Contact<T> for PositionRipple<T> {
         sliding.jump *= factor;
         sliding.smooth *= factor;
     }
-
-    #[inline(always)]
-    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

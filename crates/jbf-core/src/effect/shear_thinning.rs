@@ -53,7 +53,4 @@ impl<T: Real> Lubricant<T> for ShearThinning<T> {
         let shear = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
         T::ONE / (T::ONE + shear.powf(self.exponent))
     }
-
-    #[inline(always)]
-    fn step(&self, _state: &mut (), _power_w: [T; 2], _dt_s: T) {}
 }

@@ -62,7 +62,4 @@ impl<T: Real> Contact<T> for StribeckExcess<T> {
         let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
         sliding.jump += self.height * (-speed.powf(self.exponent)).exp();
     }
-
-    #[inline(always)]
-    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

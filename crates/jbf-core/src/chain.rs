@@ -8,6 +8,7 @@
 //! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
 //! load on a soft drive) does so from the step before.
 
+use crate::bearing::Bearing;
 use crate::effect::{EffectSet, Effects, Resistance, Rig, Signal};
 use crate::friction::Friction;
 use crate::law::Law;
@@ -61,6 +62,14 @@ impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
     /// The commanded motion that the chain was last brought to.
     pub fn motion(&self) -> &Motion<T> {
         &self.motion
+    }
+}
+
+impl<T: Real, L, E> Chain<T, L, E> {
+    /// A law with effects round it, on a bearing's shaft or on a linear axis.
+    pub fn round(law: L, effects: E, bearing: Option<&Bearing>) -> Self {
+        let rig = Rig::on(bearing);
+        Self { law, effects, rig }
     }
 }
 

@@ -55,6 +55,7 @@ pub mod reference;
 pub mod relaxation;
 mod root;
 pub mod run;
+pub mod spec;
 pub mod stepper;
 pub mod transition;
 

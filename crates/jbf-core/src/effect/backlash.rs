@@ -12,7 +12,7 @@
 //! step long and has its middle where the flank closes: the reading is then continuous in the gap,
 //! and so has a slope for an optimiser.
 
-use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
+use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{crossing, JournalMotion, Motion};
 use crate::real::Real;
@@ -118,7 +118,6 @@ impl<T: Real> Drive<T> for Backlash<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        _resistance: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {

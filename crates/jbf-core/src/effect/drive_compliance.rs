@@ -23,6 +23,9 @@ use crate::real::Real;
 /// stiffer drive, which the midpoint rule carries as well, the ringing is not resolved.
 const MOST_INNER_STEPS: f64 = 24.0;
 
+/// A step before that was shorter than this, s, tells nothing of how resistance changes.
+const SHORTEST_STEP_S: f64 = 1e-12;
+
 /// A spring and a damper between encoder and journal.
 #[derive(Clone, Copy, Debug)]
 pub struct DriveCompliance<T> {
@@ -40,6 +43,23 @@ pub struct State<T> {
     speed_rad_s: T,
     encoder_rad: T,
     encoder_m_s: T,
+    /// What holds the journal now, and what did a step ago; how long that step was, s.
+    resistance: Resistance<T>,
+    before: Resistance<T>,
+    step_before_s: f64,
+}
+
+impl<T: Real> State<T> {
+    /// What holds the journal a `share` of a step from now, on a straight line through the last two.
+    #[inline(always)]
+    fn ahead(&self, share: f64) -> Resistance<T> {
+        let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);
+        let (before, now) = (&self.before, &self.resistance);
+        Resistance {
+            level_n: on(before.level_n, now.level_n),
+            slope_n_s_m: on(before.slope_n_s_m, now.slope_n_s_m),
+        }
+    }
 }
 
 impl<T: Real> Effect<T> for DriveCompliance<T> {
@@ -66,11 +86,18 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
     }
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> State<T> {
+        let free = Resistance {
+            level_n: T::ZERO,
+            slope_n_s_m: T::ZERO,
+        };
         State {
             angle_rad: motion.angle_rad,
             speed_rad_s: motion.velocity_m_s / rig.radius_m,
             encoder_rad: motion.angle_rad,
             encoder_m_s: motion.velocity_m_s,
+            resistance: free,
+            before: free,
+            step_before_s: SHORTEST_STEP_S,
         }
     }
 }
@@ -81,10 +108,12 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        [middle, end]: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {
+        // What holds the journal follows from how it moves: it is looked for ahead.
+        let share = (dt_s.value() / state.step_before_s).min(1.0);
+        let (middle, end) = (state.ahead(0.5 * share), state.ahead(share));
         let arm = rig.count * rig.radius_m;
         let inverse_radius = T::ONE / rig.radius_m;
         let hold = arm * middle.level_n;
@@ -154,6 +183,18 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             direction,
             time_s: to.time_s,
         }
+    }
+
+    #[inline(always)]
+    fn resist(&self, state: &mut State<T>, resistance: &Resistance<T>, dt_s: T) {
+        // A run begins with a resistance that has not changed.
+        state.before = if dt_s > T::ZERO {
+            state.resistance
+        } else {
+            *resistance
+        };
+        state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
+        state.resistance = *resistance;
     }
 
     #[inline]

@@ -51,6 +51,7 @@ pub use stage::{
     Signal,
 };
 
+use crate::bearing::Bearing;
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -86,4 +87,15 @@ pub struct Rig<T> {
     pub radius_m: T,
     /// Bearings on the shaft.
     pub count: T,
+}
+
+impl<T: Real> Rig<T> {
+    /// That of a shaft in this bearing. Without one the axis is a linear one: a rotary one of
+    /// radius 1 m.
+    pub fn on(bearing: Option<&Bearing>) -> Self {
+        Self {
+            radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
+            count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
+        }
+    }
 }

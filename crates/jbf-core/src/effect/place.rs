@@ -84,29 +84,11 @@ places! {
     InInstrument: Instrument at Stage::Instrument,
 }
 
-/// What a drive remembers, and what held the journal.
-#[derive(Clone, Copy, Debug)]
-pub struct Driven<T, S> {
-    own: S,
-    /// What holds the journal now, and what did a step ago; how long that step was, s.
-    resistance: Resistance<T>,
-    before: Resistance<T>,
-    step_before_s: f64,
-}
-
-/// A step before that was shorter than this, s, tells nothing of how resistance changes.
-const SHORTEST_STEP_S: f64 = 1e-12;
-
 impl<T: Real, E: Drive<T>> EffectSet<T> for InDrive<E> {
-    type State = Driven<T, E::State>;
+    type State = E::State;
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
-        Driven {
-            own: self.0.start(motion, rig),
-            resistance: Resistance::NONE,
-            before: Resistance::NONE,
-            step_before_s: SHORTEST_STEP_S,
-        }
+        self.0.start(motion, rig)
     }
     #[inline]
     fn longest_step_s(&self) -> f64 {
@@ -118,44 +100,23 @@ impl<T: Real, E: Drive<T>> EffectSet<T> for InDrive<E> {
     }
     #[inline(always)]
     fn drive(&self, s: &mut Self::State, journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
-        // What holds the journal follows from how it moves: it is looked for ahead.
-        let share = (dt_s.value() / s.step_before_s).min(1.0);
-        let ahead = |by: f64| s.resistance.ahead(&s.before, by);
-        let resistance = [ahead(0.5 * share), ahead(share)];
-        *journal = self.0.step(&mut s.own, journal, &resistance, rig, dt_s);
+        *journal = self.0.step(s, journal, rig, dt_s);
     }
     #[inline(always)]
     fn resist(&self, s: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
-        // A run begins with a resistance that has not changed.
-        s.before = if dt_s > T::ZERO {
-            s.resistance
-        } else {
-            *resistance
-        };
-        s.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
-        s.resistance = *resistance;
+        self.0.resist(s, resistance, dt_s);
     }
     #[inline]
     fn transmitted_n(&self, s: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
-        self.0.transmitted_n(&s.own, motion, rig)
+        self.0.transmitted_n(s, motion, rig)
     }
 }
 
-/// What the oil remembers, and the friction power at the end of the last step, W.
-#[derive(Clone, Copy, Debug)]
-pub struct Warmed<T, S> {
-    own: S,
-    power_w: T,
-}
-
 impl<T: Real, E: Lubricant<T>> EffectSet<T> for InLubricant<E> {
-    type State = Warmed<T, E::State>;
+    type State = E::State;
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
-        Warmed {
-            own: self.0.start(motion, rig),
-            power_w: T::ZERO,
-        }
+        self.0.start(motion, rig)
     }
     #[inline]
     fn longest_step_s(&self) -> f64 {
@@ -163,12 +124,11 @@ impl<T: Real, E: Lubricant<T>> EffectSet<T> for InLubricant<E> {
     }
     #[inline(always)]
     fn lubricant(&self, s: &Self::State, journal: &JournalMotion<T>, factor: &mut T) {
-        *factor *= self.0.factor(&s.own, journal);
+        *factor *= self.0.factor(s, journal);
     }
     #[inline(always)]
     fn warm(&self, s: &mut Self::State, power_w: T, dt_s: T) {
-        self.0.step(&mut s.own, [s.power_w, power_w], dt_s);
-        s.power_w = power_w;
+        self.0.step(s, power_w, dt_s);
     }
 }
 

@@ -19,36 +19,22 @@ pub struct Resistance<T> {
     pub slope_n_s_m: T,
 }
 
-impl<T: Real> Resistance<T> {
-    /// No resistance.
-    pub(crate) const NONE: Self = Self {
-        level_n: T::ZERO,
-        slope_n_s_m: T::ZERO,
-    };
-
-    /// On a straight line through `before` and this, `share` of a step further.
-    #[inline(always)]
-    pub(crate) fn ahead(&self, before: &Self, share: f64) -> Self {
-        let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);
-        Self {
-            level_n: on(before.level_n, self.level_n),
-            slope_n_s_m: on(before.slope_n_s_m, self.slope_n_s_m),
-        }
-    }
-}
-
 /// Between the encoder and the journal.
 pub trait Drive<T: Real>: Effect<T> {
     /// Advance over `dt_s`, the motion that drives going to `to`, and give the motion that is
-    /// passed on. `resistance` is that in the middle of the step and at its end.
+    /// passed on.
     fn step(
         &self,
         state: &mut Self::State,
         to: &JournalMotion<T>,
-        resistance: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
+    /// Take what holds the journal at the end of a step of `dt_s`, none at the start of a run.
+    #[inline(always)]
+    fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
+        let _ = (state, resistance, dt_s);
+    }
     /// The force that the commanded side feels where it is not the journal's friction, as a force
     /// on one bearing, N.
     #[inline(always)]
@@ -62,9 +48,9 @@ pub trait Drive<T: Real>: Effect<T> {
 pub trait Lubricant<T: Real>: Effect<T> {
     /// Factor on `Ub`.
     fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
-    /// Advance over `dt_s`, the friction power (W) going from the first to the second value.
+    /// Advance over `dt_s`, at the end of which the friction power is `power_w`, W.
     #[inline(always)]
-    fn step(&self, state: &mut Self::State, power_w: [T; 2], dt_s: T) {
+    fn step(&self, state: &mut Self::State, power_w: T, dt_s: T) {
         let _ = (state, power_w, dt_s);
     }
 }

@@ -18,6 +18,15 @@ pub struct ThermalThinning<T> {
     tau_s: T,
 }
 
+/// How warm the film is, and what warms it.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    /// `beta T`: the log of the viscosity that is lost.
+    thinned: T,
+    /// Friction power at the end of the last step, W.
+    power_w: T,
+}
+
 impl<T: Real> Effect<T> for ThermalThinning<T> {
     const INFO: Info = Info::new("thermal_thinning", Stage::Lubricant)
         .summary("friction warms the oil, and warm oil carries less")
@@ -43,7 +52,7 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
             .log(),
         ])
         .needs(&[Need::Film]);
-    type State = T;
+    type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
         Self::INFO.check(parameters)?;
@@ -53,24 +62,25 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
         })
     }
 
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
-        T::ZERO
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            thinned: T::ZERO,
+            power_w: T::ZERO,
+        }
     }
 }
 
 impl<T: Real> Lubricant<T> for ThermalThinning<T> {
     #[inline(always)]
-    fn factor(&self, state: &T, _journal: &JournalMotion<T>) -> T {
-        (-*state).exp()
+    fn factor(&self, state: &State<T>, _journal: &JournalMotion<T>) -> T {
+        (-state.thinned).exp()
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut T, power_w: [T; 2], dt_s: T) {
+    fn step(&self, state: &mut State<T>, power_w: T, dt_s: T) {
         let gain = self.rate_1_j * self.tau_s;
-        *state = relax(
-            *state,
-            [power_w[0] * gain, power_w[1] * gain],
-            dt_s / self.tau_s,
-        );
+        let heat = [state.power_w * gain, power_w * gain];
+        state.thinned = relax(state.thinned, heat, dt_s / self.tau_s);
+        state.power_w = power_w;
     }
 }

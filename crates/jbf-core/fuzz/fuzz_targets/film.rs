@@ -74,11 +74,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
             "{sliding:?}: {}",
             told()
         );
-        assert!(
-            sliding.along(T::ONE).is_finite(),
-            "{sliding:?}: {}",
-            told()
-        );
+        assert!(sliding.along(T::ONE).is_finite(), "{sliding:?}: {}", told());
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 //! friction in volts, in the part that takes the sign of the motion and the rest.
 
 use crate::chain::{self, Chain};
+use crate::effect::{EffectSet, Effects};
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
@@ -73,17 +74,17 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
 
 /// A whole chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
-pub struct Whole<T: Real, L> {
+pub struct Whole<T: Real, L, E = Effects<T>> {
     /// The chain.
-    pub chain: Chain<T, L>,
+    pub chain: Chain<T, L, E>,
     /// What one newton of friction on one bearing is in volts.
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
 }
 
-impl<T: Real, L: Law<T>> Carried<T> for Whole<T, L> {
-    type State = chain::State<T, L::State>;
+impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
+    type State = chain::State<T, L::State, E>;
 
     fn start(&self) -> Self::State {
         self.chain.start(&Motion::at_rest(self.load_n))

@@ -4,8 +4,16 @@
 //! Laws in newtons (all but those of a bearing) press with 1 N, so that their coefficient is
 //! a force.
 //!
-//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], and name it in
-//! `laws!` below.
+//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], name the file below,
+//! and name the law in `laws!`.
+
+pub mod coulomb;
+pub mod dahl;
+pub mod journal;
+pub mod journal_full;
+pub mod lugre;
+pub mod seven_parameter;
+pub mod stribeck;
 
 pub(crate) mod bristle;
 pub mod info;

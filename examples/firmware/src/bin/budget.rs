@@ -236,9 +236,7 @@ fn precision() -> Result<(), ParameterError> {
         single.advance(&mut s, speeds(&from32, &to32), 1.0, LOOP_STEP_S as f32);
         let u = to.velocity_m_s;
         let a = double.friction(&d, u).along(Real::sign(u));
-        let b = single
-            .friction(&s, u as f32)
-            .along(Real::sign(u as f32));
+        let b = single.friction(&s, u as f32).along(Real::sign(u as f32));
         worst = Real::max(worst, Real::abs(a - f64::from(b)));
         peak = Real::max(peak, Real::abs(a));
     }

@@ -1,6 +1,6 @@
 //! One effect in its place, as a set of one: how each stage of the signal chain asks an effect. The
-//! catalogue's effects stand in these places, and so may one's own: write a type with [`Effect`] and
-//! its stage's trait, from outside this crate, and put it there.
+//! catalogue's effects stand in these places, and so may one's own: write a type with
+//! [`Effect`](super::Effect) and its stage's trait, from outside this crate, and put it there.
 //!
 //! ```ignore
 //! let effects = Effects::NONE.with(Beside::<MyWiper<f64>>::new(&[0.5])?);

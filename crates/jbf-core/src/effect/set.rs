@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use jbf_core::effect::{coulomb_drag::CoulombDrag, sensor_lag::SensorLag};
-//! use jbf_core::effect::{Beside, InInstrument};
+//! use jbf_core::effect::{Beside, InInstrument, Place};
 //! let effects = (
 //!     Beside::<CoulombDrag<f64>>::new(&[0.8])?,
 //!     InInstrument::<SensorLag<f64>>::new(&[0.05])?,

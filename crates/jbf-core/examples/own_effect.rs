@@ -52,18 +52,12 @@ fn main() -> Result<(), ParameterError> {
         &Parameters::TABLE_4_2,
         Clock::Journal,
     )?;
-    let rig = Rig {
-        radius_m: Bearing::THESIS.radius_m,
-        count: 4.0,
-    };
     let mut effects = Effects::NONE;
     effects.set("sensor_lag", &[0.05])?;
-    let bare = Chain { law, effects, rig };
-    let wiped = Chain {
-        law,
-        effects: effects.with(Beside(Wiper::new(&[2.0])?)),
-        rig,
-    };
+    let bearing = Some(&Bearing::THESIS);
+    let bare = Chain::round(law, effects, bearing);
+    let wiper = Beside(Wiper::new(&[2.0])?);
+    let wiped = Chain::round(law, effects.with(wiper), bearing);
     let motion = |t: f64| Motion {
         time_s: t,
         velocity_m_s: 0.127 * t.sin(),

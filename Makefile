@@ -50,7 +50,7 @@ test-slow: $(BUILT)
 	cargo test --release -p jbf-core --test control_tracking -- --ignored
 	$(VENV)/bin/python -m pytest -n auto -m slow
 
-# rustfmt does not follow the macro that declares the effects, so it is given every file.
+# Fuzz targets and firmware are no part of the workspace: rustfmt is given every file.
 lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings

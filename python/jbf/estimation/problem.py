@@ -19,7 +19,13 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.starts import with_starts
-from jbf.models.catalogue import Parameter, find_parameter, in_chain_order, parameters_of
+from jbf.models.catalogue import (
+    Parameter,
+    find_law,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+)
 from jbf.models.chain import chain
 from jbf.models.vocabulary import Clock
 from jbf.records.arguments import by_name
@@ -47,7 +53,7 @@ class Problem:
         self.effects = in_chain_order(effects)
         self.chain = chain(campaign.rig, law, clock, self.effects)
         self.parameters: dict[str, Parameter] = with_starts(
-            parameters_of(law, self.effects), campaign
+            parameters_of(law, self.effects), campaign, not find_law(law).needs_bearing
         )
         self.names = list(self.parameters)
         self.fixed = dict(fixed or {})

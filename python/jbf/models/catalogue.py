@@ -44,6 +44,12 @@ class Parameter:
         True where a fit should walk in the logarithm.
     period
         The period of an angle, for parameters that wrap.
+    start
+        Of what in the data it is about the size, where the law is one in newtons: a fit then
+        starts there. "catalogue" where `starts` always hold.
+    bound
+        What in the data bounds it from above: "transition_speed" the fastest speed on record,
+        "catalogue" nothing.
     """
 
     name: str
@@ -55,6 +61,8 @@ class Parameter:
     starts: tuple[float, ...] = ()
     log: bool = False
     period: float | None = None
+    start: str = "catalogue"
+    bound: str = "catalogue"
 
 
 class Pages(dict[str, Page]):
@@ -75,7 +83,8 @@ class Effect:
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
     instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
-    peaks, None for most. `columns` are those that an effect of one's own asks for.
+    peaks, None for most. `rust_place` and `rust_type` are the names of its types in the core, empty
+    of an effect of one's own; `columns` are those that such an effect asks for.
     """
 
     name: str
@@ -91,6 +100,8 @@ class Effect:
     longest_step_s: float
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()
+    rust_place: str = ""
+    rust_type: str = ""
 
     def __repr__(self) -> str:
         return f"Effect({self.name}, {self.stage}: {self.summary})"
@@ -215,8 +226,8 @@ def check_applies(law: str, names: Iterable[str]) -> None:
 
 def transition_speed(law: str, values: Sequence[float]) -> float | None:
     """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
-    names = [p.name for p in find_law(law).parameters]
-    return float(values[names.index("U_tr_m_s")]) if "U_tr_m_s" in names else None
+    pages = zip(find_law(law).parameters, values, strict=False)
+    return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:

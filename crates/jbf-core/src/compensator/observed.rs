@@ -18,9 +18,10 @@
 //! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
 //! chapter 7.
 
-use super::carried::{Carried, Friction};
+use super::carried::Carried;
 use super::{Answer, Compensator, Sense};
 use crate::error::{check, positive, ParameterError};
+use crate::friction::Friction;
 use crate::real::Real;
 
 /// Time constants of the observer that a wrong friction may need to be found out. A shaft that
@@ -209,7 +210,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     /// The level that the model and the observer agree on, V.
     #[inline]
     fn level_v(&self, state: &State<T, M::State>) -> T {
-        (state.friction.level_v + state.learned.level_v).max(T::ZERO)
+        (state.friction.jump + state.learned.level_v).max(T::ZERO)
     }
 }
 
@@ -275,7 +276,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         blind: bool,
     ) -> T {
         let v = state.velocity_rad_s;
-        let net_v = applied_v - state.friction.smooth_v - state.learned.rest_v;
+        let net_v = applied_v - state.friction.smooth - state.learned.rest_v;
         let push = self.keep * v + self.gain * net_v;
         let hold = self.gain * self.level_v(state);
         // The proximal step of the plant: friction takes what it can hold, and no more.
@@ -333,7 +334,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         } else {
             level_v * asked * self.breakaway
         };
-        let friction_v = signed_v + state.friction.smooth_v + state.learned.rest_v;
+        let friction_v = signed_v + state.friction.smooth + state.learned.rest_v;
         let forward_v = self.speed_v_s_rad * sense.wanted_rad_s
             + self.acceleration_v_s2_rad * sense.wanted_rad_s2
             - self.stiffer_v_rad * sense.error

@@ -112,9 +112,9 @@ fn text<const N: usize>(from: &str) -> [u8; N] {
 impl From<ParameterError> for CError {
     fn from(error: ParameterError) -> Self {
         Self {
-            name: text(error.name),
-            rule: text(error.rule),
-            value: error.value,
+            name: text(error.name()),
+            rule: text(error.rule()),
+            value: error.value().unwrap_or(f64::NAN),
         }
     }
 }

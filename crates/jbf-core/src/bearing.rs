@@ -1,6 +1,6 @@
 //! Geometry, lubricant and the dimensionless groups (3.1) to (3.4).
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::real::Real;
 
 /// A journal bearing and its lubricant: what a rig knows before any fit.
@@ -36,7 +36,7 @@ impl Bearing {
     /// # Errors
     /// Names the first size that is not positive and finite, or a clearance that is not
     /// smaller than the radius.
-    pub fn checked(self) -> Result<Self, ParameterError> {
+    pub fn checked(self) -> Result<Self, Error> {
         positive("radius_m", self.radius_m)?;
         positive("length_m", self.length_m)?;
         positive("clearance_m", self.clearance_m)?;

@@ -1,6 +1,6 @@
 //! An incremental encoder: from a counter that rolls over to an angle that does not.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
 /// Counts to radians, roll-over and jumps.
@@ -45,16 +45,11 @@ impl<T: Real> Encoder<T> {
         bits: u32,
         top_speed_rad_s: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("counts_per_rad", counts_per_rad)?;
         positive("top_speed_rad_s", top_speed_rad_s)?;
         positive("dt_s", dt_s)?;
-        check(
-            (8..=32).contains(&bits),
-            "bits",
-            f64::from(bits),
-            "must lie between 8 and 32",
-        )?;
+        within("bits", f64::from(bits), [8.0, 32.0])?;
         let most = counts_per_rad * top_speed_rad_s * dt_s + 2.0;
         let half = libm::exp2(f64::from(bits) - 1.0);
         check(

@@ -11,7 +11,7 @@
 //! let law = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
 //! let steady = law.steady(0.02)?;
 //! assert!((steady.coefficient - 0.05782937675212433).abs() < 1e-9);
-//! # Ok::<(), jbf_core::ParameterError>(())
+//! # Ok::<(), jbf_core::Error>(())
 //! ```
 #![no_std]
 // One call, in `root.rs`, on Cortex-M with a floating-point unit; forbidden everywhere else.
@@ -57,6 +57,6 @@ pub use bearing::Bearing;
 pub use chain::Chain;
 pub use clock::Clock;
 pub use dual::Dual;
-pub use error::ParameterError;
+pub use error::{Error, ParameterError};
 pub use motion::Motion;
 pub use real::Real;

@@ -16,7 +16,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::chain::{self, Chain};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{not_negative, positive, Error};
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -104,17 +104,12 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     ///
     /// # Errors
     /// Names the number that is not positive and finite.
-    pub fn new(chain: Chain<T, L>, drive: Drive, step_s: f64) -> Result<Self, ParameterError> {
+    pub fn new(chain: Chain<T, L>, drive: Drive, step_s: f64) -> Result<Self, Error> {
         positive("damping_1_s", drive.damping_1_s)?;
         positive("input_rad_s2_v", drive.input_rad_s2_v)?;
         positive("limit_v", drive.limit_v)?;
         positive("step_s", step_s)?;
-        check(
-            drive.volts_per_n >= 0.0 && drive.volts_per_n.is_finite(),
-            "volts_per_n",
-            drive.volts_per_n,
-            "must be zero or positive, and finite",
-        )?;
+        not_negative("volts_per_n", drive.volts_per_n)?;
         let fall = -libm::expm1(-drive.damping_1_s * step_s);
         Ok(Self {
             chain,

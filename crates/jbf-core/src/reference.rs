@@ -9,7 +9,7 @@
 //!
 //! Source: Cohn (1998), Appendices D and E.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, finite, positive, Error};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// Shape of a periodic reference.
@@ -68,14 +68,9 @@ impl Reference {
     ///
     /// # Errors
     /// The frequency must be positive, `high` above `low`, both finite.
-    pub fn new(
-        wave: Wave,
-        low: f64,
-        high: f64,
-        frequency_rad_s: f64,
-    ) -> Result<Self, ParameterError> {
+    pub fn new(wave: Wave, low: f64, high: f64, frequency_rad_s: f64) -> Result<Self, Error> {
         positive("frequency_rad_s", frequency_rad_s)?;
-        check(low.is_finite(), "low", low, "must be finite")?;
+        finite("low", low)?;
         check(
             high.is_finite() && high > low,
             "high",

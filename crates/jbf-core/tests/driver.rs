@@ -317,7 +317,7 @@ fn bad_numbers_are_named() {
     let mut out = [0.0; 2];
     let mut name = |times: &[f64], tolerance: f64| {
         let refused = trajectory(&film, &motion, times, tolerance, &mut out);
-        refused.expect_err("refused").name
+        refused.expect_err("refused").name()
     };
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(name(&[0.0, 1.0], tolerance), "tolerance");
@@ -326,26 +326,26 @@ fn bad_numbers_are_named() {
         assert_eq!(name(&times, 1e-6), "times_s");
     }
     assert_eq!(
-        Sine::new(-0.1, 1.0).expect_err("refused").name,
+        Sine::new(-0.1, 1.0).expect_err("refused").name(),
         "amplitude_m_s"
     );
     assert_eq!(
-        Sine::new(0.1, 0.0).expect_err("refused").name,
+        Sine::new(0.1, 0.0).expect_err("refused").name(),
         "omega_rad_s"
     );
     let nan = f64::NAN;
     assert_eq!(
-        Sine::with_bias(0.1, 1.0, nan).expect_err("refused").name,
+        Sine::with_bias(0.1, 1.0, nan).expect_err("refused").name(),
         "bias_m_s"
     );
     assert_eq!(
-        Sampled::new(&[0.0], &[0.0]).expect_err("refused").name,
+        Sampled::new(&[0.0], &[0.0]).expect_err("refused").name(),
         "samples"
     );
     assert_eq!(
         Sampled::new(&[0.0, 0.0], &[0.0, 1.0])
             .expect_err("refused")
-            .name,
+            .name(),
         "time_s"
     );
     let start = Start {
@@ -353,7 +353,7 @@ fn bad_numbers_are_named() {
         ..Start::default()
     };
     let refused = follow(&film, &motion, &start, &[1.0], 1e-6, |_, _| {});
-    assert_eq!(refused.expect_err("refused").name, "eps");
+    assert_eq!(refused.expect_err("refused").name(), "eps");
     assert!(trajectory(&film, &motion, &[], 1e-6, &mut out).is_ok());
     assert!(trajectory(&film, &motion, &[0.0, 0.0], 1e9, &mut out).is_ok());
 }

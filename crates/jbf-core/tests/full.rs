@@ -175,6 +175,6 @@ fn the_mass_is_checked() {
         };
         let error = JournalFull::new(&bearing, LOAD_N, &table_4_2::<f64>(), Clock::Journal)
             .expect_err(name);
-        assert_eq!(error.name, name);
+        assert_eq!(error.name(), name);
     }
 }

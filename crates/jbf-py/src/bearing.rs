@@ -1,6 +1,6 @@
 //! A bearing as Python hands it over: a dictionary of its sizes.
 
-use jbf_core::{Bearing, ParameterError};
+use jbf_core::{Bearing, Error};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -33,6 +33,6 @@ impl Sizes {
 }
 
 /// The core's error as Python's.
-pub fn refused(error: ParameterError) -> PyErr {
+pub fn refused(error: Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

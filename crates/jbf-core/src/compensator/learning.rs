@@ -13,7 +13,7 @@
 //! Source: Cohn (1998), sections 6.4 and 6.5, Figure 6.1, Appendices D and E.
 
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, not_negative, positive, Error};
 use crate::law::journal::{Journal, State as Film};
 use crate::law::Law;
 use crate::real::Real;
@@ -83,18 +83,13 @@ impl<T: Real> Learning<T> {
         volts: f64,
         radius_m: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("gamma", gamma)?;
         positive("volts", volts)?;
         positive("radius_m", radius_m)?;
         positive("dt_s", dt_s)?;
         for (name, g) in [("gain.k0", gain.k0), ("gain.gamma", gain.gamma)] {
-            check(
-                g >= 0.0 && g.is_finite(),
-                name,
-                g,
-                "must be zero or positive, and finite",
-            )?;
+            not_negative(name, g)?;
         }
         let k0 = law.k0.value();
         let [least, most] = bounds;

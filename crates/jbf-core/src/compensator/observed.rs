@@ -20,7 +20,7 @@
 
 use super::carried::{Carried, Friction};
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, finite, not_negative, positive, Error};
 use crate::real::Real;
 
 /// Time constants of the observer that a wrong friction may need to be found out. A shaft that
@@ -112,7 +112,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     ///
     /// # Errors
     /// Names the setting that breaks its rule.
-    pub fn new(model: M, s: &Settings) -> Result<Self, ParameterError> {
+    pub fn new(model: M, s: &Settings) -> Result<Self, Error> {
         positive("damping_1_s", s.damping_1_s)?;
         positive("input_rad_s2_v", s.input_rad_s2_v)?;
         positive("bandwidth_rad_s", s.bandwidth_rad_s)?;
@@ -125,19 +125,14 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
             ("approach_1_s", s.approach_1_s),
             ("breakaway", s.breakaway),
         ] {
-            check(
-                value >= 0.0 && value.is_finite(),
-                name,
-                value,
-                "must be zero or positive, and finite",
-            )?;
+            not_negative(name, value)?;
         }
         for (name, value) in [
             ("stiffer_v_rad", s.stiffer_v_rad),
             ("stiffer_v_s_rad", s.stiffer_v_s_rad),
             ("law_forward_v_s_rad", s.law_forward_v_s_rad),
         ] {
-            check(value.is_finite(), name, value, "must be finite")?;
+            finite(name, value)?;
         }
         check(
             s.learning_1_s * s.dt_s < 1.0,

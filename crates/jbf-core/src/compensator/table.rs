@@ -4,7 +4,7 @@
 //! 2.4.1. Values between the entries lie on straight lines.
 
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, finite, positive, Error};
 use crate::real::Real;
 
 /// What the table is read by.
@@ -31,27 +31,12 @@ impl<T: Real, const N: usize> Table<T, N> {
     ///
     /// # Errors
     /// At least two levels, all finite; the width positive.
-    pub fn new(
-        level_v: [T; N],
-        axis: Axis,
-        width: f64,
-        viscous_v_s: f64,
-    ) -> Result<Self, ParameterError> {
+    pub fn new(level_v: [T; N], axis: Axis, width: f64, viscous_v_s: f64) -> Result<Self, Error> {
         positive("width", width)?;
         check(N >= 2, "entries", N as f64, "must be at least 2")?;
-        check(
-            viscous_v_s.is_finite(),
-            "viscous_v_s",
-            viscous_v_s,
-            "must be finite",
-        )?;
+        finite("viscous_v_s", viscous_v_s)?;
         for level in &level_v {
-            check(
-                level.is_finite(),
-                "level_v",
-                level.value(),
-                "must be finite",
-            )?;
+            finite("level_v", level.value())?;
         }
         Ok(Self {
             level_v,

@@ -17,7 +17,7 @@
 //! use jbf_core::reference::Target;
 //! use jbf_core::{Bearing, Clock};
 //!
-//! # fn main() -> Result<(), jbf_core::ParameterError> {
+//! # fn main() -> Result<(), jbf_core::Error> {
 //! const DT_S: f64 = 0.002;
 //! let film = Parameters { f_m: 0.26_f32, u_tr_m_s: 0.06, k0: 7.5e5, gamma: 33.0 };
 //! let model = Bare {
@@ -68,7 +68,7 @@ pub use status::Status;
 
 use crate::compensator::{Answer, Compensator, Sense};
 use crate::encoder::{self, Encoder};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::observer::VelocityObserver;
 use crate::real::Real;
 use crate::reference::Target;
@@ -152,7 +152,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         compensator: C,
         limits: Limits,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("output_v", limits.output_v)?;
         positive("moving_v", limits.moving_v)?;
         positive("dt_s", dt_s)?;

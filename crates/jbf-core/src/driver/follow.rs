@@ -3,7 +3,7 @@
 use super::goal::{inverse_root, Goal};
 use super::kinks::{eps_along, polynomial, root};
 use super::{checked, Cost, Excitation, Film, Sample, Start};
-use crate::error::ParameterError;
+use crate::error::Error;
 use crate::law::journal::Loaded;
 use crate::real::Real;
 use crate::stepper::rodas5p::{self, Input};
@@ -22,7 +22,7 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     times_s: &[f64],
     tolerance: f64,
     sink: impl FnMut(usize, &Sample<T>),
-) -> Result<Cost, ParameterError> {
+) -> Result<Cost, Error> {
     checked(start, times_s, tolerance)?;
     let journal = film.journal();
     let loaded = journal.nominal();

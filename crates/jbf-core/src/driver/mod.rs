@@ -14,7 +14,7 @@
 //! trajectory(&law, &motion, &times_s, 1e-9, &mut f)?;
 //! assert!((f[0] - 0.04785707000713).abs() < 1e-9);
 //! assert!((f[2] - 0.09170630580666).abs() < 1e-9);
-//! # Ok::<(), jbf_core::ParameterError>(())
+//! # Ok::<(), jbf_core::Error>(())
 //! ```
 
 mod excitation;
@@ -29,7 +29,7 @@ pub use film::Film;
 pub use follow::follow;
 pub use sampled::Sampled;
 
-use crate::error::{check, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;
 use crate::real::Real;
 
@@ -102,7 +102,7 @@ pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     times_s: &[f64],
     tolerance: f64,
     out: &mut [T],
-) -> Result<Cost, ParameterError> {
+) -> Result<Cost, Error> {
     follow(
         film,
         excitation,
@@ -117,17 +117,8 @@ pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     )
 }
 
-fn checked<T: Real>(
-    start: &Start<T>,
-    times_s: &[f64],
-    tolerance: f64,
-) -> Result<(), ParameterError> {
-    check(
-        tolerance > 0.0 && tolerance.is_finite(),
-        "tolerance",
-        tolerance,
-        "must be positive and finite",
-    )?;
+fn checked<T: Real>(start: &Start<T>, times_s: &[f64], tolerance: f64) -> Result<(), Error> {
+    positive("tolerance", tolerance)?;
     check(
         start.time_s.is_finite(),
         "time_s",

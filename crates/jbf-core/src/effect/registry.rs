@@ -247,8 +247,7 @@ macro_rules! signal_chain {
             /// parameters stand at an infinite null.
             ///
             /// # Errors
-            /// Names the parameter that breaks its rule; an unknown name is reported as
-            /// the parameter `effect`.
+            /// Names the parameter that breaks its rule, or says that there is no such effect.
             pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
                 match name {
                     $(stringify!($module) => {
@@ -261,11 +260,7 @@ macro_rules! signal_chain {
                         };
                         Ok(())
                     })*
-                    _ => Err(ParameterError {
-                        name: "effect",
-                        value: f64::NAN,
-                        rule: "is not in the catalogue",
-                    }),
+                    _ => Err(ParameterError::UnknownEffect),
                 }
             }
 

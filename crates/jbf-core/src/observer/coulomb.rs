@@ -14,7 +14,7 @@
 //! so that no error builds up on the way through zero. With p = 1 this never acts. At v = 0
 //! exactly the sign is zero and the observer holds.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::real::Real;
 
 /// Gains of the Coulomb observer.
@@ -57,7 +57,7 @@ impl<T: Real> CoulombObserver<T> {
         input_rad_s2_v: f64,
         limit_v: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("gain", gain)?;
         positive("exponent", exponent)?;
         positive("input_rad_s2_v", input_rad_s2_v)?;

@@ -138,7 +138,7 @@ fn the_steady_curve_refuses_rest() {
                 &mut out,
             )
             .expect_err("refused");
-            assert_eq!(error.name, "velocity_m_s");
+            assert_eq!(error.name(), "velocity_m_s");
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::bearing::{refused, Sizes};
 use jbf_core::effect::{Effects, Rig, CATALOGUE};
 use jbf_core::law::{with_law, Named, Visitor};
-use jbf_core::{Chain, Clock, ParameterError, Real};
+use jbf_core::{Chain, Clock, Error, Real};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -70,6 +70,6 @@ impl ModelSpec {
             clock,
             Wrap { effects, rig, then },
         )
-        .map_err(|e: ParameterError| refused(e))
+        .map_err(|e: Error| refused(e))
     }
 }

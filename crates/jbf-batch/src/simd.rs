@@ -26,10 +26,7 @@ impl Simd {
         ];
         #[cfg(not(all(feature = "wide", target_arch = "x86_64")))]
         let wide: [Option<Self>; 0] = [];
-        wide.into_iter()
-            .flatten()
-            .chain([Self::Baseline])
-            .collect()
+        wide.into_iter().flatten().chain([Self::Baseline]).collect()
     }
 
     /// The best that this machine has.

@@ -3,6 +3,11 @@
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
+/// Counts in a radian of the thesis's encoder.
+pub const THESIS_COUNTS_PER_RAD: f64 = 2387.3;
+/// Bits of the thesis's counter.
+pub const THESIS_BITS: u32 = 16;
+
 /// Counts to radians, roll-over and jumps.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder<T> {
@@ -24,6 +29,7 @@ pub struct State {
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sample<T> {
     /// Angle since the sample before, rad; zero in a jump.
     pub moved_rad: T,

@@ -31,9 +31,11 @@ extern crate std;
 mod readme {}
 
 pub mod bearing;
+mod builder;
 pub mod chain;
 pub mod clock;
 pub mod compensator;
+pub mod control_law;
 pub mod controller;
 mod delay_line;
 pub mod driver;

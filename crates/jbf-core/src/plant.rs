@@ -15,6 +15,7 @@
 // `!(x > 0)` is true of a NaN too, and means to be.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+use crate::builder::with_fields;
 use crate::chain::{self, Chain};
 use crate::error::{not_negative, positive, Error};
 use crate::law::Law;
@@ -34,6 +35,7 @@ const LONGEST_STANDING_S: f64 = 0.02;
 
 /// Motor and shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Drive {
     /// Damping `a`, 1/s.
     pub damping_1_s: f64,
@@ -47,13 +49,42 @@ pub struct Drive {
 
 impl Drive {
     /// The thesis's motor and shaft. Its friction scale is not in the thesis: `volts_per_n` is
-    /// near what fits the "none" column of its Tables 6.1 and 6.2 (0.0283).
+    /// what fits the "none" columns of its Tables 6.1 and 6.2, as `jbf control tables` does.
     pub const THESIS: Self = Self {
         damping_1_s: 135.0,
         input_rad_s2_v: 457.0,
-        volts_per_n: 0.03,
+        volts_per_n: 0.02826,
         limit_v: 10.0,
     };
+
+    /// A drive by its a (1/s) and b (rad/s^2/V); friction scale and largest input are the
+    /// thesis's until they are told.
+    #[must_use]
+    pub const fn new(damping_1_s: f64, input_rad_s2_v: f64) -> Self {
+        Self {
+            damping_1_s,
+            input_rad_s2_v,
+            ..Self::THESIS
+        }
+    }
+
+    with_fields! {
+        with_volts_per_n => volts_per_n: f64,
+        with_limit_v => limit_v: f64,
+    }
+
+    /// True where a and b are those of another.
+    #[must_use]
+    pub fn turns_like(&self, other: &Self) -> bool {
+        self.damping_1_s == other.damping_1_s && self.input_rad_s2_v == other.input_rad_s2_v
+    }
+
+    /// Twice the speed that the largest input holds without friction, rad/s: what turns faster is
+    /// not the shaft, it is the encoder that jumps.
+    #[must_use]
+    pub fn top_speed_rad_s(&self) -> f64 {
+        2.0 * self.limit_v * self.input_rad_s2_v / self.damping_1_s
+    }
 }
 
 /// The plant, ready to step.

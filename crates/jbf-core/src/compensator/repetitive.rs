@@ -150,12 +150,6 @@ impl<T: Real, const N: usize> Compensator<T> for Repetitive<T, N> {
             (Some(low), Some(high)) => low + (high - low) * share,
             _ => T::ZERO,
         };
-        Answer {
-            sum_v,
-            friction_v: sum_v,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [sum_v, T::ZERO],
-        }
+        Answer::of(sum_v, [sum_v, T::ZERO])
     }
 }

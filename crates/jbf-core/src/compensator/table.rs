@@ -84,12 +84,6 @@ impl<T: Real, const N: usize> Compensator<T> for Table<T, N> {
             Axis::Angle => self.at(sense.angle_rad),
         };
         let friction_v = level_v * v.sign() + self.viscous_v_s * v;
-        Answer {
-            sum_v: friction_v,
-            friction_v,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [level_v, T::ZERO],
-        }
+        Answer::of(friction_v, [level_v, T::ZERO])
     }
 }

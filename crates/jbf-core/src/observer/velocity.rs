@@ -13,6 +13,9 @@
 use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 
+/// The thesis's gain `k`, 1/s.
+pub const THESIS_1_S: f64 = 15.0;
+
 /// Gains of the velocity observer. Its state is the speed, rad/s.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObserver<T> {

@@ -21,8 +21,8 @@ from jbf import (
 )
 from jbf.control import TASKS, THESIS_BENCH, Learning, Observed, run, thesis_model
 from jbf.control.bench import with_noise
+from jbf.control.constants import FALLBACK, FROZEN, JUMPED
 from jbf.control.robustness import cases
-from jbf.control.run import FALLBACK, FROZEN, JUMPED
 from jbf.control.schemes import gains
 
 QUIET = replace(THESIS_BENCH, input_noise_v=0.0)

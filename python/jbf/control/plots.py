@@ -9,8 +9,9 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from jbf.control.constants import FALLBACK
 from jbf.control.robustness import Outcome
-from jbf.control.run import FALLBACK, Result
+from jbf.control.run import Result
 from jbf.control.thesis_tables import COLUMNS, Tables
 from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
 

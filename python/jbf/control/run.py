@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from jbf import _core
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
-from jbf.control.schemes import Scheme, core_loop, scheme
+from jbf.control.loop import core_loop
+from jbf.control.schemes import Scheme, scheme
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
@@ -18,9 +19,6 @@ from jbf.models.chain import core_load_n
 from jbf.models.model import Model
 
 Array = npt.NDArray[np.float64]
-
-SATURATED, FROZEN, JUMPED, NOT_FINITE, FALLBACK = 1, 2, 4, 8, 16
-"""Flags of `Result.status`."""
 
 _NEVER = 2**62
 

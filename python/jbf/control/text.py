@@ -5,8 +5,9 @@ from __future__ import annotations
 import statistics
 from collections.abc import Sequence
 
+from jbf.control.constants import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED
 from jbf.control.robustness import HARM, HELP, Outcome
-from jbf.control.run import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED, Result
+from jbf.control.run import Result
 from jbf.control.task import RECORDED
 from jbf.control.thesis_tables import COLUMNS, Cell, Tables
 from jbf.models.model import Model

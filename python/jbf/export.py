@@ -111,13 +111,12 @@ def rust(model: Model, source: str = "a model") -> str:
         "",
     ]
     if n.bearing is not None:
-        fields = [f"    {name}: {_rust(n.bearing[name])}," for name in BEARING_FIELDS]  # type: ignore[literal-required]
+        fields = [f"    .with_{name}({_rust(n.bearing[name])})" for name in BEARING_FIELDS]  # type: ignore[literal-required]
         out += [
             "/// Bearing and lubricant.",
-            "pub const BEARING: Bearing = Bearing {",
+            "pub const BEARING: Bearing = Bearing::new()",
             *fields,
-            f"    count: {n.bearing['count']},",
-            "};",
+            f"    .with_count({n.bearing['count']});",
         ]
     out += ["/// Load on one bearing, N.", f"pub const LOAD_N: f64 = {_rust(n.load_n)};"]
     for i, (name, short, values) in enumerate(n.groups):

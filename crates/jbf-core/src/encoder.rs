@@ -103,6 +103,7 @@ impl<T: Real> Encoder<T> {
 
     /// Angle since the first sample, rad, without the loss of a sum of increments.
     #[inline]
+    #[must_use]
     pub fn angle_rad(&self, state: &State) -> T {
         let high = (state.total >> 20) as i32;
         let low = (state.total & 0xf_ffff) as i32;

@@ -154,6 +154,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// At rest at angle zero under a load (N), having stood for `stood_s`: the film has been
     /// squeezed out, the contact has aged.
+    #[must_use]
     pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State> {
         let mut motion = Motion::at_rest(load_n);
         let mut chain = self.chain.start(&motion);

@@ -14,6 +14,7 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// Shape of a periodic reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Wave {
     /// Sine.
     Sine,
@@ -97,6 +98,7 @@ impl Reference {
     }
 
     /// Value and rate at a time, s.
+    #[must_use]
     pub fn at(&self, time_s: f64) -> Target<f64> {
         let (span, period) = (self.high - self.low, self.period_s());
         let phase = time_s - libm::floor(time_s / period) * period;

@@ -47,57 +47,15 @@ fn original_form_names_what_is_wrong() {
 fn sizes_of_the_bearing_are_named() {
     let good = Bearing::THESIS;
     for (bearing, name) in [
-        (
-            Bearing {
-                radius_m: 0.0,
-                ..good
-            },
-            "radius_m",
-        ),
-        (
-            Bearing {
-                length_m: -1.0,
-                ..good
-            },
-            "length_m",
-        ),
-        (
-            Bearing {
-                clearance_m: f64::NAN,
-                ..good
-            },
-            "clearance_m",
-        ),
-        (
-            Bearing {
-                clearance_m: 0.02,
-                ..good
-            },
-            "clearance_m",
-        ),
-        (
-            Bearing {
-                mass_kg: f64::INFINITY,
-                ..good
-            },
-            "mass_kg",
-        ),
-        (
-            Bearing {
-                viscosity_pa_s: 0.0,
-                ..good
-            },
-            "viscosity_pa_s",
-        ),
-        (Bearing { count: 0, ..good }, "count"),
+        (good.with_radius_m(0.0), "radius_m"),
+        (good.with_length_m(-1.0), "length_m"),
+        (good.with_clearance_m(f64::NAN), "clearance_m"),
+        (good.with_clearance_m(0.02), "clearance_m"),
+        (good.with_mass_kg(f64::INFINITY), "mass_kg"),
+        (good.with_viscosity_pa_s(0.0), "viscosity_pa_s"),
+        (good.with_count(0), "count"),
         // Finite each, but together beyond the numbers.
-        (
-            Bearing {
-                length_m: 1e-200,
-                ..good
-            },
-            "load_number",
-        ),
+        (good.with_length_m(1e-200), "load_number"),
     ] {
         let error = build(bearing, 104.0, Parameters::TABLE_4_2).expect_err(name);
         assert_eq!(error.name(), name, "{error}");

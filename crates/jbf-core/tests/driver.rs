@@ -274,10 +274,7 @@ fn far_laws_are_followed() {
             k0: random.log_uniform(1e3, 1e9),
             gamma: random.log_uniform(0.1, 1e3),
         };
-        let bearing = Bearing {
-            mass_kg: random.log_uniform(0.01, 100.0),
-            ..Bearing::THESIS
-        };
+        let bearing = Bearing::THESIS.with_mass_kg(random.log_uniform(0.01, 100.0));
         let load_n = random.log_uniform(5.0, 2000.0);
         let clock = if random.chance(0.5) {
             Clock::Journal
@@ -348,10 +345,7 @@ fn bad_numbers_are_named() {
             .name(),
         "time_s"
     );
-    let start = Start {
-        eps: Some(1.5),
-        ..Start::default()
-    };
+    let start = Start::default().with_eps(Some(1.5));
     let refused = follow(&film, &motion, &start, &[1.0], 1e-6, |_, _| {});
     assert_eq!(refused.expect_err("refused").name(), "eps");
     assert!(trajectory(&film, &motion, &[], 1e-6, &mut out).is_ok());

@@ -19,16 +19,15 @@ pub struct Sizes {
 impl Sizes {
     /// The bearing, checked.
     pub fn checked(self) -> PyResult<Bearing> {
-        Bearing {
-            radius_m: self.radius_m,
-            length_m: self.length_m,
-            clearance_m: self.clearance_m,
-            mass_kg: self.mass_kg,
-            count: self.count,
-            viscosity_pa_s: self.viscosity_pa_s,
-        }
-        .checked()
-        .map_err(refused)
+        Bearing::new()
+            .with_radius_m(self.radius_m)
+            .with_length_m(self.length_m)
+            .with_clearance_m(self.clearance_m)
+            .with_mass_kg(self.mass_kg)
+            .with_count(self.count)
+            .with_viscosity_pa_s(self.viscosity_pa_s)
+            .checked()
+            .map_err(refused)
     }
 }
 

@@ -128,6 +128,7 @@ pub trait Compensator<T: Real> {
     }
 
     /// One step.
+    #[must_use]
     fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
 }
 

@@ -9,6 +9,7 @@ use crate::real::Real;
 
 /// What the table is read by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Axis {
     /// |speed|, from zero; beyond the last entry that entry holds.
     Speed,
@@ -48,6 +49,7 @@ impl<T: Real, const N: usize> Table<T, N> {
 
     /// The level at a speed (rad/s) or an angle (rad), V.
     #[inline]
+    #[must_use]
     pub fn at(&self, place: T) -> T {
         let last = T::from_i32(N as i32 - 1);
         let raw = place * self.inverse_width;

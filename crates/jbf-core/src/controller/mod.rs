@@ -126,6 +126,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
 
     /// The loop at rest, knowing only what its compensator was told to start from; the next
     /// sample is where angles count from. This is also the reset.
+    #[must_use]
     pub fn start(&self) -> State<T, C::State> {
         State {
             compensator: self.compensator.start(),
@@ -143,6 +144,7 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
 
     /// One step: the counter's value and where to be, in; the voltage, with its parts, out.
     #[inline]
+    #[must_use = "the voltage of this step is in the parts"]
     pub fn step(
         &self,
         state: &mut State<T, C::State>,

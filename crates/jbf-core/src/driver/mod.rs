@@ -36,6 +36,7 @@ use crate::real::Real;
 /// Where a trajectory starts; by default at time zero, as [`Law::start`](crate::law::Law::start)
 /// has it: asperities just in touch, attitude angle 0.15 rad, no velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Start<T> {
     /// Time, s.
     pub time_s: f64,
@@ -55,8 +56,32 @@ impl<T: Real> Default for Start<T> {
     }
 }
 
+impl<T: Real> Start<T> {
+    /// The same at another time, s.
+    #[must_use]
+    pub fn with_time_s(mut self, time_s: f64) -> Self {
+        self.time_s = time_s;
+        self
+    }
+
+    /// The same at another eccentricity ratio; none for eps_tr.
+    #[must_use]
+    pub fn with_eps(mut self, eps: Option<T>) -> Self {
+        self.eps = eps;
+        self
+    }
+
+    /// The same at another attitude angle, rad.
+    #[must_use]
+    pub fn with_phi_rad(mut self, phi_rad: T) -> Self {
+        self.phi_rad = phi_rad;
+        self
+    }
+}
+
 /// The film at one sample.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Sample<T> {
     /// `eps cos(phi)` and `eps sin(phi)`.
     pub xy: [T; 2],
@@ -76,6 +101,7 @@ impl Sample<f64> {
 
 /// What a trajectory cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Steps taken.
     pub steps: u32,

@@ -67,6 +67,7 @@ impl<T: Real> VelocityObserver<T> {
 
     /// The estimate once the shaft has moved by `moved_rad`, rad/s. Call before the control law.
     #[inline]
+    #[must_use]
     pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
         velocity_rad_s + self.gain_1_s * moved_rad
     }
@@ -74,6 +75,7 @@ impl<T: Real> VelocityObserver<T> {
     /// What becomes of the estimate until the next sample, under the input `u_v` (V; of no
     /// account to the plain form). Call after the control law.
     #[inline]
+    #[must_use]
     pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {
         self.keep * velocity_rad_s + self.input * u_v
     }

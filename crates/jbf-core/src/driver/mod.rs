@@ -23,6 +23,8 @@ mod follow;
 mod goal;
 mod kinks;
 mod sampled;
+mod stretch;
+mod trial;
 
 pub use excitation::{Excitation, Function, Sine};
 pub use film::Film;

@@ -19,7 +19,7 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz firmware clean
+.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz mutants firmware clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -29,6 +29,7 @@ help:
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
+	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
 	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
@@ -57,7 +58,7 @@ test-slow: $(BUILT)
 	cargo test --release -p jbf-core --test control_tracking -- --ignored
 	$(VENV)/bin/python -m pytest -n auto -m slow
 
-# rustfmt does not follow the macro that declares the effects, so it is given every file.
+# Fuzz targets and firmware are no part of the workspace: rustfmt is given every file.
 lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
@@ -89,6 +90,10 @@ bits:
 # After a change that is meant to change numbers.
 bits-table:
 	cargo run --quiet --release -p jbf-trace --example table -- --write crates/jbf-trace/src/table.rs
+
+# Deliberate faults in a copy of the tree, one at a time; ONLY=words keeps those whose name holds them.
+mutants: $(BUILT)
+	$(VENV)/bin/python benches/mutants $(if $(ONLY),--only '$(ONLY)')
 
 # Needs nightly Rust and cargo-fuzz.
 fuzz:

@@ -46,7 +46,7 @@ def ablation() -> None:
 
 def starts() -> None:
     """Peaks at the start, with the rig sticking harder after it has stood."""
-    values = {n: p.value for n, p in thesis_model().parameters.items()}  # type: ignore[union-attr]
+    values = {n: p.value for n, p in thesis_model().parameters.items()}
     for a in (0.0, 0.05, 0.1):
         model = Model(
             THESIS_RIG,

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 from jbf import control
-from jbf.control.plots import plot_robustness, plot_runs, plot_tables
 from jbf.control.robustness import robustness
 from jbf.control.schemes import LISTED_VOLTS, Coulomb, Learning
 from jbf.control.thesis_tables import tables
+from jbf.reporting.control_plots import plot_robustness, plot_tables
+from jbf.reporting.control_run_plot import plot_runs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullFormatter, ScalarFormatter

@@ -78,12 +78,12 @@ impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
             law.advance(&mut state, speeds(from, to), T::ONE, dt_s);
             let sliding = law.friction(&state, to.velocity_m_s);
             if !L::HAS_BRISTLE {
-                return sliding.coefficient(to.velocity_m_s.sign());
+                return sliding.along(to.velocity_m_s.sign());
             }
-            let levels = [before, sliding.level];
-            before = sliding.level;
+            let levels = [before, sliding.jump];
+            before = sliding.jump;
             let (from, to) = (JournalMotion::from(from), JournalMotion::from(to));
-            law.bend(&mut state, &from, &to, levels, dt_s) + sliding.viscous
+            law.bend(&mut state, &from, &to, levels, dt_s) + sliding.smooth
         });
     }
 }
@@ -126,7 +126,7 @@ fn steppers<T: Real>(watch: &mut impl Watch, kind: &str) {
             along(watch, &format!("step/{}/{kind}", $name), |from: &Motion<T>, to| {
                 $law.$advance(&$stepper, &mut state, speeds(from, to), T::ONE, dt_s);
                 let u = to.velocity_m_s;
-                $law.friction(&state, u).coefficient(u.sign())
+                $law.friction(&state, u).along(u.sign())
             });
         })*};
     }

@@ -22,6 +22,8 @@ class ParameterPage(TypedDict):
     starts: list[float]
     log: bool
     period: float | None
+    start: str
+    bound: str
 
 class EffectPage(TypedDict):
     name: str
@@ -35,6 +37,8 @@ class EffectPage(TypedDict):
     moves_jumps: bool
     peaks: str | None
     longest_step_s: float
+    rust_place: str
+    rust_type: str
     parameters: list[ParameterPage]
 
 class LawPage(TypedDict):

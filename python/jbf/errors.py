@@ -119,10 +119,10 @@ def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     return by_lower[found[0]] if found else None
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
+def did_you_mean(word: object, known: Iterable[str]) -> str:
     """A mend for an unknown word: the nearest known one, else the list of them all."""
     names = list(known)
-    guess = closest(word, names)
+    guess = closest(word, names) if isinstance(word, str) else None
     if guess is not None:
         return f"did you mean {quoted(guess)}?"
     return f"known: {', '.join(names)}" if names else "remove it"

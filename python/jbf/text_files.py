@@ -29,6 +29,14 @@ def _os_error(path: Path, error: OSError, doing: str) -> InputError:
     )
 
 
+def path_of(value: object) -> Path:
+    """A path; an InputError where something else stands for one."""
+    if not isinstance(value, str | os.PathLike):
+        shown = "None" if value is None else type(value).__name__
+        raise InputError(problem=f"{shown} is not a path", mend="name a file or a folder")
+    return Path(value)
+
+
 def read_text(path: str | os.PathLike[str]) -> str:
     """The text of a UTF-8 file, without a byte order mark.
 
@@ -37,7 +45,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     InputError
         The file is missing, a folder, unreadable, binary, or not UTF-8.
     """
-    path = Path(path)
+    path = path_of(path)
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -72,7 +80,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     InputError
         The file cannot be written; nothing is left behind.
     """
-    path = Path(path)
+    path = path_of(path)
     data = text.encode("utf-8", errors="replace")
     temporary: Path | None = None
     try:

@@ -15,8 +15,8 @@ import jbf.diagnosis
 import numpy as np
 import pytest
 from jbf.cli import COMMANDS, main
-from jbf.cli.outputs import json_text
 from jbf.diagnosis.result import Diagnosis
+from jbf.reporting.json import json_text
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_fit_writes_a_model(campaign: Path, capsys: pytest.CaptureFixture[str]) 
     assert "[[Parameters]]" in said.out
     assert said.err == ""
     drag = jbf.Model.load(out).parameters["coulomb_drag.F_d_n"]
-    assert drag.value == pytest.approx(2.0, abs=0.15)  # type: ignore[union-attr]
+    assert drag.value == pytest.approx(2.0, abs=0.15)
 
 
 def test_fit_holds_what_is_fixed(campaign: Path) -> None:

@@ -64,7 +64,7 @@ def test_the_fit_finds_the_numbers_that_the_bench_has() -> None:
     model, bench = fit_friction()
     assert bench.volts_per_n == pytest.approx(THESIS_BENCH.volts_per_n, rel=0.01)
     for name, value in FITTED.items():
-        found = model.parameters[name].value  # type: ignore[union-attr]
+        found = model.parameters[name].value
         assert found == pytest.approx(value, rel=0.05), name
     # One newton metre in volts, from the listings, which the fit knows nothing of.
     listed = LISTED_VOLTS / (104.0 * 0.2245 * 0.5 * 4.0) * 104.0 * 0.0127 * 4.0

@@ -20,6 +20,7 @@ RUST_MAIN = """
 mod drag;
 mod slider;
 
+use jbf_core::effect::EffectSet;
 use jbf_core::law::Named;
 use jbf_core::run::{predict, Record};
 use jbf_core::{Chain, Motion, Real};
@@ -38,7 +39,11 @@ fn main() {
     }
 }
 
-fn step<T: Real, L: Named<T>>(chain: &Chain<T, L>, c: &[Vec<f64>; 5], dt_s: f64) -> Vec<T> {
+fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    c: &[Vec<f64>; 5],
+    dt_s: f64,
+) -> Vec<T> {
     let motion = |i: usize| {
         Motion::at_rest(T::of(c[4][i]))
             .with_time_s(T::of(c[0][i]))
@@ -54,10 +59,12 @@ fn step<T: Real, L: Named<T>>(chain: &Chain<T, L>, c: &[Vec<f64>; 5], dt_s: f64)
     out
 }
 
-fn run<L, S>(model: Chain<f64, L>, small: Chain<f32, S>, c: &[Vec<f64>; 5])
+fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 5])
 where
     L: Named<f64>,
+    E: EffectSet<f64>,
     S: Named<f32>,
+    F: EffectSet<f32>,
 {
     let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] = c;
     let record = Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n };
@@ -278,3 +285,11 @@ def test_an_effect_in_python_is_refused() -> None:
             export.rust(model)
     finally:
         jbf.forget_effect("wiper")
+
+
+def test_an_effect_at_an_infinite_null_is_not_written() -> None:
+    for sigma, written in ((2e3, True), (np.inf, False)):
+        values = {"presliding.sigma": sigma}
+        model = jbf.Model(jbf.Rig.thesis("4.2"), effects=["presliding"], parameters=values)
+        assert ("presliding" in export.rust(model)) is written
+        assert ("presliding" in export.c(model)) is written

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from by_hand import there_and_back
 from campaigns import SHORT, campaign
-from jbf import InputError, Model, compare, fit
+from jbf import InputError, Model, Rig, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.models.catalogue import effects as catalogue
@@ -56,15 +59,31 @@ def test_a_fit_keeps_what_is_fixed_and_takes_names_without_units() -> None:
     assert found.parameters["gamma"].note == "held fixed"
 
 
-def test_a_parameter_at_its_bound_says_so() -> None:
-    rig, runs, _ = campaign(7)
-    found = fit(rig, runs, ["coulomb_drag"])
-    drag = found.parameters["coulomb_drag.F_d_n"]
-    if drag.value == 0.0:
-        assert "lower bound" in (drag.note or "")
-    else:
-        assert drag.stderr is not None
-        assert drag.value < 4.0 * drag.stderr
+def test_a_parameter_at_its_bound_says_so(tmp_path: Path) -> None:
+    # Friction that falls with speed asks for less than no viscous friction.
+    runs = there_and_back(lambda t, v, a: 5.0 * np.sign(v) - 0.5 * v, noise_n=0.05)
+    found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0})
+    viscous = found.parameters["F_v_n_s_m"]
+    assert viscous.value == 0.0
+    assert viscous.stderr is None
+    assert viscous.note == "at its lower bound 0: the runs ask for less"
+    # The other is the mean friction in the direction of motion, within half of its error.
+    along = [run.friction_n * np.sign(run.velocity_m_s) for run in runs]
+    assert found.parameters["F_c_n"].value == pytest.approx(np.mean(along), abs=8e-4)
+    assert found.parameters["F_c_n"].stderr is not None
+    found.model.save(tmp_path / "m.toml")
+    assert Model.load(tmp_path / "m.toml").parameters["F_v_n_s_m"] == viscous
+
+
+def test_a_parameter_at_its_upper_bound_says_so() -> None:
+    # No friction at all on the way back.
+    runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_n=0.05)
+    held = {"F_c": 5.0, "F_s": 6.0, "F_v": 0.0}
+    found = fit(Rig(), runs, ["direction_asymmetry"], law="coulomb", fixed=held)
+    part = found.parameters["direction_asymmetry.a"]
+    assert part.value == pytest.approx(0.95)
+    assert part.stderr is None
+    assert part.note == "at its upper bound 0.95: the runs ask for more"
 
 
 def test_a_parameter_that_the_runs_cannot_show_says_so() -> None:

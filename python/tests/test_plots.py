@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from jbf import Comparison, Fit, Run, compare
 from jbf.comparison.axes import all_axes
-from jbf.comparison.comparison import Failure
+from jbf.comparison.patterns import Failure
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
 from jbf.reporting.bin_axes import bin_axis
-from jbf.reporting.plots import plot_comparison, plot_diagnosis, plot_run
+from jbf.reporting.comparison_plots import plot_comparison, plot_run
+from jbf.reporting.diagnosis_plot import plot_diagnosis
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -92,10 +93,8 @@ def test_run(bad: Comparison) -> None:
 
 def test_every_axis_of_a_comparison_has_places_for_its_bins(bad: Comparison) -> None:
     for axis in all_axes(bad.campaign, 0.055):
-        size = len(axis.labels)
-        place = bin_axis(
-            Failure(axis.axis, "", 0.5, axis.labels, np.zeros(size), np.ones(size, int))
-        )
+        size = len(axis.bins)
+        place = bin_axis(Failure(axis.axis, "", 0.5, axis.bins, np.zeros(size), np.ones(size, int)))
         assert place.name
         assert len(place.x) == len(place.series) == size
         assert np.all(np.isfinite(place.x))
@@ -111,5 +110,5 @@ def test_pictures_do_not_touch_pyplot(bad: Comparison) -> None:
     import subprocess
     import sys
 
-    code = "import jbf.reporting.plots, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import jbf.reporting.pictures, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

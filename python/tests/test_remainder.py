@@ -84,7 +84,9 @@ def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:
         wave = np.sign(np.sin(5.0 * _phase(run)))
         return _white(random, run) + size_n * wave
 
-    (found,) = _replicates(*_with(with_wave, 3))
+    problem, solution = _with(with_wave, 3)
+    (found,) = _replicates(problem, solution)
+    assert found in find_remainder(problem, solution)
     assert found.axis == "period"
     assert found.share == pytest.approx(0.4**2 / (1.0 + 0.4**2), rel=0.25)
     assert "two_way_1" in found.where
@@ -108,6 +110,7 @@ def test_bursts_are_told_with_their_times_and_two_outliers_are_not() -> None:
     assert found.axis == "time"
     assert found.where.startswith("4 bursts")
     assert "11.0 s in two_way_0.25" in found.where
+    assert found in find_remainder(problem, replace(solution, residuals=innovations))
 
 
 @pytest.mark.slow

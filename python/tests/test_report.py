@@ -13,7 +13,6 @@ import pytest
 from jbf import Fit, Run, compare
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
-from jbf.reporting.page import write_comparison, write_diagnosis
 
 VOID = {"meta", "img", "br", "link"}
 
@@ -51,7 +50,7 @@ def test_diagnosis(
     verdict: str, make_diagnosis: Callable[[str], Diagnosis], tmp_path: Path
 ) -> None:
     diagnosis = make_diagnosis(verdict)
-    write_diagnosis(diagnosis, tmp_path / "d.html")
+    diagnosis.save_html(tmp_path / "d.html")
     page = (tmp_path / "d.html").read_text()
     assert checked(page).fetched
     headings = re.findall(r"<h2>(.*?)</h2>", page)
@@ -77,7 +76,7 @@ def test_names_of_runs_cannot_break_the_page(
     bare_fit: Fit, runs: list[Run], tmp_path: Path
 ) -> None:
     evil = [replace(run, name=f"<script>$x^{{$</script>{i}") for i, run in enumerate(runs)]
-    write_comparison(compare(bare_fit.model, evil), tmp_path / "c.html")
+    compare(bare_fit.model, evil).save_html(tmp_path / "c.html")
     page = (tmp_path / "c.html").read_text()
     checked(page)
     assert "<script>" not in page
@@ -86,4 +85,4 @@ def test_names_of_runs_cannot_break_the_page(
 
 def test_no_folder_no_page(bare_fit: Fit, runs: list[Run], tmp_path: Path) -> None:
     with pytest.raises(InputError, match="folder does not exist"):
-        write_comparison(compare(bare_fit.model, runs), tmp_path / "no" / "c.html")
+        compare(bare_fit.model, runs).save_html(tmp_path / "no" / "c.html")

@@ -11,7 +11,9 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.models.catalogue import effects, find_effect
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting.catalogue_text import effect_page, effects_page
-from jbf.reporting.text import comparison_report, diagnosis_report, fit_report
+from jbf.reporting.comparison_text import comparison_report
+from jbf.reporting.diagnosis_text import diagnosis_report
+from jbf.reporting.fit_text import fit_report
 from jbf.reporting.words import listed, measured, number, percent, verdict_sentence
 
 VERDICTS = ("adequate", "missing", "ambiguous", "unexplained")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -17,6 +16,7 @@ from .foreign import Foreign, draw_foreign, parameters
 from .motions import Motion, multisine, sine, steps, stop_and_go, sweep, triangle
 from .noise import Noise
 from .record import Record
+from .seeds import stream
 from .simulate import simulate_run
 
 
@@ -101,14 +101,9 @@ def standard(name: str) -> Campaign:
     return Campaign(name, tuple(motions), shares)
 
 
-def _stream(seed: int, *words: str) -> np.random.Generator:
-    """A generator of its own for each use, so that adding one effect moves nothing else."""
-    return np.random.default_rng([seed, *(zlib.crc32(w.encode()) for w in words)])
-
-
 def draw_base(seed: int) -> Base:
     """A random rig around Tables 4.2 to 4.5."""
-    rng = _stream(seed, "base")
+    rng = stream(seed, "base")
     return Base(
         f_m=float(rng.uniform(0.20, 0.29)),
         U_tr=float(rng.uniform(0.045, 0.065)),
@@ -123,7 +118,7 @@ def _choose(
 ) -> dict[str, dict[str, float]]:
     if isinstance(effects, Mapping):
         return {name: dict(values) for name, values in effects.items()}
-    return {name: draw(name, _stream(seed, "effect", name), strength) for name in effects}
+    return {name: draw(name, stream(seed, "effect", name), strength) for name in effects}
 
 
 def simulate_campaign(
@@ -147,14 +142,14 @@ def simulate_campaign(
     chosen = _choose(seed, effects, strength)
     check(chosen)
     strange: list[Foreign] = [
-        draw_foreign(name, _stream(seed, "foreign", name), strength) for name in foreign
+        draw_foreign(name, stream(seed, "foreign", name), strength) for name in foreign
     ]
-    share = noise if noise is not None else float(_stream(seed, "noise").uniform(0.01, 0.025))
+    share = noise if noise is not None else float(stream(seed, "noise").uniform(0.01, 0.025))
     meter = Noise(share * base.f_m * base.load_n, coloured_share=0.5 if coloured else 0.0)
     records: dict[str, Record] = {}
     weight: dict[str, float] = {}
     for motion in plan.motions:
-        rng = _stream(seed, plan.name, motion.name)
+        rng = stream(seed, plan.name, motion.name)
         angle = float(rng.uniform(0.0, 2.0 * math.pi))
         load = base.load_n * plan.load_shares.get(motion.name, 1.0)
         record = simulate_run(

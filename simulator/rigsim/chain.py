@@ -18,8 +18,11 @@ class Chain:
     deflection (m) and lagged friction (N), in that order.
     """
 
-    def __init__(self, base: Base, effects: Parameters) -> None:
+    def __init__(
+        self, base: Base, effects: Parameters, film_start: tuple[float, float] | None = None
+    ) -> None:
         self.load_n = base.load_n
+        self.film_start = film_start
         memory = effects.get("film_memory", {}).get("factor", 1.0)
         self.film = Film.of(base, memory)
         self.lubricant = Lubricant(effects, base.U_tr)
@@ -45,10 +48,11 @@ class Chain:
     def start(self, v: float, acceleration: float, path: Path) -> list[float]:
         """State at the start of a run that begins at surface speed `v` (m/s).
 
-        The film is at the transition and cold. A run that begins at rest has its bristle
-        slack; one that begins in motion has it fully bent. The lagged cell has settled.
+        The film is cold and at the transition, or at `film_start` (eps, phi). A run that begins
+        at rest has its bristle slack; one that begins in motion has it fully bent. The lagged cell
+        has settled.
         """
-        y = [*self.film.start(), *([0.0] * (self.size - 2))]
+        y = [*(self.film_start or self.film.start()), *([0.0] * (self.size - 2))]
         sign = (v > 0.0) - (v < 0.0)
         if self.bristle_at >= 0 and sign:
             y[self.bristle_at] = sign * self.unsigned(y, v, sign, path) / self.contact.sigma

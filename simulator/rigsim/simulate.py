@@ -21,7 +21,8 @@ from .rigid import run_rigid
 from .slack import behind_gap
 
 
-def _commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
+def commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
+    """Surface speed (m/s) and position (m) of a motion at `times` (s)."""
     speed, position = np.empty(len(times)), np.empty(len(times))
     ends = np.array([p.t1 for p in motion.pieces[:-1]])
     for i, k in enumerate(np.searchsorted(ends, times, side="right").tolist()):
@@ -38,6 +39,30 @@ def under_load(base: Base, load_n: float, effects: Parameters) -> Base:
     return replace(
         base, load_n=load_n, U_tr=base.U_tr * share ** p["p"], K0=base.K0 * share ** p["q"]
     )
+
+
+def cell_force(
+    base: Base,
+    effects: Parameters,
+    motion: Motion,
+    times: Vector,
+    start_angle_rad: float = 0.0,
+    film_start: tuple[float, float] | None = None,
+) -> Vector:
+    """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending)."""
+    radius = base.bearing.radius_m
+    journal = motion
+    if "backlash" in effects:
+        journal = behind_gap(motion, effects["backlash"]["gap"], radius)
+    # A late record shows at each instant the force of tau before; at first that of the start.
+    seen = np.maximum(times - effects.get("time_delay", {}).get("tau", 0.0), 0.0)
+    chain = Chain(base, effects, film_start)
+    if "drive_compliance" in effects:
+        drive = CompliantDrive(
+            chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
+        )
+        return drive.run(journal, seen)
+    return run_rigid(chain, journal, seen, radius, start_angle_rad)
 
 
 def simulate_run(
@@ -64,21 +89,9 @@ def simulate_run(
     if load_n is not None:
         base = under_load(base, load_n, effects)
     radius = base.bearing.radius_m
-    journal = motion
-    if "backlash" in effects:
-        journal = behind_gap(motion, effects["backlash"]["gap"], radius)
-    # A late record shows at each instant the force of tau before; at first that of the start.
-    seen = np.maximum(times - effects.get("time_delay", {}).get("tau", 0.0), 0.0)
-    chain = Chain(base, effects)
-    if "drive_compliance" in effects:
-        drive = CompliantDrive(
-            chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
-        )
-        force = drive.run(journal, seen)
-    else:
-        force = run_rigid(chain, journal, seen, radius, start_angle_rad)
+    force = cell_force(base, effects, motion, times, start_angle_rad)
     clean = read_out(force, times, effects)
-    speed, position = _commanded(motion, times)
+    speed, position = commanded(motion, times)
     angle = start_angle_rad + position / radius
     for strange in foreign:
         clean = strange.apply(times, angle, speed, clean, rng)

@@ -23,7 +23,7 @@ fn run<T: Real>(
 ) {
     let dt = T::of(LOOP_STEP_S);
     for (f, u) in friction.iter_mut().zip(halves.windows(3).step_by(2)) {
-        *f = law.friction(&state, u[0]).coefficient(u[0].sign());
+        *f = law.friction(&state, u[0]).along(u[0].sign());
         let ends = [u[0].abs(), u[1].abs(), u[2].abs()];
         law.advance_with(stepper, &mut state, ends, T::ONE, dt);
     }

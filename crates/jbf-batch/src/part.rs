@@ -58,7 +58,7 @@ impl<F: Float> Block<F> {
             let mut film = self.lanes.film_alone::<F>(lane);
             for (i, f) in samples.clone().zip(friction.iter_mut()) {
                 let from = course.at(i)(lane);
-                f[lane] = law.friction(&film, from).coefficient(from.sign());
+                f[lane] = law.friction(&film, from).along(from.sign());
                 if i < last {
                     let u = ends(from, course.at(i + 1)(lane));
                     law.advance_with(stepper, &mut film, u, F::ONE, dt_s);
@@ -194,7 +194,7 @@ fn friction_of<F: Float>(
     for (i, f) in friction.iter_mut().enumerate() {
         let u = Lane(speed(i));
         let sliding = lanes.law(i).friction(&lanes.film(i), u);
-        *f = sliding.coefficient(u.sign()).0;
+        *f = sliding.along(u.sign()).0;
     }
 }
 
@@ -211,7 +211,7 @@ fn step<F: Float, S: Stepper>(
     for (i, f) in friction.iter_mut().enumerate() {
         let (law, mut film) = (lanes.law(i), lanes.film(i));
         let (u0, u1) = (Lane(from(i)), Lane(to(i)));
-        *f = law.friction(&film, u0).coefficient(u0.sign()).0;
+        *f = law.friction(&film, u0).along(u0.sign()).0;
         law.advance_inline(stepper, &mut film, ends(u0, u1), Lane::ONE, Lane(dt_s));
         lanes.put(i, &film);
     }

@@ -40,7 +40,7 @@ fn alone<F: Float>(batch: &Batch<F>, dt_s: F, u: impl Fn(usize, usize) -> F) -> 
     for (set, (law, film)) in laws.iter().zip(&mut films.0).enumerate() {
         for i in 0..SAMPLES {
             let from = u(i, set);
-            out[i * laws.len() + set] = law.friction(film, from).coefficient(from.sign());
+            out[i * laws.len() + set] = law.friction(film, from).along(from.sign());
             if i + 1 < SAMPLES {
                 let to = u(i + 1, set);
                 let ends = [from.abs(), ((from + to) * F::of(0.5)).abs(), to.abs()];

@@ -5,7 +5,7 @@ use crate::types::{clock, CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PA
 use core::ffi::{c_char, CStr};
 use core::{ptr, slice};
 use jbf_core::chain::State;
-use jbf_core::effect::{Effects, Rig, CATALOGUE};
+use jbf_core::effect::{Effects, CATALOGUE};
 use jbf_core::law::{Law, Named};
 use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
@@ -53,18 +53,14 @@ pub unsafe fn init<T: Real, L: Named<T>>(
     let bearing: Option<Bearing> = bearing.as_ref().map(Bearing::from);
     let (values, n) = lifted::<T>(values, n);
     let values = values.get(..n).unwrap_or_default();
-    let rig = Rig {
-        radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),
-        count: T::of(bearing.map_or(1.0, |b| f64::from(b.count))),
-    };
     let page = L::INFO;
     match page
         .check(values)
         .and_then(|()| L::build(bearing.as_ref(), Some(load_n), values, clock))
     {
         Ok(law) => {
-            let effects = Effects::NONE;
-            ptr::write(model, Chain { law, effects, rig });
+            let chain = Chain::round(law, Effects::NONE, bearing.as_ref());
+            ptr::write(model, chain);
             OK
         }
         Err(why) => refuse(error, why),

@@ -29,9 +29,7 @@ fn main() -> Result<(), ParameterError> {
             let speed = |ago: f64| 0.127 * (OMEGA_RAD_S * (t - ago)).sin();
             let at = [speed(dt_s), speed(0.5 * dt_s), speed(0.0)].map(f64::abs);
             law.advance_with(&Euler, &mut state, at, 1.0, dt_s);
-            let f = law
-                .friction(&state, speed(0.0))
-                .coefficient(speed(0.0).signum());
+            let f = law.friction(&state, speed(0.0)).along(speed(0.0).signum());
             worst = worst.max((f - exact).abs());
         }
         println!(

@@ -26,7 +26,7 @@ fn run(law: &JournalFull<f64>, stepper: &impl StiffStepper) -> (Vec<f64>, f64) {
     for (i, f) in f.iter_mut().enumerate() {
         let u = [speeds[2 * i], speeds[2 * i + 1], speeds[2 * i + 2]];
         law.advance_with(stepper, &mut state, u.map(f64::abs), 1.0, DT_S);
-        *f = law.friction(&state, u[2]).coefficient(u[2].signum());
+        *f = law.friction(&state, u[2]).along(u[2].signum());
     }
     (f, clock.elapsed().as_secs_f64() * 1e9 / STEPS as f64)
 }

@@ -5,11 +5,10 @@
 //! cargo run --example own_effect
 //! ```
 
-use jbf_core::effect::own::Beside;
-use jbf_core::effect::{Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
+use jbf_core::effect::{Beside, Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::motion::JournalMotion;
-use jbf_core::{Bearing, Chain, Clock, Motion, ParameterError, Real};
+use jbf_core::{Bearing, Chain, Clock, Friction, Motion, ParameterError, Real};
 
 /// `F_w (1 + sin th)/2` against the motion.
 #[derive(Clone, Copy, Debug)]
@@ -18,27 +17,12 @@ struct Wiper<T> {
 }
 
 impl<T: Real> Effect<T> for Wiper<T> {
-    const INFO: Info = Info {
-        name: "wiper",
-        stage: Stage::Other,
-        summary: "a wiper that drags harder in one half of each turn",
-        equation: "+ F_w (1 + sin th)/2 sgn v",
-        source: "this example",
-        limits: "a stiff wiper: it does not bend before it slides",
-        parameters: &[Parameter {
-            name: "F_w_n",
-            unit: "N",
-            meaning: "largest drag",
-            lower: 0.0,
-            upper: 1e3,
-            null: Some(0.0),
-            starts: &[1.0],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("wiper", Stage::Other)
+        .summary("a wiper that drags harder in one half of each turn")
+        .equation("+ F_w (1 + sin th)/2 sgn v")
+        .source("this example")
+        .limits("a stiff wiper: it does not bend before it slides")
+        .parameters(&[Parameter::new("F_w_n", "N", "largest drag", [0.0, 1e3], &[1.0]).null(0.0)]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -52,13 +36,12 @@ impl<T: Real> Effect<T> for Wiper<T> {
 }
 
 impl<T: Real> OtherFriction<T> for Wiper<T> {
-    fn level_n(&self) -> T {
-        T::ZERO
-    }
-
-    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
         let share = (T::ONE + journal.angle_rad.sin()) * T::of(0.5);
-        self.force_n * share * journal.direction
+        Friction {
+            jump: self.force_n * share,
+            smooth: T::ZERO,
+        }
     }
 }
 
@@ -69,18 +52,12 @@ fn main() -> Result<(), ParameterError> {
         &Parameters::TABLE_4_2,
         Clock::Journal,
     )?;
-    let rig = Rig {
-        radius_m: Bearing::THESIS.radius_m,
-        count: 4.0,
-    };
     let mut effects = Effects::NONE;
     effects.set("sensor_lag", &[0.05])?;
-    let bare = Chain { law, effects, rig };
-    let wiped = Chain {
-        law,
-        effects: effects.with(Beside(Wiper::new(&[2.0])?)),
-        rig,
-    };
+    let bearing = Some(&Bearing::THESIS);
+    let bare = Chain::round(law, effects, bearing);
+    let wiper = Beside(Wiper::new(&[2.0])?);
+    let wiped = Chain::round(law, effects.with(wiper), bearing);
     let motion = |t: f64| {
         Motion::at_rest(104.0)
             .with_time_s(t)

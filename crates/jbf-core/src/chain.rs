@@ -8,33 +8,35 @@
 //! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
 //! load on a soft drive) does so from the step before.
 
-use crate::effect::own::{Nothing, Own};
-use crate::effect::{Effects, Resistance, Rig, Signal, States};
+use crate::bearing::Bearing;
+use crate::effect::{EffectSet, Effects, Resistance, Rig, Signal};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
-use crate::run::Record;
+use crate::record::Record;
 
 /// A step shorter than this, s, is one of no length: its inverse leaves single precision.
 pub const SHORTEST_STEP_S: f64 = 1e-12;
 
-/// A friction law and the effects between it and the record.
+/// A friction law and the effects between it and the record: any of the catalogue, or a typed
+/// [set](EffectSet).
 #[derive(Clone, Copy, Debug)]
-pub struct Chain<T: Real, L, O: Own<T> = Nothing> {
+pub struct Chain<T: Real, L, E = Effects<T>> {
     /// The friction law.
     pub law: L,
     /// The effects.
-    pub effects: Effects<T, O>,
+    pub effects: E,
     /// The few numbers of the rig that effects need.
     pub rig: Rig<T>,
 }
 
 /// Everything that changes while a chain runs.
 #[derive(Clone, Copy, Debug)]
-pub struct State<T: Real, S, O: Own<T> = Nothing> {
+pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     /// State of the law.
     pub law: S,
-    effects: States<T, O>,
+    effects: E::State,
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
@@ -43,11 +45,6 @@ pub struct State<T: Real, S, O: Own<T> = Nothing> {
     /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
     /// friction of any other, unsigned.
     magnitude: T,
-    /// What holds the journal now, and what did a step ago; how long that step was, s.
-    resistance: Resistance<T>,
-    resistance_before: Resistance<T>,
-    step_before_s: f64,
-    power_w: T,
     /// The part of the force that jumps when a rigid journal turns round, N, unsigned.
     jump_n: T,
     /// Friction force of one bearing before the instrument, N.
@@ -56,7 +53,7 @@ pub struct State<T: Real, S, O: Own<T> = Nothing> {
     pub reading_n: T,
 }
 
-impl<T: Real, S, O: Own<T>> State<T, S, O> {
+impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
     /// The journal's own motion, which a soft drive parts from the commanded one.
     pub fn journal(&self) -> &JournalMotion<T> {
         &self.journal
@@ -68,43 +65,43 @@ impl<T: Real, S, O: Own<T>> State<T, S, O> {
     }
 }
 
-/// What resists the commanded side, N a bearing: `jump sgn(v) + smooth`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt<T> {
-    /// The part that takes the sign of the motion, unsigned; at rest it holds up to this.
-    pub jump_n: T,
-    /// The rest, signed.
-    pub smooth_n: T,
+impl<T: Real, L, E> Chain<T, L, E> {
+    /// A law with effects round it, on a bearing's shaft or on a linear axis.
+    pub fn round(law: L, effects: E, bearing: Option<&Bearing>) -> Self {
+        let rig = Rig::on(bearing);
+        Self { law, effects, rig }
+    }
 }
 
-impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
-    /// What resists whoever moves the shaft: friction itself, or behind a soft drive its spring.
+impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
+    /// What resists whoever moves the shaft, N a bearing: friction itself, or behind a soft drive
+    /// its spring.
     #[inline]
-    pub fn felt(&self, state: &State<T, L::State, O>) -> Felt<T> {
+    pub fn felt(&self, state: &State<T, L::State, E>) -> Friction<T> {
         if let Some(smooth_n) = self
             .effects
             .transmitted_n(&state.effects, &state.motion, &self.rig)
         {
-            return Felt {
-                jump_n: T::ZERO,
-                smooth_n,
+            return Friction {
+                jump: T::ZERO,
+                smooth: smooth_n,
             };
         }
         let direction = state.journal.direction;
         // In the gap of a drive nothing of the journal is felt.
         let loose = self.effects.has_drive() && state.motion.velocity_m_s != T::ZERO;
-        Felt {
-            jump_n: if loose {
+        Friction {
+            jump: if loose {
                 state.jump_n * direction.abs()
             } else {
                 state.jump_n
             },
-            smooth_n: state.force_n - state.jump_n * direction,
+            smooth: state.force_n - state.jump_n * direction,
         }
     }
 
     /// The state at the first sample of a run.
-    pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, O> {
+    pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, E> {
         let journal = JournalMotion::from(motion);
         let mut state = State {
             law: self.law.start(motion.load_n),
@@ -114,15 +111,11 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             film_speed_m_s: T::ZERO,
             film_factor: T::ONE,
             magnitude: T::ZERO,
-            resistance: Resistance::NONE,
-            resistance_before: Resistance::NONE,
-            step_before_s: 0.0,
-            power_w: T::ZERO,
             jump_n: T::ZERO,
             force_n: T::ZERO,
             reading_n: T::ZERO,
         };
-        let factor = self.effects.lubricant(&state.effects, &journal);
+        let factor = self.film_factor(&state, &journal);
         state.film_speed_m_s = journal.velocity_m_s.abs() * factor;
         state.film_factor = factor;
         let scaled = self.scaled(&mut state.effects, motion.load_n);
@@ -131,9 +124,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             state.law = law.start(motion.load_n);
         }
         self.act(law, &mut state, journal, factor, T::ZERO);
-        state.reading_n = self
-            .effects
-            .first_reading(&mut state.effects, state.force_n);
+        state.reading_n = self.effects.first(&mut state.effects, state.force_n);
         state
     }
 
@@ -142,35 +133,25 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     /// A step of no length ([`SHORTEST_STEP_S`]), and a sample that is not finite, change
     /// nothing: one lost sample of a sensor must not stay in the state of a filter for ever.
     #[inline(always)]
-    pub fn step(&self, state: &mut State<T, L::State, O>, to: &Motion<T>, dt_s: T) -> T {
+    pub fn step(&self, state: &mut State<T, L::State, E>, to: &Motion<T>, dt_s: T) -> T {
         if !(dt_s >= T::of(SHORTEST_STEP_S) && dt_s.is_finite() && to.is_finite()) {
             return state.reading_n;
         }
         let scaled = self.scaled(&mut state.effects, to.load_n);
         let law = scaled.as_ref().unwrap_or(&self.law);
         law.set_load(&mut state.law, to.load_n);
-        let journal = if self.effects.has_drive() {
-            // What holds the journal follows from how it moves: it is looked for ahead.
-            let share = (dt_s.value() / state.step_before_s).min(1.0);
-            let ahead = |s: f64| state.resistance.ahead(&state.resistance_before, s);
-            let resistance = [ahead(0.5 * share), ahead(share)];
-            let effects = &mut state.effects;
-            self.effects
-                .drive(effects, to, &resistance, &self.rig, dt_s)
-        } else {
-            JournalMotion::from(to)
-        };
-        let factor = self.effects.lubricant(&state.effects, &journal);
+        let mut journal = JournalMotion::from(to);
+        self.effects
+            .drive(&mut state.effects, &mut journal, &self.rig, dt_s);
+        let factor = self.film_factor(state, &journal);
         let end = journal.velocity_m_s.abs() * factor;
         let factors = state.film_factor + factor;
         let middle =
             (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.25) * factors);
-        law.advance(
-            &mut state.law,
-            [state.film_speed_m_s, middle, end],
-            self.effects.film_rate(&state.effects),
-            dt_s,
-        );
+        let mut rate = T::ONE;
+        self.effects.film_rate(&state.effects, &mut rate);
+        let speed_m_s = [state.film_speed_m_s, middle, end];
+        law.advance(&mut state.law, speed_m_s, rate, dt_s);
         (state.film_speed_m_s, state.film_factor) = (end, factor);
         state.motion = *to;
         let (from, begin_n, jump_n) = (state.journal, state.force_n, state.jump_n);
@@ -181,9 +162,8 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
             end_n: state.force_n + state.jump_n * turn(journal.direction, mean),
             now_n: state.force_n,
         };
-        state.reading_n = self
-            .effects
-            .reading(&mut state.effects, signal, to.time_s, dt_s);
+        let effects = &mut state.effects;
+        state.reading_n = self.effects.reading(effects, signal, to.time_s, dt_s).now_n;
         state.reading_n
     }
 
@@ -208,10 +188,19 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
 
     /// The law as it is under this load, where an effect makes it another.
     #[inline(always)]
-    fn scaled(&self, states: &mut States<T, O>, load_n: T) -> Option<L> {
+    fn scaled(&self, states: &mut E::State, load_n: T) -> Option<L> {
+        let mut scales = None;
         let share = || self.law.load_share(load_n);
-        let scales = self.effects.scales(states, share)?;
-        self.law.scaled(&scales)
+        self.effects.scales(states, share, &mut scales);
+        self.law.scaled(&scales?)
+    }
+
+    /// What the lubricant makes of the speed that the film feels, as a factor.
+    #[inline(always)]
+    fn film_factor(&self, state: &State<T, L::State, E>, journal: &JournalMotion<T>) -> T {
+        let mut factor = T::ONE;
+        self.effects.lubricant(&state.effects, journal, &mut factor);
+        factor
     }
 
     /// From the film's state to the force: contact, other friction, and what feeds back.
@@ -219,7 +208,7 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
     fn act(
         &self,
         law: &L,
-        state: &mut State<T, L::State, O>,
+        state: &mut State<T, L::State, E>,
         journal: JournalMotion<T>,
         factor: T,
         dt_s: T,
@@ -235,9 +224,9 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
         );
         // What bends a bristle, and what acts beside it.
         let (magnitude, beside) = if L::BENDS_WHOLE {
-            (sliding.level + sliding.viscous.abs(), T::ZERO)
+            (sliding.jump + sliding.smooth.abs(), T::ZERO)
         } else {
-            (sliding.level, sliding.viscous)
+            (sliding.jump, sliding.smooth)
         };
         let before = if dt_s > T::ZERO {
             state.magnitude
@@ -252,42 +241,34 @@ impl<T: Real, L: Law<T>, O: Own<T>> Chain<T, L, O> {
                 .bristle(&mut state.effects, &state.journal, &journal, levels, dt_s)
         };
         let bent = bent.map(|bristle| bristle + beside);
-        let coefficient = bent.unwrap_or_else(|| sliding.coefficient(journal.direction));
-        let (level_n, smooth_n) = self.effects.other(&state.effects, &journal);
+        let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
+        let mut beside_n = Friction::NONE;
+        self.effects.other(&state.effects, &journal, &mut beside_n);
         // A bristle turns the contact's jump into a slope.
         let contact_n = if bent.is_some() {
             T::ZERO
         } else {
-            sliding.level * load_n
+            sliding.jump * load_n
         };
-        state.jump_n = contact_n + level_n;
-        state.force_n = coefficient * load_n + level_n * journal.direction + smooth_n;
+        state.jump_n = contact_n + beside_n.jump;
+        state.force_n = coefficient * load_n + beside_n.jump * journal.direction + beside_n.smooth;
         state.magnitude = magnitude;
         let speed = journal.velocity_m_s;
         if self.effects.has_drive() {
             let slope = if speed == T::ZERO {
                 T::ZERO
             } else {
-                (sliding.viscous * load_n / speed).max(T::ZERO)
+                (sliding.smooth * load_n / speed).max(T::ZERO)
             };
             let resistance = Resistance {
-                level_n: sliding.level * load_n + level_n,
+                level_n: sliding.jump * load_n + beside_n.jump,
                 slope_n_s_m: slope,
             };
-            // A run begins with a resistance that has not changed.
-            state.resistance_before = if dt_s > T::ZERO {
-                state.resistance
-            } else {
-                resistance
-            };
-            state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
-            state.resistance = resistance;
+            self.effects.resist(&mut state.effects, &resistance, dt_s);
         }
         // Only the film's own friction warms the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
-        self.effects
-            .warm(&mut state.effects, [state.power_w, power_w], dt_s);
-        state.power_w = power_w;
+        self.effects.warm(&mut state.effects, power_w, dt_s);
         state.journal = journal;
     }
 }

@@ -119,6 +119,17 @@ impl<T: Real> Motion<T> {
     }
 }
 
+/// The share of a step at which a speed on a straight line from `from` to `to` crosses zero; none
+/// where it does not change its sign inside the step.
+#[inline(always)]
+pub(crate) fn crossing<T: Real>(from: T, to: T) -> Option<T> {
+    if from.value() * to.value() < 0.0 {
+        Some(from / (from - to))
+    } else {
+        None
+    }
+}
+
 /// How far a parabola lies below its chord at a share of the way, over its change of slope.
 #[inline(always)]
 pub(crate) fn sag<T: Real>(share: T) -> T {
@@ -149,7 +160,7 @@ impl<T: Real> JournalMotion<T> {
     pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
         let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);
         let half = T::of(0.5) * dt_s;
-        if v0.value() * v1.value() < 0.0 {
+        if crossing(v0, v1).is_some() {
             half * (v0 * v0 + v1 * v1) / (v0.abs() + v1.abs())
         } else {
             half * (v0 + v1).abs()

@@ -17,7 +17,9 @@
 
 use crate::builder::with_fields;
 use crate::chain::{self, Chain};
+use crate::effect::{EffectSet, Effects};
 use crate::error::{not_negative, positive, Error};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
@@ -89,8 +91,8 @@ impl Drive {
 
 /// The plant, ready to step.
 #[derive(Clone, Copy, Debug)]
-pub struct Plant<T: Real, L> {
-    chain: Chain<T, L>,
+pub struct Plant<T: Real, L, E = Effects<T>> {
+    chain: Chain<T, L, E>,
     keep: T,
     gain: T,
     volts_per_n: T,
@@ -100,7 +102,7 @@ pub struct Plant<T: Real, L> {
 
 /// Where the shaft is.
 #[derive(Clone, Copy, Debug)]
-pub struct State<T: Real, S> {
+pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     /// Angle, rad.
     pub angle_rad: T,
     /// Speed, rad/s.
@@ -110,13 +112,13 @@ pub struct State<T: Real, S> {
     /// Friction is guessed to go on changing as it did, V a step.
     change_v: T,
     time_s: T,
-    chain: chain::State<T, S>,
+    chain: chain::State<T, S, E>,
 }
 
 /// Where a step begins, and what drives it. Each trial of a step starts from here and leaves its
 /// end in [`State`].
-struct Before<T: Real, S> {
-    chain: chain::State<T, S>,
+struct Before<T: Real, S, E: EffectSet<T>> {
+    chain: chain::State<T, S, E>,
     speed_rad_s: T,
     angle_rad: T,
     /// Speed at the end if there were no friction, rad/s.
@@ -124,18 +126,12 @@ struct Before<T: Real, S> {
     load_n: T,
 }
 
-/// Friction at the end of a trial, V.
-struct Felt<T> {
-    jump_v: T,
-    smooth_v: T,
-}
-
-impl<T: Real, L: Law<T>> Plant<T, L> {
+impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
     /// A plant that takes steps of `step_s`. The law's own stepper must bear that step.
     ///
     /// # Errors
     /// Names the number that is not positive and finite.
-    pub fn new(chain: Chain<T, L>, drive: Drive, step_s: f64) -> Result<Self, Error> {
+    pub fn new(chain: Chain<T, L, E>, drive: Drive, step_s: f64) -> Result<Self, Error> {
         positive("damping_1_s", drive.damping_1_s)?;
         positive("input_rad_s2_v", drive.input_rad_s2_v)?;
         positive("limit_v", drive.limit_v)?;
@@ -155,7 +151,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     /// At rest at angle zero under a load (N), having stood for `stood_s`: the film has been
     /// squeezed out, the contact has aged.
     #[must_use]
-    pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State> {
+    pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State, E> {
         let mut motion = Motion::at_rest(load_n);
         let mut chain = self.chain.start(&motion);
         let longest = LONGEST_STANDING_S
@@ -179,7 +175,7 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// One step under an input (V) and a load (N).
     #[inline]
-    pub fn step(&self, state: &mut State<T, L::State>, input_v: T, load_n: T) {
+    pub fn step(&self, state: &mut State<T, L::State, E>, input_v: T, load_n: T) {
         let u = input_v.max(-self.limit_v).min(self.limit_v);
         let free = self.keep * state.speed_rad_s + self.gain * u;
         let before = Before {
@@ -201,7 +197,11 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// A step that keeps its direction; false, and worth nothing, where none does.
     #[inline]
-    fn sliding_on(&self, state: &mut State<T, L::State>, before: &Before<T, L::State>) -> bool {
+    fn sliding_on(
+        &self,
+        state: &mut State<T, L::State, E>,
+        before: &Before<T, L::State, E>,
+    ) -> bool {
         let side = before.speed_rad_s.sign();
         let guess = before.free - self.gain * (state.friction_v + state.change_v);
         if !(guess * side > T::ZERO) {
@@ -213,15 +213,15 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
 
     /// A step that may stick: only what friction at rest cannot hold moves the shaft.
     #[inline]
-    fn leave_rest(&self, state: &mut State<T, L::State>, before: &Before<T, L::State>) {
+    fn leave_rest(&self, state: &mut State<T, L::State, E>, before: &Before<T, L::State, E>) {
         let still = self.attempt(state, before, T::ZERO);
-        let push = before.free - self.gain * still.smooth_v;
-        let hold = self.gain * still.jump_v;
+        let push = before.free - self.gain * still.smooth;
+        let hold = self.gain * still.jump;
         let side = push.sign();
         if push.abs() <= hold {
             // In the gap of a drive nothing holds: it moves as if there were no friction.
             if self.chain.effects.has_drive() && side != T::ZERO {
-                if self.attempt(state, before, push).jump_v == T::ZERO {
+                if self.attempt(state, before, push).jump == T::ZERO {
                     return;
                 }
                 self.attempt(state, before, T::ZERO);
@@ -241,16 +241,14 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
     #[inline]
     fn solve(
         &self,
-        state: &mut State<T, L::State>,
-        before: &Before<T, L::State>,
+        state: &mut State<T, L::State, E>,
+        before: &Before<T, L::State, E>,
         guess: T,
         side: T,
     ) {
         let direction = |v: T| if side == T::ZERO { v.sign() } else { side };
-        let missed = |v: T, felt: &Felt<T>| {
-            let friction_v = felt.jump_v * direction(v) + felt.smooth_v;
-            v - before.free + self.gain * friction_v
-        };
+        let missed =
+            |v: T, felt_v: &Friction<T>| v - before.free + self.gain * felt_v.along(direction(v));
         let mut here = guess;
         let mut miss = missed(here, &self.attempt(state, before, here));
         let mut slope = T::ONE;
@@ -270,14 +268,15 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         }
     }
 
-    /// Take the chain from where it was before the step to one that ends with a speed.
+    /// Take the chain from where it was before the step to one that ends with a speed; gives the
+    /// friction there, V.
     #[inline]
     fn attempt(
         &self,
-        state: &mut State<T, L::State>,
-        before: &Before<T, L::State>,
+        state: &mut State<T, L::State, E>,
+        before: &Before<T, L::State, E>,
         speed_rad_s: T,
-    ) -> Felt<T> {
+    ) -> Friction<T> {
         let radius_m = self.chain.rig.radius_m;
         let h = self.step_s;
         let way_rad = (before.speed_rad_s + speed_rad_s) * (h * T::of(0.5));
@@ -291,12 +290,9 @@ impl<T: Real, L: Law<T>> Plant<T, L> {
         };
         state.chain = before.chain;
         self.chain.step(&mut state.chain, &to, h);
-        let felt = self.chain.felt(&state.chain);
+        let felt_n = self.chain.felt(&state.chain);
         state.speed_rad_s = speed_rad_s;
         state.angle_rad = angle_rad;
-        Felt {
-            jump_v: felt.jump_n * self.volts_per_n,
-            smooth_v: felt.smooth_n * self.volts_per_n,
-        }
+        felt_n.times(self.volts_per_n)
     }
 }

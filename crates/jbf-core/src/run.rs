@@ -1,11 +1,12 @@
 //! A whole recorded run through a chain: the samples as slices, inner steps between them.
 
 use crate::chain::{Chain, State};
-use crate::effect::own::Own;
-use crate::effect::{Effects, Rig, Signal};
+use crate::effect::{EffectSet, Rig, Signal};
 use crate::law::Law;
-use crate::motion::Motion;
+use crate::motion::{crossing, Motion};
 use crate::real::Real;
+
+pub use crate::record::Record;
 
 /// However fast a film is, its steps are no shorter, s: a search that strays to parameters of no
 /// bearing must come back in finite time. Explicit steps of this length are stable on films of up
@@ -16,40 +17,6 @@ pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 /// [`film_rate_1_s`].
 pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 
-/// The imposed motion of a run, one value a sample; all slices of one length.
-#[derive(Clone, Copy, Debug)]
-pub struct Record<'a> {
-    /// Time, s, rising; where it starts does not matter.
-    pub time_s: &'a [f64],
-    /// Surface speed, m/s.
-    pub velocity_m_s: &'a [f64],
-    /// Its rate of change, m/s^2.
-    pub acceleration_m_s2: &'a [f64],
-    /// Shaft angle, unwrapped, rad.
-    pub angle_rad: &'a [f64],
-    /// Load on one bearing, N.
-    pub load_n: &'a [f64],
-}
-
-impl Record<'_> {
-    /// The motion at sample `i`; none past the shortest slice.
-    #[inline(always)]
-    pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
-        Some(self.sample(i)?.lift())
-    }
-
-    #[inline(always)]
-    fn sample(&self, i: usize) -> Option<Motion<f64>> {
-        Some(Motion {
-            time_s: *self.time_s.get(i)? - *self.time_s.first()?,
-            velocity_m_s: *self.velocity_m_s.get(i)?,
-            acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
-            angle_rad: *self.angle_rad.get(i)?,
-            load_n: *self.load_n.get(i)?,
-        })
-    }
-}
-
 /// Run `chain` along `record` with inner steps of at most `max_step_s` (shorter where the law
 /// asks for it, down to [`SHORTEST_FILM_STEP_S`]; landing on every reversal), and hand each
 /// sample's reading (N) to `sink` with its index.
@@ -57,8 +24,8 @@ impl Record<'_> {
 /// The whole of it is inlined into its caller, so that a caller who compiles for a wider
 /// instruction set gets all of it there.
 #[inline(always)]
-pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
+pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
     mut sink: impl FnMut(usize, T),
@@ -74,7 +41,7 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
         // To the reversal first, where there is one; from there no sign changes.
-        let zero = crossing(&from, &sample, radius_m);
+        let zero = reversal(&from, &sample, radius_m);
         let to = zero.unwrap_or(sample);
         between(chain, &mut state, &from, &to, max_step_s);
         if zero.is_none() {
@@ -88,15 +55,18 @@ pub fn predict<T: Real, L: Law<T>, O: Own<T>>(
 /// Fastest rate, 1/s, at which the law's film answers to this record; zero of a law without one.
 /// Beyond [`FASTEST_FILM_1_S`] a prediction holds the film inside the bearing and does not follow
 /// it.
-pub fn film_rate_1_s<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
+pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
     record: &Record<'_>,
 ) -> f64 {
     1.0 / film_step_s(chain, record)
 }
 
 /// Longest step, s, that follows the film.
-fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(chain: &Chain<T, L, O>, record: &Record<'_>) -> f64 {
+fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    record: &Record<'_>,
+) -> f64 {
     let top = record
         .velocity_m_s
         .iter()
@@ -107,7 +77,7 @@ fn film_step_s<T: Real, L: Law<T>, O: Own<T>>(chain: &Chain<T, L, O>, record: &R
 /// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines
 /// between the samples; each sample's reading (N) goes to `sink` with its index.
 pub fn read_force<T: Real>(
-    effects: &Effects<T>,
+    effects: &impl EffectSet<T>,
     time_s: &[f64],
     force_n: &[f64],
     mut sink: impl FnMut(usize, T),
@@ -121,7 +91,7 @@ pub fn read_force<T: Real>(
     let mut last: Option<(f64, f64)> = None;
     for (i, (&t, &force)) in time_s.iter().zip(force_n).enumerate() {
         let Some((before_s, before_n)) = last.replace((t, force)) else {
-            sink(i, effects.first_reading(&mut states, T::of(force)));
+            sink(i, effects.first(&mut states, T::of(force)));
             continue;
         };
         let dt = t - before_s;
@@ -136,7 +106,9 @@ pub fn read_force<T: Real>(
                 now_n: at(end),
             };
             let time = T::of(before_s + dt * end - time_s[0]);
-            reading = effects.reading(&mut states, signal, time, T::of(dt / steps));
+            reading = effects
+                .reading(&mut states, signal, time, T::of(dt / steps))
+                .now_n;
         }
         sink(i, reading);
     }
@@ -145,12 +117,9 @@ pub fn read_force<T: Real>(
 /// The instant between two samples at which the speed is zero, if it changes sign there:
 /// friction jumps at it, so a step must land on it.
 #[inline(always)]
-fn crossing(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
-    let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-    if v0 * v1 >= 0.0 {
-        return None;
-    }
-    let mut zero = from.towards(to, v0 / (v0 - v1), radius_m);
+fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
+    let share = crossing(from.velocity_m_s, to.velocity_m_s)?;
+    let mut zero = from.towards(to, share, radius_m);
     zero.velocity_m_s = 0.0;
     Some(zero)
 }
@@ -158,9 +127,9 @@ fn crossing(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
 /// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
 /// plain numbers until a step takes it.
 #[inline(always)]
-fn between<T: Real, L: Law<T>, O: Own<T>>(
-    chain: &Chain<T, L, O>,
-    state: &mut State<T, L::State, O>,
+fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    state: &mut State<T, L::State, E>,
     from: &Motion<f64>,
     to: &Motion<f64>,
     max_step_s: f64,

@@ -211,7 +211,7 @@ fn rest_is_a_motion_too() {
         if (i + 1) % 1000 == 0 {
             let k = ((i + 1) / 1000) as usize;
             let u = motion.velocity_m_s(times[k]);
-            let f = film.friction(&state, u).coefficient(u.sign());
+            let f = film.friction(&state, u).along(u.sign());
             assert!((f - out[k]).abs() < 1e-6, "at {}: {f} {}", times[k], out[k]);
         }
     }

@@ -43,7 +43,7 @@ impl Run {
             }
             from = time;
             let speed = T::of(speed);
-            let f = law.friction(&state, speed).coefficient(speed.sign());
+            let f = law.friction(&state, speed).along(speed.sign());
             out.push(f.value());
         }
         assert_eq!(state.clamped, 0);
@@ -131,7 +131,7 @@ fn derivatives_go_through_the_implicit_step() {
             let at = [0.0, 0.5, 1.0].map(|s| Dual::of(0.127 * (0.001 * (f64::from(i) + s)).sin()));
             law.advance(&mut state, at, Dual::ONE, Dual::of(LOOP_STEP_S));
         }
-        law.friction(&state, Dual::of(0.025)).coefficient(Dual::ONE)
+        law.friction(&state, Dual::of(0.025)).along(Dual::ONE)
     };
     let exact = end(&|i, v| Dual::parameter(v, i));
     for k in 0..4 {

@@ -29,7 +29,7 @@ fn after_a_change_of_load_the_law_is_the_other_loads() {
             light.friction(&own, speed(i)),
         ];
         assert!(
-            (f[0].coefficient(1.0) - f[1].coefficient(1.0)).abs() < 1e-12,
+            (f[0].along(1.0) - f[1].along(1.0)).abs() < 1e-12,
             "step {i}"
         );
     }

@@ -1,5 +1,6 @@
 //! Effects from outside the crate, in each place that takes them, against the catalogue's own in
-//! the same place: an effect does not act otherwise for being somebody else's.
+//! the same place: an effect does not act otherwise for being somebody else's, and a typed set of
+//! effects is the same chain as the catalogue's with those effects switched on.
 
 mod common;
 
@@ -7,12 +8,29 @@ use common::motion::Sines;
 use common::{law, readings};
 use jbf_core::effect::coulomb_drag::CoulombDrag;
 use jbf_core::effect::direction_asymmetry::DirectionAsymmetry;
-use jbf_core::effect::own::{Beside, InContact, InInstrument, Own};
+use jbf_core::effect::drive_compliance::DriveCompliance;
+use jbf_core::effect::film_memory::FilmMemory;
+use jbf_core::effect::load_dependence::LoadDependence;
+use jbf_core::effect::presliding::Presliding;
 use jbf_core::effect::sensor_lag::SensorLag;
-use jbf_core::effect::{Effect, Effects, Rig};
+use jbf_core::effect::thermal_thinning::ThermalThinning;
+use jbf_core::effect::{
+    AsBristle, Beside, EffectSet, Effects, InContact, InDrive, InFilm, InInstrument, InLubricant,
+    Place, Rig, UnderLoad,
+};
 use jbf_core::{Bearing, Chain, Clock};
 
-fn run<O: Own<f64>>(effects: Effects<f64, O>) -> Vec<f64> {
+type Drive = InDrive<DriveCompliance<f64>>;
+type Oil = InLubricant<ThermalThinning<f64>>;
+type Load = UnderLoad<LoadDependence<f64>>;
+type Film = InFilm<FilmMemory<f64>>;
+type Contact = InContact<DirectionAsymmetry<f64>>;
+type Bristle = AsBristle<Presliding<f64>>;
+type Other = Beside<CoulombDrag<f64>>;
+type Instrument = InInstrument<SensorLag<f64>>;
+
+/// Readings, and what is felt from the commanded side, under a load that swings.
+fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
         count: 4.0,
@@ -23,44 +41,119 @@ fn run<O: Own<f64>>(effects: Effects<f64, O>) -> Vec<f64> {
         rig,
     };
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
-    let mut state = chain.start(&sines.at(0.0));
+    let motion = |t: f64| sines.at(t).with_load_n(100.0 + 20.0 * (0.7 * t).sin());
+    let mut state = chain.start(&motion(0.0));
     let mut out = vec![state.reading_n];
-    out.extend((1..=700).map(|i| chain.step(&mut state, &sines.at(0.01 * f64::from(i)), 0.01)));
+    for i in 1..=700 {
+        out.push(chain.step(&mut state, &motion(0.01 * f64::from(i)), 0.01));
+        let felt_n = chain.felt(&state);
+        out.extend([felt_n.jump, felt_n.smooth]);
+    }
     out
 }
 
-fn catalogue(list: &[(&str, f64)]) -> Vec<f64> {
+/// The effect's page, and values for its parameters.
+fn page<P: Place<f64>>() -> (&'static str, Vec<f64>) {
+    let values = P::INFO.parameters.iter().map(|p| p.starts[0]);
+    (P::INFO.name, values.collect())
+}
+
+fn typed<P: Place<f64>>() -> P {
+    P::new(&page::<P>().1).expect("starting values are valid")
+}
+
+fn catalogue(list: &[(&str, Vec<f64>)]) -> Vec<f64> {
     let mut effects = Effects::NONE;
-    for (name, value) in list {
-        effects.set(name, &[*value]).expect("valid");
+    for (name, values) in list {
+        effects.set(name, values).expect("valid");
     }
     run(effects)
 }
 
+fn acts_alike<P: Place<f64>>() {
+    let named = catalogue(&[page::<P>()]);
+    assert_eq!(run(typed::<P>()), named, "{} alone", P::INFO.name);
+    let beside = Effects::NONE.with(typed::<P>());
+    assert_eq!(run(beside), named, "{} beside none", P::INFO.name);
+    assert_eq!(run(Some(typed::<P>())), named, "{} there", P::INFO.name);
+    assert_ne!(named, run(()), "{} does something", P::INFO.name);
+}
+
 #[test]
-fn an_effect_acts_alike_from_outside() {
-    let drag = Beside(CoulombDrag::new(&[1.3]).expect("valid"));
-    let uneven = InContact(DirectionAsymmetry::new(&[0.2]).expect("valid"));
-    let lag = InInstrument(SensorLag::new(&[0.1]).expect("valid"));
-    let none = Effects::<f64>::NONE;
-    assert_eq!(run(none.with(drag)), catalogue(&[("coulomb_drag", 1.3)]));
-    assert_eq!(
-        run(none.with(uneven)),
-        catalogue(&[("direction_asymmetry", 0.2)])
-    );
-    assert_eq!(run(none.with(lag)), catalogue(&[("sensor_lag", 0.1)]));
-    let all = catalogue(&[
-        ("coulomb_drag", 1.3),
-        ("direction_asymmetry", 0.2),
-        ("sensor_lag", 0.1),
+fn an_effect_acts_alike_from_outside_at_every_stage() {
+    acts_alike::<Drive>();
+    acts_alike::<Oil>();
+    acts_alike::<Load>();
+    acts_alike::<Film>();
+    acts_alike::<Contact>();
+    acts_alike::<Bristle>();
+    acts_alike::<Other>();
+    acts_alike::<Instrument>();
+}
+
+/// In whatever order a set of different stages is written, the signal meets them in the chain's.
+#[test]
+fn all_stages_at_once_in_any_order() {
+    let named = catalogue(&[
+        page::<Drive>(),
+        page::<Oil>(),
+        page::<Load>(),
+        page::<Film>(),
+        page::<Contact>(),
+        page::<Bristle>(),
+        page::<Other>(),
+        page::<Instrument>(),
     ]);
-    assert_eq!(run(none.with((drag, (uneven, lag)))), all);
-    assert_ne!(all, catalogue(&[]));
+    let front = (typed::<Drive>(), (typed::<Oil>(), typed::<Load>()));
+    let middle = (typed::<Film>(), (typed::<Contact>(), typed::<Bristle>()));
+    let back = (typed::<Other>(), typed::<Instrument>());
+    assert_eq!(run((front, (middle, back))), named);
+    assert_eq!(run((back, (middle, front))), named);
+    let mut half = Effects::NONE;
+    for (name, values) in [page::<Oil>(), page::<Contact>(), page::<Instrument>()] {
+        half.set(name, &values).expect("valid");
+    }
+    let rest = (
+        (typed::<Drive>(), typed::<Load>()),
+        (typed::<Film>(), (typed::<Bristle>(), typed::<Other>())),
+    );
+    assert_eq!(run(half.with(rest)), named);
 }
 
 #[test]
 fn nothing_of_ones_own_changes_nothing() {
+    assert_eq!(run(()), run(Effects::NONE));
+    assert_eq!(run(Effects::NONE.with(())), run(()));
+    assert_eq!(run(None::<Other>), run(()));
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let bare = readings(&common::chain::<f64>(&[]), 0.01, 700, |t| sines.at(t));
-    assert_eq!(bare, catalogue(&[]));
+    let rig = Rig {
+        radius_m: Bearing::THESIS.radius_m,
+        count: 4.0,
+    };
+    let chain = Chain {
+        law: law(Clock::Journal),
+        effects: (),
+        rig,
+    };
+    let mut state = chain.start(&sines.at(0.0));
+    for (i, &n) in bare.iter().enumerate().skip(1) {
+        assert_eq!(chain.step(&mut state, &sines.at(0.01 * i as f64), 0.01), n);
+    }
+}
+
+/// At an infinite null an effect is left out, not built.
+#[test]
+fn an_infinite_null_is_refused() {
+    let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
+    assert_eq!(error.name(), "sigma_1_m");
+    assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
+}
+
+/// The longest step of a typed set is the shortest of its effects'.
+#[test]
+fn the_longest_step_is_the_shortest_of_all() {
+    let set = (typed::<Other>(), typed::<Drive>());
+    assert_eq!(EffectSet::<f64>::longest_step_s(&set), 0.005);
+    assert_eq!(EffectSet::<f64>::longest_step_s(&()), f64::INFINITY);
 }

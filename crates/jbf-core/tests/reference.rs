@@ -38,11 +38,7 @@ impl Run {
             });
             from = time;
             let speed = T::of(speed);
-            out.push(
-                law.friction(&state, speed)
-                    .coefficient(speed.sign())
-                    .value(),
-            );
+            out.push(law.friction(&state, speed).along(speed.sign()).value());
         }
         out
     }
@@ -66,7 +62,7 @@ impl Run {
             );
             let f = law
                 .friction(&state, self.speed_m_s(t + LOOP_STEP_S).abs())
-                .coefficient(1.0);
+                .along(1.0);
             if let Some(before) = before.replace(f) {
                 fastest = fastest.max((f - before).abs() / LOOP_STEP_S);
             }

@@ -61,9 +61,9 @@ fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
                 "eps {eps:?} {law:?} {u:?} {dt:?}"
             );
             let sliding = law.friction(&state, u[2]);
-            let f = sliding.coefficient(T::ONE);
+            let f = sliding.along(T::ONE);
             assert!(f.is_finite(), "f {f:?} {law:?} {state:?} {u:?}");
-            assert!(sliding.level >= T::ZERO && sliding.viscous >= T::ZERO);
+            assert!(sliding.jump >= T::ZERO && sliding.smooth >= T::ZERO);
         }
         held += u32::from(state.clamped > 0);
     }
@@ -119,7 +119,7 @@ fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
                 eps >= T::ZERO && eps < T::ONE,
                 "eps {eps:?} {law:?} {u:?} {dt:?}"
             );
-            let f = law.friction(&state, u[2]).coefficient(T::ONE);
+            let f = law.friction(&state, u[2]).along(T::ONE);
             assert!(f.is_finite(), "f {f:?} {law:?} {state:?} {u:?}");
         }
     }

@@ -70,7 +70,7 @@ fn a_long_run_settles_on_the_steady_state() {
             let mut state = law.start(load_n);
             drive(&law, &Rk4, &mut state, [0.0, 60.0], 0.01, |_| speed);
             let steady = law.steady(speed).expect("a speed");
-            let f = law.friction(&state, speed).coefficient(1.0);
+            let f = law.friction(&state, speed).along(1.0);
             assert!(
                 (state.eps() - steady.eps).abs() < 1e-10,
                 "table {table}, {speed} m/s"

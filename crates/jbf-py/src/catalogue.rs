@@ -1,6 +1,6 @@
 //! The catalogue of laws and effects, as dictionaries.
 
-use jbf_core::effect::{moves_jumps, peaks, Parameter, CATALOGUE};
+use jbf_core::effect::{moves_jumps, peaks, type_names, Parameter, CATALOGUE};
 use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -18,6 +18,8 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
         d.set_item("starts", p.starts.to_vec())?;
         d.set_item("log", p.log)?;
         d.set_item("period", p.period)?;
+        d.set_item("start", p.start.name())?;
+        d.set_item("bound", p.bound.name())?;
         out.append(d)?;
     }
     Ok(out)
@@ -47,6 +49,9 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("moves_jumps", moves_jumps(info.name))?;
         d.set_item("peaks", peaks(info.name))?;
         d.set_item("longest_step_s", info.longest_step_s)?;
+        let (place, type_name) = type_names(info.name).unzip();
+        d.set_item("rust_place", place)?;
+        d.set_item("rust_type", type_name)?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;
     }

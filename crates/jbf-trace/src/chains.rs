@@ -2,34 +2,44 @@
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
-use jbf_core::effect::{self, Effects, Rig};
-use jbf_core::law::{self, with_law, Named, Visitor};
+use jbf_core::effect;
+use jbf_core::law::{self, Named};
+use jbf_core::spec::{Spec, Using};
 use jbf_core::{Bearing, Chain, Clock, Real};
 
 /// No page has more parameters.
 const MOST: usize = 16;
 
 /// Values at which a page's fits start, as many as it has.
-fn starts<T: Real>(pages: &[effect::Parameter]) -> ([T; MOST], usize) {
-    let mut values = [T::ZERO; MOST];
-    for (value, page) in values.iter_mut().zip(pages) {
-        *value = T::of(page.starts.first().copied().unwrap_or_default());
-    }
-    (values, pages.len().min(MOST))
+struct Starts<T> {
+    values: [T; MOST],
+    count: usize,
 }
 
-struct Along<T: Real>(Effects<T>);
+impl<T: Real> Starts<T> {
+    fn of(pages: &[effect::Parameter]) -> Self {
+        let mut values = [T::ZERO; MOST];
+        for (value, page) in values.iter_mut().zip(pages) {
+            *value = T::of(page.starts.first().copied().unwrap_or_default());
+        }
+        let count = pages.len().min(MOST);
+        Self { values, count }
+    }
+}
 
-impl<T: Real> Visitor<T> for Along<T> {
+impl<T> AsRef<[T]> for Starts<T> {
+    fn as_ref(&self) -> &[T] {
+        &self.values[..self.count]
+    }
+}
+
+/// Every reading of a chain along the motion.
+struct Along;
+
+impl<T: Real> Using<T> for Along {
     type Output = Hash;
 
-    fn visit<L: Named<T>>(self, law: L) -> Hash {
-        let rig = Rig {
-            radius_m: T::of(Bearing::THESIS.radius_m),
-            count: T::of(f64::from(Bearing::THESIS.count)),
-        };
-        let effects = self.0;
-        let chain = Chain { law, effects, rig };
+    fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Hash {
         let mut hash = Hash::default();
         let mut motions = motions::<T>();
         let Some(first) = motions.next() else {
@@ -47,27 +57,19 @@ impl<T: Real> Visitor<T> for Along<T> {
 /// A law along the motion, an effect added where `wanted`. What cannot be built shows as the hash
 /// of nothing.
 fn along<T: Real>(page: &law::Info, wanted: impl Fn(&effect::Info) -> bool) -> Hash {
-    let mut effects = Effects::NONE;
-    for info in effect::CATALOGUE {
-        if wanted(info) && info.lacking(page).is_none() {
-            let (values, n) = starts::<T>(info.parameters);
-            if effects.set(info.name, &values[..n]).is_err() {
-                return Hash::default();
-            }
-        }
-    }
-    let (values, n) = starts::<T>(page.parameters);
-    let load_n = Some(104.0);
-    let bearing = Some(&Bearing::THESIS);
-    with_law(
-        page.name,
-        bearing,
-        load_n,
-        &values[..n],
-        Clock::Journal,
-        Along(effects),
-    )
-    .unwrap_or_default()
+    let effects = effect::CATALOGUE
+        .iter()
+        .filter(|info| wanted(info) && info.lacking(page).is_none())
+        .map(|info| (info.name, Starts::<T>::of(info.parameters)));
+    let values = Starts::<T>::of(page.parameters);
+    let spec = Spec {
+        law: page.name,
+        values: values.as_ref(),
+        bearing: Some(&Bearing::THESIS),
+        load_n: Some(104.0),
+        clock: Clock::Journal,
+    };
+    spec.chain(effects, Along).unwrap_or_default()
 }
 
 type Take<'a> = &'a mut dyn FnMut(&'static str, &'static str, Hash);

@@ -9,7 +9,8 @@ use jbf_core::compensator::observed::{Observed, Settings};
 use jbf_core::compensator::table::{Axis, Table};
 use jbf_core::compensator::{Compensator, Coulomb, NoCompensation, Repetitive};
 use jbf_core::controller::{BaseLaw, Controller, Limits};
-use jbf_core::effect::{Effects, Rig};
+use jbf_core::effect::presliding::Presliding;
+use jbf_core::effect::{AsBristle, Place};
 use jbf_core::encoder::Encoder;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
@@ -104,20 +105,16 @@ fn bare<T: Real, L>(law: L) -> Bare<T, L> {
     Bare::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
 }
 
-/// The reduced model with a contact that bends and a ripple over the turn.
-pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>>, ParameterError> {
-    let mut effects = Effects::NONE;
-    effects.set("presliding", &[T::of(0.26 * COUNTS_PER_RAD / 0.0127)])?;
-    let chain = Chain {
-        law: reduced()?.law,
-        effects,
-        rig: Rig {
-            radius_m: T::of(Bearing::THESIS.radius_m),
-            count: T::of(f64::from(Bearing::THESIS.count)),
-        },
-    };
+/// The reduced model with a contact that bends.
+pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterError> {
+    let stiffness_1_m = T::of(0.26 * COUNTS_PER_RAD / 0.0127);
+    let effects = Bending::new(&[stiffness_1_m])?;
+    let chain = Chain::round(reduced()?.law, effects, Some(&Bearing::THESIS));
     Ok(Whole::new(chain, DRIVE.volts_per_n, LOAD_N))
 }
+
+/// The effects of [`chained`].
+pub type Bending<T> = AsBristle<Presliding<T>>;
 
 /// A model corrected by an observer, with the settings that `jbf control tune` gives.
 pub fn observed<T: Real, M: Carried<T>>(

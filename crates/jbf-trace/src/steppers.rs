@@ -50,7 +50,7 @@ pub(crate) fn steppers<T: Real>(take: &mut dyn FnMut(&'static str, &'static str,
                 $law.set_load(&mut state, motion.load_n);
                 $law.$advance(&$stepper, &mut state, speeds, T::ONE, dt_s);
                 let v = motion.velocity_m_s;
-                [state.eps(), $law.friction(&state, v).coefficient(v.sign())]
+                [state.eps(), $law.friction(&state, v).along(v.sign())]
             });
             take("stepper", $name, hash);
         };

@@ -1,7 +1,11 @@
 """The command line: one file a command, each with `add(commands)` and `run(arguments) -> int`.
 
+Comes in: arguments and files. Goes out: text, files, an exit code. No physics and no statistics.
+
 Exit 0: done; 2: the input is wrong, told in one line on stderr with nothing written; 130:
 interrupted.
+
+May import: every room.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import argparse
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
+from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
@@ -34,11 +35,11 @@ def run(arguments: argparse.Namespace) -> int:
     with shown("comparing"):
         comparison = compare(model, runs)
         if arguments.report:
-            from jbf.reporting.page import comparison_page
+            from jbf.reporting.comparison_page import comparison_page
 
             texts[arguments.report] = comparison_page(comparison)
     if arguments.json:
-        texts[arguments.json] = outputs.json_text(comparison.to_dict())
+        texts[arguments.json] = json_text(comparison.to_dict())
     summary = comparison.summary()
     outputs.write(texts)
     outputs.say(summary, wanted)

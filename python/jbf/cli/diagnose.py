@@ -10,6 +10,7 @@ from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, 
 from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.models.catalogue import find_law
+from jbf.reporting.json import json_text
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
@@ -97,11 +98,11 @@ def run(arguments: argparse.Namespace) -> int:
             progress=report,
         )
         if arguments.report:
-            from jbf.reporting.page import diagnosis_page
+            from jbf.reporting.diagnosis_page import diagnosis_page
 
             texts[arguments.report] = diagnosis_page(diagnosis)
     if arguments.json:
-        texts[arguments.json] = outputs.json_text(diagnosis.to_dict())
+        texts[arguments.json] = json_text(diagnosis.to_dict())
     if arguments.out:
         texts[arguments.out] = diagnosis.model.to_toml()
     summary = diagnosis.summary()

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from jbf.cli import outputs
 from jbf.cli.progress import shown
 from jbf.errors import InputError
+from jbf.records.folder import campaigns_in
+from jbf.reporting.json import json_text
 from jbf.reporting.paragraphs import columns
 from jbf.reporting.words import number
 
@@ -35,7 +37,6 @@ def add(parser: Parser) -> None:
 def run(arguments: argparse.Namespace, limits: Limits) -> int:
     """Do it; a campaign that fails is said, and the rest goes on."""
     from jbf.diagnosis import diagnose_many
-    from jbf.diagnosis.many import campaigns_in
 
     if arguments.rig is not None or arguments.next_run:
         raise InputError(
@@ -65,7 +66,7 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
         texts |= _files(arguments, name, result)
     if arguments.json:
         pages = {name: _page(result) for name, result in found.items()}
-        texts[arguments.json] = outputs.json_text(pages)
+        texts[arguments.json] = json_text(pages)
     outputs.write(texts)
     outputs.say("\n".join(_table(found)), {"--json": arguments.json})
     return 0
@@ -80,7 +81,7 @@ def _files(
     if arguments.out:
         found[str(Path(arguments.out) / f"{name}.toml")] = result.model.to_toml()
     if arguments.report:
-        from jbf.reporting.page import diagnosis_page
+        from jbf.reporting.diagnosis_page import diagnosis_page
 
         found[str(Path(arguments.report) / f"{name}.html")] = diagnosis_page(result)
     return found

@@ -9,6 +9,7 @@ from typing import Any
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
 from jbf.models.catalogue import Effect, effects, find_effect, find_law
+from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
@@ -37,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
         if law is not None and law in pages[0].refused:
             text += f"\n\nDoes not apply: the law {law} {pages[0].refused[law]}"
     if arguments.json:
-        outputs.write({arguments.json: outputs.json_text({"effects": list(map(_plain, pages))})})
+        outputs.write({arguments.json: json_text({"effects": list(map(_plain, pages))})})
     outputs.say(text, wanted)
     return 0
 

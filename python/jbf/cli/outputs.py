@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import secrets
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from jbf.errors import InputError
 from jbf.text_files import write_text
@@ -108,23 +105,6 @@ def write(texts: Mapping[str, str]) -> None:
             sys.stdout.write(text)
         else:
             write_text(path, text)
-
-
-def json_text(value: Any) -> str:
-    """Strict JSON: a number that is none (nan) is null, an infinite one is the word."""
-    return json.dumps(_plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if hasattr(value, "tolist"):  # numpy's arrays and scalars
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else ("inf" if value > 0 else "-inf")
-    return value
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:

@@ -1,23 +1,23 @@
 """The axes along which a residual is looked at: one function gives each sample's bin.
 
-An axis answers "where does the model fail?": it sorts samples into few labelled bins, and a
-residual whose mean differs from bin to bin fails along that axis.
+An axis answers "where does the model fail?": it sorts samples into few bins, and a residual whose
+mean differs from bin to bin fails along that axis.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from jbf.comparison.bins import Axis, Bin, Binned, Places
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 
 Array = npt.NDArray[np.float64]
-Bins = npt.NDArray[np.intp]
 
 ANGLE_BINS = 24
 TIME_BINS = 12
@@ -27,22 +27,19 @@ BOUNDARY_SHARE = 0.2
 """Below this share of U_tr the asperities carry most of the load."""
 
 
-@dataclass(frozen=True)
-class Binned:
-    """Every run's samples sorted into labelled bins; -1 means in none."""
-
-    axis: str
-    labels: tuple[str, ...]
-    bins: list[Bins]
+def _both_ways(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
+    """The bins once for motion backwards, then once for motion forwards."""
+    back = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
+    return (*back, *(replace(b, direction=1) for b in bins))
 
 
-def _sign_words(v: Array) -> Bins:
+def _signs(v: Array) -> Places:
     return np.where(v > 0, 1, np.where(v < 0, 0, -1)).astype(np.intp)
 
 
 def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
-    bins = [_sign_words(p.motion.velocity_m_s) for p in campaign.prepared]
-    return Binned("direction", ("v < 0", "v > 0"), bins)
+    places = [_signs(p.motion.velocity_m_s) for p in campaign.prepared]
+    return Binned("direction", _both_ways([Bin()]), places)
 
 
 def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
@@ -51,20 +48,22 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
     count = len(edges) + 1
     middle = [float(np.median(moving[np.digitize(moving, edges) == i])) for i in range(count)]
-    labels = tuple(f"v = -{m:.3g} m/s" for m in middle) + tuple(f"v = +{m:.3g} m/s" for m in middle)
-    bins = []
+    bins = [Bin(centre=-m, unit="m/s", direction=-1) for m in middle]
+    bins += [Bin(centre=m, unit="m/s", direction=1) for m in middle]
+    places = []
     for p in campaign.prepared:
         v = p.motion.velocity_m_s
         size = np.digitize(np.abs(v), edges)
-        bins.append(np.where(v > 0, size + count, np.where(v < 0, size, -1)).astype(np.intp))
-    return Binned("velocity", labels, bins)
+        places.append(np.where(v > 0, size + count, np.where(v < 0, size, -1)).astype(np.intp))
+    return Binned("velocity", tuple(bins), places)
 
 
 def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
     """Lubrication regimes of a law with a film; of any other, thirds of the speeds on record."""
     speeds = [np.abs(p.motion.velocity_m_s) for p in campaign.prepared]
+    axis: Axis = "regime"
     if u_tr is not None:
-        axis, names = "regime", ("boundary", "mixed", "full film")
+        names: tuple[str, ...] = ("boundary", "mixed", "full film")
         edges = np.array([BOUNDARY_SHARE, 1.0]) * u_tr
     else:
         axis = "speed range"
@@ -75,72 +74,64 @@ def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
             "medium",
             f"fast (over {edges[1]:.2g} m/s)",
         )
-    bins = [
+    places = [
         np.where(p.motion.resting, 0, 1 + np.digitize(speed, edges)).astype(np.intp)
         for p, speed in zip(campaign.prepared, speeds, strict=True)
     ]
-    return Binned(axis, ("at rest", *names), bins)
+    return Binned(axis, tuple(Bin(name) for name in ("at rest", *names)), places)
 
 
 def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
-    labels = ("slowing, v < 0", "speeding up, v < 0", "slowing, v > 0", "speeding up, v > 0")
-    bins = []
+    places = []
     for p in campaign.prepared:
         v, a = p.motion.velocity_m_s, p.motion.acceleration_m_s2
         steady = np.abs(a) < 0.02 * float(np.max(np.abs(a), initial=0.0))
         kind = np.where(a * v > 0, 1, 0) + np.where(v > 0, 2, 0)
-        bins.append(np.where(steady | (v == 0.0), -1, kind).astype(np.intp))
-    return Binned("acceleration", labels, bins)
+        places.append(np.where(steady | (v == 0.0), -1, kind).astype(np.intp))
+    return Binned("acceleration", _both_ways([Bin("slowing"), Bin("speeding up")]), places)
 
 
 def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
     width = 2.0 * np.pi / ANGLE_BINS
-    labels = tuple(f"angle {np.degrees((i + 0.5) * width):.0f} deg" for i in range(ANGLE_BINS))
-    bins = []
+    middles = [float(np.degrees((i + 0.5) * width)) for i in range(ANGLE_BINS)]
+    places = []
     for p in campaign.prepared:
         turned = np.mod(p.motion.angle_rad, 2.0 * np.pi)
         kind = np.minimum((turned / width).astype(np.intp), ANGLE_BINS - 1)
         # Friction that depends on angle changes sign with the motion: look at the sum and
         # the difference through two sets of bins.
         signed = np.where(p.motion.velocity_m_s < 0, kind, kind + ANGLE_BINS)
-        bins.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
-    both = tuple(f"{x}, v < 0" for x in labels) + tuple(f"{x}, v > 0" for x in labels)
-    return Binned("angle", both, bins)
+        places.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
+    return Binned("angle", _both_ways([Bin(centre=m, unit="deg") for m in middles]), places)
 
 
 def _time(campaign: Campaign, u_tr: float | None) -> Binned:
     longest = max(p.run.duration_s for p in campaign.prepared)
     edges = longest * np.linspace(0, 1, TIME_BINS + 1)
-    labels = tuple(f"{edges[i]:.0f} to {edges[i + 1]:.0f} s" for i in range(TIME_BINS))
-    both = tuple(f"{x}, v <= 0" for x in labels) + tuple(f"{x}, v > 0" for x in labels)
-    bins = []
+    spans = [Bin(span=pair, unit="s") for pair in pairwise(edges.tolist())]
+    places = []
     for p in campaign.prepared:
         kind = np.digitize(p.run.time_s - p.run.time_s[0], edges[1:-1])
-        bins.append(np.where(p.motion.velocity_m_s > 0, kind + TIME_BINS, kind).astype(np.intp))
-    return Binned("time", both, bins)
+        places.append(np.where(p.motion.velocity_m_s > 0, kind + TIME_BINS, kind).astype(np.intp))
+    return Binned("time", _both_ways(spans, with_rest=True), places)
 
 
-def _since(campaign: Campaign, axis: str, measure: Callable[[Prepared], Array]) -> Binned:
+def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
     values = [measure(p) for p in campaign.prepared]
     known = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values] or [np.zeros(0)])
     unit = "s" if axis == "time since a rest" else "m"
     if len(known) < 100:
         return Binned(axis, (), [np.full(len(v), -1, dtype=np.intp) for v in values])
     edges = np.unique(np.quantile(known, [0.05, 0.1, 0.2, 0.4, 0.7]))
-    names = [f"up to {edges[0]:.2g} {unit}"]
-    names += [f"{a:.2g} to {b:.2g} {unit}" for a, b in pairwise(edges)]
-    names += [f"over {edges[-1]:.2g} {unit}"]
-    what = axis.removeprefix("time since ").removeprefix("distance since ")
-    labels = tuple(f"{n} after {what}, v < 0" for n in names) + tuple(
-        f"{n} after {what}, v > 0" for n in names
-    )
-    bins = []
+    ends = [-np.inf, *edges.tolist(), np.inf]
+    spans = [Bin(span=pair, unit=unit) for pair in pairwise(ends)]
+    places = []
     for p, v in zip(campaign.prepared, values, strict=True):
         ok = np.isfinite(v) & (v > 0)
         kind = np.digitize(np.where(ok, v, 0.0), edges)
-        kind = np.where(p.motion.velocity_m_s > 0, kind + len(names), kind)
-        bins.append(np.where(ok & ~p.motion.resting, kind, -1).astype(np.intp))
-    return Binned(axis, labels, bins)
+        kind = np.where(p.motion.velocity_m_s > 0, kind + len(spans), kind)
+        places.append(np.where(ok & ~p.motion.resting, kind, -1).astype(np.intp))
+    return Binned(axis, _both_ways(spans), places)
 
 
 def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> Array:
@@ -166,9 +157,9 @@ def _distance_since_reversal(p: Prepared) -> Array:
 
 
 def _run(campaign: Campaign, u_tr: float | None) -> Binned:
-    labels = tuple(f"run {p.run.name}" for p in campaign.prepared)
-    bins = [np.full(len(p.run), i, dtype=np.intp) for i, p in enumerate(campaign.prepared)]
-    return Binned("run", labels, bins)
+    bins = tuple(Bin(p.run.name) for p in campaign.prepared)
+    places = [np.full(len(p.run), i, dtype=np.intp) for i, p in enumerate(campaign.prepared)]
+    return Binned("run", bins, places)
 
 
 def force_axis(predictions: Sequence[Array]) -> Binned:
@@ -178,11 +169,13 @@ def force_axis(predictions: Sequence[Array]) -> Binned:
     count = len(edges) + 1
     places = [np.digitize(f, edges).astype(np.intp) for f in predictions]
     sorted_ = np.concatenate(places)
-    labels = tuple(
-        f"f = {float(np.median(every[sorted_ == i])):+.3g} N" if np.any(sorted_ == i) else "none"
+    bins = tuple(
+        Bin(centre=float(np.median(every[sorted_ == i])), unit="N")
+        if np.any(sorted_ == i)
+        else Bin("none")
         for i in range(count)
     )
-    return Binned("force", labels, places)
+    return Binned("force", bins, places)
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
@@ -201,4 +194,4 @@ def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
         axes.append(_angle(campaign, u_tr))
     axes.append(_since(campaign, "time since a rest", _time_since_rest))
     axes.append(_since(campaign, "distance since a reversal", _distance_since_reversal))
-    return [a for a in axes if a.labels]
+    return [a for a in axes if a.bins]

@@ -68,6 +68,6 @@ def on_the_journal_clock(report: Report | None = None) -> float:
 
 
 def _with_elastic(model: Model, what: str) -> Model:
-    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    values = {n: p.value for n, p in model.parameters.items()}
     u_tr, k0, gamma = (values[n] for n in ("U_tr_m_s", "K0", "gamma"))
     return thesis_model(elastic=what, U_tr_m_s=u_tr, K0=k0, gamma=gamma)

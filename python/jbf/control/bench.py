@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 from jbf import _core
 from jbf.control.constants import COUNTER_BITS, COUNTS_PER_RAD, DRIVE
@@ -13,6 +13,7 @@ from jbf.models import catalogue
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
+from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
 
@@ -104,7 +105,7 @@ def core_model(model: Model) -> dict[str, Any]:
             problem=f"{own_effects[0]} is an effect of your own: it runs in Python, not in a loop",
             mend="fit a model without it, or write it for the core (ARCHITECTURE.md)",
         )
-    values = [p.value for p in model.parameters.values()]  # type: ignore[union-attr]
+    values = [p.value for p in model.parameters.values()]
     names = list(model.parameters)
     own = [v for n, v in zip(names, values, strict=True) if "." not in n]
     effects = [
@@ -155,9 +156,7 @@ the Coulomb column of Table 6.2 asks for (docs/control.md).
 """
 
 
-def thesis_model(
-    *, elastic: str = "belt", clock: Literal["journal", "thesis"] = "thesis", **parameters: float
-) -> Model:
+def thesis_model(*, elastic: str = "belt", clock: Clock = "thesis", **parameters: float) -> Model:
     """The friction of the thesis's bench.
 
     Parameters

@@ -22,6 +22,7 @@ from jbf.estimation.fit import fit
 from jbf.models.catalogue import effects, laws
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
+from jbf.models.parameter_value import ParameterValue
 from jbf.records.rig import Lubricant
 from jbf.records.run import Run
 
@@ -92,7 +93,10 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
             continue
         strong = STRONG.get(name, {})
         known = {p.name for p in page.parameters}
-        values = {f"{name}.{p.name}": strong.get(p.name, p.starts[0]) for p in page.parameters}
+        values = {
+            f"{name}.{p.name}": ParameterValue(strong.get(p.name, p.starts[0]))
+            for p in page.parameters
+        }
         assert set(strong) <= known, f"{name} has no {set(strong) - known}"
         plant = replace(
             base, effects=(*base.effects, name), parameters={**base.parameters, **values}
@@ -134,7 +138,7 @@ def misled(base: Model, seen: Model) -> Model:
         friction = seen.predict(clean)
         noise = rng.normal(0.0, 0.02 * float(np.max(np.abs(friction))), len(friction))
         runs.append(replace(clean, friction_n=friction + noise))
-    start = {n: p.value for n, p in base.parameters.items()}  # type: ignore[union-attr]
+    start = {n: p.value for n, p in base.parameters.items()}
     found = fit(base.rig, runs, base.effects, law=base.law, clock=base.clock, start=start)
     return found.model
 

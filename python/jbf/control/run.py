@@ -2,29 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf import _core
+from jbf import _core, results
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.loop import core_loop
-from jbf.control.schemes import Scheme, scheme
+from jbf.control.schemes import SCHEMES, Scheme, scheme
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
-from jbf.models.chain import core_load_n
-from jbf.models.model import Model
+from jbf.models.chain import core_load_n, core_refusals
+from jbf.models.model import Model, the_model
+from jbf.records.arguments import described, of_kind
 
 Array = npt.NDArray[np.float64]
 
 _NEVER = 2**62
+_COLUMNS = (
+    "time_s",
+    "reference",
+    "angle_rad",
+    "velocity_rad_s",
+    "friction_v",
+    "measured_angle_rad",
+    "estimated_velocity_rad_s",
+    "error",
+    "base_v",
+    "compensation_v",
+    "estimated_friction_v",
+    "correction_v",
+    "forward_v",
+    "output_v",
+    "learned_0",
+    "learned_1",
+    "status",
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
+class Result(results.Result):
     """Arrays of shape (n,), one value a step of the loop.
 
     Attributes
@@ -72,6 +92,26 @@ class Result:
             f"Result({self.scheme} on {self.task.control} {self.task.wave}: "
             f"RMS error {self.rms:.4g} {self.task.unit})"
         )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Task, scheme and errors, for JSON; `columns` has the arrays."""
+        return {
+            "task": asdict(self.task),
+            "scheme": self.scheme,
+            "rms": self.rms,
+            "peak": self.peak,
+            "true_rms": self.true_rms,
+        }
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """The arrays by name, in the order in which `to_csv` writes them."""
+        return {name: getattr(self, name) for name in _COLUMNS}
+
+    def to_csv(self) -> str:
+        """The run as the text of a CSV file."""
+        columns = self.columns()
+        rows = zip(*(a.tolist() for a in columns.values()), strict=True)
+        return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
     @property
     def response(self) -> Array:
@@ -155,7 +195,8 @@ def run(
     InputError
         Something is out of range, or of the wrong length.
     """
-    truth = thesis_model() if model is None else model
+    truth = thesis_model() if model is None else the_model(model)
+    of_kind(task, Task, "the task", 'name one of control.TASKS: TASKS["velocity sine"]')
     chosen = _scheme(scheme, model if carried is None else carried, settings)
     believed = bench if told is None else told
     if believed.dt_s != bench.dt_s:
@@ -169,7 +210,7 @@ def run(
         "jump_at": _NEVER if jump is None else round(jump[0] / bench.dt_s),
         "jump_counts": 0 if jump is None else jump[1],
     }
-    try:
+    with core_refusals(_mend):
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
             core_loop(task, believed, chosen.guard(believed) if guard is None else guard),
@@ -180,19 +221,24 @@ def run(
             faults,
             precision=precision,
         )
-    except (ValueError, OverflowError) as error:
-        if isinstance(error, InputError):
-            raise
-        mend = "correct it"
-        if str(error).startswith("top_speed_rad_s"):
-            mend = "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
-        raise InputError(problem=str(error), mend=mend) from None
     time_s = np.arange(n, dtype=np.float64) * bench.dt_s
     return Result(task, chosen.name, time_s, value, **arrays)
 
 
+def _mend(problem: str) -> str:
+    """What to do about something that the core's loop refuses."""
+    if problem.startswith("top_speed_rad_s"):
+        return "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
+    return "correct it"
+
+
 def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | None) -> Scheme:
-    return scheme(given, carried, settings) if isinstance(given, str) else given
+    if isinstance(given, str):
+        return scheme(given, carried, settings)
+    if not hasattr(given, "core"):
+        mend = f"name one of {', '.join(SCHEMES)}"
+        raise InputError(problem=f"the scheme is {described(given)}", mend=mend)
+    return given
 
 
 def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -21,9 +20,9 @@ from jbf.control.run import Result, run
 from jbf.control.schemes import Coulomb, Learning, NoCompensation, Observed, Scheme
 from jbf.control.task import TASKS, Task
 from jbf.models.model import Model
+from jbf.models.vocabulary import Clock
 
 Report = Callable[[str, int, int], None]
-Clock = Literal["journal", "thesis"]
 
 COLUMNS = ("none", "learning", "coulomb")
 

@@ -14,7 +14,7 @@ import numpy as np
 from jbf.control.bench import THESIS_BENCH, Bench
 from jbf.control.settings import Settings
 from jbf.errors import InputError
-from jbf.models.model import Model
+from jbf.models.model import Model, the_model
 from jbf.records.run import Run
 
 _SHARE_OF_SAMPLING = 0.12
@@ -34,7 +34,7 @@ _NOISE_SHARE = 0.01
 
 def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
     """The largest friction (V) that a model has in slow motion, effects included."""
-    values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+    values = {n: p.value for n, p in model.parameters.items()}
     key = (model.rig, model.law, model.effects, model.clock, tuple(values.items()))
     if key not in _levels_n:
         if len(_levels_n) >= _MOST_LEVELS:
@@ -80,7 +80,7 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
     InputError
         The model's friction is more than the drive's voltage.
     """
-    level_v = friction_level_v(model, bench)
+    level_v = friction_level_v(the_model(model), bench)
     if not 0.0 < level_v < bench.limit_v:
         raise InputError(
             problem=f"the model's friction is {level_v:.3g} V, the drive has {bench.limit_v:g} V",

@@ -23,6 +23,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import effects as catalogue
 from jbf.models.catalogue import find_effect
+from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
 State = Literal["posed", "ranked", "converged"]
@@ -83,7 +84,7 @@ class Candidates:
         self,
         campaign: Campaign,
         law: str,
-        clock: str,
+        clock: Clock,
         policy: Policy = DEFAULT,
         progress: Progress | None = None,
     ) -> None:

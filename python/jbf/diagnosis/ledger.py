@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
+
+Outcome = Literal["added", "ties", "rejected", "useless", "withdrawn"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Trial:
     effect: str
     rms_n: float
     evidence: float
-    outcome: str
+    outcome: Outcome
     reason: str
 
     def to_dict(self) -> dict[str, Any]:

@@ -4,59 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, as_completed
-from pathlib import Path
 from typing import Any
 
 from jbf.diagnosis.candidates import Progress
 from jbf.diagnosis.recipe import diagnose
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError, JbfError
-from jbf.models.catalogue import find_law
-from jbf.records.rig import Rig, read_rig
+from jbf.models.catalogue import find_clock, find_law
+from jbf.records.arguments import check_callable, described, one_of
+from jbf.records.folder import read_campaign
+from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.records.run_files import read_runs
 
 Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""
 
-
-def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
-    """The rig and the runs of a folder that holds `rig.toml` and CSV files.
-
-    Raises
-    ------
-    InputError
-        There is no rig, no run, or one of them is wrong.
-    """
-    folder = Path(folder)
-    path = folder / "rig.toml"
-    if not path.is_file():
-        raise InputError(
-            file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
-        )
-    return read_rig(path), read_runs(folder)
-
-
-def campaigns_in(folder: PathLike) -> dict[str, Path]:
-    """Every folder in a folder that holds a rig or a run, by name.
-
-    Raises
-    ------
-    InputError
-        There is none.
-    """
-    found = {
-        path.name: path
-        for path in sorted(Path(folder).iterdir() if Path(folder).is_dir() else ())
-        if path.is_dir() and ((path / "rig.toml").is_file() or any(path.glob("*.csv")))
-    }
-    if not found:
-        raise InputError(
-            file=folder,
-            problem="holds no campaign",
-            mend="give each campaign a folder in it, with rig.toml and the runs as CSV",
-        )
-    return found
+OPTIONS = ("law", "clock", "limits", "policy")
+"""What of `diagnose` may be asked for all of them."""
 
 
 def diagnose_many(
@@ -79,7 +43,7 @@ def diagnose_many(
     progress
         Called with a campaign's name and verdict, and how many of how many are done.
     options
-        As for `diagnose`: `law`, `clock`, `limits`.
+        As for `diagnose`: `law`, `clock`, `limits`, `policy`.
 
     Returns
     -------
@@ -91,7 +55,16 @@ def diagnose_many(
     InputError
         An option that is wrong for all of them.
     """
+    for option in options:
+        one_of(option, OPTIONS, "option")
     find_law(options.get("law", "journal"))
+    find_clock(options.get("clock", "journal"))
+    check_callable(progress, "progress")
+    if not isinstance(campaigns, Mapping):
+        raise InputError(
+            problem=f"campaigns is {described(campaigns)}",
+            mend="give a dict: name to (rig, runs), or to a folder",
+        )
     found: dict[str, Diagnosis | JbfError] = {}
 
     def keep(name: str, result: Diagnosis | JbfError) -> None:
@@ -115,7 +88,12 @@ def diagnose_many(
 
 def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError:
     try:
-        rig, runs = given if isinstance(given, tuple) else read_campaign(given)
+        pair = given if isinstance(given, tuple) else read_campaign(given)
+        if len(pair) != 2:
+            raise InputError(
+                problem=f"a campaign is {len(pair)} things", mend="give a rig and a list of runs"
+            )
+        rig, runs = pair
         return diagnose(rig, runs, **options)
     except JbfError as error:
         return error

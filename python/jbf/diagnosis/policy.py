@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
-from jbf.comparison.comparison import LEAST_SHARE, SIGNIFICANCE
+from jbf.comparison.patterns import LEAST_SHARE, SIGNIFICANCE
 
 
 def _number(value: Any, decides: str, source: str) -> Any:

@@ -23,7 +23,10 @@ from jbf.diagnosis.verdict import Explained, names_stand, verdict
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
 from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
@@ -35,7 +38,7 @@ def diagnose(
     runs: Sequence[Run],
     *,
     law: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     limits: Limits | None = None,
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
@@ -69,6 +72,10 @@ def diagnose(
     """
     begun = time.monotonic()
     check_rig(rig, law)
+    clock = find_clock(clock)
+    check_callable(progress, "progress")
+    if limits is not None:
+        of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
     campaign = Campaign.prepare(rig, runs)
     candidates = Candidates(campaign, law, clock, policy, progress)
     bare = finish(candidates.fitted(()).problem, candidates.converge(()))

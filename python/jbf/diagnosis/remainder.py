@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.comparison.axes import all_axes, force_axis
-from jbf.comparison.comparison import Failure, pattern_along
+from jbf.comparison.patterns import Failure, pattern_along
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.constancy import find_disagreement
 from jbf.diagnosis.ledger import Remainder

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from jbf.comparison.comparison import Comparison, Failure
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.patterns import Failure
 from jbf.diagnosis.experiment import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
 from jbf.diagnosis.policy import DEFAULT, Policy
@@ -14,13 +14,11 @@ from jbf.diagnosis.verdict import Verdict
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
 from jbf.records.run import PathLike
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from jbf.results import Result
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Result):
     """The answer to "which effect is missing?".
 
     Attributes
@@ -84,30 +82,13 @@ class Diagnosis:
             "failures": [f.to_dict() for f in self.failures],
             "unexplained": [r.to_dict() for r in self.unexplained],
             "next_experiment": self.next_experiment,
-            "parameters": {
-                name: {"value": p.value, "stderr": p.stderr, "note": p.note}
-                for name, p in self.fit.parameters.items()
-            },
+            "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
             "policy": self.policy.to_dict(),
             "elapsed_s": self.elapsed_s,
         }
 
-    def summary(self) -> str:
-        """The story on a page of text."""
-        from jbf.reporting.text import diagnosis_report
-
-        return diagnosis_report(self)
-
-    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-        """The error falling step by step, and friction against speed; matplotlib axes."""
-        from jbf.reporting.plots import plot_diagnosis
-
-        return plot_diagnosis(self, axes)
-
     def report(self, path: PathLike) -> None:
-        """Write a self-contained HTML page with pictures."""
-        from jbf.reporting.page import write_diagnosis
-
-        write_diagnosis(self, path)
+        """As `save_html`."""
+        self.save_html(path)

@@ -14,7 +14,7 @@ import numpy as np
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
 from jbf.diagnosis.evidence import evidence, price_of, swap_cost
-from jbf.diagnosis.ledger import Trial
+from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, next_step_gain
 from jbf.estimation.solution import Solution
@@ -63,6 +63,7 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
     for found in ranked:
         name, gain = found.effect, found.evidence
         rms = min(found.solution.rms_n, bare)
+        outcome: Outcome
         outcome, reason = "useless", "gains no more than chance would"
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -27,8 +28,10 @@ from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.uncertainty import HELD
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.arguments import check_callable, of_kind, whole_number
 from jbf.records.motion.roughness import encoder_step
 from jbf.records.run import Run
+from jbf.results import Result
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
@@ -37,8 +40,8 @@ LEAST_REPEATS = 19
 """The middle 68 % of fewer answers are too few to tell a width."""
 
 
-@dataclass(frozen=True)
-class Bootstrap:
+@dataclass(frozen=True, repr=False)
+class Bootstrap(Result):
     """Answers of repeated fits.
 
     Attributes
@@ -53,10 +56,14 @@ class Bootstrap:
     fit: Fit
     values: dict[str, Array]
 
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON: the fit, and every answer."""
+        return {**self.fit.to_dict(), "answers": {n: v.tolist() for n, v in self.values.items()}}
+
 
 def check_repeats(repeats: int, name: str = "repeats") -> None:
     """An InputError where so few tell no error."""
-    if repeats < LEAST_REPEATS:
+    if whole_number(repeats, name) < LEAST_REPEATS:
         raise InputError(
             problem=f"{name} {repeats} is too few to tell an error",
             mend=f"ask for {LEAST_REPEATS} or more; 40 tell it better",
@@ -96,6 +103,9 @@ def bootstrap(
         Fewer than 19 repeats, or runs that cannot be prepared.
     """
     check_repeats(repeats)
+    whole_number(seed, "seed")
+    check_callable(progress, "progress")
+    of_kind(fitted, Fit, "the fit", "give what jbf.fit made of these runs")
     model = fitted.model
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}

@@ -15,6 +15,7 @@ from jbf.estimation.samples import Samples
 from jbf.models.catalogue import Effect
 from jbf.models.own_effects import ALWAYS
 from jbf.models.requirements import has_angle, has_path
+from jbf.records.arguments import list_of_runs
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -51,7 +52,7 @@ class Campaign:
         InputError
             No run at all, a run without friction, or one in which nothing moves.
         """
-        runs = list(runs)
+        runs = list_of_runs(runs)
         if not runs:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
         prepared = tuple(Prepared.of(rig, run) for run in runs)

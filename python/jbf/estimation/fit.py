@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
+from jbf.estimation.estimates import Estimates
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem, named_values
@@ -21,6 +23,7 @@ from jbf.models.chain import check_rig
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
+from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
@@ -28,8 +31,8 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, repr=False)
+class Fit(Estimates):
     """A fitted model and what the fit says of itself.
 
     Attributes
@@ -61,10 +64,20 @@ class Fit:
     doubtful: tuple[str, ...] = ()
 
     def report(self) -> str:
-        """Statistics, parameters with errors, and the strongest correlations, as text."""
-        from jbf.reporting.text import fit_report
+        """As `summary`: statistics, parameters with errors, and the strongest correlations."""
+        return self.summary()
 
-        return fit_report(self)
+    def facts(self) -> Mapping[str, Any]:
+        """What `to_dict` says beside the parameters."""
+        return {
+            "law": self.model.law,
+            "effects": list(self.model.effects),
+            "rms_n": self.rms_n,
+            "samples": self.samples,
+            "converged": self.converged,
+            "message": self.message,
+            "doubtful": list(self.doubtful),
+        }
 
 
 def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
@@ -118,7 +131,7 @@ def fit(
     effects: Sequence[str] = (),
     *,
     law: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     start: Mapping[str, float] | None = None,
     fixed: Mapping[str, float] | None = None,
 ) -> Fit:

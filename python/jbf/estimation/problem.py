@@ -19,8 +19,17 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.starts import with_starts
-from jbf.models.catalogue import Parameter, find_parameter, in_chain_order, parameters_of
+from jbf.models.catalogue import (
+    Parameter,
+    find_law,
+    find_parameter,
+    in_chain_order,
+    parameters_of,
+)
 from jbf.models.chain import chain
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import by_name
+from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
 
@@ -35,7 +44,7 @@ class Problem:
         self,
         campaign: Campaign,
         law: str,
-        clock: str,
+        clock: Clock,
         effects: Sequence[str],
         fixed: Mapping[str, float] | None = None,
     ) -> None:
@@ -44,7 +53,7 @@ class Problem:
         self.effects = in_chain_order(effects)
         self.chain = chain(campaign.rig, law, clock, self.effects)
         self.parameters: dict[str, Parameter] = with_starts(
-            parameters_of(law, self.effects), campaign
+            parameters_of(law, self.effects), campaign, not find_law(law).needs_bearing
         )
         self.names = list(self.parameters)
         self.fixed = dict(fixed or {})
@@ -155,13 +164,14 @@ def named_values(
 ) -> dict[str, float]:
     """Full names and checked bounds."""
     found = {}
-    for name, value in (values or {}).items():
+    given = {} if values is None else by_name(values, "parameters")
+    for name, anything in given.items():
         full = find_parameter(name, known)
-        page = known[full]
+        page, value = known[full], number(anything, full)
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 problem=f"{full} = {value} is out of range",
                 mend=f"choose from {page.lower:g} to {page.upper:g}",
             )
-        found[full] = float(value)
+        found[full] = value
     return found

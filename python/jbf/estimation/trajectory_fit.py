@@ -7,18 +7,22 @@ Records with effects, noise on the speed and unknown signs are :func:`jbf.fit`'s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.estimates import Estimates
 from jbf.models.catalogue import find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
-from jbf.models.trajectory import Motion, is_record, trajectories
+from jbf.models.trajectory import Motion, is_record, motions_of, trajectories
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import by_name, described, numbers
 from jbf.records.rig import Rig
+from jbf.records.toml_file import number
 from jbf.threads import one_blas_thread
 
 if TYPE_CHECKING:
@@ -29,8 +33,8 @@ REST_SHARE = 1e-9
 """Speeds below this share of the run's top are rest: friction is set-valued there."""
 
 
-@dataclass(frozen=True)
-class TrajectoryFit:
+@dataclass(frozen=True, repr=False)
+class TrajectoryFit(Estimates):
     """Fitted parameters of the bare law.
 
     Attributes
@@ -54,10 +58,15 @@ class TrajectoryFit:
     converged: bool
     message: str
 
-    @property
-    def values(self) -> dict[str, float]:
-        """Name to value."""
-        return {name: p.value for name, p in self.parameters.items()}
+    def facts(self) -> Mapping[str, Any]:
+        """What `to_dict` says beside the parameters."""
+        return {
+            "sum_of_squares": self.sum_of_squares,
+            "samples": self.samples,
+            "evaluations": self.evaluations,
+            "converged": self.converged,
+            "message": self.message,
+        }
 
 
 @one_blas_thread
@@ -68,7 +77,7 @@ def fit_trajectories(
     *,
     start: Mapping[str, float] | None = None,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -94,11 +103,18 @@ def fit_trajectories(
     from scipy import optimize  # most of a second to import
 
     pages = parameters_of("journal", ())
-    given = {find_parameter(name, pages): float(v) for name, v in (start or {}).items()}
+    given = {
+        find_parameter(name, pages): number(value, f"start.{name}")
+        for name, value in by_name(start or {}, "start").items()
+    }
     first = np.array([given.get(name, page.starts[0]) for name, page in pages.items()])
     low = np.log([page.lower for page in pages.values()])
     high = np.log([page.upper for page in pages.values()])
-    measured = [np.asarray(f, dtype=float) for f in friction_coefficient]
+    runs = motions_of(runs)
+    if isinstance(friction_coefficient, str) or not isinstance(friction_coefficient, Iterable):
+        said = described(friction_coefficient)
+        raise InputError(problem=f"the friction is {said}", mend="give a list, one array a run")
+    measured = [numbers(f, f"the friction of run {i}") for i, f in enumerate(friction_coefficient)]
     keep = _usable(runs, measured)
     data = np.concatenate(measured)[keep]
     if len(data) <= len(first):

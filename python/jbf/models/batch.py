@@ -10,9 +10,14 @@ import numpy.typing as npt
 
 from jbf import _core
 from jbf.errors import InputError
+from jbf.models.catalogue import find_clock
+from jbf.models.chain import core_refusals
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import numbers, one_of, the_rig
 from jbf.records.rig import Rig
 
 Array = npt.NDArray[Any]
+METHODS = ("euler", "rk4")
 
 
 def _refuse(key: str, problem: str, mend: str) -> InputError:
@@ -45,6 +50,8 @@ def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
 def _result(out: Array | None, shape: tuple[int, int], dtype: np.dtype[Any]) -> Array:
     if out is None:
         return np.empty(shape, dtype)
+    if not isinstance(out, np.ndarray):
+        raise _refuse("out", "is no array", f"make it np.empty({shape}, np.{dtype})")
     if out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous:
         raise _refuse("out", "does not fit", f"make it np.empty({shape}, np.{dtype})")
     return out
@@ -60,7 +67,7 @@ def batch(
     K0: npt.ArrayLike,
     gamma: npt.ArrayLike,
     load_n: npt.ArrayLike | None = None,
-    clock: str = "journal",
+    clock: Clock = "journal",
     method: str = "euler",
     data: npt.ArrayLike | None = None,
     dtype: npt.DTypeLike = np.float64,
@@ -99,7 +106,13 @@ def batch(
     InputError
         An array of the wrong shape or a parameter out of its range.
     """
-    precision = np.dtype(dtype)
+    the_rig(rig)
+    find_clock(clock)
+    one_of(method, METHODS, "method")
+    try:
+        precision = np.dtype(dtype)
+    except TypeError:
+        raise _refuse("dtype", "is no dtype", "choose np.float64 or np.float32") from None
     if precision not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise _refuse("dtype", f"is {precision}", "choose np.float64 or np.float32")
     if not (isinstance(dt_s, int | float) and 0.0 < dt_s < math.inf):
@@ -114,7 +127,7 @@ def batch(
     load = rig.load.normal_n if load_n is None and rig.load is not None else load_n
     assert load is not None
     sets = _sets({"f_m": f_m, "U_tr_m_s": U_tr_m_s, "K0": K0, "gamma": gamma, "load_n": load})
-    speeds = np.ascontiguousarray(velocity_m_s, dtype=precision)
+    speeds = numbers(velocity_m_s, "velocity_m_s", precision)
     each = speeds.ndim == 2
     if speeds.ndim not in (1, 2) or (each and speeds.shape[1] != len(sets)):
         raise _refuse(
@@ -125,7 +138,7 @@ def batch(
     if not np.isfinite(speeds).all():
         raise _refuse("velocity_m_s", "is not finite throughout", "fill or cut the gaps")
     b = rig.bearing
-    try:
+    with core_refusals():
         core = _core.BatchRig(
             radius_m=b.radius_m,
             length_m=b.length_m,
@@ -138,7 +151,7 @@ def batch(
         )
         single = precision == np.dtype(np.float32)
         if data is not None:
-            wanted = np.ascontiguousarray(data, dtype=precision)
+            wanted = numbers(data, "data", precision)
             if wanted.shape != speeds.shape[:1]:
                 raise _refuse("data", f"has shape {wanted.shape}", "give one coefficient a sample")
             squares = core.squares_f32 if single else core.squares_f64
@@ -146,8 +159,4 @@ def batch(
         result = _result(out, (len(speeds), len(sets)), precision)
         friction = core.friction_f32 if single else core.friction_f64
         friction(sets, speeds.reshape(-1), each, dt_s, result.reshape(-1))
-    except InputError:
-        raise
-    except ValueError as error:
-        raise InputError(problem=str(error), mend="correct the value") from None
     return result

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from textwrap import shorten
+from typing import Literal, Protocol, TypeVar
 
 import numpy as np
 
 from jbf import _core
 from jbf.errors import InputError, did_you_mean
-from jbf.models.vocabulary import Vocabulary
+from jbf.models.vocabulary import CLOCKS, Clock, Vocabulary
+from jbf.records.arguments import names as checked_names
+from jbf.records.arguments import one_of
+
+Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
+"""Where in the signal chain an effect acts."""
+
+
+class _Summed(Protocol):
+    @property
+    def summary(self) -> str: ...
+
+
+Page = TypeVar("Page", bound=_Summed)
 
 
 @dataclass(frozen=True)
@@ -29,6 +44,12 @@ class Parameter:
         True where a fit should walk in the logarithm.
     period
         The period of an angle, for parameters that wrap.
+    start
+        Of what in the data it is about the size, where the law is one in newtons: a fit then
+        starts there. "catalogue" where `starts` always hold.
+    bound
+        What in the data bounds it from above: "transition_speed" the fastest speed on record,
+        "catalogue" nothing.
     """
 
     name: str
@@ -40,20 +61,34 @@ class Parameter:
     starts: tuple[float, ...] = ()
     log: bool = False
     period: float | None = None
+    start: str = "catalogue"
+    bound: str = "catalogue"
 
 
-@dataclass(frozen=True)
+class Pages(dict[str, Page]):
+    """Pages by name, shown as a short table."""
+
+    def __repr__(self) -> str:
+        widest = max(map(len, self), default=0)
+        return "\n".join(
+            f"{name:<{widest}}  {shorten(page.summary, 60, placeholder=' ...')}"
+            for name, page in self.items()
+        )
+
+
+@dataclass(frozen=True, repr=False)
 class Effect:
     """The page of one effect.
 
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
     instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
-    peaks, None for most. `columns` are those that an effect of one's own asks for.
+    peaks, None for most. `rust_place` and `rust_type` are the names of its types in the core, empty
+    of an effect of one's own; `columns` are those that such an effect asks for.
     """
 
     name: str
-    stage: str
+    stage: Stage
     summary: str
     equation: str
     source: str
@@ -65,9 +100,14 @@ class Effect:
     longest_step_s: float
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()
+    rust_place: str = ""
+    rust_type: str = ""
+
+    def __repr__(self) -> str:
+        return f"Effect({self.name}, {self.stage}: {self.summary})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Law:
     """The page of one base law.
 
@@ -85,6 +125,9 @@ class Law:
     has_bristle: bool
     rust_type: str
     parameters: tuple[Parameter, ...]
+
+    def __repr__(self) -> str:
+        return f"Law({self.name}: {self.summary})"
 
 
 def _parameter(page: _core.ParameterPage) -> Parameter:
@@ -125,15 +168,15 @@ def drop(name: str) -> bool:
     return _own.pop(name, None) is not None
 
 
-def effects() -> dict[str, Effect]:
+def effects() -> Pages[Effect]:
     """Every effect by name, in the order of the signal chain; one's own come last."""
-    return {**built_in(), **_own}
+    return Pages({**built_in(), **_own})
 
 
 @cache
-def laws() -> dict[str, Law]:
+def laws() -> Pages[Law]:
     """Every base law by name."""
-    pages = {}
+    pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
         fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
@@ -150,7 +193,7 @@ def find_effect(name: str) -> Effect:
         Names the unknown effect and the nearest known one.
     """
     known = effects()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise InputError(
             problem=f'there is no effect "{name}"',
             mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
@@ -161,9 +204,12 @@ def find_effect(name: str) -> Effect:
 def find_law(name: str) -> Law:
     """The law of that name; an InputError names an unknown one."""
     known = laws()
-    if name not in known:
-        raise InputError(problem=f'there is no law "{name}"', mend=did_you_mean(name, known))
-    return known[name]
+    return known[one_of(name, known, "law")]
+
+
+def find_clock(name: str) -> Clock:
+    """The clock of that name; an InputError names an unknown one."""
+    return one_of(name, CLOCKS, "clock")
 
 
 def check_applies(law: str, names: Iterable[str]) -> None:
@@ -180,13 +226,13 @@ def check_applies(law: str, names: Iterable[str]) -> None:
 
 def transition_speed(law: str, values: Sequence[float]) -> float | None:
     """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
-    names = [p.name for p in find_law(law).parameters]
-    return float(values[names.index("U_tr_m_s")]) if "U_tr_m_s" in names else None
+    pages = zip(find_law(law).parameters, values, strict=False)
+    return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
     """The effects in the order of the signal chain, each once."""
-    chosen = {find_effect(name).name for name in names}
+    chosen = {find_effect(name).name for name in checked_names(names, "effects")}
     return tuple(name for name in effects() if name in chosen)
 
 
@@ -198,7 +244,7 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
     return found
 
 
-def find_parameter(name: str, known: Mapping[str, Parameter]) -> str:
+def find_parameter(name: str, known: Collection[str]) -> str:
     """The full dotted name of a parameter given with or without its unit.
 
     `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
 from jbf.errors import FilmWarning, InputError
-from jbf.models.catalogue import check_applies, find_effect, find_law, in_chain_order
+from jbf.models.catalogue import (
+    check_applies,
+    find_clock,
+    find_effect,
+    find_law,
+    in_chain_order,
+)
 from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
+from jbf.records.arguments import one_run, the_rig
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -23,8 +31,27 @@ MAX_STEP_S = 0.02
 where the law or an effect asks for them; at 0.02 s the bare law errs by some 1e-5 of its peak."""
 
 
+@contextmanager
+def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
+    """What the core refuses in here, as an InputError: the one kind of error that users meet.
+
+    Parameters
+    ----------
+    mend
+        What to do about it, or what gives that for the core's words.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except (ValueError, OverflowError) as error:
+        said = str(error)
+        raise InputError(problem=said, mend=mend if isinstance(mend, str) else mend(said)) from None
+
+
 def check_rig(rig: Rig, law: str) -> None:
-    """An InputError where the rig lacks what a law needs."""
+    """An InputError where this is no rig, or lacks what a law needs."""
+    the_rig(rig)
     if not find_law(law).needs_bearing:
         return
     for section, there in (
@@ -70,16 +97,18 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
     """
     check_rig(rig, law)
     check_applies(law, effects)
+    film_clock = find_clock(clock)
     pages = [find_effect(name) for name in in_chain_order(effects)]
     own = [page for page in pages if isinstance(page, OwnEffect)]
-    core = _core.Chain(
-        law=law,
-        bearing=core_bearing(rig),
-        load_n=core_load_n(rig),
-        clock=clock,
-        effects=[page.name for page in pages if page not in own],
-        max_step_s=MAX_STEP_S,
-    )
+    with core_refusals():
+        core = _core.Chain(
+            law=law,
+            bearing=core_bearing(rig),
+            load_n=core_load_n(rig),
+            clock=film_clock,
+            effects=[page.name for page in pages if page not in own],
+            max_step_s=MAX_STEP_S,
+        )
     if not own:
         return core
     names = core.parameter_names
@@ -93,19 +122,20 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
     """The motion that a run imposed on the rig's journal or slider."""
-    return impose(run, None if rig.bearing is None else rig.bearing.radius_m)
+    return impose(one_run(run), None if rig.bearing is None else rig.bearing.radius_m)
 
 
 def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
     """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
     load = run.load_n if run.load_n is not None else np.full(len(run), core_load_n(rig) or 1.0)
-    made = _core.Motion(
-        np.ascontiguousarray(run.time_s),
-        motion.velocity_m_s,
-        motion.acceleration_m_s2,
-        motion.angle_rad,
-        np.ascontiguousarray(load),
-    )
+    with core_refusals("correct the run"):
+        made = _core.Motion(
+            np.ascontiguousarray(run.time_s),
+            motion.velocity_m_s,
+            motion.acceleration_m_s2,
+            motion.angle_rad,
+            np.ascontiguousarray(load),
+        )
     # What effects of one's own see: the record, its motion as the models are driven with it.
     made.columns = run.columns() | {
         "velocity_m_s": motion.velocity_m_s,

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from textwrap import shorten
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.errors import InputError
+from jbf.errors import InputError, quoted
 from jbf.models.catalogue import (
+    find_clock,
     find_law,
     find_parameter,
     in_chain_order,
@@ -22,20 +27,23 @@ from jbf.models.chain import (
     core_bearing,
     core_load_n,
     core_motion,
+    core_refusals,
     imposed,
     warn_of_fast_film,
 )
 from jbf.models.model_file import model_file_text, read_model_file, write_model_file
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
-from jbf.models.vocabulary import ModelFile
+from jbf.models.vocabulary import Clock, ModelFile
+from jbf.records.arguments import by_name, list_of_runs, numbers, of_kind, one_run
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 
 Array = npt.NDArray[np.float64]
+NONE: Mapping[str, Any] = MappingProxyType({})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Model:
     """A law with effects, ready to predict.
 
@@ -62,33 +70,55 @@ class Model:
     """
 
     rig: Rig
-    law: str = "journal"
-    effects: Sequence[str] = ()
-    parameters: Mapping[str, float | ParameterValue] = field(default_factory=dict)
-    clock: str = "journal"
-    fit: Mapping[str, float | int | str] = field(default_factory=dict)
+    law: str
+    effects: tuple[str, ...]
+    parameters: Mapping[str, ParameterValue]
+    clock: Clock
+    fit: Mapping[str, float | int | str]
 
-    def __post_init__(self) -> None:
-        find_law(self.law)
-        chosen = in_chain_order(self.effects)
-        known = parameters_of(self.law, chosen)
+    # Written out, because it takes what the attributes do not hold: effects in any order, bare
+    # numbers, parameters without their unit.
+    def __init__(
+        self,
+        rig: Rig,
+        law: str = "journal",
+        effects: Iterable[str] = (),
+        parameters: Mapping[str, float | ParameterValue] = NONE,
+        clock: Clock = "journal",
+        fit: Mapping[str, float | int | str] = NONE,
+    ) -> None:
+        find_law(law)
+        chosen = in_chain_order(effects)
+        known = parameters_of(law, chosen)
         given = {
-            find_parameter(name, known): v if isinstance(v, ParameterValue) else ParameterValue(v)
-            for name, v in self.parameters.items()
+            find_parameter(name, known): _with_error(name, v)
+            for name, v in by_name(parameters, "parameters").items()
         }
         values = {
             name: given.get(name, ParameterValue(p.starts[0] if p.null is None else p.null))
             for name, p in known.items()
         }
-        object.__setattr__(self, "effects", chosen)
-        object.__setattr__(self, "parameters", values)
+        for name, value in (
+            ("rig", rig),
+            ("law", law),
+            ("effects", chosen),
+            ("parameters", values),
+            ("clock", find_clock(clock)),
+            ("fit", by_name(fit, "fit")),
+        ):
+            object.__setattr__(self, name, value)
+        chain(rig, law, self.clock, chosen)
         vocabulary().check(self._file())
-        chain(self.rig, self.law, self.clock, chosen)
+
+    def __repr__(self) -> str:
+        sum_ = shorten(" + ".join([self.law, *self.effects]), 100, placeholder=" ...")
+        named = ", ".join(f"{name} = {p.value:.5g}" for name, p in self.parameters.items())
+        return f"Model({sum_}; {shorten(named, 150, placeholder=' ...')})"
 
     @property
     def values(self) -> Array:
         """Parameter values in the core's order, shape (k,)."""
-        return np.array([p.value for p in self.parameters.values()])  # type: ignore[union-attr]
+        return np.array([p.value for p in self.parameters.values()])
 
     def predict(self, run: Run) -> Array:
         """Friction reading of one bearing under the run's motion, N, shape (n,).
@@ -96,17 +126,18 @@ class Model:
         Warns (:class:`jbf.FilmWarning`) where the film is faster than 28,000 1/s: that is held
         inside the bearing, and the friction is not to be relied on.
         """
-        return self.predict_many([run])[0]
+        return self.predict_many([one_run(run)])[0]
 
     def predict_many(self, runs: Iterable[Run]) -> list[Array]:
         """`predict` for several runs, on all cores."""
-        runs = list(runs)
+        runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
         motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
-        return core.predict(self.values, motions)
+        with core_refusals():
+            return core.predict(self.values, motions)
 
     def require_columns(self, run: Run) -> None:
         """An InputError where a run lacks a column that an effect of this model needs."""
@@ -118,20 +149,21 @@ class Model:
         Speeds (m/s) of shape (n,), none of them zero; under the rig's load where the law needs one.
         """
         count = len(find_law(self.law).parameters)
-        return _core.steady_friction(
-            np.ascontiguousarray(velocity_m_s, dtype=float),
-            law=self.law,
-            parameters=self.values[:count].tolist(),
-            bearing=core_bearing(self.rig),
-            load_n=core_load_n(self.rig),
-        )
+        with core_refusals():
+            return _core.steady_friction(
+                numbers(velocity_m_s, "velocity_m_s", flat=True),
+                law=self.law,
+                parameters=self.values[:count].tolist(),
+                bearing=core_bearing(self.rig),
+                load_n=core_load_n(self.rig),
+            )
 
     def _file(self) -> ModelFile:
         return ModelFile(
             law=self.law,
             clock=self.clock,
-            effects=tuple(self.effects),
-            parameters=dict(self.parameters),  # type: ignore[arg-type]
+            effects=self.effects,
+            parameters=dict(self.parameters),
             rig=self.rig,
             fit=dict(self.fit),
         )
@@ -155,6 +187,27 @@ class Model:
         """
         file = read_model_file(path, vocabulary())
         try:
-            return cls(file.rig, file.law, file.effects, file.parameters, file.clock, file.fit)
+            clock = find_clock(file.clock)
+            return cls(file.rig, file.law, file.effects, file.parameters, clock, file.fit)
         except InputError as error:
             raise error.within(file=path) from None
+
+
+def the_model(given: object) -> Model:
+    """A model; an InputError says how to come by one."""
+    mend = "give a jbf.Model"
+    if isinstance(given, str | os.PathLike):
+        mend = f"read it: jbf.Model.load({quoted(os.fspath(given))})"
+    elif isinstance(getattr(given, "model", None), Model):
+        mend = "give its .model"
+    return of_kind(given, Model, "the model", mend)
+
+
+def _with_error(name: str, value: float | ParameterValue) -> ParameterValue:
+    """A parameter as it is kept, also where a bare number was given."""
+    if isinstance(value, ParameterValue):
+        return value
+    try:
+        return ParameterValue(value)
+    except InputError as error:
+        raise error.within(key_prefix=f"parameters.{name}.") from None

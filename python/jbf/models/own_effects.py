@@ -26,19 +26,19 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, JbfError, quoted
 from jbf.models import catalogue
-from jbf.models.catalogue import Effect, Parameter
+from jbf.models.catalogue import Effect, Parameter, Stage
 from jbf.records.run import PathLike
 
 Array = npt.NDArray[np.float64]
 
 ALWAYS = ("time_s", "velocity_m_s", "acceleration_m_s2", "load_n")
 """Columns that every run has: recorded, estimated, or the rig's."""
-STAGES = {"other": "other friction", "instrument": "instrument"}
+STAGES: dict[str, Stage] = {"other": "other friction", "instrument": "instrument"}
 AGREEMENT = 1e-5
 """A complex step that differs from a difference quotient by more than this share is not one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class OwnEffect(Effect):
     """An effect of one's own: its page, and the function behind it."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from jbf.errors import InputError
 from jbf.records.toml_file import number
@@ -34,3 +35,7 @@ class ParameterValue:
             object.__setattr__(self, "stderr", None if math.isnan(stderr) else stderr)
         if self.note is not None and not isinstance(self.note, str):
             raise InputError(key="note", problem="is not text", mend="put it in quotes")
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"value": self.value, "stderr": self.stderr, "note": self.note}

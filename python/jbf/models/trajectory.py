@@ -6,7 +6,7 @@ law itself, with an error that is asked for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,12 @@ import numpy.typing as npt
 
 from jbf import _core
 from jbf.errors import InputError, did_you_mean, quoted
+from jbf.models.catalogue import find_clock
+from jbf.models.chain import core_refusals
+from jbf.models.vocabulary import Clock
+from jbf.records.arguments import by_name, described, numbers, the_rig
 from jbf.records.rig import Rig
+from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[npt.ArrayLike, npt.ArrayLike | tuple[float, float, float]]
@@ -66,7 +71,7 @@ def trajectory(
     *,
     sine: tuple[float, float, float] | tuple[float, float] | None = None,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -111,10 +116,10 @@ def trajectory(
         )
     motion: npt.ArrayLike | tuple[float, float, float]
     if sine is not None:
-        motion = (sine[0], sine[1], sine[2] if len(sine) == 3 else 0.0)
+        motion = _sine(sine)
     else:
         assert velocity_m_s is not None
-        motion = velocity_m_s
+        motion = numbers(velocity_m_s, "velocity_m_s", flat=True)
     return trajectories(
         rig,
         parameters,
@@ -134,7 +139,7 @@ def trajectories(
     runs: Sequence[Motion],
     *,
     model: str = "journal",
-    clock: str = "journal",
+    clock: Clock = "journal",
     tolerance: float = 1e-6,
     eps: float | None = None,
     phi_rad: float | None = None,
@@ -150,38 +155,42 @@ def trajectories(
 
     Others as in :func:`trajectory`.
     """
+    the_rig(rig)
     for section in ("bearing", "lubricant", "load"):
         if getattr(rig, section) is None:
             raise InputError(problem=f"the rig has no [{section}]", mend="add the section")
     assert rig.bearing is not None
     assert rig.lubricant is not None
     assert rig.load is not None
-    for name in parameters:
+    given = by_name(parameters, "parameters")
+    for name in given:
         if name not in _NAMES:
             raise InputError(
                 problem=f"{quoted(name)} is no parameter of the law",
                 mend=did_you_mean(name, list(_NAMES)),
             )
     for name in _NAMES:
-        if name not in parameters:
+        if name not in given:
             raise InputError(problem=f"the parameter {name} is missing", mend="give its value")
-    times = [np.ascontiguousarray(time, dtype=np.float64) for time, _ in runs]
-    starts = [time[0] for (_, motion), time in zip(runs, times, strict=True) if is_record(motion)]
-    if len(set(starts)) > 1 or (starts and len(starts) < len(runs) and starts[0] != 0.0):
+    values = {core: number(given[name], f"parameters.{name}") for name, core in _NAMES.items()}
+    pairs = motions_of(runs)
+    times = [time for time, _ in pairs]
+    starts = [float(time[0]) for time, motion in pairs if is_record(motion) and len(time)]
+    if len(set(starts)) > 1 or (starts and len(starts) < len(pairs) and starts[0] != 0.0):
         raise InputError(
             problem="the runs start at different times", mend="shift them to start at zero"
         )
     b = rig.bearing
-    try:
+    with core_refusals():
         done = _core.trajectories(
-            [(time, _motion(motion, time)) for (_, motion), time in zip(runs, times, strict=True)],
+            [(time, _motion(motion, time)) for time, motion in pairs],
             model=model,
-            clock=clock,
-            tolerance=tolerance,
-            start_time_s=float(starts[0]) if starts else None,
-            start_eps=eps,
-            start_phi_rad=phi_rad,
-            **{core: float(parameters[name]) for name, core in _NAMES.items()},
+            clock=find_clock(clock),
+            tolerance=number(tolerance, "tolerance"),
+            start_time_s=starts[0] if starts else None,
+            start_eps=None if eps is None else number(eps, "eps"),
+            start_phi_rad=None if phi_rad is None else number(phi_rad, "phi_rad"),
+            **values,
             radius_m=b.radius_m,
             length_m=b.length_m,
             clearance_m=b.clearance_m,
@@ -191,8 +200,6 @@ def trajectories(
             load_n=rig.load.normal_n,
             derivatives=derivatives,
         )
-    except ValueError as error:
-        raise InputError(problem=str(error), mend="correct the value") from None
     return [Trajectory(time, *columns) for time, columns in zip(times, done, strict=True)]
 
 
@@ -201,10 +208,44 @@ def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
     return not (isinstance(motion, tuple) and len(motion) == 3)
 
 
+def motions_of(
+    runs: object,
+) -> list[tuple[Array, npt.ArrayLike | tuple[float, float, float]]]:
+    """Pairs of times and motion as arrays and numbers; an InputError names the run that is none."""
+    if isinstance(runs, str) or not isinstance(runs, Iterable):
+        raise InputError(
+            problem=f"runs is {described(runs)}", mend="give a list of pairs (times, motion)"
+        )
+    return [_pair(i, run) for i, run in enumerate(runs)]
+
+
+def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, float, float]]:
+    """Times and motion of one run, the times as an array."""
+    if not (isinstance(run, tuple | list) and len(run) == 2):
+        raise InputError(
+            problem=f"run {place} is {described(run)}", mend="give a pair (times, motion)"
+        )
+    time, motion = run
+    times = numbers(time, f"the times of run {place}", flat=True)
+    if is_record(motion):
+        return times, numbers(motion, f"the motion of run {place}", flat=True)
+    return times, _sine(motion)
+
+
+def _sine(given: object) -> tuple[float, float, float]:
+    """Amplitude, angular frequency and bias."""
+    if not (isinstance(given, tuple | list) and len(given) in (2, 3)):
+        raise InputError(
+            problem=f"sine is {described(given)}",
+            mend="give (amplitude in m/s, omega in rad/s) and a bias, if there is one",
+        )
+    amplitude, omega, *bias = (number(x, "sine") for x in given)
+    return amplitude, omega, bias[0] if bias else 0.0
+
+
 def _motion(
     motion: npt.ArrayLike | tuple[float, float, float], time: Array
 ) -> tuple[float, float, float] | tuple[Array, Array]:
     if isinstance(motion, tuple) and len(motion) == 3:
-        amplitude, omega, bias = motion
-        return float(amplitude), float(omega), float(bias)
+        return motion
     return time, np.ascontiguousarray(motion, dtype=np.float64)

@@ -5,11 +5,17 @@ from __future__ import annotations
 import numbers
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from typing import Literal, get_args
 
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.rig import Rig
 from jbf.records.toml_file import number, refuse_unknown
+
+Clock = Literal["journal", "thesis"]
+"""How a film's time runs: `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s)."""
+
+CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 
 def _plain(value: object, key: str) -> float | int | str:
@@ -73,7 +79,7 @@ class Vocabulary:
     laws: Collection[str]
     effects: Mapping[str, Mapping[str, Bounds]]
     law_parameters: Mapping[str, Mapping[str, Bounds]]
-    clocks: Collection[str] = ("journal", "thesis")
+    clocks: Collection[str] = CLOCKS
 
     def check(self, model: ModelFile) -> None:
         """Check every name and value of a model; an absent parameter is not an error.

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from jbf.errors import InputError, closest, quoted
 from jbf.records.checks import COLUMNS, check_columns, frozen, listed
 from jbf.records.run import PathLike, Run
-from jbf.text_files import read_text
+from jbf.text_files import path_of, read_text
 
 Array = npt.NDArray[np.float64]
 
@@ -163,7 +163,7 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
     InputError
         The file or a cell of it is wrong; the message names file, row, column and the mend.
     """
-    path = Path(path)
+    path = path_of(path)
     header, header_row, rows, numbers = _read_table(path)
     required = ["time_s", "velocity_m_s"] + (["friction_n"] if need_friction else [])
     _checked_header(path, header_row, header, required)

@@ -11,6 +11,7 @@ from pathlib import Path
 from jbf.errors import InputError
 from jbf.records.csv_file import read_run
 from jbf.records.run import PathLike, Run
+from jbf.text_files import path_of
 
 
 def _expanded(item: PathLike) -> list[Path]:
@@ -58,7 +59,10 @@ def read_runs(paths: PathLike | Iterable[PathLike], *, need_friction: bool = Tru
     InputError
         As `read_run`; also when nothing is found or a file comes twice.
     """
-    items = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    if isinstance(paths, str | os.PathLike) or not isinstance(paths, Iterable):
+        items = [path_of(paths)]
+    else:
+        items = list(map(path_of, paths))
     files = [file for item in items for file in _expanded(item)]
     if not files:
         raise InputError(problem="no run is given", mend="name at least one CSV file or folder")

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.comparison.comparison import Failure
+from jbf.comparison.bins import Axis, Bin, direction_words, label, span_words
+from jbf.comparison.patterns import Failure
 
 Array = npt.NDArray[np.float64]
 
-_DIRECTION = re.compile(r"^(?P<rest>.*?),? ?(?P<direction>v (<|<=|>|>=) 0)$")
-_SPEED = re.compile(r"^v = ([-+][\d.e+-]+) m/s$")
-_FORCE = re.compile(r"^f = ([-+][\d.e+-]+) N$")
-_ANGLE = re.compile(r"^angle ([\d.]+) deg$")
-_SPAN = re.compile(r"^([\d.e+-]+) to ([\d.e+-]+) s$")
-_NAMES = {
+_NAMES: dict[Axis, str] = {
     "velocity": "Surface speed (m/s)",
     "angle": "Shaft angle (deg)",
     "time": "Time in the run (s)",
@@ -55,40 +50,33 @@ class BinAxis:
 
 
 def bin_axis(failure: Failure) -> BinAxis:
-    """Sort the labels of a failure's bins into numbers or words, and by direction."""
-    split = [_split(label, failure.axis) for label in failure.labels]
-    series = tuple(direction for _, direction in split)
-    places = [place for place, _ in split]
-    name = _NAMES.get(failure.axis, failure.axis.capitalize())
-    values = [_value(place) for place in places]
-    if all(v is not None for v in values):
-        return BinAxis(name, np.array(values, dtype=float), series, ())
-    words = list(dict.fromkeys(places))
-    x = np.array([words.index(place) for place in places], dtype=float)
-    return BinAxis(name, x, series, tuple(map(_shortened, words)))
+    """Where a failure's bins stand: at their numbers, or side by side under their words."""
+    name = _NAMES[failure.axis]
+    series = tuple(_series(b, failure.axis) for b in failure.bins)
+    positions = [b.position for b in failure.bins]
+    if all(p is not None for p in positions):
+        return BinAxis(name, np.array(positions, dtype=float), series, ())
+    # Both ways of one place stand above one another.
+    places = [
+        replace(b, direction=0, with_rest=False) if line else b
+        for b, line in zip(failure.bins, series, strict=True)
+    ]
+    different = list(dict.fromkeys(places))
+    x = np.array([different.index(place) for place in places], dtype=float)
+    return BinAxis(name, x, series, tuple(_tick(b, failure.axis) for b in different))
 
 
-def _split(label: str, axis: str) -> tuple[str, str]:
-    """A label's place along the axis, and its direction where it names one."""
-    found = _DIRECTION.match(label)
-    if found is None or axis == "direction":
-        return label, ""
-    return found["rest"], found["direction"]
+def _series(b: Bin, axis: Axis) -> str:
+    """The line that a bin belongs to; along velocity and direction the place tells the way."""
+    return "" if axis in ("velocity", "direction") else direction_words(b)
 
 
-def _value(place: str) -> float | None:
-    """The number that a place stands for, where it is one."""
-    for pattern in (_SPEED, _FORCE, _ANGLE, _SPAN):
-        found = pattern.match(place)
-        if found:
-            return float(np.mean([float(x) for x in found.groups()]))
-    return None
-
-
-def _shortened(words: str) -> str:
-    """What the axis's name already says, left out; a second line where it helps."""
-    short = re.sub(r" after (a )?(rest|reversal)$", "", words).removeprefix("run ")
+def _tick(b: Bin, axis: Axis) -> str:
+    """A bin's place in words, on two lines where that helps; the axis's name says the rest."""
+    if b.span is None:
+        return b.name or label(axis, b)
+    words = span_words(b)
     for lead in ("up to ", "over "):
-        if short.startswith(lead):
-            return f"{lead.strip()}\n{short.removeprefix(lead)}"
-    return short.replace(" to ", "\nto ")
+        if words.startswith(lead):
+            return f"{lead.strip()}\n{words.removeprefix(lead)}"
+    return words.replace(" to ", "\nto ")

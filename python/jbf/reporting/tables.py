@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from jbf.diagnosis.ledger import Step, Trial
     from jbf.diagnosis.result import Diagnosis
     from jbf.estimation.fit import Fit
-    from jbf.models.model import Model
     from jbf.models.parameter_value import ParameterValue
 
 LEAST_CORRELATION = 0.3
@@ -23,10 +22,10 @@ LEAST_CORRELATION = 0.3
 
 
 def parameter_rows(
-    model: Model, parameters: Mapping[str, ParameterValue]
+    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
 ) -> list[tuple[str, str, str, str, str, str]]:
     """Name, value, error, percent, unit and note of each parameter, as text."""
-    pages = parameters_of(model.law, tuple(model.effects))
+    pages = parameters_of(law, effects)
     rows = []
     for name, p in parameters.items():
         value, error = measured(p.value, p.stderr)

@@ -32,6 +32,11 @@ def law_words(model: Model, join: str = " (") -> str:
     return f"{model.law}{join}clock {model.clock}" + (")" if "(" in join else "")
 
 
+def law_and_effects(model: Model) -> str:
+    """A model as a sum: the law, then its effects."""
+    return " + ".join([law_words(model), *model.effects])
+
+
 def number(value: float, digits: int = 3) -> str:
     """A number to so many significant digits, plain where plain is short."""
     if value == 0.0 or not math.isfinite(value):

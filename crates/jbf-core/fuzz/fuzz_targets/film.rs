@@ -67,15 +67,11 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
         assert!(clamped >= held, "what was held is forgotten: {}", told());
         held = clamped;
         assert!(
-            sliding.level >= T::ZERO && sliding.viscous >= T::ZERO,
+            sliding.jump >= T::ZERO && sliding.smooth >= T::ZERO,
             "{sliding:?}: {}",
             told()
         );
-        assert!(
-            sliding.coefficient(T::ONE).is_finite(),
-            "{sliding:?}: {}",
-            told()
-        );
+        assert!(sliding.along(T::ONE).is_finite(), "{sliding:?}: {}", told());
     }
     Ok(())
 }

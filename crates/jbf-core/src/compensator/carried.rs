@@ -2,18 +2,11 @@
 //! friction in volts, in the part that takes the sign of the motion and the rest.
 
 use crate::chain::{self, Chain};
+use crate::effect::{EffectSet, Effects};
+use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
-
-/// Friction in volts: `level sgn(v) + smooth`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction<T> {
-    /// Unsigned; at rest friction holds up to this.
-    pub level_v: T,
-    /// Signed.
-    pub smooth_v: T,
-}
 
 /// A friction model in a loop.
 pub trait Carried<T: Real> {
@@ -26,7 +19,7 @@ pub trait Carried<T: Real> {
     /// Move on by `dt_s` to a speed (rad/s) and an angle (rad).
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
 
-    /// Friction at the speed that the model was last moved to.
+    /// Friction at the speed that the model was last moved to, V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
 }
 
@@ -90,30 +83,27 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
     fn friction(&self, state: &Self::State) -> Friction<T> {
         let sliding = self.law.friction(&state.law, state.velocity_m_s);
         let volts = self.volts_per_n * self.law.pressed_n(self.load_n);
-        Friction {
-            level_v: sliding.level * volts,
-            smooth_v: sliding.viscous * volts,
-        }
+        sliding.times(volts)
     }
 }
 
 /// A whole chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub struct Whole<T: Real, L> {
+pub struct Whole<T: Real, L, E = Effects<T>> {
     /// The chain.
-    pub chain: Chain<T, L>,
+    pub chain: Chain<T, L, E>,
     /// What one newton of friction on one bearing is in volts.
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
 }
 
-impl<T: Real, L> Whole<T, L> {
+impl<T: Real, L, E> Whole<T, L, E> {
     /// A chain, with the volts that a newton of its friction on one bearing makes, under a load
     /// (N).
     #[must_use]
-    pub fn new(chain: Chain<T, L>, volts_per_n: f64, load_n: f64) -> Self {
+    pub fn new(chain: Chain<T, L, E>, volts_per_n: f64, load_n: f64) -> Self {
         Self {
             chain,
             volts_per_n: T::of(volts_per_n),
@@ -122,8 +112,8 @@ impl<T: Real, L> Whole<T, L> {
     }
 }
 
-impl<T: Real, L: Law<T>> Carried<T> for Whole<T, L> {
-    type State = chain::State<T, L::State>;
+impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
+    type State = chain::State<T, L::State, E>;
 
     fn start(&self) -> Self::State {
         self.chain.start(&Motion::at_rest(self.load_n))
@@ -145,10 +135,6 @@ impl<T: Real, L: Law<T>> Carried<T> for Whole<T, L> {
 
     #[inline]
     fn friction(&self, state: &Self::State) -> Friction<T> {
-        let felt = self.chain.felt(state);
-        Friction {
-            level_v: felt.jump_n * self.volts_per_n,
-            smooth_v: felt.smooth_n * self.volts_per_n,
-        }
+        self.chain.felt(state).times(self.volts_per_n)
     }
 }

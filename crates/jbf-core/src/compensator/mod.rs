@@ -9,7 +9,7 @@ pub mod observed;
 pub mod repetitive;
 pub mod table;
 
-pub use carried::{Bare, Carried, Friction};
+pub use carried::{Bare, Carried};
 pub use coulomb::Coulomb;
 pub use learning::Learning;
 pub use observed::Observed;

@@ -122,7 +122,7 @@ where
         let sample = Sample {
             xy,
             eps: e2.sqrt(),
-            coefficient: sliding.coefficient(T::of(velocity_m_s.sign())),
+            coefficient: sliding.along(T::of(velocity_m_s.sign())),
         };
         (self.sink)(self.next, &sample);
         self.next += 1;

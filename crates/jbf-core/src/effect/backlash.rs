@@ -12,9 +12,9 @@
 //! step long and has its middle where the flank closes: the reading is then continuous in the gap,
 //! and so has a slope for an optimiser.
 
-use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
+use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::motion::{JournalMotion, Motion};
+use crate::motion::{crossing, JournalMotion, Motion};
 use crate::real::Real;
 
 /// A gap between the drive's flanks.
@@ -70,30 +70,27 @@ impl<T: Real> State<T> {
 }
 
 impl<T: Real> Effect<T> for Backlash<T> {
-    const INFO: Info = Info {
-        name: "backlash",
-        stage: Stage::Drive,
-        summary: "a gap in gear, key or coupling: after a turn the journal stands until it is \
+    const INFO: Info = Info::new("backlash", Stage::Drive)
+        .summary(
+            "a gap in gear, key or coupling: after a turn the journal stands until it is \
                   crossed",
-        equation: "th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'",
-        source: "Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996",
-        limits: "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
+        )
+        .equation("th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'")
+        .source("Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996")
+        .limits(
+            "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
                  flank closed; beside presliding the bristle keeps its force while the journal \
                  stands; on a linear axis the gap is in m",
-        parameters: &[Parameter {
-            name: "gap_rad",
-            unit: "rad",
-            meaning: "angle between the flanks",
-            lower: 0.0,
-            upper: 1.0,
-            null: Some(0.0),
-            starts: &[0.0215, 0.0043],
-            log: false,
-            period: None,
-        }],
-        needs: &[Need::NoBristle],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "gap_rad",
+            "rad",
+            "angle between the flanks",
+            [0.0, 1.0],
+            &[0.0215, 0.0043],
+        )
+        .null(0.0)])
+        .needs(&[Need::NoBristle]);
     const MOVES_JUMPS: bool = true;
     type State = State<T>;
 
@@ -121,7 +118,6 @@ impl<T: Real> Drive<T> for Backlash<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        _resistance: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {
@@ -129,9 +125,8 @@ impl<T: Real> Drive<T> for Backlash<T> {
         let (v0, v1) = (state.speed_m_s, to.velocity_m_s);
         state.speed_m_s = v1;
         let half_s = T::of(0.5) * dt_s;
-        let mut driven = if v0.value() * v1.value() < 0.0 {
-            // The speed crosses zero on a straight line: out, then back.
-            let share = v0 / (v0 - v1);
+        let mut driven = if let Some(share) = crossing(v0, v1) {
+            // Out, then back.
             state.advance(v0 * share * half_s, half_m);
             state.advance(v1 * (T::ONE - share) * half_s, half_m)
         } else {

@@ -4,7 +4,9 @@
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// Dry friction of seals and support bearings.
@@ -14,28 +16,23 @@ pub struct CoulombDrag<T> {
 }
 
 impl<T: Real> Effect<T> for CoulombDrag<T> {
-    const INFO: Info = Info {
-        name: "coulomb_drag",
-        stage: Stage::Other,
-        summary: "dry friction of seals or support bearings, independent of the load",
-        equation: "F -> F + F_d sgn(v)",
-        source: "Cohn 1998, section 6.6",
-        limits:
+    const INFO: Info = Info::new("coulomb_drag", Stage::Other)
+        .summary("dry friction of seals or support bearings, independent of the load")
+        .equation("F -> F + F_d sgn(v)")
+        .source("Cohn 1998, section 6.6")
+        .limits(
             "seals stiffen with speed and pressure; a drag that grows with speed is not this one",
-        parameters: &[Parameter {
-            name: "F_d_n",
-            unit: "N",
-            meaning: "drag force of one bearing's share",
-            lower: 0.0,
-            upper: 1e4,
-            null: Some(0.0),
-            starts: &[0.5],
-            log: false,
-            period: None,
-        }],
-        needs: &[Need::NoDryLevel],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "F_d_n",
+            "N",
+            "drag force of one bearing's share",
+            [0.0, 1e4],
+            &[0.5],
+        )
+        .null(0.0)
+        .start(Start::Drag)])
+        .needs(&[Need::NoDryLevel]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -50,11 +47,10 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
 
 impl<T: Real> OtherFriction<T> for CoulombDrag<T> {
     #[inline(always)]
-    fn level_n(&self) -> T {
-        self.force_n
-    }
-    #[inline(always)]
-    fn smooth_n(&self, _state: &(), _journal: &JournalMotion<T>) -> T {
-        T::ZERO
+    fn friction_n(&self, _state: &(), _journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: self.force_n,
+            smooth: T::ZERO,
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -16,27 +16,7 @@ pub struct DirectionAsymmetry<T> {
 }
 
 impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
-    const INFO: Info = Info {
-        name: "direction_asymmetry",
-        stage: Stage::Contact,
-        summary: "friction that is larger one way than the other",
-        equation: "f -> f (1 + a sgn(v))",
-        source: "Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)",
-        limits: "scales the whole friction; an offset of the cell shifts it instead, and is there at rest too",
-        parameters: &[Parameter {
-            name: "a",
-            unit: "-",
-            meaning: "share by which friction is larger in positive motion",
-            lower: -0.95,
-            upper: 0.95,
-            null: Some(0.0),
-            starts: &[0.05],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("direction_asymmetry", Stage::Contact).summary("friction that is larger one way than the other").equation("f -> f (1 + a sgn(v))").source("Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)").limits("scales the whole friction; an offset of the cell shifts it instead, and is there at rest too").parameters(&[Parameter::new("a", "-", "share by which friction is larger in positive motion", [-0.95, 0.95], &[0.05]).null(0.0).signed()]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -51,7 +31,7 @@ impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
 
 impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         // At rest the motion may go either way: the direction that holds the journal decides.
         let way = if journal.velocity_m_s == T::ZERO {
             journal.direction.sign()
@@ -59,10 +39,7 @@ impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
             journal.velocity_m_s.sign()
         };
         let factor = T::ONE + self.share * way;
-        sliding.level *= factor;
-        sliding.viscous *= factor;
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
     }
-
-    #[inline(always)]
-    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

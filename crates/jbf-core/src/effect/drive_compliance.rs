@@ -16,11 +16,15 @@
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{sag, JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// Inner steps of one step at most. At steps of 5 ms they follow a free journal up to 230 Hz; of a
 /// stiffer drive, which the midpoint rule carries as well, the ringing is not resolved.
 const MOST_INNER_STEPS: f64 = 24.0;
+
+/// A step before that was shorter than this, s, tells nothing of how resistance changes.
+const SHORTEST_STEP_S: f64 = 1e-12;
 
 /// A spring and a damper between encoder and journal.
 #[derive(Clone, Copy, Debug)]
@@ -39,56 +43,32 @@ pub struct State<T> {
     speed_rad_s: T,
     encoder_rad: T,
     encoder_m_s: T,
+    /// What holds the journal now, and what did a step ago; how long that step was, s.
+    resistance: Resistance<T>,
+    before: Resistance<T>,
+    step_before_s: f64,
+}
+
+impl<T: Real> State<T> {
+    /// What holds the journal a `share` of a step from now, on a straight line through the last two.
+    #[inline(always)]
+    fn ahead(&self, share: f64) -> Resistance<T> {
+        let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);
+        let (before, now) = (&self.before, &self.resistance);
+        Resistance {
+            level_n: on(before.level_n, now.level_n),
+            slope_n_s_m: on(before.slope_n_s_m, now.slope_n_s_m),
+        }
+    }
 }
 
 impl<T: Real> Effect<T> for DriveCompliance<T> {
-    const INFO: Info = Info {
-        name: "drive_compliance",
-        stage: Stage::Drive,
-        summary: "belt, coupling or shaft twist between encoder and journal",
-        equation: "J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')",
-        source: "Cohn 1998, section 5.1; Harnoy et al. 1994",
-        limits:
-            "one spring, one inertia; above the first torsional mode the drive is a chain of them; \
-             on a linear axis k is in N/m, c in N s/m, J in kg",
-        parameters: &[
-            Parameter {
-                name: "k_n_m_rad",
-                unit: "N m/rad",
-                meaning: "torsional stiffness between encoder and journal",
-                lower: 0.1,
-                upper: 1e7,
-                null: Some(f64::INFINITY),
-                starts: &[60.0, 600.0],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "c_n_m_s_rad",
-                unit: "N m s/rad",
-                meaning: "damping beside the spring",
-                lower: 1e-5,
-                upper: 1e3,
-                null: None,
-                starts: &[0.1],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "J_kg_m2",
-                unit: "kg m^2",
-                meaning: "inertia of the journal side",
-                lower: 1e-6,
-                upper: 1e2,
-                null: None,
-                starts: &[2e-3],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[Need::Path, Need::NoBristle],
-        longest_step_s: 0.005,
-    };
+    const INFO: Info = Info::new("drive_compliance", Stage::Drive).summary("belt, coupling or shaft twist between encoder and journal").equation("J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')").source("Cohn 1998, section 5.1; Harnoy et al. 1994").limits("one spring, one inertia; above the first torsional mode the drive is a chain of them; \
+             on a linear axis k is in N/m, c in N s/m, J in kg").parameters(&[
+            Parameter::new("k_n_m_rad", "N m/rad", "torsional stiffness between encoder and journal", [0.1, 1e7], &[60.0, 600.0]).log().null(f64::INFINITY).start(Start::DriveStiffness),
+            Parameter::new("c_n_m_s_rad", "N m s/rad", "damping beside the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
+            Parameter::new("J_kg_m2", "kg m^2", "inertia of the journal side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
+        ]).needs(&[Need::Path, Need::NoBristle]).longest_step_s(0.005);
     // It rings, often faster than half the rate of the samples: frequencies that these cannot tell
     // apart make a peak each.
     const PEAKS: Option<&'static str> = Some("J_kg_m2");
@@ -106,11 +86,18 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
     }
 
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> State<T> {
+        let free = Resistance {
+            level_n: T::ZERO,
+            slope_n_s_m: T::ZERO,
+        };
         State {
             angle_rad: motion.angle_rad,
             speed_rad_s: motion.velocity_m_s / rig.radius_m,
             encoder_rad: motion.angle_rad,
             encoder_m_s: motion.velocity_m_s,
+            resistance: free,
+            before: free,
+            step_before_s: SHORTEST_STEP_S,
         }
     }
 }
@@ -121,10 +108,12 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         &self,
         state: &mut State<T>,
         to: &JournalMotion<T>,
-        [middle, end]: &[Resistance<T>; 2],
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {
+        // What holds the journal follows from how it moves: it is looked for ahead.
+        let share = (dt_s.value() / state.step_before_s).min(1.0);
+        let (middle, end) = (state.ahead(0.5 * share), state.ahead(share));
         let arm = rig.count * rig.radius_m;
         let inverse_radius = T::ONE / rig.radius_m;
         let hold = arm * middle.level_n;
@@ -194,6 +183,18 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             direction,
             time_s: to.time_s,
         }
+    }
+
+    #[inline(always)]
+    fn resist(&self, state: &mut State<T>, resistance: &Resistance<T>, dt_s: T) {
+        // A run begins with a resistance that has not changed.
+        state.before = if dt_s > T::ZERO {
+            state.resistance
+        } else {
+            *resistance
+        };
+        state.step_before_s = dt_s.value().max(SHORTEST_STEP_S);
+        state.resistance = *resistance;
     }
 
     #[inline]

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -27,62 +27,38 @@ pub struct State<T> {
 }
 
 impl<T: Real> Effect<T> for DwellStiction<T> {
-    const INFO: Info = Info {
-        name: "dwell_stiction",
-        stage: Stage::Contact,
-        summary: "static friction that has grown during a rest",
-        equation: "f -> f + a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0) sgn(v)",
-        source: "Kato et al. 1972; Cohn 1998, section 2.1.5",
-        limits: "a rest is speed exactly zero; creep during a rest, and its history, are not seen",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "friction coefficient added after a very long rest",
-                lower: 0.0,
-                upper: 1e3,
-                null: Some(0.0),
-                starts: &[0.08],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "t_0_s",
-                unit: "s",
-                meaning: "length of rest for 63 % of it",
-                lower: 1e-3,
-                upper: 1e6,
-                null: None,
-                starts: &[3.0],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "m",
-                unit: "-",
-                meaning: "exponent of the growth",
-                lower: 0.05,
-                upper: 5.0,
-                null: None,
-                starts: &[0.7],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "s_0_m",
-                unit: "m",
-                meaning: "distance in which sliding takes it off",
-                lower: 1e-6,
-                upper: 1e2,
-                null: None,
-                starts: &[2e-3, 2e-2],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("dwell_stiction", Stage::Contact)
+        .summary("static friction that has grown during a rest")
+        .equation("f -> f + a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0) sgn(v)")
+        .source("Kato et al. 1972; Cohn 1998, section 2.1.5")
+        .limits("a rest is speed exactly zero; creep during a rest, and its history, are not seen")
+        .parameters(&[
+            Parameter::new(
+                "a",
+                "-",
+                "friction coefficient added after a very long rest",
+                [0.0, 1e3],
+                &[0.08],
+            )
+            .null(0.0),
+            Parameter::new(
+                "t_0_s",
+                "s",
+                "length of rest for 63 % of it",
+                [1e-3, 1e6],
+                &[3.0],
+            )
+            .log(),
+            Parameter::new("m", "-", "exponent of the growth", [0.05, 5.0], &[0.7]).log(),
+            Parameter::new(
+                "s_0_m",
+                "m",
+                "distance in which sliding takes it off",
+                [1e-6, 1e2],
+                &[2e-3, 2e-2],
+            )
+            .log(),
+        ]);
     type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -106,13 +82,13 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
 
 impl<T: Real> Contact<T> for DwellStiction<T> {
     #[inline(always)]
-    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, state: &State<T>, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         if state.rest_s.value() <= 0.0 {
             return;
         }
         let grown = T::ONE - (-(state.rest_s * self.inverse_time_1_s).powf(self.exponent)).exp();
         let left = (-(state.slid_m * self.inverse_distance_1_m)).exp();
-        sliding.level += self.height * grown * left;
+        sliding.jump += self.height * grown * left;
     }
 
     #[inline(always)]

@@ -16,27 +16,21 @@ pub struct FilmMemory<T> {
 }
 
 impl<T: Real> Effect<T> for FilmMemory<T> {
-    const INFO: Info = Info {
-        name: "film_memory",
-        stage: Stage::Film,
-        summary: "a film that follows the speed later (or sooner) than the law's",
-        equation: "d(eps, phi)/dt -> factor d(eps, phi)/dt",
-        source: "Cohn 1998, section 3.2 and appendices D, E",
-        limits: "one factor for squeeze and wedge alike; the steady state does not change",
-        parameters: &[Parameter {
-            name: "factor",
-            unit: "-",
-            meaning: "speed of the film's clock",
-            lower: 1e-3,
-            upper: 1e3,
-            null: Some(1.0),
-            starts: &[0.5, 2.0],
-            log: true,
-            period: None,
-        }],
-        needs: &[Need::Film],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("film_memory", Stage::Film)
+        .summary("a film that follows the speed later (or sooner) than the law's")
+        .equation("d(eps, phi)/dt -> factor d(eps, phi)/dt")
+        .source("Cohn 1998, section 3.2 and appendices D, E")
+        .limits("one factor for squeeze and wedge alike; the steady state does not change")
+        .parameters(&[Parameter::new(
+            "factor",
+            "-",
+            "speed of the film's clock",
+            [1e-3, 1e3],
+            &[0.5, 2.0],
+        )
+        .log()
+        .null(1.0)])
+        .needs(&[Need::Film]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -5,6 +5,7 @@
 
 use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -15,27 +16,19 @@ pub struct InertiaLeak<T> {
 }
 
 impl<T: Real> Effect<T> for InertiaLeak<T> {
-    const INFO: Info = Info {
-        name: "inertia_leak",
-        stage: Stage::Other,
-        summary: "the load cell also feels a mass that is accelerated",
-        equation: "F -> F + m_e dv/dt",
-        source: "d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)",
-        limits: "a rigid mass; the slope of the speed comes from the record and has its noise",
-        parameters: &[Parameter {
-            name: "m_e_kg",
-            unit: "kg",
-            meaning: "mass as felt at the journal's surface",
-            lower: 0.0,
-            upper: 1e6,
-            null: Some(0.0),
-            starts: &[4.0, 100.0],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("inertia_leak", Stage::Other)
+        .summary("the load cell also feels a mass that is accelerated")
+        .equation("F -> F + m_e dv/dt")
+        .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
+        .limits("a rigid mass; the slope of the speed comes from the record and has its noise")
+        .parameters(&[Parameter::new(
+            "m_e_kg",
+            "kg",
+            "mass as felt at the journal's surface",
+            [0.0, 1e6],
+            &[4.0, 100.0],
+        )
+        .null(0.0)]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -50,11 +43,10 @@ impl<T: Real> Effect<T> for InertiaLeak<T> {
 
 impl<T: Real> OtherFriction<T> for InertiaLeak<T> {
     #[inline(always)]
-    fn level_n(&self) -> T {
-        T::ZERO
-    }
-    #[inline(always)]
-    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
-        self.mass_kg * journal.acceleration_m_s2
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: T::ZERO,
+            smooth: self.mass_kg * journal.acceleration_m_s2,
+        }
     }
 }

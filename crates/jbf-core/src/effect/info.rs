@@ -2,8 +2,9 @@
 //! the fit's bounds and starting values.
 
 use super::need::Need;
-use crate::error::{given, within, ParameterError};
+use crate::error::ParameterError;
 use crate::law;
+use crate::page::{in_bounds, Parameter};
 use crate::real::Real;
 use core::fmt;
 
@@ -37,31 +38,9 @@ impl fmt::Display for Stage {
     }
 }
 
-/// One parameter of a law or an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Symbol and unit as one name (`sigma_1_m`), as files and options spell it.
-    pub name: &'static str,
-    /// Unit as people write it (`1/m`).
-    pub unit: &'static str,
-    /// What it is.
-    pub meaning: &'static str,
-    /// Smallest value allowed.
-    pub lower: f64,
-    /// Largest value allowed.
-    pub upper: f64,
-    /// The value at which the effect vanishes, where this parameter has one.
-    pub null: Option<f64>,
-    /// Where a fit may start, likeliest first.
-    pub starts: &'static [f64],
-    /// True where a fit should walk in the logarithm.
-    pub log: bool,
-    /// The period of an angle, for parameters that wrap.
-    pub period: Option<f64>,
-}
-
 /// The page of one effect.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Info {
     /// Fixed name.
     pub name: &'static str,
@@ -84,6 +63,63 @@ pub struct Info {
 }
 
 impl Info {
+    /// A page to be filled in: no parameters, no needs, steps of 20 ms.
+    pub const fn new(name: &'static str, stage: Stage) -> Self {
+        Self {
+            name,
+            stage,
+            summary: "",
+            equation: "",
+            source: "",
+            limits: "",
+            parameters: &[],
+            needs: &[],
+            longest_step_s: 0.02,
+        }
+    }
+
+    /// What it is in a machine, in one line.
+    pub const fn summary(mut self, text: &'static str) -> Self {
+        self.summary = text;
+        self
+    }
+
+    /// The form, in plain characters.
+    pub const fn equation(mut self, text: &'static str) -> Self {
+        self.equation = text;
+        self
+    }
+
+    /// Where the form comes from.
+    pub const fn source(mut self, text: &'static str) -> Self {
+        self.source = text;
+        self
+    }
+
+    /// Where the form stops being true.
+    pub const fn limits(mut self, text: &'static str) -> Self {
+        self.limits = text;
+        self
+    }
+
+    /// Parameters in order.
+    pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
+        self.parameters = pages;
+        self
+    }
+
+    /// What the law and the record must have.
+    pub const fn needs(mut self, needs: &'static [Need]) -> Self {
+        self.needs = needs;
+        self
+    }
+
+    /// Longest inner step that is still exact, s.
+    pub const fn longest_step_s(mut self, step_s: f64) -> Self {
+        self.longest_step_s = step_s;
+        self
+    }
+
     /// Check a list of values against the bounds. A null value is always allowed, even
     /// where it is infinite.
     ///
@@ -106,56 +142,4 @@ impl Info {
                 .is_some_and(|null| !null.is_finite() && v.value() == null)
         })
     }
-}
-
-/// True where there is one value for each parameter and each lies in its bounds or at its null:
-/// what can be checked of constants while a program is compiled.
-pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
-    if pages.len() != values.len() {
-        return false;
-    }
-    let mut i = 0;
-    while i < values.len() {
-        let (page, value) = (&pages[i], values[i]);
-        let at_null = match page.null {
-            Some(null) => value == null,
-            None => false,
-        };
-        let within = at_null || (value >= page.lower && value <= page.upper);
-        if !within {
-            return false;
-        }
-        i += 1;
-    }
-    true
-}
-
-/// Two names, while a program is compiled.
-pub(crate) const fn same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    if a.len() != b.len() {
-        return false;
-    }
-    let mut i = 0;
-    while i < a.len() {
-        if a[i] != b[i] {
-            return false;
-        }
-        i += 1;
-    }
-    true
-}
-
-/// Check values against the bounds of their pages. A null value is always allowed.
-///
-/// # Errors
-/// Names the first value that is missing or out of bounds.
-pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<(), ParameterError> {
-    for (i, p) in pages.iter().enumerate() {
-        let value = given(values, i, p.name)?.value();
-        if p.null != Some(value) {
-            within(p.name, value, [p.lower, p.upper])?;
-        }
-    }
-    Ok(())
 }

@@ -32,35 +32,23 @@ pub struct State<T> {
 }
 
 const fn exponent(name: &'static str, meaning: &'static str, starts: &'static [f64]) -> Parameter {
-    Parameter {
-        name,
-        unit: "-",
-        meaning,
-        lower: -3.0,
-        upper: 3.0,
-        null: Some(0.0),
-        starts,
-        log: false,
-        period: None,
-    }
+    Parameter::new(name, "-", meaning, [-3.0, 3.0], starts).null(0.0)
 }
 
 impl<T: Real> Effect<T> for LoadDependence<T> {
-    const INFO: Info = Info {
-        name: "load_dependence",
-        stage: Stage::Film,
-        summary: "transition speed and asperity stiffness that change with the load",
-        equation: "U_tr -> U_tr (F/F_0)^p, K0 -> K0 (F/F_0)^q, F_0 the rig's load",
-        source: "Cohn 1998, Tables 4.2 to 4.5; Lu, Khonsari & Gelinck 2006 for U_tr",
-        limits: "a power between loads that were tried; held beyond a tenth and ten times the \
+    const INFO: Info = Info::new("load_dependence", Stage::Film)
+        .summary("transition speed and asperity stiffness that change with the load")
+        .equation("U_tr -> U_tr (F/F_0)^p, K0 -> K0 (F/F_0)^q, F_0 the rig's load")
+        .source("Cohn 1998, Tables 4.2 to 4.5; Lu, Khonsari & Gelinck 2006 for U_tr")
+        .limits(
+            "a power between loads that were tried; held beyond a tenth and ten times the \
                  rig's; a load that changes faster than the film follows was never tried",
-        parameters: &[
+        )
+        .parameters(&[
             exponent("p", "exponent of U_tr", &[0.8]),
             exponent("q", "exponent of K0", &[0.8]),
-        ],
-        needs: &[Need::Film, Need::Loads],
-        longest_step_s: 0.02,
-    };
+        ])
+        .needs(&[Need::Film, Need::Loads]);
     type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -19,41 +19,27 @@ pub struct PositionRipple<T> {
 }
 
 impl<T: Real> Effect<T> for PositionRipple<T> {
-    const INFO: Info = Info {
-        name: "position_ripple",
-        stage: Stage::Contact,
-        summary: "friction that rises and falls once a turn (roundness, alignment)",
-        equation: "f -> f (1 + a cos(theta - theta_0))",
-        source: "Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991",
-        limits: "one harmonic only; belts and gears add others; \
+    const INFO: Info = Info::new("position_ripple", Stage::Contact)
+        .summary("friction that rises and falls once a turn (roundness, alignment)")
+        .equation("f -> f (1 + a cos(theta - theta_0))")
+        .source("Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991")
+        .limits(
+            "one harmonic only; belts and gears add others; \
                  the angle must be absolute or the same zero in every run",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "depth of the ripple",
-                lower: 0.0,
-                upper: 1.0,
-                null: Some(0.0),
-                starts: &[0.1],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "theta_0_rad",
-                unit: "rad",
-                meaning: "angle of the largest friction",
-                lower: -4.0 * PI,
-                upper: 4.0 * PI,
-                null: None,
-                starts: &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
-                log: false,
-                period: Some(TAU),
-            },
-        ],
-        needs: &[Need::Angle],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[
+            Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
+            Parameter::new(
+                "theta_0_rad",
+                "rad",
+                "angle of the largest friction",
+                [-4.0 * PI, 4.0 * PI],
+                &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
+            )
+            .period(TAU)
+            .signed(),
+        ])
+        .needs(&[Need::Angle]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -70,15 +56,12 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
 
 impl<T: Real> Contact<T> for PositionRipple<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         // cos(theta - theta_0) with the offset's own cosine and sine taken once.
         let wave =
             journal.angle_rad.cos() * self.cos_offset + journal.angle_rad.sin() * self.sin_offset;
         let factor = T::ONE + self.depth * wave;
-        sliding.level *= factor;
-        sliding.viscous *= factor;
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
     }
-
-    #[inline(always)]
-    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

@@ -8,10 +8,12 @@
 //! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance, so a step
 //! is solved exactly in the distance slid and no stiffness is too large.
 
-use super::relaxation::relax;
 use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::law::bristle::bent;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::path::legs;
 use crate::real::Real;
 
 /// Elastic deflection of the contact before it slides.
@@ -20,44 +22,30 @@ pub struct Presliding<T> {
     stiffness_1_m: T,
 }
 
-impl<T: Real> Presliding<T> {
-    /// Slide `distance_m` in one direction, f going between two magnitudes.
-    #[inline(always)]
-    fn slide(&self, c: T, direction: T, magnitude: [T; 2], distance_m: T) -> T {
-        if distance_m.value() <= 0.0 {
-            return c;
-        }
-        let floor = T::of(1e-9);
-        let mean = ((magnitude[0] + magnitude[1]) * T::of(0.5)).max(floor);
-        let target = [magnitude[0] * direction, magnitude[1] * direction];
-        relax(c, target, self.stiffness_1_m * distance_m / mean)
-    }
-}
-
 impl<T: Real> Effect<T> for Presliding<T> {
-    const INFO: Info = Info {
-        name: "presliding",
-        stage: Stage::Contact,
-        summary: "the contact bends before it slides: a reversal is a slope over distance",
-        equation: "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
+    const INFO: Info = Info::new("presliding", Stage::Contact)
+        .summary("the contact bends before it slides: a reversal is a slope over distance")
+        .equation(
+            "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
                    (of a law in newtons its dry part: the viscous one adds)",
-        source: "Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3",
-        limits: "one stiffness, no memory of inner loops, drifts under small vibration; \
+        )
+        .source("Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3")
+        .limits(
+            "one stiffness, no memory of inner loops, drifts under small vibration; \
                  elasto-plastic forms do better below the break-away distance",
-        parameters: &[Parameter {
-            name: "sigma_1_m",
-            unit: "1/m",
-            meaning: "contact stiffness over load",
-            lower: 1.0,
-            upper: 1e12,
-            null: Some(f64::INFINITY),
-            starts: &[3e3, 3e2, 3e4, 3e5],
-            log: true,
-            period: None,
-        }],
-        needs: &[Need::NoBristle],
-        longest_step_s: 0.01,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "sigma_1_m",
+            "1/m",
+            "contact stiffness over load",
+            [1.0, 1e12],
+            &[3e3, 3e2, 3e4, 3e5],
+        )
+        .log()
+        .null(f64::INFINITY)
+        .start(Start::Stiffness)])
+        .needs(&[Need::NoBristle])
+        .longest_step_s(0.01);
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -87,19 +75,9 @@ impl<T: Real> Bristle<T> for Presliding<T> {
         magnitude: [T; 2],
         dt_s: T,
     ) -> T {
-        let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-        let half = T::of(0.5) * dt_s;
-        if v0.value() * v1.value() < 0.0 {
-            // The speed crosses zero on a straight line: slide out, then back.
-            let share = v0 / (v0 - v1);
-            let middle = magnitude[0] + (magnitude[1] - magnitude[0]) * share;
-            let out = v0.abs() * share * half;
-            let back = v1.abs() * (T::ONE - share) * half;
-            let c = self.slide(*state, v0.sign(), [magnitude[0], middle], out);
-            *state = self.slide(c, v1.sign(), [middle, magnitude[1]], back);
-        } else {
-            let sum = v0 + v1;
-            *state = self.slide(*state, sum.sign(), magnitude, sum.abs() * half);
+        let turning = |share| magnitude[0] + (magnitude[1] - magnitude[0]) * share;
+        for leg in legs(from, to, magnitude, turning, dt_s).iter().flatten() {
+            *state = bent(*state, leg, self.stiffness_1_m);
         }
         *state
     }

@@ -5,6 +5,7 @@
 
 use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -15,27 +16,19 @@ pub struct QuadraticDrag<T> {
 }
 
 impl<T: Real> Effect<T> for QuadraticDrag<T> {
-    const INFO: Info = Info {
-        name: "quadratic_drag",
-        stage: Stage::Other,
-        summary: "churning or windage: drag with the square of the speed",
-        equation: "F -> F + c v |v|",
-        source: "Rayleigh 1876; Cohn 1998, section 4.1",
-        limits: "the same both ways; slow flow drags in proportion to speed, which gamma takes up",
-        parameters: &[Parameter {
-            name: "c_n_s2_m2",
-            unit: "N s^2/m^2",
-            meaning: "drag at 1 m/s",
-            lower: 0.0,
-            upper: 1e7,
-            null: Some(0.0),
-            starts: &[50.0],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("quadratic_drag", Stage::Other)
+        .summary("churning or windage: drag with the square of the speed")
+        .equation("F -> F + c v |v|")
+        .source("Rayleigh 1876; Cohn 1998, section 4.1")
+        .limits("the same both ways; slow flow drags in proportion to speed, which gamma takes up")
+        .parameters(&[Parameter::new(
+            "c_n_s2_m2",
+            "N s^2/m^2",
+            "drag at 1 m/s",
+            [0.0, 1e7],
+            &[50.0],
+        )
+        .null(0.0)]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -50,11 +43,10 @@ impl<T: Real> Effect<T> for QuadraticDrag<T> {
 
 impl<T: Real> OtherFriction<T> for QuadraticDrag<T> {
     #[inline(always)]
-    fn level_n(&self) -> T {
-        T::ZERO
-    }
-    #[inline(always)]
-    fn smooth_n(&self, _state: &(), journal: &JournalMotion<T>) -> T {
-        self.drag_n_s2_m2 * journal.velocity_m_s * journal.velocity_m_s.abs()
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: T::ZERO,
+            smooth: self.drag_n_s2_m2 * journal.velocity_m_s * journal.velocity_m_s.abs(),
+        }
     }
 }

@@ -14,27 +14,20 @@ pub struct SensorDrift<T> {
 }
 
 impl<T: Real> Effect<T> for SensorDrift<T> {
-    const INFO: Info = Info {
-        name: "sensor_drift",
-        stage: Stage::Instrument,
-        summary: "the load cell's zero wanders steadily during a run",
-        equation: "r -> r + d t, t since the run began",
-        source: "Gautschi 2002 (charge leak of piezo cells)",
-        limits: "a straight line from zero in each run; a leak levels off after its time constant",
-        parameters: &[Parameter {
-            name: "d_n_s",
-            unit: "N/s",
-            meaning: "change of the reading per second",
-            lower: -1e4,
-            upper: 1e4,
-            null: Some(0.0),
-            starts: &[0.005],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("sensor_drift", Stage::Instrument)
+        .summary("the load cell's zero wanders steadily during a run")
+        .equation("r -> r + d t, t since the run began")
+        .source("Gautschi 2002 (charge leak of piezo cells)")
+        .limits("a straight line from zero in each run; a leak levels off after its time constant")
+        .parameters(&[Parameter::new(
+            "d_n_s",
+            "N/s",
+            "change of the reading per second",
+            [-1e4, 1e4],
+            &[0.005],
+        )
+        .null(0.0)
+        .signed()]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -2,11 +2,11 @@
 //!
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
-use super::relaxation::relax;
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
+use crate::relaxation::relax;
 
 /// First-order low pass of the load cell.
 #[derive(Clone, Copy, Debug)]
@@ -15,28 +15,16 @@ pub struct SensorLag<T> {
 }
 
 impl<T: Real> Effect<T> for SensorLag<T> {
-    const INFO: Info = Info {
-        name: "sensor_lag",
-        stage: Stage::Instrument,
-        summary: "the load cell or its filter follows the force late",
-        equation: "tau r' = F - r",
-        source: "Cohn 1998, section 4.1",
-        limits:
+    const INFO: Info = Info::new("sensor_lag", Stage::Instrument)
+        .summary("the load cell or its filter follows the force late")
+        .equation("tau r' = F - r")
+        .source("Cohn 1998, section 4.1")
+        .limits(
             "one pole; a steep filter delays more than it rounds; a pure delay is another effect",
-        parameters: &[Parameter {
-            name: "tau_s",
-            unit: "s",
-            meaning: "time constant",
-            lower: 0.0,
-            upper: 1e2,
-            null: Some(0.0),
-            starts: &[0.05, 0.3],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[
+            Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3]).null(0.0),
+        ]);
     /// The reading, N.
     type State = T;
 

@@ -14,27 +14,16 @@ pub struct SensorOffset<T> {
 }
 
 impl<T: Real> Effect<T> for SensorOffset<T> {
-    const INFO: Info = Info {
-        name: "sensor_offset",
-        stage: Stage::Instrument,
-        summary: "the load cell's zero is off",
-        equation: "r -> r + b",
-        source: "Cohn 1998, section 4.1 (strain gauges)",
-        limits: "one offset for all runs; a zero that is set anew for each run is not this one",
-        parameters: &[Parameter {
-            name: "b_n",
-            unit: "N",
-            meaning: "reading without force",
-            lower: -1e5,
-            upper: 1e5,
-            null: Some(0.0),
-            starts: &[0.3],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("sensor_offset", Stage::Instrument)
+        .summary("the load cell's zero is off")
+        .equation("r -> r + b")
+        .source("Cohn 1998, section 4.1 (strain gauges)")
+        .limits("one offset for all runs; a zero that is set anew for each run is not this one")
+        .parameters(&[
+            Parameter::new("b_n", "N", "reading without force", [-1e5, 1e5], &[0.3])
+                .null(0.0)
+                .signed(),
+        ]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

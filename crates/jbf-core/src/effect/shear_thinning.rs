@@ -16,40 +16,24 @@ pub struct ShearThinning<T> {
 }
 
 impl<T: Real> Effect<T> for ShearThinning<T> {
-    const INFO: Info = Info {
-        name: "shear_thinning",
-        stage: Stage::Lubricant,
-        summary: "multigrade oil that thins in fast shear",
-        equation: "Ub -> Ub / (1 + (|U|/U_c)^n)",
-        source: "Cross 1965",
-        limits: "shear rate taken as proportional to the speed: the film's thickness is left out",
-        parameters: &[
-            Parameter {
-                name: "U_c_m_s",
-                unit: "m/s",
-                meaning: "speed at which the viscosity has halved",
-                lower: 1e-4,
-                upper: 1e6,
-                null: Some(f64::INFINITY),
-                starts: &[0.12, 0.6],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "n",
-                unit: "-",
-                meaning: "steepness",
-                lower: 0.1,
-                upper: 8.0,
-                null: None,
-                starts: &[1.2],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[Need::Film],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("shear_thinning", Stage::Lubricant)
+        .summary("multigrade oil that thins in fast shear")
+        .equation("Ub -> Ub / (1 + (|U|/U_c)^n)")
+        .source("Cross 1965")
+        .limits("shear rate taken as proportional to the speed: the film's thickness is left out")
+        .parameters(&[
+            Parameter::new(
+                "U_c_m_s",
+                "m/s",
+                "speed at which the viscosity has halved",
+                [1e-4, 1e6],
+                &[0.12, 0.6],
+            )
+            .log()
+            .null(f64::INFINITY),
+            Parameter::new("n", "-", "steepness", [0.1, 8.0], &[1.2]).log(),
+        ])
+        .needs(&[Need::Film]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -69,7 +53,4 @@ impl<T: Real> Lubricant<T> for ShearThinning<T> {
         let shear = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
         T::ONE / (T::ONE + shear.powf(self.exponent))
     }
-
-    #[inline(always)]
-    fn step(&self, _state: &mut (), _power_w: [T; 2], _dt_s: T) {}
 }

@@ -5,7 +5,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -18,51 +18,30 @@ pub struct StribeckExcess<T> {
 }
 
 impl<T: Real> Effect<T> for StribeckExcess<T> {
-    const INFO: Info = Info {
-        name: "stribeck_excess",
-        stage: Stage::Contact,
-        summary: "boundary friction at low speed beyond the law's own",
-        equation: "f -> f + a exp(-(|v|/v_s)^n) sgn(v)",
-        source: "Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2",
-        limits: "no memory: a film that lags behind the speed is film_memory's; no dwell",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "friction coefficient added at rest",
-                lower: 0.0,
-                upper: 1e3,
-                null: Some(0.0),
-                starts: &[0.05],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "v_s_m_s",
-                unit: "m/s",
-                meaning: "speed at which it has fallen to 1/e",
-                lower: 1e-5,
-                upper: 1e2,
-                null: None,
-                starts: &[0.01, 0.04],
-                log: true,
-                period: None,
-            },
-            Parameter {
-                name: "n",
-                unit: "-",
-                meaning: "exponent of the fall",
-                lower: 0.2,
-                upper: 8.0,
-                null: None,
-                starts: &[1.5],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("stribeck_excess", Stage::Contact)
+        .summary("boundary friction at low speed beyond the law's own")
+        .equation("f -> f + a exp(-(|v|/v_s)^n) sgn(v)")
+        .source("Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2")
+        .limits("no memory: a film that lags behind the speed is film_memory's; no dwell")
+        .parameters(&[
+            Parameter::new(
+                "a",
+                "-",
+                "friction coefficient added at rest",
+                [0.0, 1e3],
+                &[0.05],
+            )
+            .null(0.0),
+            Parameter::new(
+                "v_s_m_s",
+                "m/s",
+                "speed at which it has fallen to 1/e",
+                [1e-5, 1e2],
+                &[0.01, 0.04],
+            )
+            .log(),
+            Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
+        ]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -79,11 +58,8 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
 
 impl<T: Real> Contact<T> for StribeckExcess<T> {
     #[inline(always)]
-    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
-        sliding.level += self.height * (-speed.powf(self.exponent)).exp();
+        sliding.jump += self.height * (-speed.powf(self.exponent)).exp();
     }
-
-    #[inline(always)]
-    fn step(&self, _s: &mut (), _from: &JournalMotion<T>, _to: &JournalMotion<T>, _dt_s: T) {}
 }

@@ -5,11 +5,11 @@
 //! eps_tr stay. Only the product beta q can be seen in a friction record, so the state is
 //! `beta T` and the product is the parameter.
 
-use super::relaxation::relax;
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
+use crate::relaxation::relax;
 
 /// Viscosity that falls as friction warms the oil.
 #[derive(Clone, Copy, Debug)]
@@ -18,42 +18,41 @@ pub struct ThermalThinning<T> {
     tau_s: T,
 }
 
+/// How warm the film is, and what warms it.
+#[derive(Clone, Copy, Debug)]
+pub struct State<T> {
+    /// `beta T`: the log of the viscosity that is lost.
+    thinned: T,
+    /// Friction power at the end of the last step, W.
+    power_w: T,
+}
+
 impl<T: Real> Effect<T> for ThermalThinning<T> {
-    const INFO: Info = Info {
-        name: "thermal_thinning",
-        stage: Stage::Lubricant,
-        summary: "friction warms the oil, and warm oil carries less",
-        equation: "Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau",
-        source: "Reynolds's viscosity law; Cohn 1998, section 4.2",
-        limits: "one lumped temperature, exponential viscosity, cold at the start of each run",
-        parameters: &[
-            Parameter {
-                name: "beta_q_1_j",
-                unit: "1/J",
-                meaning: "loss of log viscosity per joule of friction work",
-                lower: 0.0,
-                upper: 1e3,
-                null: Some(0.0),
-                starts: &[0.03, 0.3],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "tau_s",
-                unit: "s",
-                meaning: "time in which the film cools",
-                lower: 0.1,
-                upper: 1e5,
-                null: None,
-                starts: &[60.0],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[Need::Film],
-        longest_step_s: 0.02,
-    };
-    type State = T;
+    const INFO: Info = Info::new("thermal_thinning", Stage::Lubricant)
+        .summary("friction warms the oil, and warm oil carries less")
+        .equation("Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau")
+        .source("Reynolds's viscosity law; Cohn 1998, section 4.2")
+        .limits("one lumped temperature, exponential viscosity, cold at the start of each run")
+        .parameters(&[
+            Parameter::new(
+                "beta_q_1_j",
+                "1/J",
+                "loss of log viscosity per joule of friction work",
+                [0.0, 1e3],
+                &[0.03, 0.3],
+            )
+            .null(0.0),
+            Parameter::new(
+                "tau_s",
+                "s",
+                "time in which the film cools",
+                [0.1, 1e5],
+                &[60.0],
+            )
+            .log(),
+        ])
+        .needs(&[Need::Film]);
+    type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
         Self::INFO.check(parameters)?;
@@ -63,24 +62,25 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
         })
     }
 
-    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> T {
-        T::ZERO
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) -> State<T> {
+        State {
+            thinned: T::ZERO,
+            power_w: T::ZERO,
+        }
     }
 }
 
 impl<T: Real> Lubricant<T> for ThermalThinning<T> {
     #[inline(always)]
-    fn factor(&self, state: &T, _journal: &JournalMotion<T>) -> T {
-        (-*state).exp()
+    fn factor(&self, state: &State<T>, _journal: &JournalMotion<T>) -> T {
+        (-state.thinned).exp()
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut T, power_w: [T; 2], dt_s: T) {
+    fn step(&self, state: &mut State<T>, power_w: T, dt_s: T) {
         let gain = self.rate_1_j * self.tau_s;
-        *state = relax(
-            *state,
-            [power_w[0] * gain, power_w[1] * gain],
-            dt_s / self.tau_s,
-        );
+        let heat = [state.power_w * gain, power_w * gain];
+        state.thinned = relax(state.thinned, heat, dt_s / self.tau_s);
+        state.power_w = power_w;
     }
 }

@@ -27,28 +27,22 @@ pub struct State<T> {
 }
 
 impl<T: Real> Effect<T> for TimeDelay<T> {
-    const INFO: Info = Info {
-        name: "time_delay",
-        stage: Stage::Instrument,
-        summary: "the friction record is late against the motion record",
-        equation: "r(t) = F(t - tau)",
-        source: "Hess & Soom 1990; channel skew of any two-instrument record",
-        limits: "one delay for all frequencies and all runs; what a filter rounds is sensor_lag; \
+    const INFO: Info = Info::new("time_delay", Stage::Instrument)
+        .summary("the friction record is late against the motion record")
+        .equation("r(t) = F(t - tau)")
+        .source("Hess & Soom 1990; channel skew of any two-instrument record")
+        .limits(
+            "one delay for all frequencies and all runs; what a filter rounds is sensor_lag; \
                  a clock that runs fast or slow is neither",
-        parameters: &[Parameter {
-            name: "tau_s",
-            unit: "s",
-            meaning: "how late the friction record is",
-            lower: 0.0,
-            upper: 2.0,
-            null: Some(0.0),
-            starts: &[0.025, 0.085, 0.235],
-            log: false,
-            period: None,
-        }],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+        )
+        .parameters(&[Parameter::new(
+            "tau_s",
+            "s",
+            "how late the friction record is",
+            [0.0, 2.0],
+            &[0.025, 0.085, 0.235],
+        )
+        .null(0.0)]);
     const MOVES_JUMPS: bool = true;
     type State = State<T>;
 

@@ -4,7 +4,7 @@
 
 use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
@@ -16,40 +16,29 @@ pub struct WearIn<T> {
 }
 
 impl<T: Real> Effect<T> for WearIn<T> {
-    const INFO: Info = Info {
-        name: "wear_in",
-        stage: Stage::Contact,
-        summary: "asperities that run in: friction of contact falls with the distance slid",
-        equation: "f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run",
-        source: "Blau 1989; Cohn 1998, section 4.2",
-        limits: "unworn at the start of each run; wear that stays from run to run is not this one",
-        parameters: &[
-            Parameter {
-                name: "a",
-                unit: "-",
-                meaning: "excess of the fresh surface",
-                lower: -0.95,
-                upper: 10.0,
-                null: Some(0.0),
-                starts: &[0.2],
-                log: false,
-                period: None,
-            },
-            Parameter {
-                name: "s_0_m",
-                unit: "m",
-                meaning: "distance in which the excess falls to 1/e",
-                lower: 1e-3,
-                upper: 1e5,
-                null: None,
-                starts: &[1.0, 5.0],
-                log: true,
-                period: None,
-            },
-        ],
-        needs: &[],
-        longest_step_s: 0.02,
-    };
+    const INFO: Info = Info::new("wear_in", Stage::Contact)
+        .summary("asperities that run in: friction of contact falls with the distance slid")
+        .equation("f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run")
+        .source("Blau 1989; Cohn 1998, section 4.2")
+        .limits("unworn at the start of each run; wear that stays from run to run is not this one")
+        .parameters(&[
+            Parameter::new(
+                "a",
+                "-",
+                "excess of the fresh surface",
+                [-0.95, 10.0],
+                &[0.2],
+            )
+            .null(0.0),
+            Parameter::new(
+                "s_0_m",
+                "m",
+                "distance in which the excess falls to 1/e",
+                [1e-3, 1e5],
+                &[1.0, 5.0],
+            )
+            .log(),
+        ]);
     /// Distance slid, m.
     type State = T;
 
@@ -68,9 +57,9 @@ impl<T: Real> Effect<T> for WearIn<T> {
 
 impl<T: Real> Contact<T> for WearIn<T> {
     #[inline(always)]
-    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Sliding<T>) {
+    fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let fresh = (-(*state * self.inverse_distance_1_m)).exp();
-        sliding.level *= T::ONE + self.excess * fresh;
+        sliding.jump *= T::ONE + self.excess * fresh;
     }
 
     #[inline(always)]

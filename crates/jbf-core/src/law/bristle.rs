@@ -1,55 +1,21 @@
-//! The way of a step as bristles see it: pieces of path in one direction each.
+//! A bristle that bends towards a level over the way slid, `dF/dx = sigma (1 - F/(level sgn v))`:
+//! LuGre's, and that of a contact that bends under any law.
 
-use crate::motion::JournalMotion;
+use crate::path::Leg;
 use crate::real::Real;
+use crate::relaxation::relax;
 
-/// Smallest level, N, that a bristle bends towards: keeps a level of zero from dividing.
-pub(super) const LEAST_LEVEL_N: f64 = 1e-9;
+/// Smallest level that a bristle bends towards: keeps a level of zero from dividing.
+pub(crate) const LEAST_LEVEL: f64 = 1e-9;
 
-/// One piece of path in one direction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Leg<T> {
-    /// -1, 0 or +1.
-    pub direction: T,
-    /// Length, m.
-    pub distance_m: T,
-    /// Level of friction at its two ends, N.
-    pub level: [T; 2],
-}
-
-/// The legs of a step during which the speed goes on a straight line: one, or where it
-/// crosses zero two, with `turning_n` the level at the moment of rest between them.
+/// Force at the end of a leg that begins with `force`, of a bristle of `stiffness` (force over
+/// length): exact in the way slid, with the level on a straight line, so no stiffness is too large.
 #[inline(always)]
-pub(super) fn legs<T: Real>(
-    from: &JournalMotion<T>,
-    to: &JournalMotion<T>,
-    level: [T; 2],
-    turning_n: impl FnOnce() -> T,
-    dt_s: T,
-) -> [Option<Leg<T>>; 2] {
-    let (v0, v1) = (from.velocity_m_s, to.velocity_m_s);
-    let half = T::of(0.5) * dt_s;
-    if v0.value() * v1.value() < 0.0 {
-        let share = v0 / (v0 - v1);
-        let middle = turning_n();
-        let out = Leg {
-            direction: v0.sign(),
-            distance_m: v0.abs() * share * half,
-            level: [level[0], middle],
-        };
-        let back = Leg {
-            direction: v1.sign(),
-            distance_m: v1.abs() * (T::ONE - share) * half,
-            level: [middle, level[1]],
-        };
-        [Some(out), Some(back)]
-    } else {
-        let sum = v0 + v1;
-        let only = Leg {
-            direction: sum.sign(),
-            distance_m: sum.abs() * half,
-            level,
-        };
-        [Some(only), None]
+pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
+    if leg.distance_m.value() <= 0.0 {
+        return force;
     }
+    let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL));
+    let target = leg.level.map(|level| level * leg.direction);
+    relax(force, target, stiffness * leg.distance_m / mean)
 }

@@ -10,10 +10,11 @@
 //! that it never moved. A reversal in passing is no rest.
 
 use super::newtons::{in_newtons, moving, F_C, F_S, F_V};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::real::Real;
 
 /// Static, kinetic and viscous friction.
@@ -25,18 +26,13 @@ pub struct Coulomb<T> {
 }
 
 impl<T: Real> Named<T> for Coulomb<T> {
-    const INFO: Info = Info {
-        name: "coulomb",
-        summary: "static, Coulomb and viscous friction",
-        equation: "F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest",
-        source: "Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1",
-        limits: "no memory, no fall of friction with speed; F_s shows only through a soft drive",
-        parameters: &[F_C, F_S, F_V],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: false,
-        has_dry_level: true,
-    };
+    const INFO: Info = Info::new::<T, Self>("coulomb")
+        .summary("static, Coulomb and viscous friction")
+        .equation("F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest")
+        .source("Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1")
+        .limits("no memory, no fall of friction with speed; F_s shows only through a soft drive")
+        .parameters(&[F_C, F_S, F_V])
+        .with_a_dry_level();
 
     fn build(
         _bearing: Option<&Bearing>,
@@ -64,11 +60,11 @@ impl<T: Real> Law<T> for Coulomb<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, resting: &bool, velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, resting: &bool, velocity_m_s: T) -> Friction<T> {
         let held = *resting && velocity_m_s == T::ZERO;
-        Sliding {
-            level: if held { self.static_n } else { self.kinetic_n },
-            viscous: self.viscous_n_s_m * velocity_m_s,
+        Friction {
+            jump: if held { self.static_n } else { self.kinetic_n },
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -87,6 +83,6 @@ impl SteadyCurve for Coulomb<f64> {
         moving(velocity_m_s)?;
         Ok(self
             .friction(&false, velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+            .along(velocity_m_s.sign()))
     }
 }

@@ -11,13 +11,15 @@
 //! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
 //! ```
 
-use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::bristle::LEAST_LEVEL;
 use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
+use crate::path::{legs, Leg};
 use crate::real::Real;
 
 /// A bristle that bends before it slides, by way alone.
@@ -37,7 +39,7 @@ impl<T: Real> Dahl<T> {
             return force_n;
         }
         let way = leg.direction;
-        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
+        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL));
         let ratio = self.stiffness_n_m * leg.distance_m / mean;
         // A way so short that its ratio rounds to zero.
         if ratio <= T::ZERO {
@@ -77,13 +79,12 @@ impl<T: Real> Dahl<T> {
 }
 
 impl<T: Real> Named<T> for Dahl<T> {
-    const INFO: Info = Info {
-        name: "dahl",
-        summary: "a contact that bends before it slides, by way alone",
-        equation: "dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v",
-        source: "Dahl 1968, 1977; Cohn 1998, section 2.1.3",
-        limits: "no Stribeck fall, no static friction above F_c; inner loops drift",
-        parameters: &[
+    const INFO: Info = Info::new::<T, Self>("dahl")
+        .summary("a contact that bends before it slides, by way alone")
+        .equation("dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v")
+        .source("Dahl 1968, 1977; Cohn 1998, section 2.1.3")
+        .limits("no Stribeck fall, no static friction above F_c; inner loops drift")
+        .parameters(&[
             F_C,
             stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
@@ -93,12 +94,7 @@ impl<T: Real> Named<T> for Dahl<T> {
                 &[1.0],
             ),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,
@@ -129,10 +125,10 @@ impl<T: Real> Law<T> for Dahl<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
-        Sliding {
-            level: self.coulomb_n,
-            viscous: self.viscous_n_s_m * velocity_m_s,
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.coulomb_n,
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -156,7 +152,7 @@ impl<T: Real> Law<T> for Dahl<T> {
             *state = level[1] * to.velocity_m_s.sign();
             return *state;
         }
-        let turning = || (level[0] + level[1]) * T::of(0.5);
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
         for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
             *state = self.slide(*state, leg);
         }
@@ -167,8 +163,6 @@ impl<T: Real> Law<T> for Dahl<T> {
 impl SteadyCurve for Dahl<f64> {
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
-        Ok(self
-            .friction(&0.0, velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+        Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }
 }

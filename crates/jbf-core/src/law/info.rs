@@ -3,13 +3,13 @@
 use super::Law;
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::effect::info::in_bounds;
-use crate::effect::Parameter;
 use crate::error::ParameterError;
+use crate::page::{in_bounds, Parameter};
 use crate::real::Real;
 
 /// The page of one law.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Info {
     /// Fixed name, as files and options spell it.
     pub name: &'static str,
@@ -28,7 +28,8 @@ pub struct Info {
     pub needs_bearing: bool,
     /// True where the law has a lubricant film, which can warm or thin.
     pub has_film: bool,
-    /// True where the law bends before it slides: it has no jump at zero speed.
+    /// True where the law bends before it slides: it has no jump at zero speed. Only
+    /// [`Law::HAS_BRISTLE`] says so; the page repeats it.
     pub has_bristle: bool,
     /// True where the law already holds a dry friction `F sgn(v)` that depends on no load and
     /// jumps at zero speed: a second one beside it could not be told from it.
@@ -36,6 +37,70 @@ pub struct Info {
 }
 
 impl Info {
+    /// The page of the law `L`, to be filled in: of a law in newtons, without a film.
+    pub const fn new<T: Real, L: Law<T>>(name: &'static str) -> Self {
+        Self {
+            name,
+            summary: "",
+            equation: "",
+            source: "",
+            limits: "",
+            parameters: &[],
+            needs_bearing: false,
+            has_film: false,
+            has_bristle: L::HAS_BRISTLE,
+            has_dry_level: false,
+        }
+    }
+
+    /// What it describes, in one line.
+    pub const fn summary(mut self, text: &'static str) -> Self {
+        self.summary = text;
+        self
+    }
+
+    /// The form, in plain characters.
+    pub const fn equation(mut self, text: &'static str) -> Self {
+        self.equation = text;
+        self
+    }
+
+    /// Where the form comes from.
+    pub const fn source(mut self, text: &'static str) -> Self {
+        self.source = text;
+        self
+    }
+
+    /// Where the form stops being true.
+    pub const fn limits(mut self, text: &'static str) -> Self {
+        self.limits = text;
+        self
+    }
+
+    /// Parameters in order.
+    pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
+        self.parameters = pages;
+        self
+    }
+
+    /// It computes from a bearing's geometry, lubricant and load.
+    pub const fn on_a_bearing(mut self) -> Self {
+        self.needs_bearing = true;
+        self
+    }
+
+    /// It has a lubricant film.
+    pub const fn with_a_film(mut self) -> Self {
+        self.has_film = true;
+        self
+    }
+
+    /// It holds a dry friction that depends on no load.
+    pub const fn with_a_dry_level(mut self) -> Self {
+        self.has_dry_level = true;
+        self
+    }
+
     /// Check a list of values against the bounds.
     ///
     /// # Errors

@@ -15,14 +15,16 @@
 //! at the rate `1/g`: it is solved exactly in the way, with the level on a straight line, so any
 //! step is stable and short ones are exact to second order.
 
-use super::bristle::{legs, Leg, LEAST_LEVEL_N};
+use super::bristle::{bent, LEAST_LEVEL};
 use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::effect::relaxation::relax;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
+use crate::page::Start;
+use crate::path::legs;
 use crate::real::Real;
 
 /// The LuGre law.
@@ -47,48 +49,34 @@ impl<T: Real> LuGre<T> {
         self.coulomb_n * (T::ONE - still) + self.static_n * still
     }
 
-    /// The bristle's force at the end of a leg.
-    #[inline(always)]
-    fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
-        if leg.distance_m.value() <= 0.0 {
-            return force_n;
-        }
-        let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL_N));
-        let target = leg.level.map(|level| level * leg.direction);
-        relax(force_n, target, self.stiffness_n_m * leg.distance_m / mean)
-    }
-
     /// `sigma_1(v) z'`, N, with the bristle at `force_n`.
     #[inline(always)]
     fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
         let share = velocity_m_s / self.damping_speed_m_s;
-        let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL_N));
+        let rate = velocity_m_s - velocity_m_s.abs() * force_n / level.max(T::of(LEAST_LEVEL));
         self.damping_n_s_m * (-share * share).exp() * rate
     }
 }
 
 impl<T: Real> Named<T> for LuGre<T> {
-    const INFO: Info = Info {
-        name: "lugre",
-        summary: "bristles with a Stribeck curve: presliding, breakaway and frictional lag",
-        equation: "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
+    const INFO: Info = Info::new::<T, Self>("lugre")
+        .summary("bristles with a Stribeck curve: presliding, breakaway and frictional lag")
+        .equation(
+            "F = sigma_0 z + sigma_1 exp(-(v/v_d)^2) z' + F_v v, z' = v - |v| z/g, \
                    sigma_0 g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
-        source: "Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1",
-        limits: "drifts under small vibration; its lag in sliding is that of the bristle alone",
-        parameters: &[
+        )
+        .source("Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1")
+        .limits("drifts under small vibration; its lag in sliding is that of the bristle alone")
+        .parameters(&[
             F_C,
             F_S,
             V_S,
             stiffness("sigma_0_n_m", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
-            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]),
-            speed("v_d_m_s", "speed at which the damping has died", &[0.1]),
+            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]).start(Start::Damping),
+            speed("v_d_m_s", "speed at which the damping has died", &[0.1])
+                .start(Start::UsualSpeed),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,
@@ -122,10 +110,10 @@ impl<T: Real> Law<T> for LuGre<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, _state: &T, velocity_m_s: T) -> Sliding<T> {
-        Sliding {
-            level: self.level(velocity_m_s),
-            viscous: self.viscous_n_s_m * velocity_m_s,
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.level(velocity_m_s),
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -152,12 +140,12 @@ impl<T: Real> Law<T> for LuGre<T> {
         } else {
             // At the turn the law is at its static level, times what contact effects made of
             // the levels at the ends.
-            let turning = || {
+            let turning = |_| {
                 let own = self.level(from.velocity_m_s) + self.level(v);
                 self.level(T::ZERO) * (level[0] + level[1]) / own
             };
             for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
-                *state = self.slide(*state, leg);
+                *state = bent(*state, leg, self.stiffness_n_m);
             }
         }
         *state + self.damping(*state, v, level[1])
@@ -167,8 +155,6 @@ impl<T: Real> Law<T> for LuGre<T> {
 impl SteadyCurve for LuGre<f64> {
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
-        Ok(self
-            .friction(&0.0, velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+        Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
     }
 }

@@ -4,43 +4,34 @@
 //! Laws in newtons (all but those of a bearing) press with 1 N, so that their coefficient is
 //! a force.
 //!
-//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], and name it in
-//! `laws!` below.
+//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], name the file below,
+//! and name the law in `laws!`.
 
-mod bristle;
+pub mod coulomb;
+pub mod dahl;
+pub mod journal;
+pub mod journal_full;
+pub mod lugre;
+pub mod seven_parameter;
+pub mod stribeck;
+
+pub(crate) mod bristle;
 pub mod info;
 mod newtons;
 mod registry;
+mod scales;
 mod steady;
 
 pub use info::{Info, Named, SteadyCurve, Visitor};
+pub use scales::Scales;
 pub use steady::Steady;
 
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::effect::Scales;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::real::Real;
-
-/// The friction of a law at one instant, in parts because people log them and because
-/// effects act on one or the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sliding<T> {
-    /// Coefficient of the part that takes the sign of the motion, unsigned. A law with a
-    /// bristle gives the level towards which the bristle bends.
-    pub level: T,
-    /// Coefficient of the viscous part, signed.
-    pub viscous: T,
-}
-
-impl<T: Real> Sliding<T> {
-    /// The whole coefficient for a member `direction` of the set-valued sign.
-    #[inline]
-    pub fn coefficient(&self, direction: T) -> T {
-        self.level * direction + self.viscous
-    }
-}
 
 /// A friction law: configuration here, what changes in `State`.
 pub trait Law<T: Real> {
@@ -83,8 +74,8 @@ pub trait Law<T: Real> {
     /// Take a new load; cheap when it did not change.
     fn set_load(&self, state: &mut Self::State, load_n: T);
 
-    /// Friction now, at the film speed `velocity_m_s` (signed).
-    fn friction(&self, state: &Self::State, velocity_m_s: T) -> Sliding<T>;
+    /// Coefficient of friction now, at the film speed `velocity_m_s` (signed).
+    fn friction(&self, state: &Self::State, velocity_m_s: T) -> Friction<T>;
 
     /// Longest step, s, that the law's own stepper takes without loss up to a speed.
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64;
@@ -94,7 +85,7 @@ pub trait Law<T: Real> {
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T);
 
     /// For laws with [`Law::HAS_BRISTLE`]: bend the bristle along the motion of a step and give
-    /// its coefficient, signed, without the viscous part. `level` is [`Sliding::level`] at both
+    /// its coefficient, signed, without the viscous part. `level` is [`Friction::jump`] at both
     /// ends of the step, contact effects included. A step of no length is the start of a run:
     /// the bristle is then bent already where the run starts in motion.
     #[inline]
@@ -131,8 +122,8 @@ registry::laws! {
 pub const fn fits(name: &str, values: &[f64]) -> bool {
     let mut i = 0;
     while i < CATALOGUE.len() {
-        if crate::effect::info::same(CATALOGUE[i].name, name) {
-            return crate::effect::info::values_fit(CATALOGUE[i].parameters, values);
+        if crate::page::same(CATALOGUE[i].name, name) {
+            return crate::page::values_fit(CATALOGUE[i].parameters, values);
         }
         i += 1;
     }

@@ -4,29 +4,8 @@
 //! The starting values are those of a machine with some 10 N of friction; a fit takes its own
 //! from the data.
 
-use crate::effect::Parameter;
 use crate::error::{check, ParameterError};
-
-const fn page(
-    name: &'static str,
-    unit: &'static str,
-    meaning: &'static str,
-    bounds: [f64; 2],
-    starts: &'static [f64],
-    log: bool,
-) -> Parameter {
-    Parameter {
-        name,
-        unit,
-        meaning,
-        lower: bounds[0],
-        upper: bounds[1],
-        null: None,
-        starts,
-        log,
-        period: None,
-    }
-}
+use crate::page::{Parameter, Start};
 
 /// A force that is never zero, N.
 pub(super) const fn force(
@@ -34,7 +13,7 @@ pub(super) const fn force(
     meaning: &'static str,
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "N", meaning, [1e-6, 1e7], starts, true)
+    Parameter::new(name, "N", meaning, [1e-6, 1e7], starts).log()
 }
 
 /// A speed that is a scale, m/s.
@@ -43,16 +22,18 @@ pub(super) const fn speed(
     meaning: &'static str,
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "m/s", meaning, [1e-7, 1e3], starts, true)
+    Parameter::new(name, "m/s", meaning, [1e-7, 1e3], starts).log()
 }
 
-/// A stiffness, N/m.
+/// A stiffness of the contact, N/m.
 pub(super) const fn stiffness(
     name: &'static str,
     meaning: &'static str,
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "N/m", meaning, [1e-2, 1e12], starts, true)
+    Parameter::new(name, "N/m", meaning, [1e-2, 1e12], starts)
+        .log()
+        .start(Start::Stiffness)
 }
 
 /// A damping that may be absent, N s/m.
@@ -61,41 +42,45 @@ pub(super) const fn damping(
     meaning: &'static str,
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "N s/m", meaning, [0.0, 1e7], starts, false)
+    Parameter::new(name, "N s/m", meaning, [0.0, 1e7], starts)
 }
 
-/// A time from `lower` to `upper`, s; a scale unless it may be zero.
+/// A time that is a scale, from `lower` to `upper`, s.
 pub(super) const fn time(
     name: &'static str,
     meaning: &'static str,
     bounds: [f64; 2],
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "s", meaning, bounds, starts, bounds[0] > 0.0)
+    Parameter::new(name, "s", meaning, bounds, starts).log()
 }
 
-/// A plain number.
+/// A plain number that is a scale.
 pub(super) const fn number(
     name: &'static str,
     meaning: &'static str,
     bounds: [f64; 2],
     starts: &'static [f64],
 ) -> Parameter {
-    page(name, "-", meaning, bounds, starts, true)
+    Parameter::new(name, "-", meaning, bounds, starts).log()
 }
 
 /// Coulomb friction.
-pub(super) const F_C: Parameter = force("F_c_n", "Coulomb (kinetic) friction", &[10.0]);
+pub(super) const F_C: Parameter =
+    force("F_c_n", "Coulomb (kinetic) friction", &[10.0]).start(Start::Kinetic);
 /// Static friction.
-pub(super) const F_S: Parameter = force("F_s_n", "static (breakaway) friction", &[12.0]);
+pub(super) const F_S: Parameter =
+    force("F_s_n", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
 /// Viscous friction.
-pub(super) const F_V: Parameter = damping("F_v_n_s_m", "viscous friction", &[10.0]);
+pub(super) const F_V: Parameter =
+    damping("F_v_n_s_m", "viscous friction", &[10.0]).start(Start::Viscous);
 /// Stribeck speed.
 pub(super) const V_S: Parameter = speed(
     "v_s_m_s",
     "Stribeck speed: friction falls over it",
     &[0.01, 0.1],
-);
+)
+.start(Start::StribeckSpeed);
 
 /// The rule of every steady curve: at rest friction is set-valued.
 pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {

@@ -1,10 +1,8 @@
-//! The macro behind the catalogue of laws: from the list in `law/mod.rs` it makes the modules,
-//! the catalogue, and the dispatch by name.
+//! The macro behind the catalogue of laws: from the list in `law/mod.rs` it makes the
+//! catalogue, and the dispatch by name.
 
 macro_rules! laws {
     ($($module:ident::$Type:ident),* $(,)?) => {
-        $(pub mod $module;)*
-
         /// Every law, the default first.
         pub const CATALOGUE: &[Info] = &[$(<$module::$Type<f64> as Named<f64>>::INFO,)*];
 

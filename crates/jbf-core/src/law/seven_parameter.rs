@@ -16,14 +16,16 @@
 //!
 //! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
 
-use super::bristle::{legs, Leg};
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::motion::JournalMotion;
+use crate::page::{Parameter, Start};
+use crate::path::{legs, Leg};
 use crate::real::Real;
 
 /// The seven-parameter model.
@@ -95,15 +97,15 @@ impl<T: Real> SevenParameter<T> {
 }
 
 impl<T: Real> Named<T> for SevenParameter<T> {
-    const INFO: Info = Info {
-        name: "seven_parameter",
-        summary: "spring, Stribeck curve with a pure delay, static friction that rises at rest",
-        equation:
+    const INFO: Info = Info::new::<T, Self>("seven_parameter")
+        .summary("spring, Stribeck curve with a pure delay, static friction that rises at rest")
+        .equation(
             "stuck: F = k_t x; sliding: F = [F_c + F_v |v| + F_s(t_2)/(1 + (v(t-tau_L)/v_s)^2)] \
                    sgn(v); F_s(t_2) = F_sa + (F_s_inf - F_sa) t_2/(t_2 + gamma)",
-        source: "Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1",
-        limits: "switches between stuck and sliding; rising static friction needs tau_L > 0",
-        parameters: &[
+        )
+        .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
+        .limits("switches between stuck and sliding; rising static friction needs tau_L > 0")
+        .parameters(&[
             stiffness(
                 "k_t_n_m",
                 "stiffness of the stuck contact",
@@ -115,10 +117,13 @@ impl<T: Real> Named<T> for SevenParameter<T> {
                 "F_s_inf_n",
                 "Stribeck friction after a long rest; breakaway is at F_c + F_s",
                 &[3.0],
-            ),
+            )
+            .start(Start::BreakawayExcess),
             V_S,
-            time(
+            // It may be zero: no scale.
+            Parameter::new(
                 "tau_L_s",
+                "s",
                 "delay of friction behind speed",
                 [0.0, 1.0],
                 &[0.01, 0.1],
@@ -129,12 +134,7 @@ impl<T: Real> Named<T> for SevenParameter<T> {
                 [1e-4, 1e5],
                 &[1.0],
             ),
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: true,
-        has_dry_level: false,
-    };
+        ]);
 
     fn build(
         _bearing: Option<&Bearing>,
@@ -175,16 +175,16 @@ impl<T: Real> Law<T> for SevenParameter<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
         // A run has no past yet at its first sample: it went on as it begins.
         let late = if state.line.is_empty() {
             velocity_m_s
         } else {
             state.late_m_s
         };
-        Sliding {
-            level: self.coulomb_n + state.grown_n * self.share(late),
-            viscous: self.viscous_n_s_m * velocity_m_s,
+        Friction {
+            jump: self.coulomb_n + state.grown_n * self.share(late),
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -221,7 +221,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
             state.force_n = level[1] * state.way;
             return state.force_n;
         }
-        let turning = || (level[0] + level[1]) * T::of(0.5);
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
         for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
             self.slide(state, leg);
         }

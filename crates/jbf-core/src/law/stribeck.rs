@@ -5,10 +5,11 @@
 //! Armstrong-Helouvry (1991), delta = 2; Cohn (1998), section 2.2.
 
 use super::newtons::{in_newtons, moving, number, F_C, F_S, F_V, V_S};
-use super::{Info, Law, Named, Sliding, SteadyCurve};
+use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
 use crate::error::ParameterError;
+use crate::friction::Friction;
 use crate::real::Real;
 
 /// The Stribeck curve without memory.
@@ -22,14 +23,15 @@ pub struct Stribeck<T> {
 }
 
 impl<T: Real> Named<T> for Stribeck<T> {
-    const INFO: Info = Info {
-        name: "stribeck",
-        summary: "friction that falls from a static level, then grows with speed",
-        equation: "F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)",
-        source: "Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2",
-        limits: "a curve without memory: the same friction on the way up and on the way down; \
+    const INFO: Info = Info::new::<T, Self>("stribeck")
+        .summary("friction that falls from a static level, then grows with speed")
+        .equation("F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)")
+        .source("Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2")
+        .limits(
+            "a curve without memory: the same friction on the way up and on the way down; \
                  F_s may come out below F_c, as for way lubricants",
-        parameters: &[
+        )
+        .parameters(&[
             F_C,
             F_S,
             V_S,
@@ -40,12 +42,8 @@ impl<T: Real> Named<T> for Stribeck<T> {
                 &[2.0, 1.0],
             ),
             F_V,
-        ],
-        needs_bearing: false,
-        has_film: false,
-        has_bristle: false,
-        has_dry_level: true,
-    };
+        ])
+        .with_a_dry_level();
 
     fn build(
         _bearing: Option<&Bearing>,
@@ -72,12 +70,12 @@ impl<T: Real> Law<T> for Stribeck<T> {
     fn start(&self, _load_n: T) {}
 
     #[inline(always)]
-    fn friction(&self, _state: &(), velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, _state: &(), velocity_m_s: T) -> Friction<T> {
         let share = (velocity_m_s.abs() / self.stribeck_m_s).powf(self.delta);
         let still = (-share).exp();
-        Sliding {
-            level: self.coulomb_n * (T::ONE - still) + self.static_n * still,
-            viscous: self.viscous_n_s_m * velocity_m_s,
+        Friction {
+            jump: self.coulomb_n * (T::ONE - still) + self.static_n * still,
+            smooth: self.viscous_n_s_m * velocity_m_s,
         }
     }
 
@@ -92,8 +90,6 @@ impl<T: Real> Law<T> for Stribeck<T> {
 impl SteadyCurve for Stribeck<f64> {
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         moving(velocity_m_s)?;
-        Ok(self
-            .friction(&(), velocity_m_s)
-            .coefficient(velocity_m_s.sign()))
+        Ok(self.friction(&(), velocity_m_s).along(velocity_m_s.sign()))
     }
 }

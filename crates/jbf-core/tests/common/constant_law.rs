@@ -1,7 +1,8 @@
 //! A law with one coefficient, so that effects can be held against closed forms. It also
 //! shows that a law can be written outside the crate.
 
-use jbf_core::law::{Law, Sliding};
+use jbf_core::law::Law;
+use jbf_core::Friction;
 use jbf_core::Real;
 
 /// Friction coefficient that never changes.
@@ -22,10 +23,10 @@ impl<T: Real> Law<T> for ConstantLaw {
 
     fn set_load(&self, _state: &mut T, _load_n: T) {}
 
-    fn friction(&self, _state: &T, _velocity_m_s: T) -> Sliding<T> {
-        Sliding {
-            level: T::of(self.0),
-            viscous: T::ZERO,
+    fn friction(&self, _state: &T, _velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: T::of(self.0),
+            smooth: T::ZERO,
         }
     }
 

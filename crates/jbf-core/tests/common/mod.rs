@@ -10,8 +10,9 @@ pub mod random;
 pub mod table;
 
 use jbf_core::effect::{Effects, Rig};
+use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::journal::{Journal, Parameters};
-use jbf_core::law::Law;
+use jbf_core::law::{Law, Named};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
 /// Load of Table 4.2, N.
@@ -31,6 +32,17 @@ pub fn table_4_2<T: Real>() -> Parameters<T> {
 /// The law of Table 4.2 on a clock.
 pub fn law<T: Real>(clock: Clock) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
+}
+
+/// A law in newtons, `(F_c + F_v |v|) sgn v` in motion: dry friction and a viscous part.
+pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
+    Coulomb::build(
+        None,
+        None,
+        &[kinetic_n, kinetic_n, viscous_n_s_m],
+        Clock::Journal,
+    )
+    .expect("a sound law")
 }
 
 /// The law of Table 4.2 on the journal clock, within the thesis's rig, and effects round it.

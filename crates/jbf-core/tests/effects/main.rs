@@ -7,14 +7,39 @@ mod common;
 mod backlash;
 mod coulomb_drag;
 mod derivatives;
+mod direction_asymmetry;
 mod drive_compliance;
+mod dwell_stiction;
+mod film_memory;
 mod finite;
+mod inertia_leak;
 mod load_dependence;
 mod null;
 mod position_ripple;
 mod presliding;
+mod quadratic_drag;
+mod sensor_drift;
 mod sensor_lag;
+mod sensor_offset;
+mod shear_thinning;
+mod stribeck_excess;
 mod symmetry;
 mod thermal_thinning;
 mod time_delay;
 mod together;
+mod wear_in;
+
+/// A new effect comes with a closed form: a file of its name here, named above, with a test.
+#[test]
+fn every_effect_has_a_closed_form() {
+    let here = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/effects");
+    for info in jbf_core::effect::CATALOGUE {
+        let name = info.name;
+        let named = include_str!("main.rs").contains(&format!("\nmod {name};\n"));
+        let text = std::fs::read_to_string(format!("{here}/{name}.rs")).unwrap_or_default();
+        assert!(
+            named && text.contains("#[test]"),
+            "{name} has no closed form: write {here}/{name}.rs and name it in main.rs"
+        );
+    }
+}

@@ -1,8 +1,8 @@
 //! A ripple rises and falls once a turn, largest at theta_0.
 
 use crate::common::constant_law::ConstantLaw;
-use crate::common::motion::constant;
-use crate::common::{chain_round, readings, LOAD_N};
+use crate::common::motion::{constant, Sines};
+use crate::common::{chain_round, newtons, readings, LOAD_N};
 use std::f64::consts::TAU;
 
 #[test]
@@ -30,4 +30,21 @@ fn once_a_turn_and_largest_at_theta_0() {
     // One maximum a turn: the signal crosses its mean twice.
     let above: Vec<bool> = turn.iter().map(|r| *r > f * LOAD_N).collect();
     assert_eq!(above.windows(2).filter(|w| w[0] != w[1]).count(), 2);
+}
+
+/// At every angle, and of dry and viscous friction alike.
+#[test]
+fn follows_the_cosine_of_the_angle() {
+    let (f_c, f_v) = (6.0, 40.0);
+    let sines = Sines::two_way(1.0);
+    for (a, theta_0) in [(0.1, -1.3), (0.9, 2.0)] {
+        let chain = chain_round(newtons(f_c, f_v), &[("position_ripple", &[a, theta_0])]);
+        let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+        for (i, r) in got.iter().enumerate().skip(1) {
+            let t = 0.01 * i as f64;
+            let (v, theta) = (0.127 * t.sin(), 10.0 * (1.0 - t.cos()));
+            let expected = (f_c * v.signum() + f_v * v) * (1.0 + a * (theta - theta_0).cos());
+            assert!((r - expected).abs() < 1e-11, "{t}: {r} {expected}");
+        }
+    }
 }

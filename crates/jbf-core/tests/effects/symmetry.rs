@@ -3,19 +3,18 @@
 use crate::common::motion::Sines;
 use crate::common::random::Random;
 use crate::common::{chain, readings};
-use jbf_core::effect::CATALOGUE;
+use jbf_core::effect::{Info, CATALOGUE};
+use jbf_core::page::Mirror;
 
-/// Parameters of the mirrored machine. Few effects know left from right: the ripple's largest
-/// friction sits at an angle theta_0, an asymmetry has its harder way, and a load cell's zero and
-/// drift are signed; the mirror turns each round.
-fn mirrored(name: &str, values: &[f64]) -> Vec<f64> {
-    let mut out = values.to_vec();
-    match name {
-        "position_ripple" => out[1] = -out[1],
-        "direction_asymmetry" | "sensor_offset" | "sensor_drift" => out[0] = -out[0],
-        _ => {}
-    }
-    out
+/// Parameters of the mirrored machine. Few effects know left from right; their pages say so.
+fn mirrored(info: &Info, values: &[f64]) -> Vec<f64> {
+    let turned = info.parameters.iter().zip(values);
+    turned
+        .map(|(p, &v)| match p.mirror {
+            Mirror::Same => v,
+            Mirror::Negate => -v,
+        })
+        .collect()
 }
 
 #[test]
@@ -30,7 +29,7 @@ fn mirrored_motion_gives_mirrored_friction() {
                 .map(|p| random.parameter(p))
                 .collect();
             let there = chain::<f64>(&[(info.name, &values)]);
-            let back = chain::<f64>(&[(info.name, &mirrored(info.name, &values))]);
+            let back = chain::<f64>(&[(info.name, &mirrored(info, &values))]);
             let there = readings(&there, 0.01, 500, |t| motion.at(t));
             let back = readings(&back, 0.01, 500, |t| motion.mirrored().at(t));
             // Sign changes are exact in binary arithmetic, so nothing is left to rounding.

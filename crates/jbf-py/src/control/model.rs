@@ -1,11 +1,12 @@
 //! A friction model as Python hands it over, and the chain that comes of it.
 
 use crate::bearing::{refused, Sizes};
-use jbf_core::effect::{Effects, Rig, CATALOGUE};
-use jbf_core::law::{with_law, Named, Visitor};
-use jbf_core::{Chain, Clock, Error, Real};
+use jbf_core::spec::Spec;
+use jbf_core::{Clock, Real};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+pub use jbf_core::spec::Using;
 
 /// Law, effects and their values, in the order of the catalogue's pages.
 #[derive(FromPyObject)]
@@ -19,30 +20,6 @@ pub struct ModelSpec {
     effects: Vec<(String, Vec<f64>)>,
 }
 
-/// Something to do with a chain of any law.
-pub trait Using<T: Real> {
-    type Output;
-    fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output;
-}
-
-struct Wrap<T: Real, U> {
-    effects: Effects<T>,
-    rig: Rig<T>,
-    then: U,
-}
-
-impl<T: Real, U: Using<T>> Visitor<T> for Wrap<T, U> {
-    type Output = U::Output;
-
-    fn visit<L: Named<T>>(self, law: L) -> U::Output {
-        self.then.with(Chain {
-            law,
-            effects: self.effects,
-            rig: self.rig,
-        })
-    }
-}
-
 impl ModelSpec {
     /// Build the chain and hand it on.
     pub fn chain<T: Real, U: Using<T>>(&self, then: U) -> PyResult<U::Output> {
@@ -53,23 +30,15 @@ impl ModelSpec {
             None => None,
         };
         let lift = |values: &[f64]| values.iter().map(|&v| T::of(v)).collect::<Vec<T>>();
-        let mut effects = Effects::NONE;
-        for (name, values) in &self.effects {
-            debug_assert!(CATALOGUE.iter().any(|e| e.name == name));
-            effects.set(name, &lift(values)).map_err(refused)?;
-        }
-        let rig = Rig {
-            radius_m: T::of(bearing.as_ref().map_or(1.0, |b| b.radius_m)),
-            count: T::of(bearing.as_ref().map_or(1.0, |b| f64::from(b.count))),
-        };
-        with_law(
-            &self.law,
-            bearing.as_ref(),
-            Some(self.load_n),
-            &lift(&self.parameters),
+        let effects = self.effects.iter();
+        let effects = effects.map(|(name, values)| (name.as_str(), lift(values)));
+        let spec = Spec {
+            law: &self.law,
+            values: &lift(&self.parameters),
+            bearing: bearing.as_ref(),
+            load_n: Some(self.load_n),
             clock,
-            Wrap { effects, rig, then },
-        )
-        .map_err(|e: Error| refused(e))
+        };
+        spec.chain(effects, then).map_err(refused)
     }
 }

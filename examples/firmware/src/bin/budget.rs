@@ -127,7 +127,7 @@ fn models<T: Real>(kind: &str, steps: u32) -> Result<(), ParameterError> {
             measure(name, ram, steps, |step| ends::<T>(step, 1.0), |(from, to)| {
                 $law.$advance(&$stepper, &mut state, speeds(from, to), T::ONE, dt_s);
                 let u = to.velocity_m_s;
-                black_box($law.friction(&state, u).coefficient(u.sign()));
+                black_box($law.friction(&state, u).along(u.sign()));
             });
         })*};
     }
@@ -161,12 +161,12 @@ impl Visitor<f32> for Bare {
                 law.advance(&mut state, speeds(from, to), 1.0, dt_s);
                 let sliding = law.friction(&state, to.velocity_m_s);
                 if L::HAS_BRISTLE {
-                    let levels = [before, sliding.level];
-                    before = sliding.level;
+                    let levels = [before, sliding.jump];
+                    before = sliding.jump;
                     let (from, to) = (JournalMotion::from(from), JournalMotion::from(to));
-                    black_box(law.bend(&mut state, &from, &to, levels, dt_s) + sliding.viscous);
+                    black_box(law.bend(&mut state, &from, &to, levels, dt_s) + sliding.smooth);
                 } else {
-                    black_box(sliding.coefficient(to.velocity_m_s.sign()));
+                    black_box(sliding.along(to.velocity_m_s.sign()));
                 }
             },
         );
@@ -235,10 +235,8 @@ fn precision() -> Result<(), ParameterError> {
         double.advance(&mut d, speeds(&from, &to), 1.0, LOOP_STEP_S);
         single.advance(&mut s, speeds(&from32, &to32), 1.0, LOOP_STEP_S as f32);
         let u = to.velocity_m_s;
-        let a = double.friction(&d, u).coefficient(Real::sign(u));
-        let b = single
-            .friction(&s, u as f32)
-            .coefficient(Real::sign(u as f32));
+        let a = double.friction(&d, u).along(Real::sign(u));
+        let b = single.friction(&s, u as f32).along(Real::sign(u as f32));
         worst = Real::max(worst, Real::abs(a - f64::from(b)));
         peak = Real::max(peak, Real::abs(a));
     }

@@ -11,6 +11,7 @@ from jbf.control.task import Task
 from jbf.errors import InputError
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
+from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
 LISTED_VOLTS = 0.5 * THESIS_LOAD_N * 0.2245 * 4.0 * VOLTS_PER_N_M
@@ -38,7 +39,7 @@ class Learning(Unguarded):
     gamma_gain: float | None = None
     k0_bounds: tuple[float, float] = (1.0, 1e8)
     gamma_bounds: tuple[float, float] = (1e-3, 1e4)
-    clock: str = "thesis"
+    clock: Clock = "thesis"
     name: str = "learning"
 
     @classmethod
@@ -55,7 +56,7 @@ class Learning(Unguarded):
                 problem=f"the learning scheme runs the journal's film, this is {model.law}",
                 mend="choose another scheme",
             )
-        values = {n: p.value for n, p in model.parameters.items()}  # type: ignore[union-attr]
+        values = {n: p.value for n, p in model.parameters.items()}
         return cls(
             rig=model.rig,
             f_m=values["f_m"],

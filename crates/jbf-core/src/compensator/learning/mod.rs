@@ -131,8 +131,8 @@ impl<T: Real> Compensator<T> for Learning<T> {
         let mut law = self.law;
         law.k0 = state.learned.k0;
         let sliding = law.friction(&state.film, speed_m_s);
-        let viscous = sliding.viscous * (state.learned.gamma * self.inverse_gamma);
-        let size_v = (sliding.level + viscous) * self.volts;
+        let viscous = sliding.smooth * (state.learned.gamma * self.inverse_gamma);
+        let size_v = (sliding.jump + viscous) * self.volts;
         let sum_v = size_v * self.rule.direction(sense);
         let learned = state.learned;
         if sense.may_learn {

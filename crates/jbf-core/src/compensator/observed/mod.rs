@@ -23,9 +23,10 @@ mod settings;
 
 pub use settings::Settings;
 
-use super::carried::{Carried, Friction};
+use super::carried::Carried;
 use super::{Answer, Compensator, Sense};
 use crate::error::{check, Error};
+use crate::friction::Friction;
 use crate::real::Real;
 use poles::poles;
 
@@ -152,7 +153,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     /// The level that the model and the observer agree on, V.
     #[inline]
     fn level_v(&self, state: &State<T, M::State>) -> T {
-        (state.friction.level_v + state.learned.level_v).max(T::ZERO)
+        (state.friction.jump + state.learned.level_v).max(T::ZERO)
     }
 }
 
@@ -181,7 +182,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         blind: bool,
     ) -> T {
         let v = state.velocity_rad_s;
-        let net_v = applied_v - state.friction.smooth_v - state.learned.rest_v;
+        let net_v = applied_v - state.friction.smooth - state.learned.rest_v;
         let push = self.keep * v + self.gain * net_v;
         let hold = self.gain * self.level_v(state);
         // The proximal step of the plant: friction takes what it can hold, and no more.
@@ -239,7 +240,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         } else {
             level_v * asked * self.breakaway
         };
-        let friction_v = signed_v + state.friction.smooth_v + state.learned.rest_v;
+        let friction_v = signed_v + state.friction.smooth + state.learned.rest_v;
         let forward_v = self.speed_v_s_rad * sense.wanted_rad_s
             + self.acceleration_v_s2_rad * sense.wanted_rad_s2
             - self.stiffer_v_rad * sense.error

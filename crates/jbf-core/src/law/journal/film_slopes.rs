@@ -15,7 +15,7 @@
 
 use super::film_motion::{plain, Asperities, Gap};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
-use crate::law::Sliding;
+use crate::friction::Friction;
 use crate::real::Real;
 use core::f64::consts::FRAC_2_PI;
 
@@ -103,7 +103,7 @@ pub(super) fn sliding<T: Real>(
     asperities: &Asperities<T>,
     e2: T,
     velocity_m_s: T,
-) -> Sliding<T> {
+) -> Friction<T> {
     let gap = Gap::at(e2.value());
     let held = asperities.plain();
     let load = held.load(gap.e);
@@ -113,8 +113,8 @@ pub(super) fn sliding<T: Real>(
     let per_e2 = if touch > 0.0 { 0.5 / gap.e } else { 0.0 };
     let (inverse_root, speed) = (gap.inverse_root(), velocity_m_s.value());
     let viscous = viscous_s_m.value() * share * speed * inverse_root;
-    Sliding {
-        level: T::joined(
+    Friction {
+        jump: T::joined(
             coefficient * share * load,
             [
                 (f_m, share * load),
@@ -124,7 +124,7 @@ pub(super) fn sliding<T: Real>(
                 (e2, per_touch * per_e2),
             ],
         ),
-        viscous: T::joined(
+        smooth: T::joined(
             viscous,
             [
                 (viscous_s_m, share * speed * inverse_root),
@@ -200,13 +200,13 @@ mod tests {
             let (e2, v) = (D::parameter(eps * eps, 5), D::parameter(speed, 6));
             let gap = Gap::at(e2);
             let got = sliding(law, &asperities, e2, v);
-            near(&got.level, &(f_m * per_load * asperities.load(gap.e)));
+            near(&got.jump, &(f_m * per_load * asperities.load(gap.e)));
             let viscous = viscous_s_m * per_load * v * gap.inverse_root();
             // At the centre itself the root has no slope for a dual number.
             if eps > 0.0 {
-                near(&got.viscous, &viscous);
+                near(&got.smooth, &viscous);
             } else {
-                assert_eq!(got.viscous.value, viscous.value);
+                assert_eq!(got.smooth.value, viscous.value);
             }
         }
     }
@@ -232,8 +232,8 @@ mod tests {
         for eps in [0.2, 0.9, 0.97, 0.98, 0.99] {
             let one = plain.sliding(&plain.nominal(), eps * eps, 0.05);
             let other = dual.sliding(&dual.nominal(), Dual::of(eps * eps), Dual::of(0.05));
-            assert_eq!(one.level.to_bits(), other.level.value.to_bits());
-            assert_eq!(one.viscous.to_bits(), other.viscous.value.to_bits());
+            assert_eq!(one.jump.to_bits(), other.jump.value.to_bits());
+            assert_eq!(one.smooth.to_bits(), other.smooth.value.to_bits());
         }
     }
 }

@@ -28,10 +28,11 @@ pub use parameters::{k0_from_original, Parameters, PARAMETERS, SUMMARY};
 pub use side_by_side::SideBySide;
 pub use state::{Loaded, State};
 
-use super::{Law, Sliding};
+use super::Law;
 use crate::clock::Clock;
-use crate::effect::Scales;
 use crate::film::PI_LESS_8_OVER_PI;
+use crate::friction::Friction;
+use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
@@ -105,7 +106,7 @@ impl<T: Real> Journal<T> {
 
     /// Friction at an eccentricity ratio, given with its square, and a speed, (3.14).
     #[inline(always)]
-    pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Sliding<T> {
+    pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Friction<T> {
         let asperities = self.asperities(loaded);
         let per_load = loaded.inverse_load_number;
         if T::HAS_SLOPES {
@@ -118,9 +119,9 @@ impl<T: Real> Journal<T> {
             );
         }
         let gap = Gap::at(e2);
-        Sliding {
-            level: self.f_m * per_load * asperities.load(gap.e),
-            viscous: self.viscous_s_m * per_load * velocity_m_s * gap.inverse_root(),
+        Friction {
+            jump: self.f_m * per_load * asperities.load(gap.e),
+            smooth: self.viscous_s_m * per_load * velocity_m_s * gap.inverse_root(),
         }
     }
 
@@ -285,7 +286,7 @@ impl<T: Real> Law<T> for Journal<T> {
     }
 
     #[inline(always)]
-    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
         // Of the same number as the slope, so that a step and its friction share roots and
         // division.
         self.sliding(&state.loaded, state.e2, velocity_m_s)

@@ -8,19 +8,17 @@ use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
 
 impl<T: Real> Named<T> for Journal<T> {
-    const INFO: Info = Info {
-        name: "journal",
-        summary: SUMMARY,
-        equation: "eps', phi' of the film; f = [f_m W sgn(U) + gamma (C R/L^2) 2 pi Ub / \
+    const INFO: Info = Info::new::<T, Self>("journal")
+        .summary(SUMMARY)
+        .equation(
+            "eps', phi' of the film; f = [f_m W sgn(U) + gamma (C R/L^2) 2 pi Ub / \
                    sqrt(1 - eps^2)] / Fb, W = K0 (eps - eps_tr)^2",
-        source: "Harnoy & Friedland 1994; Cohn 1998, chapter 3",
-        limits: "short bearing, one load direction, constant viscosity, no inertia of the film",
-        parameters: PARAMETERS,
-        needs_bearing: true,
-        has_film: true,
-        has_bristle: false,
-        has_dry_level: false,
-    };
+        )
+        .source("Harnoy & Friedland 1994; Cohn 1998, chapter 3")
+        .limits("short bearing, one load direction, constant viscosity, no inertia of the film")
+        .parameters(PARAMETERS)
+        .on_a_bearing()
+        .with_a_film();
 
     fn build(
         bearing: Option<&Bearing>,

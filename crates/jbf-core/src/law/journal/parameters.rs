@@ -1,8 +1,8 @@
 //! The parameters of the law: the catalogue's page, the printed tables, and the original form
 //! (3.15) of the asperity stiffness.
 
-use crate::effect::Parameter;
 use crate::error::{check, positive, ParameterError};
+use crate::page::{Bound, Parameter};
 
 /// One line for the catalogue.
 pub const SUMMARY: &str =
@@ -10,50 +10,39 @@ pub const SUMMARY: &str =
 
 /// Names, bounds and starting values of [`Parameters`], in order.
 pub const PARAMETERS: &[Parameter] = &[
-    Parameter {
-        name: "f_m",
-        unit: "-",
-        meaning: "largest friction coefficient of the asperities",
-        lower: 1e-4,
-        upper: 10.0,
-        null: None,
-        starts: &[0.25],
-        log: true,
-        period: None,
-    },
-    Parameter {
-        name: "U_tr_m_s",
-        unit: "m/s",
-        meaning: "transition speed from mixed to full film",
-        lower: 1e-5,
-        upper: 1e2,
-        null: None,
-        starts: &[0.055],
-        log: true,
-        period: None,
-    },
-    Parameter {
-        name: "K0",
-        unit: "-",
-        meaning: "asperity stiffness constant",
-        lower: 1.0,
-        upper: 1e9,
-        null: None,
-        starts: &[6.5e5],
-        log: true,
-        period: None,
-    },
-    Parameter {
-        name: "gamma",
-        unit: "-",
-        meaning: "slope factor of the viscous term",
-        lower: 1e-3,
-        upper: 1e5,
-        null: None,
-        starts: &[33.0],
-        log: true,
-        period: None,
-    },
+    Parameter::new(
+        "f_m",
+        "-",
+        "largest friction coefficient of the asperities",
+        [1e-4, 10.0],
+        &[0.25],
+    )
+    .log(),
+    Parameter::new(
+        "U_tr_m_s",
+        "m/s",
+        "transition speed from mixed to full film",
+        [1e-5, 1e2],
+        &[0.055],
+    )
+    .log()
+    .bound(Bound::TransitionSpeed),
+    Parameter::new(
+        "K0",
+        "-",
+        "asperity stiffness constant",
+        [1.0, 1e9],
+        &[6.5e5],
+    )
+    .log(),
+    Parameter::new(
+        "gamma",
+        "-",
+        "slope factor of the viscous term",
+        [1e-3, 1e5],
+        &[33.0],
+    )
+    .log(),
 ];
 
 /// The four numbers that a fit finds.

@@ -24,7 +24,7 @@ impl Journal<f64> {
         });
         let coefficient = self
             .sliding(loaded, eps * eps, velocity_m_s)
-            .coefficient(velocity_m_s.sign());
+            .along(velocity_m_s.sign());
         Ok(Steady {
             eps,
             phi_rad,

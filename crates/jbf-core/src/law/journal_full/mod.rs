@@ -36,8 +36,9 @@ mod state;
 pub use state::State;
 
 use super::journal::{Journal, Loaded, START_PHI_RAD};
-use super::{Law, Sliding};
-use crate::effect::Scales;
+use super::Law;
+use crate::friction::Friction;
+use crate::law::Scales;
 use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
@@ -178,7 +179,7 @@ impl<T: Real> Law<T> for JournalFull<T> {
     }
 
     #[inline]
-    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Sliding<T> {
+    fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
         let [x, y] = state.xy;
         self.film
             .sliding(&state.loaded, x * x + y * y, velocity_m_s)

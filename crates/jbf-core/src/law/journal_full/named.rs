@@ -9,18 +9,14 @@ use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
 
 impl<T: Real> Named<T> for JournalFull<T> {
-    const INFO: Info = Info {
-        name: "journal_full",
-        summary: "hydrodynamic journal bearing with the inertia of the shaft (four states)",
-        equation: "mb eps'' and mb eps phi'' of the film, (3.7) and (3.8); f as in journal",
-        source: "Harnoy & Friedland 1994; Cohn 1998, equations (3.7), (3.8), (3.14)",
-        limits: "short bearing, one load direction, constant viscosity",
-        parameters: PARAMETERS,
-        needs_bearing: true,
-        has_film: true,
-        has_bristle: false,
-        has_dry_level: false,
-    };
+    const INFO: Info = Info::new::<T, Self>("journal_full")
+        .summary("hydrodynamic journal bearing with the inertia of the shaft (four states)")
+        .equation("mb eps'' and mb eps phi'' of the film, (3.7) and (3.8); f as in journal")
+        .source("Harnoy & Friedland 1994; Cohn 1998, equations (3.7), (3.8), (3.14)")
+        .limits("short bearing, one load direction, constant viscosity")
+        .parameters(PARAMETERS)
+        .on_a_bearing()
+        .with_a_film();
 
     fn build(
         bearing: Option<&Bearing>,

@@ -1,0 +1,50 @@
+"""Labelled campaigns that are on disk already."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from case import Case
+
+
+def cases(folder: Path, held_out: Path) -> list[Case]:
+    """The campaigns of a folder with `NAME/rig.toml`, `NAME/*.csv` and a truth beside them.
+
+    `truth.json` in the folder or above it has, by name, `effects`, `artefacts`, `noise_n` and,
+    where it is known, `strength`; or each campaign has a `NAME.json` beside its folder. Raises
+    FileNotFoundError, in words, where something is missing.
+    """
+    for needed in (folder, held_out):
+        if not needed.is_dir():
+            raise FileNotFoundError(f"there is no folder {needed}")
+    found = []
+    for name, truth in sorted(_truths(folder).items()):
+        for needed in (folder / name, held_out / name):
+            if not needed.is_dir():
+                raise FileNotFoundError(f"the truth knows {name}, but there is no {needed}")
+        found.append(
+            Case(
+                name,
+                tuple(truth["effects"]),
+                tuple(truth.get("artefacts", ())),
+                truth.get("strength", "-"),
+                truth["noise_n"],
+                str(folder / name),
+                str(held_out / name),
+            )
+        )
+    return found
+
+
+def _truths(folder: Path) -> dict[str, Any]:
+    places = [folder / "truth.json", folder.parent / "truth.json"]
+    for place in places:
+        if place.is_file():
+            truths: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
+            return truths
+    beside = [path for path in folder.glob("*.json") if path.with_suffix("").is_dir()]
+    if not beside:
+        raise FileNotFoundError(f"there is no {places[0]}, nor {places[1]}")
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in beside}

@@ -1,0 +1,76 @@
+"""One campaign from its files to a row: `python one.py < case.json > row.json`, a process of its
+own, so that what hangs can be ended."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+import warnings
+from collections.abc import Sequence
+
+import jbf
+import numpy as np
+from case import Case, Row
+from judge import found, judge
+
+SLOWEST_M_S = 5e-4
+"""Below it the sign of a measured speed is a guess."""
+
+SETTLED_S = 2.0
+"""By then a film has forgotten the state in which a run began."""
+
+
+def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
+    """RMS of record minus prediction, N: of all that moves, and of that once films settled."""
+    every, late = [], []
+    for run in runs:
+        assert run.friction_n is not None
+        moves = np.abs(run.velocity_m_s) >= SLOWEST_M_S
+        error = run.friction_n - model.predict(run)
+        every.append(error[moves])
+        late.append(error[moves & (run.time_s >= run.time_s[0] + SETTLED_S)])
+    rms = [float(np.sqrt(np.mean(np.concatenate(part) ** 2))) for part in (every, late)]
+    return rms[0], rms[1]
+
+
+def answered(case: Case) -> Row:
+    """What is said of a campaign, and what it is worth."""
+    begun = time.monotonic()
+    rig = jbf.read_rig(f"{case.runs}/rig.toml")
+    diagnosis = jbf.diagnose(rig, jbf.read_runs([case.runs]))
+    seconds = time.monotonic() - begun
+    said = diagnosis.to_dict()
+    kinds = sorted({finding["kind"] for finding in said.get("findings", [])})
+    told, silent, untrue = found(case.artefacts, kinds)
+    rms, settled = held_out(diagnosis.model, jbf.read_runs([case.held_out]))
+    named, alternatives = said["effects"], said["alternatives"]
+    return {
+        "verdict": said["verdict"],
+        "named": named,
+        "alternatives": alternatives,
+        "unseen": said["unseen"],
+        "judged": judge(case.effects, case.artefacts, said["verdict"], named, alternatives),
+        "names_all": set(case.effects) <= set(named),
+        "unexplained": [part["where"] for part in said["unexplained"]],
+        "findings": kinds,
+        "found": told,
+        "not_found": silent,
+        "untrue_findings": untrue,
+        "held_out_over_noise": rms / case.noise_n,
+        "held_out_settled": settled / case.noise_n,
+        "seconds": seconds,
+    }
+
+
+def main() -> None:
+    """Read a case, write its row."""
+    case = Case(**json.load(sys.stdin))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        row = answered(case)
+    json.dump(row, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

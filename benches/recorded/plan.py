@@ -1,0 +1,113 @@
+"""Which campaigns are simulated: every one is a seed, what is hidden, and what the recording does.
+
+A round has every artefact at each strength, and a dozen recordings with two or three artefacts,
+each with nothing, one effect and two effects hidden. Effects go round: each comes about as often.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from rigsim import CATALOGUE
+from rigsim.designs import draw_design
+from rigsim.excitation import campaign
+from rigsim.recording import ARTEFACTS, OFF_GRID, ONE_OF, STRENGTHS
+
+KINDS = ("none", "single", "pair")
+CLEAN = {"none": 4, "single": 12, "pair": 4}
+"""Campaigns of a round that are recorded cleanly."""
+COMBINATIONS = 12
+A_ROUND = 1000
+SHORT = (
+    ((OFF_GRID,), ()),
+    ((OFF_GRID,), ("coulomb_drag",)),
+    (("quantised",), ()),
+    (("spikes",), ()),
+    (("spikes",), ("position_ripple",)),
+    (("gaps",), ("sensor_lag",)),
+    (("dropout",), ()),
+    (("retared",), ("stribeck_excess",)),
+    (("skew",), ()),
+    (("heavy_tails",), ("presliding",)),
+    (("coarse_velocity",), ()),
+    (("noise_with_force",), ("thermal_thinning",)),
+)
+FEW_SAMPLES = 8000
+
+
+@dataclass(frozen=True)
+class Task:
+    """A campaign to be simulated and diagnosed."""
+
+    kind: str
+    seed: int
+    effects: tuple[str, ...]
+    artefacts: tuple[str, ...]
+    strength: str
+
+    @property
+    def key(self) -> str:
+        """A name of its own."""
+        hidden = "+".join(self.effects) or "nothing"
+        return f"{'+'.join(self.artefacts)}/{self.strength}/{hidden}/{self.seed}"
+
+
+def _recordings(rng: np.random.Generator) -> Iterator[tuple[str, tuple[str, ...], str]]:
+    """Kind, artefacts and strength of each campaign of a round."""
+    for kind in KINDS:
+        for _ in range(CLEAN[kind]):
+            yield kind, (OFF_GRID,), "-"
+    for name, strength, kind in itertools.product(ARTEFACTS, STRENGTHS, KINDS):
+        yield kind, (name,), strength
+    names = list(ARTEFACTS)
+    for i in range(COMBINATIONS):
+        some: tuple[str, ...] = ()
+        while not some or any(len(group & set(some)) > 1 for group in ONE_OF):
+            some = tuple(rng.choice(names, 2 + i % 2, replace=False).tolist())
+        for kind in KINDS:
+            yield kind, some, STRENGTHS[i % len(STRENGTHS)]
+
+
+def _round(number: int) -> list[Task]:
+    rng = np.random.default_rng([number, 14])
+    names = sorted(CATALOGUE)
+    ones = itertools.cycle([(n,) for n in rng.permutation(names).tolist()])
+    pairs = itertools.cycle(rng.permutation(list(itertools.combinations(names, 2))).tolist())
+    found = []
+    for i, (kind, artefacts, strength) in enumerate(_recordings(rng)):
+        hidden = {"none": (), "single": next(ones), "pair": tuple(next(pairs))}[kind]
+        found.append(Task(kind, A_ROUND * number + i, hidden, artefacts, strength))
+    # Shuffled, so that a bench that is stopped early is a fair sample.
+    return [found[k] for k in rng.permutation(len(found))]
+
+
+def tasks(
+    kinds: tuple[str, ...], seeds: int, first_seed: int = 1, artefacts: tuple[str, ...] = ()
+) -> list[Task]:
+    """All campaigns of some kinds and, where they are named, of recordings with these artefacts
+    alone."""
+    rounds = itertools.chain.from_iterable(_round(n) for n in range(first_seed, first_seed + seeds))
+    return [
+        task
+        for task in rounds
+        if task.kind in kinds and (not artefacts or set(task.artefacts) <= set(artefacts))
+    ]
+
+
+def _samples(seed: int, effects: tuple[str, ...]) -> float:
+    design = draw_design(seed)
+    return design.rate_hz * sum(plan.length_s for plan in campaign(design, effects, seed))
+
+
+def short(first_seed: int = 1) -> list[Task]:
+    """A dozen small campaigns: those of the seeds from the first on that have few samples."""
+    seeds = itertools.count(A_ROUND * first_seed)
+    found = []
+    for artefacts, effects in SHORT:
+        task = Task("single" if effects else "none", 0, effects, artefacts, "usual")
+        seed = next(s for s in seeds if _samples(s, effects) < FEW_SAMPLES)
+        found.append(replace(task, seed=seed))
+    return found

@@ -1,0 +1,187 @@
+//! The catalogue of effects: the signal chain's fixed order, in one place.
+
+use super::place::{
+    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, Place, UnderLoad,
+};
+use super::registry::{signal_chain, Shelf};
+use super::{
+    backlash, coulomb_drag, direction_asymmetry, drive_compliance, dwell_stiction, film_memory,
+    inertia_leak, load_dependence, position_ripple, presliding, quadratic_drag, sensor_drift,
+    sensor_lag, sensor_offset, shear_thinning, stribeck_excess, thermal_thinning, time_delay,
+    wear_in,
+};
+use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::law::Scales;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::{same, values_fit};
+use crate::real::Real;
+
+// Inside a stage effects act from left to right.
+signal_chain! {
+    drive: InDrive [drive_compliance::DriveCompliance, backlash::Backlash],
+    lubricant: InLubricant [shear_thinning::ShearThinning, thermal_thinning::ThermalThinning],
+    load: UnderLoad [load_dependence::LoadDependence],
+    film: InFilm [film_memory::FilmMemory],
+    contact: InContact [
+        wear_in::WearIn,
+        dwell_stiction::DwellStiction,
+        stribeck_excess::StribeckExcess,
+        direction_asymmetry::DirectionAsymmetry,
+        position_ripple::PositionRipple,
+    ],
+    bristle: AsBristle [presliding::Presliding],
+    other: Beside [
+        coulomb_drag::CoulombDrag,
+        quadratic_drag::QuadraticDrag,
+        inertia_leak::InertiaLeak,
+    ],
+    instrument: InInstrument [
+        sensor_lag::SensorLag,
+        time_delay::TimeDelay,
+        sensor_offset::SensorOffset,
+        sensor_drift::SensorDrift,
+    ],
+}
+
+impl<T: Real> Effects<T> {
+    /// The same effects with one's own beside them, which come last at every stage; see
+    /// [`super::place`].
+    pub fn with<E: EffectSet<T>>(self, own: E) -> (Self, E) {
+        (self, own)
+    }
+}
+
+/// Each stage asks the effects of its own line only.
+impl<T: Real> EffectSet<T> for Effects<T> {
+    type State = States<T>;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> States<T> {
+        States {
+            drive: self.drive.start(motion, rig),
+            lubricant: self.lubricant.start(motion, rig),
+            load: self.load.start(motion, rig),
+            film: self.film.start(motion, rig),
+            contact: self.contact.start(motion, rig),
+            bristle: self.bristle.start(motion, rig),
+            other: self.other.start(motion, rig),
+            instrument: self.instrument.start(motion, rig),
+        }
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        let film = self
+            .drive
+            .longest_step_s()
+            .min(self.lubricant.longest_step_s());
+        let film = film
+            .min(self.load.longest_step_s())
+            .min(self.film.longest_step_s());
+        let contact = self
+            .contact
+            .longest_step_s()
+            .min(self.bristle.longest_step_s());
+        let after = self
+            .other
+            .longest_step_s()
+            .min(self.instrument.longest_step_s());
+        film.min(contact).min(after)
+    }
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        self.drive.has_drive()
+    }
+    #[inline(always)]
+    fn drive(&self, s: &mut States<T>, journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
+        self.drive.drive(&mut s.drive, journal, rig, dt_s);
+    }
+    #[inline(always)]
+    fn resist(&self, s: &mut States<T>, resistance: &Resistance<T>, dt_s: T) {
+        self.drive.resist(&mut s.drive, resistance, dt_s);
+    }
+    #[inline]
+    fn transmitted_n(&self, s: &States<T>, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+        self.drive.transmitted_n(&s.drive, motion, rig)
+    }
+    #[inline(always)]
+    fn lubricant(&self, s: &States<T>, journal: &JournalMotion<T>, factor: &mut T) {
+        self.lubricant.lubricant(&s.lubricant, journal, factor);
+    }
+    #[inline(always)]
+    fn warm(&self, s: &mut States<T>, power_w: T, dt_s: T) {
+        self.lubricant.warm(&mut s.lubricant, power_w, dt_s);
+    }
+    #[inline(always)]
+    fn scales(
+        &self,
+        s: &mut States<T>,
+        share: impl Fn() -> T + Copy,
+        scales: &mut Option<Scales<T>>,
+    ) {
+        self.load.scales(&mut s.load, share, scales);
+    }
+    #[inline(always)]
+    fn film_rate(&self, s: &States<T>, rate: &mut T) {
+        self.film.film_rate(&s.film, rate);
+    }
+    #[inline]
+    fn fastest_film(&self) -> f64 {
+        self.film.fastest_film()
+    }
+    #[inline(always)]
+    fn contact(
+        &self,
+        s: &mut States<T>,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        self.contact
+            .contact(&mut s.contact, from, to, sliding, dt_s);
+    }
+    #[inline(always)]
+    fn bristle(
+        &self,
+        s: &mut States<T>,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        magnitude: [T; 2],
+        dt_s: T,
+    ) -> Option<T> {
+        self.bristle
+            .bristle(&mut s.bristle, from, to, magnitude, dt_s)
+    }
+    #[inline(always)]
+    fn other(&self, s: &States<T>, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
+        self.other.other(&s.other, journal, all_n);
+    }
+    #[inline]
+    fn first(&self, s: &mut States<T>, force_n: T) -> T {
+        self.instrument.first(&mut s.instrument, force_n)
+    }
+    #[inline(always)]
+    fn reading(&self, s: &mut States<T>, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
+        self.instrument
+            .reading(&mut s.instrument, signal, time_s, dt_s)
+    }
+}
+
+/// True where the catalogue has an effect of that name, and the values are as many as its
+/// parameters and each within its bounds. A constant can be checked by it while a program is
+/// compiled; what `jbf export` writes is.
+///
+/// ```
+/// const _: () = assert!(jbf_core::effect::fits("coulomb_drag", &[0.8]));
+/// ```
+pub const fn fits(name: &str, values: &[f64]) -> bool {
+    let mut i = 0;
+    while i < CATALOGUE.len() {
+        if same(CATALOGUE[i].name, name) {
+            return values_fit(CATALOGUE[i].parameters, values);
+        }
+        i += 1;
+    }
+    false
+}

@@ -1,0 +1,271 @@
+//! One effect in its place, as a set of one: how each stage of the signal chain asks an effect. The
+//! catalogue's effects stand in these places, and so may one's own: write a type with
+//! [`Effect`](super::Effect) and its stage's trait, from outside this crate, and put it there.
+//!
+//! ```ignore
+//! let effects = Effects::NONE.with(Beside::<MyWiper<f64>>::new(&[0.5])?);
+//! ```
+//!
+//! `cargo run --example own_effect` shows the whole of it.
+
+use super::{
+    Bristle, Contact, Drive, EffectSet, Film, Info, Instrument, Loading, Lubricant, OtherFriction,
+    Resistance, Rig, Signal, Stage,
+};
+use crate::error::{check, ParameterError};
+use crate::friction::Friction;
+use crate::law::Scales;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A place, with an effect in it that can be built from a list of values.
+pub trait Place<T: Real>: EffectSet<T> {
+    /// The page of the effect.
+    const INFO: Info;
+
+    /// Build the effect from its parameters, in the order of its page, and put it here.
+    ///
+    /// # Errors
+    /// Names the first parameter that is missing, out of its bounds, or at an infinite null: such
+    /// an effect is to be left out.
+    fn new(parameters: &[T]) -> Result<Self, ParameterError>;
+}
+
+/// The places: a name, the trait of the effects that stand in it, and the stage that their pages
+/// must say, which is asked while a program is compiled.
+macro_rules! places {
+    ($($(#[$doc:meta])* $Place:ident: $Trait:ident at $stage:pat,)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $Place<E>(pub E);
+
+        impl<T: Real, E: $Trait<T>> Place<T> for $Place<E> {
+            const INFO: Info = {
+                assert!(
+                    matches!(E::INFO.stage, $stage),
+                    "the effect's page says another stage than the place that it stands in"
+                );
+                E::INFO
+            };
+
+            fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+                let info = <Self as Place<T>>::INFO;
+                for (page, value) in info.parameters.iter().zip(parameters) {
+                    let infinite = page.null.is_some_and(|null| !null.is_finite());
+                    check(
+                        !infinite || page.null != Some(value.value()),
+                        page.name,
+                        value.value(),
+                        "is where the effect vanishes: leave it out",
+                    )?;
+                }
+                E::new(parameters).map(Self)
+            }
+        }
+    )*};
+}
+
+places! {
+    /// Between the encoder and the journal.
+    InDrive: Drive at Stage::Drive,
+    /// In the oil.
+    InLubricant: Lubricant at Stage::Lubricant,
+    /// On the law's own parameters under a load.
+    UnderLoad: Loading at Stage::Film,
+    /// In the film's dynamics.
+    InFilm: Film at Stage::Film,
+    /// Between the surfaces.
+    InContact: Contact at Stage::Contact,
+    /// In the place of the motion's sign, last in the contact.
+    AsBristle: Bristle at Stage::Contact,
+    /// Beside the bearing's friction.
+    Beside: OtherFriction at Stage::Other,
+    /// Between the force and its record.
+    InInstrument: Instrument at Stage::Instrument,
+}
+
+impl<T: Real, E: Drive<T>> EffectSet<T> for InDrive<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn drive(&self, s: &mut Self::State, journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
+        *journal = self.0.step(s, journal, rig, dt_s);
+    }
+    #[inline(always)]
+    fn resist(&self, s: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
+        self.0.resist(s, resistance, dt_s);
+    }
+    #[inline]
+    fn transmitted_n(&self, s: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+        self.0.transmitted_n(s, motion, rig)
+    }
+}
+
+impl<T: Real, E: Lubricant<T>> EffectSet<T> for InLubricant<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn lubricant(&self, s: &Self::State, journal: &JournalMotion<T>, factor: &mut T) {
+        *factor *= self.0.factor(s, journal);
+    }
+    #[inline(always)]
+    fn warm(&self, s: &mut Self::State, power_w: T, dt_s: T) {
+        self.0.step(s, power_w, dt_s);
+    }
+}
+
+impl<T: Real, E: Loading<T>> EffectSet<T> for UnderLoad<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn scales(
+        &self,
+        s: &mut Self::State,
+        share: impl Fn() -> T + Copy,
+        scales: &mut Option<Scales<T>>,
+    ) {
+        let own = self.0.scales(s, share());
+        let before = scales.unwrap_or(Scales {
+            transition_speed: T::ONE,
+            stiffness: T::ONE,
+        });
+        *scales = Some(Scales {
+            transition_speed: before.transition_speed * own.transition_speed,
+            stiffness: before.stiffness * own.stiffness,
+        });
+    }
+}
+
+impl<T: Real, E: Film<T>> EffectSet<T> for InFilm<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn film_rate(&self, s: &Self::State, rate: &mut T) {
+        *rate *= self.0.rate(s);
+    }
+    #[inline]
+    fn fastest_film(&self) -> f64 {
+        self.0.fastest()
+    }
+}
+
+impl<T: Real, E: Contact<T>> EffectSet<T> for InContact<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn contact(
+        &self,
+        s: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        self.0.step(s, from, to, dt_s);
+        self.0.apply(s, to, sliding);
+    }
+}
+
+impl<T: Real, E: Bristle<T>> EffectSet<T> for AsBristle<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn bristle(
+        &self,
+        s: &mut Self::State,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        magnitude: [T; 2],
+        dt_s: T,
+    ) -> Option<T> {
+        Some(if dt_s > T::ZERO {
+            self.0.step(s, from, to, magnitude, dt_s)
+        } else {
+            self.0.first(s, to, magnitude[1])
+        })
+    }
+}
+
+impl<T: Real, E: OtherFriction<T>> EffectSet<T> for Beside<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn other(&self, s: &Self::State, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
+        let own_n = self.0.friction_n(s, journal);
+        all_n.jump += own_n.jump;
+        all_n.smooth += own_n.smooth;
+    }
+}
+
+impl<T: Real, E: Instrument<T>> EffectSet<T> for InInstrument<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline]
+    fn first(&self, s: &mut Self::State, force_n: T) -> T {
+        self.0.first(s, force_n)
+    }
+    #[inline(always)]
+    fn reading(&self, s: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
+        self.0.step(s, signal, time_s, dt_s)
+    }
+}

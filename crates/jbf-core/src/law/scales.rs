@@ -1,0 +1,10 @@
+//! A law's own parameters under a load, against those under the load that it was built with.
+
+/// Factors on them; see [`super::Law::scaled`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales<T> {
+    /// Factor on the transition speed U_tr.
+    pub transition_speed: T,
+    /// Factor on the asperity stiffness K0.
+    pub stiffness: T,
+}

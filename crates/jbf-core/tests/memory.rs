@@ -1,0 +1,56 @@
+//! What a chain keeps in memory: what its law, the motion and the effects in it need, and nothing
+//! for effects that are not there.
+
+use jbf_core::chain::State;
+use jbf_core::effect::coulomb_drag::CoulombDrag;
+use jbf_core::effect::sensor_lag::SensorLag;
+use jbf_core::effect::{Beside, EffectSet, Effects, InInstrument};
+use jbf_core::law::coulomb::Coulomb;
+use jbf_core::law::Law;
+use jbf_core::motion::JournalMotion;
+use jbf_core::{Chain, Motion, Real};
+use std::mem::size_of;
+
+type Changes<T, L, E> = State<T, <L as Law<T>>::State, E>;
+
+/// Bytes of state of a chain round Coulomb's law.
+fn state<T: Real, E: EffectSet<T>>() -> usize {
+    size_of::<Changes<T, Coulomb<T>, E>>()
+}
+
+fn lean<T: Real>() {
+    // Both motions, the speed that the film feels and its factor, what a bristle bends towards, the
+    // jump, the force, the reading, and the law's own.
+    let number = size_of::<T>();
+    let needed = size_of::<Motion<T>>() + size_of::<JournalMotion<T>>() + 6 * number;
+    assert!(
+        state::<T, ()>() <= needed + number,
+        "{} bytes, {needed} and the law's one needed",
+        state::<T, ()>()
+    );
+    let drag = state::<T, Beside<CoulombDrag<T>>>();
+    assert_eq!(drag, state::<T, ()>(), "a drag remembers nothing");
+    let lag = state::<T, (Beside<CoulombDrag<T>>, InInstrument<SensorLag<T>>)>();
+    assert_eq!(lag, state::<T, ()>() + number, "a lag remembers a number");
+    assert!(
+        state::<T, Effects<T>>() > 4 * lag,
+        "the catalogue keeps room for all"
+    );
+    // The law's three numbers, the rig's two, the drag's one and the lag's one.
+    type Pair<T> = (Beside<CoulombDrag<T>>, InInstrument<SensorLag<T>>);
+    assert_eq!(size_of::<Chain<T, Coulomb<T>, ()>>(), 5 * number);
+    assert_eq!(size_of::<Chain<T, Coulomb<T>, Pair<T>>>(), 7 * number);
+}
+
+#[test]
+fn an_effect_that_is_not_there_costs_no_memory() {
+    lean::<f32>();
+    lean::<f64>();
+    println!(
+        "state of a bare chain round coulomb, bytes: {} in f32, {} in f64; with the catalogue {}, {}",
+        state::<f32, ()>(),
+        state::<f64, ()>(),
+        state::<f32, Effects<f32>>(),
+        state::<f64, Effects<f64>>()
+    );
+}

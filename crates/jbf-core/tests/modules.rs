@@ -1,0 +1,82 @@
+//! The rooms of the crate import one way: no room reaches, by whatever detour, itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Every file below a room.
+fn files(at: &Path) -> Vec<PathBuf> {
+    if at.is_file() {
+        return vec![at.to_path_buf()];
+    }
+    let entries = fs::read_dir(at).expect("a folder");
+    entries
+        .flat_map(|entry| files(&entry.expect("an entry").path()))
+        .collect()
+}
+
+/// Room and what it imports: a file or a folder in `src`, and each `crate::room` in it but for
+/// comments and its own tests. What `lib.rs` gives at the top (`crate::Dual`) is its room's.
+fn imports() -> BTreeMap<String, BTreeSet<String>> {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let entries = fs::read_dir(&src).expect("the sources");
+    let rooms: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
+    let name = |p: &Path| {
+        p.file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned()
+    };
+    let names: BTreeSet<String> = rooms.iter().map(|p| name(p)).collect();
+    let mut found = BTreeMap::new();
+    for room in rooms.iter().filter(|p| name(p) != "lib") {
+        let mut wanted = BTreeSet::new();
+        for file in files(room) {
+            let text = fs::read_to_string(&file).expect("source");
+            let text = text
+                .split("#[cfg(test)]\nmod tests")
+                .next()
+                .unwrap_or_default();
+            for line in text.lines().filter(|l| !l.trim_start().starts_with("//")) {
+                for (at, _) in line.match_indices("crate::") {
+                    let rest = &line[at + "crate::".len()..];
+                    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
+                    let word = rest[..end.unwrap_or(rest.len())].to_lowercase();
+                    let word = match word.as_str() {
+                        "parametererror" => "error".to_string(),
+                        _ => word,
+                    };
+                    assert!(names.contains(&word), "{}: {line}", file.display());
+                    wanted.insert(word);
+                }
+            }
+        }
+        wanted.remove(&name(room));
+        found.insert(name(room), wanted);
+    }
+    found
+}
+
+#[test]
+fn rooms_import_one_way() {
+    let mut left = imports();
+    assert!(left.len() > 20 && left["chain"].contains("effect"));
+    // Take away, again and again, what imports nothing that is left, and what nothing left imports.
+    loop {
+        let done: Vec<String> = left
+            .iter()
+            .filter(|(room, wanted)| {
+                wanted.iter().all(|w| !left.contains_key(w))
+                    || !left.values().any(|wanted| wanted.contains(*room))
+            })
+            .map(|(room, _)| room.clone())
+            .collect();
+        if done.is_empty() {
+            break;
+        }
+        for room in done {
+            left.remove(&room);
+        }
+    }
+    assert!(left.is_empty(), "these import each other: {left:#?}");
+}

@@ -1,0 +1,198 @@
+//! A law with effects, over whole runs: prediction and its derivatives.
+
+mod names;
+mod runs;
+mod slopes;
+
+use crate::bearing::{refused, Sizes};
+use crate::motion::Motion;
+use crate::pool::on_pool;
+use jbf_core::effect::Info;
+use jbf_core::law;
+use jbf_core::spec::{Spec, Using};
+use jbf_core::{Bearing, Clock, ParameterError, Real};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use runs::{FilmRate, Reader, Runs, Values};
+
+/// A friction law and effects round it; parameters come with each call.
+#[pyclass(frozen, module = "jbf._core")]
+pub struct Chain {
+    law: &'static law::Info,
+    bearing: Option<Bearing>,
+    load_n: Option<f64>,
+    clock: Clock,
+    effects: Vec<&'static Info>,
+    max_step_s: f64,
+}
+
+impl Chain {
+    fn count(&self) -> usize {
+        let theirs = self.effects.iter().map(|e| e.parameters.len());
+        self.law.parameters.len() + theirs.sum::<usize>()
+    }
+
+    /// Run the chain with one set of parameter values along motions.
+    fn runs<T: Real, R: Reader<T>>(
+        &self,
+        p: &[T],
+        reader: R,
+        motions: &[&Motion],
+    ) -> Result<Vec<R::Read>, ParameterError> {
+        let runs = Runs {
+            reader,
+            max_step_s: self.max_step_s,
+            motions,
+        };
+        self.with_chain(p, runs)
+    }
+
+    /// Build the chain with one set of parameter values: the law's first, then each effect's.
+    fn with_chain<T: Real, U: Using<T>>(
+        &self,
+        p: &[T],
+        then: U,
+    ) -> Result<U::Output, ParameterError> {
+        let (values, mut rest) = p.split_at(self.law.parameters.len());
+        let effects = self.effects.iter().map(|info| {
+            let (own, after) = rest.split_at(info.parameters.len());
+            rest = after;
+            (info.name, own)
+        });
+        let spec = Spec {
+            law: self.law.name,
+            values,
+            bearing: self.bearing.as_ref(),
+            load_n: self.load_n,
+            clock: self.clock,
+        };
+        spec.chain(effects, then)
+    }
+
+    fn checked<'a>(&self, parameters: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
+        let p = parameters
+            .as_slice()
+            .map_err(|_| PyValueError::new_err("parameters must be a contiguous array"))?;
+        if p.len() == self.count() {
+            Ok(p)
+        } else {
+            Err(PyValueError::new_err(format!(
+                "{} parameters given, {} needed",
+                p.len(),
+                self.count()
+            )))
+        }
+    }
+}
+
+#[pymethods]
+impl Chain {
+    #[new]
+    #[pyo3(signature = (*, law, bearing, load_n, clock, effects, max_step_s))]
+    fn new(
+        law: &str,
+        bearing: Option<Sizes>,
+        load_n: Option<f64>,
+        clock: &str,
+        effects: Vec<String>,
+        max_step_s: f64,
+    ) -> PyResult<Self> {
+        let law = names::law(law)?;
+        let bearing = bearing.map(Sizes::checked).transpose()?;
+        if law.needs_bearing && (bearing.is_none() || load_n.is_none()) {
+            return Err(PyValueError::new_err(format!(
+                "the law {} needs a bearing and load_n",
+                law.name
+            )));
+        }
+        let clock = names::clock(clock)?;
+        if !(max_step_s > 0.0 && max_step_s.is_finite()) {
+            return Err(PyValueError::new_err(format!(
+                "max_step_s = {max_step_s} must be positive and finite"
+            )));
+        }
+        let effects = effects
+            .iter()
+            .map(|name| names::effect(name, law))
+            .collect::<PyResult<Vec<_>>>()?;
+        Ok(Self {
+            law,
+            bearing,
+            load_n,
+            clock,
+            effects,
+            max_step_s,
+        })
+    }
+
+    /// Dotted names of the parameters, in the order of every array here.
+    #[getter]
+    fn parameter_names(&self) -> Vec<String> {
+        let own = self.law.parameters.iter().map(|p| p.name.to_string());
+        let theirs = self.effects.iter().flat_map(|e| {
+            e.parameters
+                .iter()
+                .map(|p| format!("{}.{}", e.name, p.name))
+        });
+        own.chain(theirs).collect()
+    }
+
+    /// Friction readings, N, one array a run.
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        motions: Vec<Py<Motion>>,
+    ) -> PyResult<Vec<Bound<'py, PyArray1<f64>>>> {
+        let p = self.checked(&parameters)?;
+        let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
+        let runs = py
+            .detach(|| on_pool(|| self.runs(p, Values, &motions)))
+            .map_err(refused)?;
+        Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
+    }
+
+    /// Fastest rate of the law's film along any of the motions, 1/s. Beyond
+    /// `FASTEST_FILM_1_S` a prediction does not follow it.
+    fn film_rate_1_s(
+        &self,
+        parameters: PyReadonlyArray1<'_, f64>,
+        motions: Vec<Py<Motion>>,
+    ) -> PyResult<f64> {
+        let p = self.checked(&parameters)?;
+        let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
+        let film_rate = FilmRate { motions: &motions };
+        self.with_chain(p, film_rate).map_err(refused)
+    }
+
+    /// Readings (N) and their derivatives with respect to the parameters `which`: for each
+    /// run an array of n values and one of shape (n, len(which)).
+    #[allow(clippy::type_complexity)]
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: PyReadonlyArray1<'py, f64>,
+        motions: Vec<Py<Motion>>,
+        which: Vec<usize>,
+    ) -> PyResult<Vec<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)>> {
+        let p = self.checked(&parameters)?;
+        if let Some(bad) = which.iter().find(|&&w| w >= p.len()) {
+            return Err(PyValueError::new_err(format!(
+                "there is no parameter number {bad}"
+            )));
+        }
+        let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
+        let runs = py
+            .detach(|| on_pool(|| self.all_slopes(p, &which, &motions)))
+            .map_err(refused)?;
+        runs.into_iter()
+            .map(|(values, matrix)| {
+                let shape = (values.len(), which.len());
+                let shaped = numpy::ndarray::Array2::from_shape_vec(shape, matrix)
+                    .map_err(|e| PyValueError::new_err(e.to_string()))?;
+                Ok((values.into_pyarray(py), shaped.into_pyarray(py)))
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,96 @@
+//! One chain, of whatever law, along many motions: what each run's readings become.
+
+use crate::motion::Motion;
+use jbf_batch::Simd;
+use jbf_core::law::Named;
+use jbf_core::spec::Using;
+use jbf_core::{run, Chain, Dual, Real};
+use rayon::prelude::*;
+
+/// Runs a chain along motions, on all cores, and gives every reading to a reader.
+pub struct Runs<'a, R> {
+    pub reader: R,
+    pub max_step_s: f64,
+    pub motions: &'a [&'a Motion],
+}
+
+/// What becomes of one run's readings.
+pub trait Reader<T>: Sync {
+    type Read: Send;
+    fn simd() -> Simd {
+        Simd::Baseline
+    }
+    fn read(&self, samples: usize, predict: impl FnOnce(&mut dyn FnMut(usize, T))) -> Self::Read;
+}
+
+/// Readings alone.
+pub struct Values;
+
+impl Reader<f64> for Values {
+    type Read = Vec<f64>;
+    fn read(&self, samples: usize, predict: impl FnOnce(&mut dyn FnMut(usize, f64))) -> Vec<f64> {
+        let mut values = vec![0.0; samples];
+        predict(&mut |i, f| values[i] = f);
+        values
+    }
+}
+
+/// Readings and their derivatives.
+pub struct Slopes;
+
+impl<const LANES: usize> Reader<Dual<LANES>> for Slopes {
+    type Read = (Vec<f64>, Vec<[f64; LANES]>);
+    fn simd() -> Simd {
+        Simd::best()
+    }
+    fn read(
+        &self,
+        samples: usize,
+        predict: impl FnOnce(&mut dyn FnMut(usize, Dual<LANES>)),
+    ) -> Self::Read {
+        let mut values = vec![0.0; samples];
+        let mut slopes = vec![[0.0; LANES]; samples];
+        predict(&mut |i, f| {
+            values[i] = f.value;
+            slopes[i] = f.slope;
+        });
+        (values, slopes)
+    }
+}
+
+impl<T: Real, R: Reader<T>> Using<T> for Runs<'_, R> {
+    type Output = Vec<R::Read>;
+
+    fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output {
+        let simd = R::simd();
+        self.motions
+            .par_iter()
+            .with_max_len(1)
+            .map(|motion| {
+                self.reader.read(motion.len(), |sink| {
+                    simd.dispatch(
+                        #[inline(always)]
+                        || run::predict(&chain, &motion.record(), self.max_step_s, sink),
+                    );
+                })
+            })
+            .collect()
+    }
+}
+
+/// The fastest rate of the film along any of the motions, 1/s.
+pub struct FilmRate<'a> {
+    pub motions: &'a [&'a Motion],
+}
+
+impl Using<f64> for FilmRate<'_> {
+    type Output = f64;
+
+    fn with<L: Named<f64>>(self, chain: Chain<f64, L>) -> f64 {
+        let rates = self
+            .motions
+            .iter()
+            .map(|motion| run::film_rate_1_s(&chain, &motion.record()));
+        rates.fold(0.0, f64::max)
+    }
+}

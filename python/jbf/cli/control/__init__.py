@@ -1,0 +1,16 @@
+"""`jbf control run|tables|tune|robustness`: loops on the simulated bench, one file an action."""
+
+from __future__ import annotations
+
+from jbf.cli.arguments import Commands, command
+from jbf.cli.control import robustness, run, tables, tune
+
+
+def add(commands: Commands) -> None:
+    """Put the commands on the command line; without an action it is `tables`."""
+    does = "friction compensation in the loop: runs, the thesis's tables, settings, robustness"
+    parser = command(commands, "control", does, tables.run)
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", parser_class=type(parser))
+    tables.add_options(parser)
+    for action in (run, tables, tune, robustness):
+        action.add(actions)

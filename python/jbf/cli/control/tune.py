@@ -1,0 +1,32 @@
+"""`jbf control tune MODEL`: settings of the compensator from a fitted model."""
+
+from __future__ import annotations
+
+import argparse
+
+from jbf.cli import outputs
+from jbf.cli.arguments import Commands, command
+from jbf.cli.control.options import add_bench, bench_of, model_of
+
+
+def add(actions: Commands) -> None:
+    """Put the action on the command line."""
+    parser = command(actions, "tune", "settings of the compensator from a fitted model", run)
+    parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
+    parser.add_argument("--out", metavar="TOML", help="write them to a file")
+    add_bench(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    from jbf.control import tune
+
+    wanted = {"--out": arguments.out}
+    outputs.check(wanted, [arguments.model])
+    text = tune(model_of(arguments.model), bench_of(arguments)).to_toml()
+    if arguments.out:
+        outputs.write({arguments.out: text})
+        outputs.say(f"settings written to {arguments.out}", wanted)
+    else:
+        outputs.say(text.rstrip(), wanted)
+    return 0

@@ -1,0 +1,143 @@
+"""Patterns of a residual: bins of an axis whose means differ from nothing by more than chance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.comparison.axes import all_axes
+from jbf.comparison.bins import Axis, Bin, Binned, labels
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.samples import Samples
+
+Array = npt.NDArray[np.float64]
+Counts = npt.NDArray[np.intp]
+
+LEAST_SHARE = 0.01
+"""An axis that explains less of the residual than this is not worth a line."""
+SIGNIFICANCE = 6.0
+"""How many standard deviations the explained part must stand above chance."""
+STRONG_SHARE = 0.02
+"""Bins with less of what the means explain than this have no part in the pattern's words."""
+MOST_OF = 0.8
+"""A pattern in more of an axis's bins than this share is one of all the axis."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One axis along which the residual has a pattern.
+
+    Attributes
+    ----------
+    axis
+        `velocity`, `direction`, `regime` (of a law without a film: `speed range`),
+        `acceleration`, `angle`, `time`, `run`, `time since a rest` or
+        `distance since a reversal`.
+    where
+        The pattern in words.
+    share
+        Part of the residual's mean square that the bins' means explain, 0 to 1.
+    bins, means_n, counts
+        The bins, and in each the mean of record minus prediction (N) and the samples.
+    """
+
+    axis: Axis
+    where: str
+    share: float
+    bins: tuple[Bin, ...]
+    means_n: Array
+    counts: Counts
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The bins in words."""
+        return labels(self.axis, self.bins)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
+
+
+def find_failures(
+    campaign: Campaign,
+    samples: Samples,
+    residuals: Sequence[Array],
+    u_tr: float | None,
+    noise_n: float,
+) -> tuple[Failure, ...]:
+    """Axes along which record minus prediction has a pattern, strongest first."""
+    axes = all_axes(campaign, u_tr)
+    patterns = (pattern_along(axis, samples, residuals, noise_n) for axis in axes)
+    return tuple(sorted((f for f in patterns if f is not None), key=lambda f: -f.share))
+
+
+def bin_means(axis: Binned, samples: Samples, residuals: Sequence[Array]) -> tuple[Array, Counts]:
+    """Mean of the residuals in each bin, N, and how many samples it is of."""
+    r, places = samples.flat(residuals), samples.flat(axis.places)
+    known = places >= 0
+    counts = np.bincount(places[known], minlength=len(axis.bins))
+    sums = np.bincount(places[known], weights=r[known], minlength=len(axis.bins))
+    return sums / np.maximum(counts, 1), counts
+
+
+def pattern_along(
+    axis: Binned,
+    samples: Samples,
+    residuals: Sequence[Array],
+    noise_n: float,
+    least_share: float = LEAST_SHARE,
+    significance: float = SIGNIFICANCE,
+) -> Failure | None:
+    """The pattern of residuals (record minus prediction, N) along an axis, where it stands out.
+
+    Parameters
+    ----------
+    noise_n
+        Standard deviation of what is no pattern, N.
+    least_share
+        Share of the mean square that the means of the bins must explain beyond chance.
+    significance
+        Standard deviations that this must stand above chance.
+    """
+    r = samples.flat(residuals)
+    total = float(r @ r)
+    means, counts = bin_means(axis, samples, residuals)
+    used = int(np.count_nonzero(counts))
+    explained = float(np.sum(counts * means**2))
+    # By chance each bin's mean takes one noise variance.
+    chance = used * noise_n**2
+    spread = np.sqrt(2.0 * used) * noise_n**2
+    share = (explained - chance) / total if total > 0 else 0.0
+    if share < least_share or explained < chance + significance * spread:
+        return None
+    return Failure(axis.axis, pattern_words(axis, means, counts), share, axis.bins, means, counts)
+
+
+def pattern_words(axis: Binned, means: Array, counts: Counts) -> str:
+    """The pattern of the means in words."""
+    weight = counts * means**2
+    # Of very many bins the strongest has little, too.
+    strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
+    ways = np.array([b.direction for b in axis.bins])
+    both_ways = bool(np.all(ways != 0)) and strong.sum() > 1
+    if both_ways and np.all(np.sign(means[strong]) == ways[strong]):
+        size = np.average(np.abs(means[strong]), weights=counts[strong])
+        lead = f"sign of v: record above the model by {size:.2g} N in the direction of motion"
+    elif both_ways and np.all(np.sign(means[strong]) == -ways[strong]):
+        size = np.average(np.abs(means[strong]), weights=counts[strong])
+        lead = f"sign of v: record below the model by {size:.2g} N in the direction of motion"
+    elif np.all(means[strong] > 0) or np.all(means[strong] < 0):
+        size = np.average(means[strong], weights=counts[strong])
+        lead = f"one sign throughout: record minus model {size:+.2g} N"
+    else:
+        lead = ""
+    worst = np.argsort(-weight)[:2]
+    spots = "; ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
+    if not lead:
+        return f"most {spots}"
+    throughout = strong.sum() / max(np.count_nonzero(counts), 1) > MOST_OF
+    return f"{f'all of {axis.axis}, ' if throughout else ''}{lead}; most {spots}"

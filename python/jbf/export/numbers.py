@@ -1,0 +1,87 @@
+"""What any language needs of a model: names, numbers, and the core's types."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from jbf import _core
+from jbf.errors import InputError
+from jbf.models.catalogue import Effect, Law, Parameter, find_effect, find_law
+from jbf.models.chain import core_bearing, core_load_n
+from jbf.models.model import Model
+from jbf.models.own_effects import OwnEffect
+
+
+@dataclass(frozen=True)
+class Group:
+    """The law, or one effect: its page, and its values in the page's order."""
+
+    page: Law | Effect
+    values: tuple[float, ...]
+
+    @property
+    def name(self) -> str:
+        """The fixed name."""
+        return self.page.name
+
+    @property
+    def room(self) -> str:
+        """Where the core has it: `law` or `effect`."""
+        return "law" if isinstance(self.page, Law) else "effect"
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """A model's numbers; the effects in the order of the signal chain."""
+
+    law: Group
+    effects: tuple[Group, ...]
+    clock: str
+    bearing: _core.BearingSizes | None
+    load_n: float
+
+    @classmethod
+    def of(cls, model: Model) -> Numbers:
+        """Those of a model; an effect at an infinite null is not in it.
+
+        Raises
+        ------
+        InputError
+            An effect of one's own is written in Python, which no target runs.
+        """
+        values = {name: p.value for name, p in model.parameters.items()}
+        law = find_law(model.law)
+        effects = []
+        for name in model.effects:
+            page = find_effect(name)
+            if isinstance(page, OwnEffect):
+                raise InputError(
+                    problem=f"the effect {name} is written in Python, which no target runs",
+                    mend="write it in Rust: cargo run --example own_effect shows how",
+                )
+            own = tuple(values[f"{name}.{p.name}"] for p in page.parameters)
+            if not any(map(_vanishes, page.parameters, own)):
+                effects.append(Group(page, own))
+        return cls(
+            law=Group(law, tuple(values[p.name] for p in law.parameters)),
+            effects=tuple(effects),
+            clock=model.clock,
+            bearing=core_bearing(model.rig),
+            load_n=core_load_n(model.rig) or 1.0,
+        )
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The law first, then the effects."""
+        return (self.law, *self.effects)
+
+    def title(self) -> str:
+        """Law and effects, for people."""
+        effects = ", ".join(group.name for group in self.effects)
+        return f"law {self.law.name}; effects: {effects or 'none'}"
+
+
+def _vanishes(page: Parameter, value: float) -> bool:
+    """True at an infinite null: the core leaves such an effect out, and so does what is written."""
+    return page.null is not None and math.isinf(page.null) and value == page.null

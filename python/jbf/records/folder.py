@@ -1,0 +1,50 @@
+"""A campaign as a folder: `rig.toml` beside the runs as CSV; and folders of such folders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.records.rig import Rig, read_rig
+from jbf.records.run import PathLike, Run
+from jbf.records.run_files import read_runs
+from jbf.text_files import path_of
+
+
+def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
+    """The rig and the runs of a folder that holds `rig.toml` and CSV files.
+
+    Raises
+    ------
+    InputError
+        There is no rig, no run, or one of them is wrong.
+    """
+    folder = path_of(folder)
+    path = folder / "rig.toml"
+    if not path.is_file():
+        raise InputError(
+            file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
+        )
+    return read_rig(path), read_runs(folder)
+
+
+def campaigns_in(folder: PathLike) -> dict[str, Path]:
+    """Every folder in a folder that holds a rig or a run, by name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    found = {
+        path.name: path
+        for path in sorted(Path(folder).iterdir() if Path(folder).is_dir() else ())
+        if path.is_dir() and ((path / "rig.toml").is_file() or any(path.glob("*.csv")))
+    }
+    if not found:
+        raise InputError(
+            file=folder,
+            problem="holds no campaign",
+            mend="give each campaign a folder in it, with rig.toml and the runs as CSV",
+        )
+    return found

@@ -1,0 +1,27 @@
+"""A comparison as one self-contained HTML page, pictures included."""
+
+from __future__ import annotations
+
+from jbf.comparison.comparison import Comparison
+from jbf.reporting.comparison_plots import plot_comparison, plot_run
+from jbf.reporting.page import measurement, page, pattern_rows, picture
+from jbf.reporting.tables import parameter_rows, run_rows
+from jbf.reporting.words import comparison_sentence, law_and_effects, listed
+
+
+def comparison_page(comparison: Comparison) -> str:
+    """The HTML text of a comparison's report."""
+    model = comparison.model
+    return page(
+        "comparison.html.j2",
+        "Model against measurement",
+        sentence=comparison_sentence(comparison),
+        axes=listed(f.axis for f in comparison.failures),
+        law=f"law {law_and_effects(model)}",
+        measurement=measurement(comparison, comparison.noise_n),
+        failures=pattern_rows(comparison.failures),
+        picture=picture(plot_comparison(comparison)),
+        run_picture=picture(plot_run(comparison)),
+        runs=run_rows(comparison),
+        parameters=parameter_rows(model.law, model.effects, model.parameters),
+    )

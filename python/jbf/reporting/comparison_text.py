@@ -1,0 +1,28 @@
+"""A comparison as plain text, 80 to 100 columns."""
+
+from __future__ import annotations
+
+from jbf.comparison.comparison import Comparison
+from jbf.reporting.paragraphs import columns
+from jbf.reporting.tables import run_rows
+from jbf.reporting.text_parts import where_lines
+from jbf.reporting.words import comparison_sentence
+
+
+def _run_lines(comparison: Comparison) -> list[str]:
+    rows = [("run", "samples", "RMS (N)", "RMS / noise")]
+    return columns([*rows, *run_rows(comparison)], "<>>>", 4)
+
+
+def comparison_report(comparison: Comparison) -> str:
+    """How far, where it fails, and each run."""
+    lines = [comparison_sentence(comparison)]
+    if comparison.failures:
+        lines += [
+            "",
+            "Where it fails (share of the mean square)",
+            *where_lines(comparison.failures),
+        ]
+    else:
+        lines[0] += "; no pattern along any axis"
+    return "\n".join([*lines, "", "Runs", *_run_lines(comparison)])

@@ -1,0 +1,36 @@
+"""The thesis's tables and the robustness of a compensator as data for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from jbf.control.robustness import Outcome
+from jbf.control.thesis_tables import Tables
+
+
+def tables_dict(tables: Tables, others: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
+    """What `jbf control tables --json` writes."""
+    values = {n: p.value for n, p in tables.model.parameters.items()}
+    return {
+        "friction": {"volts_per_n": tables.bench.volts_per_n, **values},
+        "cells": [{**asdict(cell), "ratio": cell.ratio} for cell in tables.cells.values()],
+        "within_2": tables.within(2.0),
+        "within_1.5": tables.within(1.5),
+        "times_better": tables.gains(),
+        "assumptions": [
+            {
+                "name": name,
+                "ratios": {f"{c.row}, {c.column}": c.ratio for c in other.predicted},
+                "within_2": other.within(2.0),
+                "within_1.5": other.within(1.5),
+            }
+            for name, other in others
+        ],
+    }
+
+
+def robustness_dict(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """What `jbf control robustness --json` writes."""
+    return {"cases": [{**asdict(o), "worst": o.worst, "verdict": o.verdict} for o in outcomes]}

@@ -1,0 +1,135 @@
+"""The thesis's tables, fitted and predicted, as plain text."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+
+from jbf.control.thesis_tables import COLUMNS, Cell, Tables
+from jbf.models.model import Model
+from jbf.reporting.paragraphs import columns
+from jbf.reporting.words import number
+
+_TITLES = {"none": "no compensation", "learning": "dynamic model, learned", "coulomb": "Coulomb"}
+_FAR = 2.0
+
+
+def _three(value: float | None) -> str:
+    return "-" if value is None else number(value, 3)
+
+
+def _ratio(cell: Cell) -> str:
+    return "-" if cell.ratio is None else f"{cell.ratio:.2f}"
+
+
+def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]:
+    """The four fitted numbers."""
+    values = {n: p.value for n, p in model.parameters.items()}
+    return columns(
+        [
+            ("friction scale", f"{number(volts_per_n * load_n, 4)} V", "for a coefficient of 1"),
+            ("U_tr", f"{number(values['U_tr_m_s'], 4)} m/s", ""),
+            ("K0", f"{values['K0']:.4g}", ""),
+            ("gamma", f"{number(values['gamma'], 4)}", ""),
+        ],
+        "<<<",
+    )
+
+
+def tables_text(tables: Tables) -> str:
+    """Bench, thesis and ratio for each row and column."""
+    extra = [c for c in {key[1]: None for key in tables.cells} if c not in COLUMNS]
+    rows: list[tuple[str, ...]] = []
+    head = ("", *(f"{_TITLES[c]}" for c in COLUMNS), *extra)
+    rows.append(head)
+    for row in {key[0]: None for key in tables.cells}:
+        cells = [
+            f"{_three(c.rms)} / {_three(c.printed_rms)} = {_ratio(c)}"
+            for c in (tables[row, column] for column in COLUMNS)
+        ]
+        rows.append((row, *cells, *(_three(tables[row, c].rms) for c in extra)))
+    lines = ["RMS error, rad or rad/s: bench / thesis = ratio", ""]
+    lines += columns(rows, "<" * len(head))
+    rows = [head]
+    for row in {key[0]: None for key in tables.cells}:
+        cells = [
+            f"{_three(c.peak)} / {_three(c.printed_peak)}"
+            for c in (tables[row, column] for column in COLUMNS)
+        ]
+        rows.append((row, *cells, *(_three(tables[row, c].peak) for c in extra)))
+    lines += ["", "Peak error, likewise: bench / thesis", ""]
+    lines += columns(rows, "<" * len(head))
+    return "\n".join(lines)
+
+
+def score_text(tables: Tables) -> str:
+    """How many of the predicted cells are near, and which are not."""
+    worst = max(abs(c.ratio - 1.0) for c in tables.column("none") if c.ratio is not None)
+    far = [
+        f"{c.row}, {_TITLES[c.column]} ({c.ratio:.2f})"
+        for c in tables.predicted
+        if c.ratio is not None and not 1.0 / _FAR <= c.ratio <= _FAR
+    ]
+    lines = [
+        f"Fitted: the seven cells without compensation, worst {100.0 * worst:.0f} % off.",
+        f"Predicted: of {len(tables.predicted)} cells {tables.within(2.0)} within a factor of 2, "
+        f"{tables.within(1.5)} within 1.5.",
+    ]
+    if far:
+        lines.append(f"Further off: {'; '.join(far)}.")
+    return "\n".join(lines)
+
+
+def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
+    """Ratios to the thesis under other assumptions, one line each."""
+    rows: list[tuple[str, ...]] = [("", "dynamic model, learned", "Coulomb", "in 2", "in 1.5")]
+    for name, tables in found:
+        learning = " ".join(_ratio(c) for c in tables.column("learning"))
+        coulomb = " ".join(_ratio(c) for c in tables.column("coulomb"))
+        rows.append((name, learning, coulomb, str(tables.within(2.0)), str(tables.within(1.5))))
+    head = "Other assumptions: ratios of the RMS, row by row, and cells within a factor"
+    return "\n".join([head, "", *columns(rows, "<<<>>")])
+
+
+def better_text(tables: Tables) -> str:
+    """Ours against the better of the thesis's two schemes, by what the shaft truly did."""
+    gains = tables.gains()
+    rows: list[tuple[str, ...]] = [("", "dynamic model", "Coulomb", "observed", "times better")]
+    for row, gain in gains.items():
+        cells = (_three(tables[row, c].true_rms) for c in ("learning", "coulomb", "observed"))
+        rows.append((row, *cells, f"{gain:.1f}"))
+    return "\n".join(
+        [
+            "True RMS error (of the shaft, not of the loop's estimate), rad or rad/s:",
+            "",
+            *columns(rows, "<>>>>"),
+            "",
+            f"The observed compensator has the lower error in {sum(g > 1 for g in gains.values())} "
+            f"of {len(gains)} rows, {statistics.median(gains.values()):.1f} times in the median.",
+        ]
+    )
+
+
+def tables_report(tables: Tables, others: Sequence[tuple[str, Tables]]) -> str:
+    """All that `jbf control tables` prints."""
+    load = tables.model.rig.load
+    load_n = 0.0 if load is None else load.normal_n
+    return "\n".join(
+        [
+            "Friction of the bench, fitted to the seven cells without compensation:",
+            "",
+            *friction_lines(tables.model, tables.bench.volts_per_n, load_n),
+            "",
+            tables_text(tables),
+            "",
+            score_text(tables),
+            "",
+            assumptions_text(others),
+            "",
+            better_text(tables),
+            "",
+            "docs/control.md says how scale, clock, start and missing effect were settled, and why "
+            "the",
+            "cells that are off are off.",
+        ]
+    )

@@ -1,0 +1,69 @@
+"""A diagnosis as one self-contained HTML page, pictures included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jbf.diagnosis.result import Diagnosis
+from jbf.models.catalogue import find_effect
+from jbf.reporting.comparison_plots import plot_run
+from jbf.reporting.diagnosis_plot import plot_diagnosis
+from jbf.reporting.page import measurement, page, pattern_rows, picture
+from jbf.reporting.tables import (
+    correlation_pairs,
+    ledger_rows,
+    parameter_rows,
+    ratio,
+    run_rows,
+    trial_rows,
+)
+from jbf.reporting.words import BARE, number, verdict_sentence
+
+
+def diagnosis_page(diagnosis: Diagnosis) -> str:
+    """The HTML text of a diagnosis's report."""
+    before, after = diagnosis.before, diagnosis.after
+    bare = diagnosis.steps[0]
+    trials = [
+        (" + ".join([BARE, *step.effects]), trial_rows(diagnosis, step))
+        for step in diagnosis.steps
+        if step.trials
+    ]
+    head: tuple[str, ...]
+    runs: Sequence[tuple[str, ...]]
+    if diagnosis.effects:
+        head = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
+        runs = [
+            (
+                x.name,
+                str(x.samples),
+                number(x.rms_n),
+                number(y.rms_n),
+                ratio(y.rms_n, after.noise_n),
+            )
+            for x, y in zip(before.runs, after.runs, strict=True)
+        ]
+    else:
+        head, runs = ("run", "samples", "RMS (N)", "RMS / noise"), run_rows(before)
+    pairs = correlation_pairs(diagnosis.fit)[:5]
+    return page(
+        "diagnosis.html.j2",
+        f"Diagnosis: {diagnosis.verdict}",
+        verdict=diagnosis.verdict,
+        sentence=verdict_sentence(diagnosis),
+        next_experiment=diagnosis.next_experiment,
+        measurement=measurement(before, bare.noise_n),
+        ledger=ledger_rows(diagnosis),
+        picture=picture(plot_diagnosis(diagnosis)),
+        before_picture=picture(plot_run(before)) if diagnosis.failures else "",
+        failures=pattern_rows(diagnosis.failures),
+        trials=trials,
+        effects=[find_effect(name) for name in diagnosis.effects],
+        unexplained=pattern_rows(diagnosis.unexplained),
+        parameters=parameter_rows(
+            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters
+        ),
+        correlations="; ".join(f"{a} with {b} {c:+.2f}" for a, b, c in pairs),
+        run_head=head,
+        runs=runs,
+    )

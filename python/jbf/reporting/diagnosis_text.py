@@ -1,0 +1,65 @@
+"""A diagnosis as plain text, 80 to 100 columns: the story on a page."""
+
+from __future__ import annotations
+
+from jbf.diagnosis.result import Diagnosis
+from jbf.reporting.paragraphs import columns, hanging
+from jbf.reporting.tables import ledger_rows, trial_rows
+from jbf.reporting.text_parts import parameter_lines, where_lines
+from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
+
+
+def _trial_lines(diagnosis: Diagnosis) -> list[str]:
+    lines: list[str] = []
+    for step in diagnosis.steps:
+        if not step.trials:
+            continue
+        lines += ["", f"Candidates tried beside the {' + '.join([BARE, *step.effects])}"]
+        rows = trial_rows(diagnosis, step)
+        head, *table = columns(
+            [("effect", "RMS (N)", "evidence", "outcome"), *(row[:4] for row in rows)], "<>><", 4
+        )
+        lead = max(map(len, [head, *table])) + 2
+        lines.append(f"{head:<{lead}}why")
+        for line, row in zip(table, rows, strict=True):
+            lines += hanging(f"{line:<{lead}}", row[4], 0)
+    if diagnosis.not_tried:
+        lines += ["", "Not tried: these runs cannot show"]
+        for name, reason in diagnosis.not_tried.items():
+            lines += hanging(f"    {name}: ", reason, 0)
+    if diagnosis.unseen:
+        lines += ["", "Could be there at a usual strength and hide in these runs"]
+        lines += hanging("    ", ", ".join(diagnosis.unseen), 0)
+    return lines
+
+
+def diagnosis_report(diagnosis: Diagnosis) -> str:
+    """The story on a page: verdict, measurement, miss, candidates, error falling, parameters."""
+    campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
+    samples = diagnosis.before.samples.count
+    model = diagnosis.model
+    duration = sum(p.run.duration_s for p in campaign.prepared)
+    lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
+    if diagnosis.next_experiment:
+        lines += hanging("Next experiment: ", diagnosis.next_experiment)
+    lines += [
+        "",
+        "Measurement",
+        f"    {len(campaign.prepared)} runs of {duration:.0f} s in all, {samples} samples "
+        f"where the sign of the motion is known",
+        f"    noise floor {number(bare.noise_n)} N, estimated from the records alone",
+        "",
+        f"The {BARE} ({law_words(model, ', ')})",
+        f"    misses by {number(bare.rms_n)} N RMS, {times(bare.rms_n, bare.noise_n)} the noise"
+        + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
+    ]
+    lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]
+    lines += _trial_lines(diagnosis)
+    lines += ["", "The error falling (N)"]
+    head = ("step", "fit", "held out", "noise", "held out / noise")
+    lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)
+    lines += ["", "What remains"]
+    lines += where_lines(diagnosis.unexplained) or ["    nothing that stands above the noise"]
+    lines += ["", "Parameters of the final model"]
+    lines += parameter_lines(model.law, model.effects, diagnosis.fit.parameters)
+    return "\n".join(lines)

@@ -1,0 +1,95 @@
+"""The door through which results reach their words, pictures, tables and pages (`jbf.results`).
+
+One function a verb, dispatched by the kind of result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import singledispatch
+from typing import TYPE_CHECKING
+
+from jbf.comparison.comparison import Comparison
+from jbf.control.run import Result as LoopRun
+from jbf.diagnosis.result import Diagnosis
+from jbf.estimation.bootstrap import Bootstrap
+from jbf.estimation.fit import Fit
+from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.reporting import frames, short, small_tables
+from jbf.reporting.comparison_text import comparison_report
+from jbf.reporting.control_run_text import runs_text
+from jbf.reporting.diagnosis_text import diagnosis_report
+from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@singledispatch
+def summary(result: object) -> str:
+    """The result in words, as text for a terminal."""
+    raise NotImplementedError(type(result).__name__)
+
+
+summary.register(Fit, fit_report)
+summary.register(Bootstrap, bootstrap_report)
+summary.register(TrajectoryFit, trajectory_report)
+summary.register(Comparison, comparison_report)
+summary.register(Diagnosis, diagnosis_report)
+summary.register(LoopRun, lambda run: runs_text([run]))
+
+
+@singledispatch
+def short_words(result: object) -> str:
+    """The result in a line or two."""
+    return object.__repr__(result)
+
+
+short_words.register(Fit, short.short_fit)
+short_words.register(Bootstrap, short.short_bootstrap)
+short_words.register(TrajectoryFit, short.short_trajectory_fit)
+short_words.register(Comparison, short.short_comparison)
+short_words.register(Diagnosis, short.short_diagnosis)
+
+
+@singledispatch
+def small_table(result: object) -> str:
+    """The result as a small HTML table."""
+    raise NotImplementedError(type(result).__name__)
+
+
+small_table.register(Fit, small_tables.fit_table)
+small_table.register(Bootstrap, small_tables.bootstrap_table)
+small_table.register(TrajectoryFit, small_tables.trajectory_table)
+small_table.register(Comparison, small_tables.comparison_table)
+small_table.register(Diagnosis, small_tables.diagnosis_table)
+small_table.register(LoopRun, small_tables.loop_table)
+
+
+@singledispatch
+def columns(result: object) -> frames.Columns:
+    """The result as columns of one length."""
+    raise NotImplementedError(type(result).__name__)
+
+
+columns.register(Fit, frames.fit_columns)
+columns.register(Bootstrap, lambda found: dict(found.values))
+columns.register(TrajectoryFit, frames.trajectory_columns)
+columns.register(Comparison, frames.comparison_columns)
+columns.register(Diagnosis, frames.diagnosis_columns)
+columns.register(LoopRun, LoopRun.columns)
+
+
+def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+    """The result's picture."""
+    # matplotlib takes most of a second to import, and words do not need it.
+    from jbf.reporting import pictures
+
+    return pictures.plot(result, axes)
+
+
+def page(result: object) -> str:
+    """The HTML text of the result's page."""
+    from jbf.reporting import pictures
+
+    return pictures.page(result)

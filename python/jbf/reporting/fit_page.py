@@ -1,0 +1,46 @@
+"""Fits and runs of the loop as self-contained HTML pages: their text, their picture, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+
+from jbf.control.run import Result as LoopRun
+from jbf.estimation.bootstrap import Bootstrap
+from jbf.estimation.fit import Fit
+from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.reporting.control_run_plot import plot_run_of_loop
+from jbf.reporting.control_run_text import runs_text
+from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
+from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
+from jbf.reporting.page import page, picture
+
+
+def _page(title: str, words: str, axes: Sequence[Axes], alt: str) -> str:
+    return page("text.html.j2", title, words=words, picture=picture(axes), alt=alt)
+
+
+def fit_page(fit: Fit) -> str:
+    """The HTML text of a fit's page."""
+    alt = "Parameters with standard errors; residuals run after run"
+    return _page("Fit", fit_report(fit), plot_fit(fit), alt)
+
+
+def bootstrap_page(found: Bootstrap) -> str:
+    """The HTML text of a bootstrap's page."""
+    alt = "Parameters, and the answers of repeated fits"
+    words = bootstrap_report(found)
+    return _page("Fit, with errors from fits again", words, plot_bootstrap(found), alt)
+
+
+def trajectory_page(fit: TrajectoryFit) -> str:
+    """The HTML text of the page of a fit to known motions."""
+    alt = "Parameters with standard errors"
+    return _page("Fit of trajectories", trajectory_report(fit), plot_trajectory_fit(fit), alt)
+
+
+def loop_page(run: LoopRun) -> str:
+    """The HTML text of the page of one run of the loop."""
+    alt = "Response, error, friction and what was learned"
+    return _page(f"Loop: {run.scheme}", runs_text([run]), plot_run_of_loop(run), alt)

@@ -1,0 +1,73 @@
+"""A fit, its bootstrap, and a fit of trajectories as plain text, 80 to 100 columns."""
+
+from __future__ import annotations
+
+from jbf.estimation.bootstrap import Bootstrap
+from jbf.estimation.fit import Fit
+from jbf.estimation.noise import Noise
+from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.reporting.paragraphs import columns, hanging
+from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs
+from jbf.reporting.text_parts import parameter_lines
+from jbf.reporting.words import law_words, number
+
+MOST_CORRELATIONS = 10
+
+
+def noise_words(noise: Noise) -> str:
+    """`white`, or how much of the noise is coloured and for how long."""
+    if noise.colour <= 0.0:
+        return "white"
+    return f"coloured, share {number(noise.colour, 2)}, memory {number(noise.memory_s, 2)} s"
+
+
+def fit_report(fit: Fit) -> str:
+    """Statistics, parameters with errors, and the strongest correlations."""
+    model = fit.model
+    facts = [
+        ("law", law_words(model)),
+        ("effects", ", ".join(model.effects) or "none"),
+        ("runs", str(len(fit.residuals))),
+        ("samples", str(fit.samples)),
+        ("RMS of the residual", f"{number(fit.rms_n)} N"),
+        ("noise in the residual", noise_words(fit.noise)),
+        ("search", "converged" if fit.converged else f"not converged: {fit.message}"),
+    ]
+    lines = ["[[Fit]]", *columns([(k, f"= {v}") for k, v in facts], "<<", 4)]
+    lines += ["[[Parameters]]", *parameter_lines(model.law, model.effects, fit.parameters)]
+    if fit.doubtful:
+        names = ", ".join(fit.doubtful)
+        lines += hanging(
+            "note: ",
+            f"of {names} the likelihood is no parabola within these errors, so they may be far "
+            "too small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.",
+            4,
+        )
+    pairs = correlation_pairs(fit)
+    if pairs:
+        lines.append(f"[[Correlations]] (those above {LEAST_CORRELATION})")
+        shown = [(f"C({a}, {b})", f"= {c:+.3f}") for a, b, c in pairs[:MOST_CORRELATIONS]]
+        lines += columns(shown, "<<", 4)
+        if len(pairs) > MOST_CORRELATIONS:
+            lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} weaker ones")
+    return "\n".join(lines)
+
+
+def bootstrap_report(found: Bootstrap) -> str:
+    """The fit with the errors that the answers show."""
+    repeats = len(next(iter(found.values.values())))
+    return f"Errors from {repeats} fits of simulated records of the same runs\n" + fit_report(
+        found.fit
+    )
+
+
+def trajectory_report(fit: TrajectoryFit) -> str:
+    """Statistics, and parameters with errors."""
+    facts = [
+        ("samples", str(fit.samples)),
+        ("sum of squares", f"{number(fit.sum_of_squares)} (of friction coefficients)"),
+        ("simulations", str(fit.evaluations)),
+        ("search", "converged" if fit.converged else f"not converged: {fit.message}"),
+    ]
+    lines = ["[[Fit]]", *columns([(k, f"= {v}") for k, v in facts], "<<", 4)]
+    return "\n".join([*lines, "[[Parameters]]", *parameter_lines("journal", (), fit.parameters)])

@@ -1,0 +1,67 @@
+"""Results as columns of one length, for data frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from jbf.comparison.comparison import Comparison
+from jbf.diagnosis.result import Diagnosis
+from jbf.estimation.fit import Fit
+from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.models.catalogue import parameters_of
+from jbf.models.parameter_value import ParameterValue
+
+Columns = dict[str, Any]
+
+
+def parameter_columns(
+    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
+) -> Columns:
+    """A row a parameter: name, value, stderr, unit, note."""
+    pages = parameters_of(law, effects)
+    return {
+        "parameter": list(parameters),
+        "value": [p.value for p in parameters.values()],
+        "stderr": [np.nan if p.stderr is None else p.stderr for p in parameters.values()],
+        "unit": [pages[name].unit if name in pages else "" for name in parameters],
+        "note": [p.note or "" for p in parameters.values()],
+    }
+
+
+def fit_columns(fit: Fit) -> Columns:
+    """A row a parameter."""
+    return parameter_columns(fit.model.law, fit.model.effects, fit.parameters)
+
+
+def trajectory_columns(fit: TrajectoryFit) -> Columns:
+    """A row a parameter."""
+    return parameter_columns("journal", (), fit.parameters)
+
+
+def comparison_columns(comparison: Comparison) -> Columns:
+    """A row a sample, all runs in a row: record, motion, model, and whether the sample counts."""
+    prepared = comparison.campaign.prepared
+    joined: dict[str, Sequence[Any]] = {
+        "time_s": [p.run.time_s for p in prepared],
+        "velocity_m_s": [p.motion.velocity_m_s for p in prepared],
+        "friction_n": [p.friction_n for p in prepared],
+        "model_n": comparison.predictions,
+        "residual_n": comparison.residuals,
+        "counts": comparison.samples.counted,
+    }
+    run = [p.run.name for p in prepared for _ in range(len(p.run))]
+    return {"run": run} | {name: np.concatenate(parts) for name, parts in joined.items()}
+
+
+def diagnosis_columns(diagnosis: Diagnosis) -> Columns:
+    """A row a step of the ledger."""
+    steps = diagnosis.steps
+    return {
+        "effects": [" + ".join(s.effects) for s in steps],
+        "rms_n": [s.rms_n for s in steps],
+        "holdout_rms_n": [s.holdout_rms_n for s in steps],
+        "noise_n": [s.noise_n for s in steps],
+    }

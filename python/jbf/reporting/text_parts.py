@@ -1,0 +1,39 @@
+"""Lines that several reports in plain text share: parameters, and where a model fails."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from jbf.comparison.patterns import Failure
+from jbf.diagnosis.ledger import Remainder
+from jbf.models.parameter_value import ParameterValue
+from jbf.reporting.paragraphs import columns, hanging
+from jbf.reporting.tables import parameter_rows
+
+
+def parameter_lines(
+    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
+) -> list[str]:
+    """A line a parameter: value, error, share, unit, note."""
+    rows = [
+        (
+            name,
+            value,
+            f"+/- {error}" if error else "",
+            f"({share})" if share else "",
+            unit,
+            f"({note})" if note else "",
+        )
+        for name, value, error, share, unit, note in parameter_rows(law, effects, parameters)
+    ]
+    return columns(rows, "<>>><<", 4)
+
+
+def where_lines(patterns: Iterable[Failure | Remainder]) -> list[str]:
+    """One hanging paragraph for each axis: share of the mean square, axis, words."""
+    patterns = list(patterns)
+    widest = max((len(p.axis) for p in patterns), default=0)
+    lines = []
+    for p in patterns:
+        lines += hanging(f"{p.axis:<{widest}}  {100 * p.share:3.0f} %  ", p.where, 4)
+    return lines

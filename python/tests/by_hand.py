@@ -1,0 +1,162 @@
+"""Records and results put together by hand: every number is round, so a test can say what is read.
+
+Friction by Coulomb's law on motions that never turn round is linear in everything: what a fit must
+find, and with which error, stands in any textbook on least squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from jbf import Comparison, Diagnosis, Fit, Model, ParameterValue, Rig, Run, compare, fit
+from jbf.diagnosis import Remainder, Step, Trial
+
+Array = npt.NDArray[np.float64]
+Friction = Callable[[Array, Array, Array], Array]
+
+STEP_S = 0.02
+LAW = {"F_c_n": 5.0, "F_v_n_s_m": 20.0}
+
+
+def one_way(
+    name: str,
+    friction: Friction,
+    *,
+    way: float = 1.0,
+    rate: float = 2.0,
+    duration_s: float = 10.0,
+    noise_n: float = 0.0,
+    seed: int = 0,
+) -> Run:
+    """A run at 0.05 to 0.15 m/s in one direction; `friction` of time, speed and acceleration."""
+    t = np.arange(0.0, duration_s + 0.5 * STEP_S, STEP_S)
+    v = way * (0.1 + 0.05 * np.sin(rate * t))
+    a = way * 0.05 * rate * np.cos(rate * t)
+    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
+
+
+def wandering(
+    name: str, friction: Friction, *, way: float, rate: float, noise_n: float, seed: int
+) -> Run:
+    """The same with two rates that have no common period: nothing comes again."""
+    t = np.arange(0.0, 10.0 + 0.5 * STEP_S, STEP_S)
+    other = 0.6180340 * rate
+    v = way * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
+    a = way * (0.03 * rate * np.cos(rate * t) + 0.02 * other * np.cos(other * t + 1.0))
+    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
+
+
+def four_runs(friction: Friction, *, noise_n: float, seed: int = 0) -> list[Run]:
+    """Two wandering runs in each direction: any three of them tell what the fourth does."""
+    plan = (("a", 1.0, 12.0), ("b", -1.0, 14.0), ("c", 1.0, 10.0), ("d", -1.0, 16.0))
+    return [
+        wandering(name, friction, way=way, rate=rate, noise_n=noise_n, seed=4 * seed + i)
+        for i, (name, way, rate) in enumerate(plan)
+    ]
+
+
+def there_and_back(friction: Friction, *, noise_n: float = 0.0, seed: int = 0) -> list[Run]:
+    """A run in each direction, each sample's sign known."""
+    return [
+        one_way("there", friction, noise_n=noise_n, seed=2 * seed),
+        one_way("back", friction, way=-1.0, rate=3.0, noise_n=noise_n, seed=2 * seed + 1),
+    ]
+
+
+def coulomb(t: Array, v: Array, a: Array) -> Array:
+    """5 N of dry friction and 20 N s/m of viscous."""
+    return LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+
+
+def along(more_n: float) -> Friction:
+    """`coulomb`, and so much more in the direction of motion."""
+    return lambda t, v, a: coulomb(t, v, a) + more_n * np.sign(v)
+
+
+@cache
+def _bare() -> tuple[Fit, Comparison]:
+    """A real fit and comparison, whose numbers the functions below replace."""
+    fitted = fit(Rig(), there_and_back(coulomb, noise_n=0.1), law="coulomb")
+    off = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
+    return fitted, off
+
+
+def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) -> Fit:
+    """A fit of three parameters of the law, one of them without error, and of the offset."""
+    parameters = {
+        "F_c_n": ParameterValue(4.9876, 0.0123),
+        "F_s_n": ParameterValue(6.0, None, "held fixed"),
+        "F_v_n_s_m": ParameterValue(20.44, 0.52),
+    }
+    if "sensor_offset" in effects:
+        parameters["sensor_offset.b_n"] = ParameterValue(-0.25, 0.025)
+    table = np.array([[1.0, -0.9, 0.45], [-0.9, 1.0, 0.1], [0.45, 0.1, 1.0]])
+    size = len(parameters) - 1
+    fitted = _bare()[0]
+    return replace(
+        fitted,
+        model=Model(Rig(), "coulomb", effects, parameters),
+        parameters=parameters,
+        correlations=table[:size, :size],
+        rms_n=0.525,
+        noise=replace(fitted.noise, colour=0.25, memory_s=0.15),
+        samples=1001,
+        converged=True,
+        doubtful=doubtful,
+    )
+
+
+def comparison_by_hand(rms_n: float, runs_rms_n: tuple[float, float]) -> Comparison:
+    """A comparison with one pattern; the floor of the noise is 0.5 N."""
+    real = _bare()[1]
+    counts = (501, 500)
+    runs = tuple(
+        replace(r, rms_n=x, samples=n)
+        for r, x, n in zip(real.runs, runs_rms_n, counts, strict=True)
+    )
+    direction = next(f for f in real.failures if f.axis == "direction")
+    pattern = replace(direction, where="record above the model", share=0.6)
+    return replace(real, rms_n=rms_n, noise_n=0.5, runs=runs, failures=(pattern,))
+
+
+TRIALS = (
+    Trial("sensor_offset", 0.525, 812.4, "added", "largest evidence"),
+    Trial("sensor_drift", 1.5, 55.0, "ties", "fits as well as sensor_offset"),
+    Trial("inertia_leak", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
+    Trial("sensor_lag", 2.5, -26.2, "useless", "gains no more than chance would"),
+)
+LEFT = (Remainder("frequency", "a 3.00 Hz tone", 0.12), Remainder("time", "2 bursts", 0.04))
+
+
+def diagnosis_by_hand(verdict: Any) -> Diagnosis:
+    """A diagnosis of each verdict; no two numbers in its tables are alike."""
+    kept = verdict in ("missing", "ambiguous")
+    effects = ("sensor_offset",) if kept else ()
+    before = comparison_by_hand(2.5, (2.0, 3.0))
+    after = comparison_by_hand(0.525, (0.45, 0.6))
+    tried = TRIALS if verdict != "adequate" else TRIALS[3:]
+    bare = Step((), 2.5, 2.75, 0.5, tried)
+    steps = (bare, Step(effects, 0.525, 0.55, 0.5)) if kept else (bare,)
+    ties = ("sensor_drift",) if verdict == "ambiguous" else ()
+    return Diagnosis(
+        verdict=verdict,
+        effects=effects,
+        alternatives=dict.fromkeys(effects, ties),
+        steps=steps,
+        failures=before.failures if verdict != "adequate" else (),
+        unexplained=LEFT if verdict == "unexplained" else (),
+        next_experiment="record a rest" if ties else None,
+        fit=fit_by_hand(effects),
+        before=before,
+        after=after if kept else before,
+        elapsed_s=12.5,
+        not_tried={"position_ripple": "not every run has the shaft's angle"},
+        unseen=("backlash",) if verdict == "adequate" else (),
+    )

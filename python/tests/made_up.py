@@ -1,0 +1,133 @@
+"""Models of made-up likelihoods, for the rules of selection: no run, no fit, gains as told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.estimation.noise import WHITE
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+
+N = 1000
+LAW = 3
+"""Parameters of the law; each effect brings one more."""
+SAMPLES = Samples(("run",), (0.02,), (np.ones(N, bool),), (np.ones(N),))
+Set = frozenset[str]
+
+
+def solution(effects: Iterable[str], gain: float, smooth: int = 1, slope: float = 0.0) -> Solution:
+    """A residual of 1 N less what gains so much in twice the log likelihood.
+
+    Parameters
+    ----------
+    smooth
+        Samples between changes of its sign: 1 is as independent as can be.
+    slope
+        Share of the residual that a next step would take away.
+    """
+    sign = np.where(np.arange(N) // smooth % 2, 1.0, -1.0)
+    residual = float(np.exp(-gain / (2.0 * N))) * sign
+    effects = tuple(effects)
+    jacobian = np.zeros((N, LAW + len(effects)))
+    jacobian[: round(slope * N), 0] = residual[: round(slope * N)]
+    cost = SAMPLES.cost([residual], WHITE)
+    values = np.zeros(LAW + len(effects))
+    return Solution(effects, values, [residual], [jacobian], WHITE, cost, True, "", SAMPLES)
+
+
+@dataclass
+class MadeUp:
+    """In place of the candidates of a campaign.
+
+    Attributes
+    ----------
+    gains
+        Gain over the bare law by set of effects; of a set that is not there the best of its
+        parts.
+    ranked
+        The same where a model has only been ranked.
+    scores
+        What a score test promises; plenty where nothing is said.
+    peaks
+        Gain once the other peaks were searched.
+    from_richer
+        Gain once it was fitted from a richer model, too.
+    left_out
+        RMS over runs left out, N; that of the fit where nothing is said.
+    asked
+        What was called with which set.
+    """
+
+    names: list[str]
+    gains: dict[Set, float]
+    ranked: Mapping[Set, float] = field(default_factory=dict)
+    scores: Mapping[Set, float] = field(default_factory=dict)
+    peaks: Mapping[Set, float] = field(default_factory=dict)
+    from_richer: Mapping[Set, float] = field(default_factory=dict)
+    left_out: Mapping[Set, float] = field(default_factory=dict)
+    slopes: Mapping[Set, float] = field(default_factory=dict)
+    smooth: int = 1
+    policy: Policy = DEFAULT
+    asked: list[tuple[str, Set]] = field(default_factory=list)
+    campaign: Any = field(default_factory=lambda: SimpleNamespace(samples=SAMPLES))
+
+    def _gain(self, effects: Iterable[str]) -> float:
+        here = frozenset(effects)
+        return self.gains.get(here, max((g for s, g in self.gains.items() if s <= here), default=0))
+
+    def _note(self, what: str, effects: Iterable[str]) -> Set:
+        here = frozenset(effects)
+        self.asked.append((what, here))
+        return here
+
+    def score_test(self, effects: Sequence[str], near: Solution) -> float:
+        return self.scores.get(self._note("score", effects), 1e6)
+
+    def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
+        here = self._note("rank", effects)
+        gain = self.ranked.get(here, self._gain(effects))
+        return solution(effects, gain, self.smooth, self.slopes.get(here, 0.0))
+
+    def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
+        self._note("converge", effects)
+        return solution(effects, self._gain(effects), self.smooth)
+
+    def search_peaks(self, effects: Sequence[str]) -> Solution:
+        here = self._note("peaks", effects)
+        self.gains[here] = self.peaks.get(here, self._gain(effects))
+        return self.converge(effects)
+
+    def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
+        here = self._note("refit", effects)
+        self.gains[here] = self.from_richer.get(here, self._gain(effects))
+        return self.converge(effects)
+
+    def left_out_rms(self, effects: Sequence[str]) -> float:
+        here = frozenset(effects)
+        return self.left_out.get(here, self.converge(effects).rms_n)
+
+    def fitted(self, effects: Iterable[str]) -> Any:
+        names = [""] * (LAW + len(frozenset(effects)))
+        return SimpleNamespace(problem=SimpleNamespace(names=names))
+
+    def one_more(self, effects: Iterable[str]) -> dict[str, Any]:
+        here = frozenset(effects)
+        return {
+            name: SimpleNamespace(found=lambda s=s: solution(s, self.gains[s], self.smooth))
+            for s in self.gains
+            for name in s - here
+            if len(s) == len(here) + 1 and here < s
+        }
+
+    def tell(self, message: str, done: int, total: int) -> None:
+        pass
+
+
+def sets(gains: Mapping[str, float]) -> dict[Set, float]:
+    """`{"a b": 3.0}` as a set of two effects and its gain."""
+    return {frozenset(words.split()): gain for words, gain in gains.items()}

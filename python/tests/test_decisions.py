@@ -1,0 +1,171 @@
+"""The verdict and what leads to it, each rule as a table; numbers on either side of each line."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import cast
+
+import numpy as np
+import pytest
+from jbf.diagnosis import recipe
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, price
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.selection import left_out_confirms
+from jbf.diagnosis.verdict import Explained, names_stand, verdict
+from jbf.estimation.likelihood import independent_share, likelihood_gain
+from made_up import MadeUp, N, sets, solution
+from scipy import signal
+
+
+@pytest.mark.parametrize(
+    ("effects", "alternatives", "remains", "said"),
+    [
+        (0, 0, False, "adequate"),
+        (1, 0, False, "missing"),
+        (3, 0, False, "missing"),
+        (1, 1, False, "ambiguous"),
+        (2, 1, False, "ambiguous"),
+        (0, 0, True, "unexplained"),
+        (1, 0, True, "unexplained"),
+        (1, 1, True, "unexplained"),
+    ],
+)
+def test_the_verdict(effects: int, alternatives: int, remains: bool, said: str) -> None:
+    assert verdict(effects=effects, alternatives=alternatives, remains=remains) == said
+
+
+@pytest.mark.parametrize(
+    ("now_n", "disagreement", "stand"),
+    [
+        # Of an excess of 5^2 - 3^2 = 16 N^2 they explain 25 - now^2; 0.8 of it are 12.8.
+        (np.sqrt(25.0 - 12.9), None, True),
+        (np.sqrt(25.0 - 12.7), None, False),
+        # A gain of 1000 is 20 times 50.
+        (3.0, 49.0, True),
+        (3.0, 51.0, False),
+        (np.sqrt(25.0 - 12.7), 1.0, False),
+    ],
+)
+def test_which_names_stand_though_structure_remains(
+    now_n: float, disagreement: float | None, stand: bool
+) -> None:
+    explained = Explained(
+        bare_n=5.0, now_n=now_n, noise_n=3.0, gain=1000.0, disagreement=disagreement
+    )
+    assert names_stand(explained, DEFAULT) == stand
+
+
+@pytest.mark.parametrize(
+    ("strength", "share", "confirmed"),
+    [(59.0, 0.51, True), (59.0, 0.49, False), (61.0, 0.01, True), (61.0, 0.0, False)],
+)
+def test_what_left_out_runs_must_confirm(strength: float, share: float, confirmed: bool) -> None:
+    assert left_out_confirms(strength, share, DEFAULT) == confirmed
+
+
+def test_the_price_is_schwarzs_and_that_of_the_best_of_many() -> None:
+    # Schwarz (1978): log n a parameter, in twice the log likelihood.
+    assert price(0, 1000, 1, DEFAULT) == 20.0
+    assert price(3, 1000, 1, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
+        13.81551, abs=1e-4
+    )
+    assert price(1, 1000, 12, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
+        4.96981, abs=1e-4
+    )
+
+
+# ---- evidence ---------------------------------------------------------------------------------
+
+
+def test_evidence_of_made_up_models() -> None:
+    candidates = cast(Candidates, MadeUp(["sensor_lag", "sensor_drift"], {}))
+    bare, one, two = solution((), 0.0), solution(("a",), 100.0), solution(("a", "b"), 150.0)
+    assert likelihood_gain(one, bare) == pytest.approx(100.0)
+    assert likelihood_gain(bare, two) == pytest.approx(-150.0)
+    assert evidence(candidates, one, bare) == pytest.approx(100.0 - price(1, N, 2, DEFAULT))
+    assert evidence(candidates, two, bare) == pytest.approx(150.0 - price(2, N, 2, DEFAULT))
+    smooth = solution(("a",), 100.0, smooth=3)
+    assert evidence(candidates, smooth, bare) == pytest.approx(
+        0.6 * 100.0 - price(1, N, 2, DEFAULT), abs=0.5
+    )
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.5, 0.9])
+def test_of_a_first_order_process_few_samples_are_independent(phi: float) -> None:
+    # Bartlett (1946): 1 + 2 (phi + phi^2 + ...) = (1 + phi) / (1 - phi) samples make one.
+    shares = []
+    for seed in range(5):
+        kicks = np.random.default_rng(seed).standard_normal((2, 20_000))
+        runs = [signal.lfilter([1.0], [1.0, -phi], row) for row in kicks]
+        shares.append(independent_share(runs, [0.005, 0.005]))
+    assert np.mean(shares) == pytest.approx((1.0 - phi) / (1.0 + phi), rel=0.12, abs=0.01)
+    assert independent_share([np.zeros(50)], [0.02]) == 1.0
+
+
+# ---- rounds -----------------------------------------------------------------------------------
+
+SIX = (
+    "sensor_offset",
+    "sensor_drift",
+    "sensor_lag",
+    "inertia_leak",
+    "quadratic_drag",
+    "wear_in",
+)
+
+
+def additive(gain: float = 200.0) -> dict[frozenset[str], float]:
+    """Six effects, each of which gains as much beside any others; the first a little more."""
+    worth = {name: gain - i for i, name in enumerate(SIX)}
+    every = [s for k in range(len(SIX) + 1) for s in combinations(SIX, k)]
+    return {frozenset(s): sum(worth[name] for name in s) for s in every}
+
+
+def test_rounds_add_one_effect_after_another_up_to_five() -> None:
+    candidates = cast(Candidates, MadeUp(list(SIX), additive()))
+    present, steps, refused = recipe._select(candidates, 0.5)
+    assert present == SIX[:5]
+    assert [s.effects for s in steps] == [SIX[:k] for k in range(6)]
+    assert refused == ()
+    assert all(s.noise_n == 0.5 for s in steps)
+    rms = [s.rms_n for s in steps]
+    assert rms == sorted(rms, reverse=True)
+
+
+def test_rounds_end_where_nothing_gains_more_than_chance() -> None:
+    gains = {s: g for s, g in additive().items() if len(s) <= 2}
+    present, steps, _ = recipe._select(cast(Candidates, MadeUp(list(SIX), gains)), 0.5)
+    assert present == SIX[:2]
+    assert len(steps) == 3
+    assert {t.outcome for t in steps[-1].trials} == {"useless"}
+
+
+def test_a_stand_in_found_first_goes_when_the_truth_is_whole() -> None:
+    gains = {
+        "": 0.0,
+        "sensor_lag": 300.0,
+        "sensor_offset": 200.0,
+        "sensor_drift": 190.0,
+        "sensor_lag sensor_offset": 400.0,
+        "sensor_lag sensor_drift": 380.0,
+        "sensor_offset sensor_drift": 350.0,
+        "sensor_lag sensor_offset sensor_drift": 500.0,
+    }
+    found = MadeUp(list(SIX[:3]), sets(gains), from_richer={frozenset(SIX[:2]): 495.0})
+    present, _, _ = recipe._select(cast(Candidates, found), 0.5)
+    assert set(present) == {"sensor_offset", "sensor_drift"}
+
+
+@pytest.mark.parametrize(("strength", "told"), [(61.0, True), (59.0, False)])
+def test_what_fits_and_does_not_predict_is_structure(strength: float, told: bool) -> None:
+    gains = {"": 0.0, "sensor_lag": price(1, N, 2, DEFAULT) + strength}
+    left_out = {frozenset[str](): 1.0, frozenset(["sensor_lag"]): 1.1}
+    found = MadeUp(["sensor_lag", "sensor_drift"], sets(gains), left_out=left_out)
+    present, steps, refused = recipe._select(cast(Candidates, found), 0.5)
+    assert present == ()
+    assert steps[0].trials[0].outcome == "rejected"
+    assert [r.axis for r in refused] == (["run"] if told else [])
+    if told:
+        assert "sensor_lag fits 1 N down to 0.95" in refused[0].where
+        assert refused[0].share == pytest.approx(1.0 - np.exp(-gains["sensor_lag"] / N))

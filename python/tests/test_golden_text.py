@@ -1,0 +1,147 @@
+"""What people read of results put together by hand, to the letter."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from textwrap import dedent
+
+import pytest
+from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
+
+
+def said(text: str) -> str:
+    """A text as it stands in a test, without the test's indentation."""
+    return dedent(text).strip("\n")
+
+
+def test_the_report_of_a_fit() -> None:
+    assert fit_by_hand(["sensor_offset"], doubtful=("F_c_n",)).report() == said("""
+        [[Fit]]
+            law                    = coulomb
+            effects                = sensor_offset
+            runs                   = 2
+            samples                = 1001
+            RMS of the residual    = 0.525 N
+            noise in the residual  = coloured, share 0.25, memory 0.15 s
+            search                 = converged
+        [[Parameters]]
+            F_c_n               4.988  +/- 0.012  (0.25 %)  N
+            F_s_n              6.0000                       N      (held fixed)
+            F_v_n_s_m           20.44   +/- 0.52   (2.5 %)  N s/m
+            sensor_offset.b_n  -0.250  +/- 0.025    (10 %)  N
+            note: of F_c_n the likelihood is no parabola within these errors, so they may be far too
+                  small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.
+        [[Correlations]] (those above 0.3)
+            C(F_c_n, F_v_n_s_m)          = -0.900
+            C(F_c_n, sensor_offset.b_n)  = +0.450
+    """)
+
+
+def test_correlations_where_nothing_is_held() -> None:
+    held = fit_by_hand(["sensor_offset"])
+    open_ = {n: p for n, p in held.parameters.items() if p.note is None}
+    lines = replace(held, parameters=open_).report().splitlines()
+    assert [line for line in lines if line.startswith("    C(")] == [
+        "    C(F_c_n, F_v_n_s_m)          = -0.900",
+        "    C(F_c_n, sensor_offset.b_n)  = +0.450",
+    ]
+
+
+def test_the_summary_of_a_comparison() -> None:
+    assert comparison_by_hand(1.25, (1.0, 1.5)).summary() == said("""
+        RMS 1.25 N against a noise floor of 0.500 N: 2.50 times the noise
+
+        Where it fails (share of the mean square)
+            direction   60 %  record above the model
+
+        Runs
+            run    samples  RMS (N)  RMS / noise
+            there      501     1.00         2.00
+            back       500     1.50         3.00
+    """)
+
+
+def test_the_summary_of_a_diagnosis() -> None:
+    assert diagnosis_by_hand("missing").summary() == said("""
+        Verdict: missing
+          Missing: sensor_offset. With it, the held-out error falls from 2.75 N to 0.550 N, 1.10
+          times the noise of 0.500 N.
+
+        Measurement
+            2 runs of 20 s in all, 1002 samples where the sign of the motion is known
+            noise floor 0.500 N, estimated from the records alone
+
+        The bare law (coulomb)
+            misses by 2.50 N RMS, 5.00 times the noise; where it fails (share of the mean square):
+            direction   60 %  record above the model
+
+        Candidates tried beside the bare law
+            effect         RMS (N)  evidence  outcome   why
+            sensor_offset    0.525      +812  added     largest evidence
+            sensor_drift      1.50       +55  ties      fits as well as sensor_offset
+            inertia_leak      2.00        +7  rejected  sensor_offset leads by 805
+            sensor_lag        2.50       -26  useless   gains no more than chance would
+
+        Not tried: these runs cannot show
+            position_ripple: not every run has the shaft's angle
+
+        The error falling (N)
+            step               fit  held out  noise  held out / noise
+            bare law          2.50      2.75  0.500              5.50
+            + sensor_offset  0.525     0.550  0.500              1.10
+
+        What remains
+            nothing that stands above the noise
+
+        Parameters of the final model
+            F_c_n               4.988  +/- 0.012  (0.25 %)  N
+            F_s_n              6.0000                       N      (held fixed)
+            F_v_n_s_m           20.44   +/- 0.52   (2.5 %)  N s/m
+            sensor_offset.b_n  -0.250  +/- 0.025    (10 %)  N
+    """)
+
+
+HEADS = {
+    "adequate": """
+        Verdict: adequate
+          Nothing is missing: the bare coulomb law predicts runs that it was not fitted to within
+          2.75 N, 5.50 times the noise of 0.500 N.
+    """,
+    "ambiguous": """
+        Verdict: ambiguous
+          Something is missing, and these runs cannot tell which: sensor_offset or sensor_drift.
+          With sensor_offset, the held-out error falls from 2.75 N to 0.550 N, 1.10 times the noise
+          of 0.500 N; the alternatives do as well.
+          Next experiment: record a rest
+    """,
+    "unexplained": """
+        Verdict: unexplained
+          Structure remains along frequency and time that no effect in the catalogue explains: the
+          held-out error is 2.75 N, 5.50 times the noise of 0.500 N.
+    """,
+}
+
+
+@pytest.mark.parametrize("verdict", list(HEADS))
+def test_what_each_verdict_says(verdict: str) -> None:
+    head = diagnosis_by_hand(verdict).summary().partition("\n\n")[0]
+    assert head == said(HEADS[verdict])
+
+
+def test_what_could_hide_is_said() -> None:
+    sections = diagnosis_by_hand("adequate").summary().split("\n\n")
+    assert "Could be there at a usual strength and hide in these runs\n    backlash" in sections
+    assert not any("where it fails" in section for section in sections)
+
+
+def test_what_was_taken_back_is_withdrawn_and_what_remains_is_named() -> None:
+    sections = diagnosis_by_hand("unexplained").summary().split("\n\n")
+    (tried,) = [s for s in sections if s.startswith("Candidates")]
+    row = "    sensor_offset    0.525      +812  withdrawn  largest evidence"
+    assert tried.splitlines()[2] == row
+    (remains,) = [s for s in sections if s.startswith("What remains")]
+    assert remains == said("""
+        What remains
+            frequency   12 %  a 3.00 Hz tone
+            time         4 %  2 bursts
+    """)

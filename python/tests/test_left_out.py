@@ -1,0 +1,153 @@
+"""What a run that was left out may know of the fit: nothing; and the search's own variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import Array, coulomb, four_runs, one_way
+from jbf import Parameter, Rig, Run, forget_effect, register_effect
+from jbf.diagnosis.left_out import left_out_rms
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import minimum
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+
+NOISE_N = 0.1
+PUSH = Parameter("k_n", "N", lower=-10.0, upper=10.0, null=0.0, starts=(0.5,))
+PUSH_N = 3.0
+
+
+def pushed(push: Array, k_n: float) -> Array:
+    """A force that the run itself records: where it does not, nothing is known of it."""
+    return k_n * push
+
+
+@pytest.fixture
+def own_effect() -> Iterator[None]:
+    register_effect(pushed, parameters=[PUSH])
+    yield
+    forget_effect("pushed")
+
+
+def left_out(runs: list[Run], *effects: str) -> tuple[float, Problem, Array]:
+    problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", effects)
+    solution = minimum(problem, [{}])
+    return left_out_rms(problem, solution), problem, solution.values
+
+
+@pytest.mark.usefixtures("own_effect")
+def test_what_only_the_left_out_run_knows_does_not_leak_into_its_prediction() -> None:
+    runs = []
+    for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
+        push = np.sign(np.sin(9.0 * run.time_s)) if i == 0 else np.zeros(len(run))
+        force = np.asarray(run.friction_n) + PUSH_N * push
+        runs.append(replace(run, friction_n=force, extra={"push": push}))
+    found, problem, values = left_out(runs, "pushed")
+    assert values[problem.names.index("pushed.k_n")] == pytest.approx(PUSH_N, rel=0.01)
+    # Without the first run nobody knows of a push: its prediction misses all of it.
+    missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
+    assert missed > 10.0 * NOISE_N
+    assert found == pytest.approx(missed, rel=0.02)
+
+
+def test_the_halves_of_a_single_run_take_turns() -> None:
+    # The second half has 1 N more: each half is predicted with the other's friction.
+    run = one_way(
+        "only", lambda t, v, a: coulomb(t, v, a) + (t > 5.0), rate=2.0 * np.pi, noise_n=NOISE_N
+    )
+    found, _, _ = left_out([run])
+    assert found == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.02)
+
+
+def test_a_run_that_was_left_out_drives_nothing() -> None:
+    runs = four_runs(coulomb, noise_n=NOISE_N)
+    plain, _, _ = left_out(runs)
+    # One run is off by 1 N in the direction of motion: it alone is missed by that, and the
+    # others by a third of it where it is among the three that were fitted.
+    name, v, f = runs[0].name, runs[0].velocity_m_s, np.asarray(runs[0].friction_n)
+    off = Run.from_arrays(runs[0].time_s, v, f + np.sign(v), name=name)
+    found, _, _ = left_out([off, *runs[1:]])
+    assert plain == pytest.approx(NOISE_N, rel=0.03)
+    assert found == pytest.approx(np.sqrt(NOISE_N**2 + (1.0 + 3.0 / 9.0) / 4.0), rel=0.03)
+
+
+# ---- the search's variables -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    runs = four_runs(coulomb, noise_n=NOISE_N)
+    return Problem(
+        Campaign.prepare(Rig(), runs),
+        "coulomb",
+        "journal",
+        ("direction_asymmetry", "wear_in"),
+        {"F_s_n": 6.0},
+    )
+
+
+def test_the_search_cannot_leave_the_bounds(problem: Problem) -> None:
+    base = problem.starts({"F_s_n": 6.0})[0]
+    away = np.full(len(problem.open), 1e9)
+    for side, bound in ((away, problem.upper), (-away, problem.lower)):
+        there = problem.decode(side, base)
+        np.testing.assert_array_equal(there[problem.open], bound[problem.open])
+    # What is held stays, wherever the search goes.
+    held = problem.names.index("F_s_n")
+    assert problem.decode(away, base)[held] == 6.0
+
+
+def test_bounds_come_back_inside_to_the_bit(problem: Problem) -> None:
+    # Beyond a bound by a rounding error, and no model file would take it.
+    for bound in (problem.lower, problem.upper):
+        back = problem.decode(problem.encode(bound), bound)
+        assert np.all(back >= problem.lower)
+        assert np.all(back <= problem.upper)
+        np.testing.assert_allclose(back, bound, rtol=1e-14)
+        beyond = problem.encode(bound * np.where(bound > 0, 1.1, 0.9) + 0.1)
+        assert np.all(beyond >= problem.encode(problem.lower))
+        assert np.all(beyond <= problem.encode(problem.upper))
+
+
+def test_scales_are_searched_in_their_logarithm(problem: Problem) -> None:
+    values = problem.starts({"F_s_n": 6.0})[0]
+    x = problem.encode(values)
+    for k, i in enumerate(problem.open):
+        wanted = np.log(values[i]) if problem.log[i] else values[i]
+        assert x[k] == wanted
+    np.testing.assert_allclose(problem.decode(x, values), values, rtol=1e-14)
+
+
+def test_angles_are_wrapped_and_nothing_else() -> None:
+    t = np.arange(0.0, 10.0, 0.02)
+    v = 0.1 + 0.05 * np.sin(t)
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * 0.02))) / 0.0127
+    run = Run.from_arrays(t, v, coulomb(t, v, v), angle_rad=angle)
+    problem = Problem(
+        Campaign.prepare(Rig.thesis(), [run]), "coulomb", "journal", ("position_ripple",)
+    )
+    values = problem.starts({})[0]
+    where = problem.names.index("position_ripple.theta_0_rad")
+    for angle_rad, wrapped in ((4.0, 4.0 - 2.0 * np.pi), (-7.0, -7.0 + 2.0 * np.pi), (3.0, 3.0)):
+        values[where] = angle_rad
+        found = problem.wrapped(values)
+        assert found[where] == pytest.approx(wrapped)
+        np.testing.assert_array_equal(np.delete(found, where), np.delete(values, where))
+
+
+def test_a_solution_keeps_record_minus_prediction(problem: Problem) -> None:
+    values = problem.starts({"F_s_n": 6.0})[0]
+    solution = problem.solution(values, problem.campaign.samples, WHITE)
+    for p, f, residual in zip(
+        problem.campaign.prepared, problem.predict(values), solution.residuals, strict=True
+    ):
+        np.testing.assert_array_equal(residual, p.friction_n - f)
+    assert solution.rms_n == pytest.approx(
+        np.sqrt(np.mean(np.concatenate(solution.residuals) ** 2))
+    )
+    n = sum(map(len, solution.residuals))
+    assert solution.cost == pytest.approx(2.0 * n * np.log(solution.rms_n))
+    assert problem.square(values) == pytest.approx(n * solution.rms_n**2)

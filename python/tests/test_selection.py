@@ -1,0 +1,239 @@
+"""Which effect is added, exchanged or taken out: the rules on made-up likelihoods."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
+from made_up import MadeUp, N, sets
+
+FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
+PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
+"""Of one parameter in a thousand samples, the best of four candidates."""
+
+
+def made(gains: dict[str, float], **more: Any) -> MadeUp:
+    return MadeUp(more.pop("names", FOUR), sets({"": 0.0} | gains), **more)
+
+
+def tried(candidates: MadeUp, *present: str) -> Round:
+    return try_candidates(cast(Candidates, candidates), present)
+
+
+def outcomes(found: Round) -> dict[str, str]:
+    return {t.effect: t.outcome for t in found.trials}
+
+
+# ---- a round ----------------------------------------------------------------------------------
+
+
+def test_the_leader_is_added_and_those_close_behind_tie() -> None:
+    found = tried(
+        made({"sensor_offset": 200, "sensor_drift": 193, "sensor_lag": 190, "inertia_leak": 20})
+    )
+    assert found.leader == "sensor_offset"
+    assert [t.effect for t in found.trials] == FOUR
+    assert outcomes(found) == dict(zip(FOUR, ("added", "ties", "rejected", "useless"), strict=True))
+    evidence = [t.evidence for t in found.trials]
+    assert evidence == pytest.approx([g - PRICE for g in (200, 193, 190, 20)], abs=1e-6)
+    assert found.trials[1].reason == "fits as well as sensor_offset"
+    assert found.trials[2].reason == "sensor_offset leads by 10 in evidence"
+
+
+def test_nothing_is_added_where_nothing_gains_more_than_chance() -> None:
+    found = tried(made(dict.fromkeys(FOUR, 0.99 * PRICE)))
+    assert found.leader is None
+    assert set(outcomes(found).values()) == {"useless"}
+    assert tried(made({**dict.fromkeys(FOUR, 0.0), "sensor_lag": 1.01 * PRICE})).leader == (
+        "sensor_lag"
+    )
+
+
+def test_the_price_rises_with_candidates_and_parameters() -> None:
+    gains = {"sensor_lag": 100.0}
+    few, many = made(gains), made(gains, names=[*FOUR, "wear_in", "backlash", "time_delay"])
+    gap = tried(few).trials[0].evidence - tried(many).trials[0].evidence
+    assert gap == pytest.approx(2.0 * np.log(7 / 4))
+    assert tried(few).trials[0].evidence == pytest.approx(100.0 - PRICE)
+
+
+def test_an_effect_that_is_there_is_not_tried_again() -> None:
+    found = tried(made({"sensor_lag": 300, "sensor_lag sensor_drift": 400}), "sensor_lag")
+    assert found.leader == "sensor_drift"
+    assert found.trials[0].evidence == pytest.approx(100.0 - PRICE)
+    assert "sensor_lag" not in outcomes(found)
+
+
+def test_a_smooth_error_counts_for_less() -> None:
+    # Signs that change every three samples: correlations 1/3, -1/3, so 1/(1 + 2/3) of a sample.
+    evidence = tried(made({"sensor_lag": 100.0}, smooth=3)).trials[0].evidence
+    assert evidence == pytest.approx(0.6 * 100.0 - PRICE, rel=0.01)
+
+
+# ---- runs left out ----------------------------------------------------------------------------
+
+
+def held_out(gain: float, share: float) -> Round:
+    """A candidate that gains a share of its gain in mean square on runs left out."""
+    fitted = float(np.exp(-gain / N))
+    left_out = {
+        frozenset[str](): 2.0,
+        frozenset(["sensor_lag"]): float(np.sqrt(4.0 - share * (1.0 - fitted))),
+    }
+    return tried(made({"sensor_lag": gain}, left_out=left_out))
+
+
+@pytest.mark.parametrize(
+    ("gain", "share", "outcome"),
+    [
+        (PRICE + 59.0, 0.51, "added"),
+        (PRICE + 59.0, 0.49, "rejected"),
+        (PRICE + 61.0, 0.01, "added"),
+        (PRICE + 61.0, -0.01, "rejected"),
+    ],
+)
+def test_runs_left_out_have_a_veto(gain: float, share: float, outcome: str) -> None:
+    found = held_out(gain, share)
+    assert outcomes(found)["sensor_lag"] == outcome
+    assert (found.leader == "sensor_lag") == (outcome == "added")
+    words = "largest evidence" if outcome == "added" else "predicts left-out runs no better"
+    assert words in found.trials[0].reason
+
+
+def test_after_a_veto_the_next_one_leads() -> None:
+    found = tried(
+        made(
+            {"sensor_offset": 300, "sensor_drift": 200},
+            left_out={frozenset(["sensor_offset"]): 1.5},
+        )
+    )
+    assert found.leader == "sensor_drift"
+    assert list(outcomes(found).values())[:2] == ["rejected", "added"]
+
+
+# ---- what is fitted ---------------------------------------------------------------------------
+
+
+def fitted(candidates: MadeUp, what: str) -> set[str]:
+    return {next(iter(s)) for asked, s in candidates.asked if asked == what and len(s) == 1}
+
+
+def test_an_effect_whose_score_promises_nothing_is_not_fitted() -> None:
+    scores = {frozenset(["sensor_lag"]): 9.9, frozenset(["sensor_drift"]): 10.1}
+    candidates = made({"sensor_lag": 500.0, "sensor_drift": 40.0}, scores=scores)
+    found = tried(candidates)
+    assert "sensor_lag" not in fitted(candidates, "rank")
+    assert "sensor_drift" in fitted(candidates, "rank")
+    assert outcomes(found)["sensor_lag"] == "useless"
+    # It has gained nothing, and pays for no parameter.
+    last = next(t for t in found.trials if t.effect == "sensor_lag")
+    assert last.evidence == pytest.approx(-(20.0 + 2.0 * np.log(4)))
+
+
+def test_a_score_of_a_smooth_error_counts_for_less() -> None:
+    scores = {frozenset(["sensor_lag"]): 16.0, frozenset(["sensor_drift"]): 17.0}
+    candidates = made({"sensor_lag": 500.0, "sensor_drift": 500.0}, scores=scores, smooth=3)
+    tried(candidates)
+    assert {"sensor_lag", "sensor_drift"} & fitted(candidates, "rank") == {"sensor_drift"}
+
+
+def test_only_candidates_that_could_lead_converge() -> None:
+    # The leader's share is 0.6 * (300 - price), less 60.
+    line = 0.6 * (300.0 - PRICE) - 60.0 + PRICE
+    ranked = sets({"sensor_offset": 300.0, "sensor_drift": line + 1.0, "sensor_lag": line - 1.0})
+    candidates = made({"sensor_offset": 300.0}, ranked=ranked)
+    tried(candidates)
+    assert {"sensor_offset", "sensor_drift"} <= fitted(candidates, "converge")
+    assert "sensor_lag" not in fitted(candidates, "converge")
+
+
+def test_a_candidate_converges_where_its_next_step_promises_enough() -> None:
+    # Each lacks 10; a step that takes s of the square promises 1000 log(1 / (1 - s)).
+    ranked = dict.fromkeys(sets({"sensor_drift": 0.0, "sensor_lag": 0.0}), PRICE - 10.0)
+    slopes = {frozenset(["sensor_drift"]): 0.003, frozenset(["sensor_lag"]): 0.001}
+    candidates = made({}, ranked=ranked, slopes=slopes)
+    tried(candidates)
+    assert fitted(candidates, "converge") & {"sensor_drift", "sensor_lag"} == {"sensor_drift"}
+
+
+def test_an_effect_of_many_peaks_gets_a_second_look_where_it_could_lead() -> None:
+    names = ["sensor_offset", "drive_compliance"]
+    price = 20.0 + np.log(N) + 2.0 * np.log(2)
+    for share, leader in ((0.55, "drive_compliance"), (0.45, "sensor_offset")):
+        ring = price + share * 200.0
+        candidates = made(
+            {"sensor_offset": price + 200.0, "drive_compliance": ring},
+            names=names,
+            peaks=sets({"drive_compliance": 900.0}),
+        )
+        assert tried(candidates).leader == leader
+
+
+# ---- second thoughts --------------------------------------------------------------------------
+
+
+def thought_over(candidates: MadeUp, *present: str) -> tuple[str, ...]:
+    return reconsider(cast(Candidates, candidates), present)
+
+
+STAND_IN = {"sensor_lag": 200.0, "sensor_lag sensor_offset": 240.0}
+
+
+def test_an_effect_that_is_no_longer_needed_goes() -> None:
+    whole = "sensor_lag sensor_offset sensor_drift"
+    pair = "sensor_offset sensor_drift"
+    present = ("sensor_lag", "sensor_offset", "sensor_drift")
+    gone = made({**STAND_IN, pair: 400.0, whole: 400.0 + PRICE - 1.0})
+    assert thought_over(gone, *present) == ("sensor_offset", "sensor_drift")
+    kept = made({**STAND_IN, pair: 400.0, whole: 400.0 + PRICE + 1.0})
+    assert thought_over(kept, *present) == present
+
+
+def test_a_simpler_model_is_fitted_from_the_richer_one_too() -> None:
+    whole = "sensor_lag sensor_offset sensor_drift"
+    pair = "sensor_offset sensor_drift"
+    caught = {**STAND_IN, pair: 300.0, whole: 400.0}
+    present = ("sensor_lag", "sensor_offset", "sensor_drift")
+    assert thought_over(made(caught), *present) == present
+    for more in ({"from_richer": sets({pair: 399.0})}, {"peaks": sets({pair: 399.0})}):
+        assert thought_over(made(caught, **more), *present) == ("sensor_offset", "sensor_drift")
+
+
+@pytest.mark.parametrize(("better", "last"), [(9.0, "sensor_drift"), (7.0, "sensor_lag")])
+def test_an_effect_that_another_replaces_better_is_exchanged(better: float, last: str) -> None:
+    gains = {
+        "sensor_offset": 100.0,
+        "sensor_lag": 200.0,
+        "sensor_lag sensor_offset": 300.0,
+        "sensor_drift sensor_offset": 300.0 + better,
+    }
+    assert thought_over(made(gains), "sensor_lag", "sensor_offset") == (last, "sensor_offset")
+
+
+def test_a_single_effect_is_not_questioned() -> None:
+    candidates = made({"sensor_lag": 40.0, "sensor_drift": 400.0})
+    assert thought_over(candidates, "sensor_lag") == ("sensor_lag",)
+
+
+# ---- alternatives -----------------------------------------------------------------------------
+
+
+def test_alternatives_are_those_that_would_fit_as_well() -> None:
+    candidates = made({"sensor_lag": 300.0, "sensor_drift": 293.0, "sensor_offset": 291.0})
+    found = alternatives(cast(Candidates, candidates), ("sensor_lag",))
+    assert found == {"sensor_lag": ("sensor_drift",)}
+    wide = replace(candidates, policy=replace(DEFAULT, tie=10.0))
+    found = alternatives(cast(Candidates, wide), ("sensor_lag",))
+    assert found == {"sensor_lag": ("sensor_offset", "sensor_drift")}
+
+
+def test_an_alternative_whose_score_promises_nothing_is_none() -> None:
+    candidates = made(
+        {"sensor_lag": 300.0, "sensor_drift": 300.0}, scores={frozenset(["sensor_drift"]): 5.0}
+    )
+    assert alternatives(cast(Candidates, candidates), ("sensor_lag",)) == {"sensor_lag": ()}

@@ -1,0 +1,47 @@
+"""Where a fit starts: what pages say of it, and what the data make of that."""
+
+from __future__ import annotations
+
+import pytest
+from campaigns import campaign
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.scales import scales
+from jbf.estimation.starts import LINEAR_RULES, RULES, with_starts
+from jbf.models.catalogue import Parameter, effects, laws, parameters_of
+
+MINE = Parameter("F_n", "N", lower=1e-6, upper=1e7, starts=(10.0,), start="kinetic")
+
+
+def prepared() -> Campaign:
+    rig, runs, _ = campaign(7)
+    return Campaign.prepare(rig, runs)
+
+
+def test_each_start_that_a_page_names_has_a_rule_and_each_rule_a_page() -> None:
+    pages = [p for x in (*laws().values(), *effects().values()) for p in x.parameters]
+    assert {p.start for p in pages} == {"catalogue", *RULES, *LINEAR_RULES}
+    assert {p.bound for p in pages} == {"catalogue", "transition_speed"}
+
+
+def test_a_law_that_scales_with_the_load_keeps_the_catalogues_starts() -> None:
+    pages = parameters_of("journal", ("presliding", "drive_compliance", "coulomb_drag"))
+    found = with_starts(pages, prepared(), in_newtons=False)
+    assert {name: page.starts for name, page in found.items()} == {
+        name: page.starts for name, page in pages.items()
+    }
+    assert found["U_tr_m_s"].upper < pages["U_tr_m_s"].upper
+
+
+def test_a_page_of_any_name_starts_where_it_says() -> None:
+    data = prepared()
+    found = with_starts({"mine.F_n": MINE}, data, in_newtons=True)["mine.F_n"]
+    sizes = scales(data)
+    assert found.starts == pytest.approx((sizes.kinetic_n, sizes.whole_n))
+    assert found.lower == MINE.lower
+
+
+def test_a_drive_starts_from_the_data_on_a_linear_axis_alone() -> None:
+    pages = parameters_of("coulomb", ("drive_compliance",))
+    name = "drive_compliance.k_n_m_rad"
+    found = with_starts(pages, prepared(), in_newtons=True)
+    assert found[name].starts == pages[name].starts

@@ -1,0 +1,7 @@
+"""From exact signals to what a logger hands over: artefacts of recordings, at three strengths."""
+
+from .campaign import recorded, write_recorded
+from .catalogue import ARTEFACTS, OFF_GRID, ONE_OF
+from .ranges import STRENGTHS
+
+__all__ = ["ARTEFACTS", "OFF_GRID", "ONE_OF", "STRENGTHS", "recorded", "write_recorded"]

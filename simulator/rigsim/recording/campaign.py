@@ -1,0 +1,132 @@
+"""Campaigns as a logger hands them over, and clean runs of the same rig."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..campaign import rig_toml
+from ..catalogue import check
+from ..designs import Design, draw_design, draw_effects, draw_film_start
+from ..excitation import LEAD_IN_S, Plan, campaign, held_out
+from ..lubricant import Parameters
+from ..record import Record
+from ..seeds import stream
+from ..simulate import under_load
+from .catalogue import OFF_GRID, chosen
+from .draft import Artefact, Signals, Sizes
+from .logger import logged, sizes_of
+
+Runs = dict[str, Record]
+
+
+def _signals(design: Design, effects: Parameters, plan: Plan, seed: int) -> Signals:
+    rng = stream(seed, "start", plan.motion.name)
+    base = under_load(design.base, round(plan.load_share * design.base.load_n, 1), effects)
+    angle = float(rng.uniform(0.0, 2.0 * math.pi))
+    return Signals(base, effects, plan.motion, LEAD_IN_S, angle, draw_film_start(base, rng))
+
+
+def recorded(
+    seed: int,
+    effects: Sequence[str] = (),
+    artefacts: Sequence[str] = (OFF_GRID,),
+    artefact_strength: str = "usual",
+    strength: float = 1.0,
+    *,
+    for_held_out: bool = False,
+) -> tuple[Runs, dict[str, Any]]:
+    """Records by run name, and the truth behind them.
+
+    Parameters
+    ----------
+    seed
+        Of rig, motions, noise, effects and artefacts, each by its own stream.
+    effects
+        Names from the catalogue of effects; their parameters are drawn at `strength`.
+    artefacts
+        What the recording does: names of `ARTEFACTS`, or `off_grid` for nothing.
+    artefact_strength
+        `mild`, `usual` or `severe`.
+    for_held_out
+        Other motions, recorded cleanly.
+    """
+    design = draw_design(seed)
+    names = tuple(effects)
+    hidden = check(draw_effects(names, design.base, seed, strength))
+    done_by = [] if for_held_out else chosen(tuple(artefacts))
+    sizes = sizes_of(done_by, artefact_strength, seed)
+    plans = (held_out if for_held_out else campaign)(design, names, seed)
+    records: Runs = {}
+    recording: list[dict[str, Any]] = []
+    over_noise = dict.fromkeys(hidden, 0.0)
+    for plan in plans:
+        signals = _signals(design, hidden, plan, seed)
+        record, done = _logged(signals, plan, design, [(a, sizes[a.name]) for a in done_by], seed)
+        records[plan.motion.name] = record
+        recording += done
+        for name in hidden:
+            over_noise[name] = max(over_noise[name], _share(signals, name, record, design))
+    truth = {
+        "effects": hidden,
+        "artefacts": list(artefacts),
+        "strength": artefact_strength,
+        "recording": recording,
+        "base": asdict(design.base),
+        "noise_n": design.noise_n,
+        "rate_hz": design.rate_hz,
+        "seed": seed,
+        "effect_to_noise": over_noise,
+    }
+    return records, truth
+
+
+def _logged(
+    signals: Signals, plan: Plan, design: Design, artefacts: list[tuple[Artefact, Sizes]], seed: int
+) -> tuple[Record, list[dict[str, Any]]]:
+    return logged(
+        signals,
+        plan.length_s,
+        design.rate_hz,
+        design.noise_n,
+        design.counts_per_rad,
+        artefacts,
+        seed,
+        plan.motion.name,
+    )
+
+
+def _share(signals: Signals, effect: str, record: Record, design: Design) -> float:
+    """RMS of what an effect does to a run over the noise: how well it can be seen at all."""
+    times = record.time_s
+    gap = signals.force(times) - signals.without(effect).force(times)
+    return float(np.sqrt(np.mean(gap**2))) / design.noise_n
+
+
+def write_recorded(
+    folder: str | Path,
+    held_out_folder: str | Path,
+    seed: int,
+    effects: Sequence[str] = (),
+    artefacts: Sequence[str] = (OFF_GRID,),
+    artefact_strength: str = "usual",
+) -> dict[str, Any]:
+    """Write a campaign and its held-out runs; the truth goes beside the first's folder."""
+    records, truth = recorded(seed, effects, artefacts, artefact_strength)
+    others, _ = recorded(seed, effects, for_held_out=True)
+    design = draw_design(seed)
+    for place, runs in ((Path(folder), records), (Path(held_out_folder), others)):
+        place.mkdir(parents=True, exist_ok=True)
+        rig = rig_toml(design.base.bearing, design.base.load_n)
+        (place / "rig.toml").write_text(rig, encoding="utf-8")
+        for name, record in runs.items():
+            record.write(place / f"{name}.csv")
+    text = json.dumps(truth, indent=1)
+    (Path(folder).parent / f"{Path(folder).name}.json").write_text(text + "\n", encoding="utf-8")
+    return truth

@@ -1,0 +1,126 @@
+"""A record in the making, on its way from the rig through the logger."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bearing import Base
+from ..instrument import read_out
+from ..lubricant import Parameters
+from ..motions import Motion
+from ..record import Vector
+from ..seeds import Rng
+from ..simulate import cell_force, commanded
+
+Stage = Literal["rig", "clock", "cell", "noise", "converter", "transport", "motion", "load", "rows"]
+STAGES: tuple[Stage, ...] = (
+    "rig",
+    "clock",
+    "cell",
+    "noise",
+    "converter",
+    "transport",
+    "motion",
+    "load",
+    "rows",
+)
+"""The way of a signal: the rig of this run; when each channel looks; the cell's zero and gain; its
+noise; the converter; what the logger makes of it; the encoder; the load; the file's rows."""
+
+Sizes = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Signals:
+    """The exact signals of a run, at any instant; 0 s is the record's first."""
+
+    base: Base
+    effects: Parameters
+    motion: Motion
+    begins_s: float
+    start_angle_rad: float
+    film_start: tuple[float, float]
+
+    def _into_motion(self, times: Vector) -> Vector:
+        return np.clip(times + self.begins_s, 0.0, self.motion.duration_s)
+
+    def force(self, times: Vector) -> Vector:
+        """Force (N), offset and drift of the cell in it; `times` (s) ascend."""
+        force = cell_force(
+            self.base,
+            self.effects,
+            self.motion,
+            self._into_motion(times),
+            self.start_angle_rad,
+            self.film_start,
+        )
+        return read_out(force, times, self.effects)
+
+    def speed(self, times: Vector) -> Vector:
+        """Surface speed (m/s)."""
+        return commanded(self.motion, self._into_motion(times))[0]
+
+    def angle(self, times: Vector) -> Vector:
+        """Angle of the encoder (rad)."""
+        position = commanded(self.motion, self._into_motion(times))[1]
+        return self.start_angle_rad + position / self.base.bearing.radius_m
+
+    def without(self, effect: str) -> Signals:
+        """The same run of a rig that has not this effect."""
+        rest = {name: values for name, values in self.effects.items() if name != effect}
+        return replace(self, effects=rest)
+
+
+@dataclass
+class Draft:
+    """What a run's record is so far.
+
+    `stamps` are what the file will say, `instants` when the encoder truly looked, `force_instants`
+    when the cell's converter did, `force_stamps` when the logger believes it did (s). The force is
+    on its own instants until the transport puts it onto the stamps. `unit` is noise of unit size,
+    `scale` (N) its size, `extra` (N) what comes to it.
+    """
+
+    signals: Signals
+    stamps: Vector
+    noise_n: float
+    peak_n: float
+    counts_per_rad: float
+    instants: Vector = field(init=False)
+    force_instants: Vector = field(init=False)
+    force_stamps: Vector = field(init=False)
+    held: bool = False
+    force: Vector = field(init=False)
+    clean: Vector = field(init=False)
+    unit: Vector = field(init=False)
+    scale: Vector = field(init=False)
+    extra: Vector = field(init=False)
+    speed: Vector = field(init=False)
+    angle: Vector = field(init=False)
+    load: Vector = field(init=False)
+    rows: NDArray[np.intp] = field(init=False)
+
+    @property
+    def step_s(self) -> float:
+        """Between stamps, s."""
+        return float(self.stamps[1] - self.stamps[0])
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """Something that a recording does to a record.
+
+    `draw` gives its sizes for a campaign from ranges of a strength; `apply` does it to a run and
+    gives the sizes that this run has; both use generators of their own.
+    """
+
+    name: str
+    channel: str
+    stage: Stage
+    draw: Callable[[str, Rng], Sizes]
+    apply: Callable[[Draft, Sizes, Rng], Sizes]

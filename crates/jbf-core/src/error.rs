@@ -272,6 +272,7 @@ mod tests {
     #[test]
     fn rules_hold_at_their_ends() {
         assert!(positive("x", 0.0).is_err() && positive("x", f64::MIN_POSITIVE).is_ok());
+        assert!(positive("x", f64::INFINITY).is_err() && positive("x", f64::NAN).is_err());
         assert!(not_negative("x", 0.0).is_ok() && not_negative("x", -1e-300).is_err());
         assert!(finite("x", f64::MAX).is_ok() && finite("x", f64::INFINITY).is_err());
         assert!(within("x", 0.0, [0.0, 1.0]).is_ok() && within("x", 1.0, [0.0, 1.0]).is_ok());

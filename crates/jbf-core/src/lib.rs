@@ -30,36 +30,43 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 mod readme {}
 
+// What the physics stands on: numbers, names, errors.
 pub mod bearing;
 mod builder;
-pub mod chain;
 pub mod clock;
-pub mod compensator;
-pub mod control_law;
-pub mod controller;
 mod delay_line;
-pub mod driver;
 pub mod dual;
-pub mod effect;
-pub mod encoder;
 pub mod error;
 pub mod film;
 pub mod friction;
-pub mod law;
 pub mod motion;
-pub mod observer;
 pub mod page;
 mod path;
-pub mod plant;
 pub mod real;
-pub mod record;
-pub mod reference;
 pub mod relaxation;
 mod root;
+pub mod transition;
+
+// Laws, the effects round them, and how a chain of both runs.
+pub mod chain;
+pub mod effect;
+pub mod law;
+pub mod record;
 pub mod run;
 pub mod spec;
+
+// Integrators of fixed step, and trajectories to a tolerance.
+pub mod driver;
 pub mod stepper;
-pub mod transition;
+
+// The loop: counter in, voltage out, and the bench's shaft to try it on.
+pub mod compensator;
+pub mod control_law;
+pub mod controller;
+pub mod encoder;
+pub mod observer;
+pub mod plant;
+pub mod reference;
 
 pub use bearing::Bearing;
 pub use chain::Chain;

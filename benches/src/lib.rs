@@ -46,13 +46,11 @@ pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain
 /// Two-way motion of chapter 4, U = 0.127 sin(t), at a time.
 pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
     let (sin, cos) = time_s.sin_cos();
-    Motion {
-        time_s: T::of(time_s),
-        velocity_m_s: T::of(0.127 * sin),
-        acceleration_m_s2: T::of(0.127 * cos),
-        angle_rad: T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m),
-        load_n: T::of(LOAD_N),
-    }
+    Motion::at_rest(T::of(LOAD_N))
+        .with_time_s(T::of(time_s))
+        .with_velocity_m_s(T::of(0.127 * sin))
+        .with_acceleration_m_s2(T::of(0.127 * cos))
+        .with_angle_rad(T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m))
 }
 
 /// A period of it at the loop's step, so that a benchmark meets reversals and full film in

@@ -155,6 +155,20 @@ def trajectories(
     load_n: float,
     derivatives: bool = False,
 ) -> list[tuple[Array, Array, Array, int, Array | None]]: ...
+
+class ControlConstants(TypedDict):
+    drive: dict[str, float]
+    counts_per_rad: float
+    counter_bits: int
+    observer_1_s: float
+    table_entries: int
+    flags: dict[str, int]
+
+def thesis_bearing() -> dict[str, Any]: ...
+def control_constants() -> ControlConstants: ...
+def control_gains(
+    position: bool, damping_1_s: float, input_rad_s2_v: float
+) -> tuple[float, float]: ...
 def control_reference(
     wave: str, low: float, high: float, frequency_rad_s: float, dt_s: float, samples: int
 ) -> tuple[Array, Array]: ...

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,8 +22,8 @@ from jbf import (
 )
 from jbf.control import TASKS, THESIS_BENCH, Learning, Observed, run, thesis_model
 from jbf.control.bench import with_noise
+from jbf.control.constants import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED
 from jbf.control.robustness import cases
-from jbf.control.run import FALLBACK, FROZEN, JUMPED
 from jbf.control.schemes import gains
 
 QUIET = replace(THESIS_BENCH, input_noise_v=0.0)
@@ -113,8 +114,37 @@ def test_a_loop_may_be_told_of_another_drive() -> None:
 
 
 def test_in_single_precision_too() -> None:
-    double, single = (run(task=SHORT, precision=p).true_rms for p in ("f64", "f32"))
-    assert single == pytest.approx(double, rel=0.1)
+    double, single = (run(task=SHORT, precision=p) for p in ("f64", "f32"))
+    assert single.true_rms == pytest.approx(double.true_rms, rel=0.1)
+    # It is single precision: what comes out of the loop are single numbers, and only there.
+    assert np.array_equal(single.output_v, single.output_v.astype(np.float32))
+    assert not np.array_equal(double.output_v, double.output_v.astype(np.float32))
+
+
+def test_flags_have_a_bit_each() -> None:
+    flags = (SATURATED, FROZEN, JUMPED, NOT_FINITE, FALLBACK)
+    assert sorted(flags) == [1, 2, 4, 8, 16]
+
+
+def test_the_thesiss_drive_has_the_thesiss_gains() -> None:
+    assert gains(TASKS["position sine"], THESIS_BENCH) == (0.43764, -0.25164)
+    assert gains(TASKS["velocity sine"], THESIS_BENCH) == (1.0, 0.295)
+
+
+def test_a_compensator_that_is_none_is_refused() -> None:
+    class Unknown(control.NoCompensation):
+        def core(self, task: control.Task, bench: control.Bench) -> dict[str, Any]:
+            return {"kind": "magic"}
+
+    with pytest.raises(InputError, match="magic"):
+        run(None, Unknown(), SHORT)
+
+
+def test_the_true_error_is_the_shafts() -> None:
+    r = run(task=SHORT)
+    error = (r.velocity_rad_s - r.reference)[r.time_s >= SHORT.skip_s - 1e-9]
+    assert r.true_rms == pytest.approx(float(np.sqrt(np.mean(error**2))))
+    assert r.true_rms != r.rms
 
 
 @pytest.mark.parametrize("scheme", control.SCHEMES)

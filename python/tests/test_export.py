@@ -44,12 +44,12 @@ fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
     c: &[Vec<f64>; 5],
     dt_s: f64,
 ) -> Vec<T> {
-    let motion = |i: usize| Motion {
-        time_s: T::of(c[0][i]),
-        velocity_m_s: T::of(c[1][i]),
-        acceleration_m_s2: T::of(c[2][i]),
-        angle_rad: T::of(c[3][i]),
-        load_n: T::of(c[4][i]),
+    let motion = |i: usize| {
+        Motion::at_rest(T::of(c[4][i]))
+            .with_time_s(T::of(c[0][i]))
+            .with_velocity_m_s(T::of(c[1][i]))
+            .with_acceleration_m_s2(T::of(c[2][i]))
+            .with_angle_rad(T::of(c[3][i]))
     };
     let mut state = chain.start(&motion(0));
     let mut out = vec![state.reading_n];

@@ -99,6 +99,8 @@ macro_rules! through {
     )*};
 }
 
+impl<F: Float> jbf_core::real::sealed::Sealed for Lane<F> {}
+
 impl<F: Float> Real for Lane<F> {
     const ZERO: Self = Self(F::ZERO);
     const ONE: Self = Self(F::ONE);

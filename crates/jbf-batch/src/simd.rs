@@ -9,24 +9,24 @@ pub enum Simd {
     /// What every machine of the target has (SSE2 on x86-64).
     Baseline,
     /// AVX2: four numbers of double precision.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "wide", target_arch = "x86_64"))]
     Avx2(pulp::x86::V3),
     /// AVX-512: eight numbers of double precision.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "wide", target_arch = "x86_64"))]
     Avx512(pulp::x86::V4),
 }
 
 impl Simd {
     /// Every choice that this machine has, best first.
     pub fn available() -> Vec<Self> {
-        let mut all = Vec::new();
-        #[cfg(target_arch = "x86_64")]
-        {
-            all.extend(pulp::x86::V4::try_new().map(Self::Avx512));
-            all.extend(pulp::x86::V3::try_new().map(Self::Avx2));
-        }
-        all.push(Self::Baseline);
-        all
+        #[cfg(all(feature = "wide", target_arch = "x86_64"))]
+        let wide = [
+            pulp::x86::V4::try_new().map(Self::Avx512),
+            pulp::x86::V3::try_new().map(Self::Avx2),
+        ];
+        #[cfg(not(all(feature = "wide", target_arch = "x86_64")))]
+        let wide: [Option<Self>; 0] = [];
+        wide.into_iter().flatten().chain([Self::Baseline]).collect()
     }
 
     /// The best that this machine has.
@@ -38,9 +38,9 @@ impl Simd {
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Self::Avx2(_) => "avx2",
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Self::Avx512(_) => "avx512",
         }
     }
@@ -50,9 +50,9 @@ impl Simd {
     pub fn dispatch<R>(self, work: impl FnOnce() -> R) -> R {
         match self {
             Self::Baseline => work(),
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Self::Avx2(v3) => pulp::Simd::vectorize(v3, work),
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Self::Avx512(v4) => pulp::Simd::vectorize(v4, work),
         }
     }

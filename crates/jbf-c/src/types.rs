@@ -31,14 +31,13 @@ pub struct CBearing {
 
 impl From<&CBearing> for Bearing {
     fn from(b: &CBearing) -> Self {
-        Self {
-            radius_m: b.radius_m,
-            length_m: b.length_m,
-            clearance_m: b.clearance_m,
-            mass_kg: b.mass_kg,
-            count: b.count,
-            viscosity_pa_s: b.viscosity_pa_s,
-        }
+        Bearing::new()
+            .with_radius_m(b.radius_m)
+            .with_length_m(b.length_m)
+            .with_clearance_m(b.clearance_m)
+            .with_mass_kg(b.mass_kg)
+            .with_count(b.count)
+            .with_viscosity_pa_s(b.viscosity_pa_s)
     }
 }
 
@@ -60,13 +59,11 @@ pub struct CMotion<T> {
 
 impl<T: Real> From<&CMotion<T>> for Motion<T> {
     fn from(m: &CMotion<T>) -> Self {
-        Self {
-            time_s: m.time_s,
-            velocity_m_s: m.velocity_m_s,
-            acceleration_m_s2: m.acceleration_m_s2,
-            angle_rad: m.angle_rad,
-            load_n: m.load_n,
-        }
+        Motion::at_rest(m.load_n)
+            .with_time_s(m.time_s)
+            .with_velocity_m_s(m.velocity_m_s)
+            .with_acceleration_m_s2(m.acceleration_m_s2)
+            .with_angle_rad(m.angle_rad)
     }
 }
 
@@ -112,9 +109,9 @@ fn text<const N: usize>(from: &str) -> [u8; N] {
 impl From<ParameterError> for CError {
     fn from(error: ParameterError) -> Self {
         Self {
-            name: text(error.name),
-            rule: text(error.rule),
-            value: error.value,
+            name: text(error.name()),
+            rule: text(error.rule()),
+            value: error.value().unwrap_or(f64::NAN),
         }
     }
 }

@@ -58,12 +58,12 @@ fn main() -> Result<(), ParameterError> {
     let bare = Chain::round(law, effects, bearing);
     let wiper = Beside(Wiper::new(&[2.0])?);
     let wiped = Chain::round(law, effects.with(wiper), bearing);
-    let motion = |t: f64| Motion {
-        time_s: t,
-        velocity_m_s: 0.127 * t.sin(),
-        acceleration_m_s2: 0.127 * t.cos(),
-        angle_rad: 10.0 * (1.0 - t.cos()),
-        load_n: 104.0,
+    let motion = |t: f64| {
+        Motion::at_rest(104.0)
+            .with_time_s(t)
+            .with_velocity_m_s(0.127 * t.sin())
+            .with_acceleration_m_s2(0.127 * t.cos())
+            .with_angle_rad(10.0 * (1.0 - t.cos()))
     };
     let (mut a, mut b) = (bare.start(&motion(0.0)), wiped.start(&motion(0.0)));
     println!("time_s,bare_n,wiped_n");

@@ -1,10 +1,12 @@
 //! Geometry, lubricant and the dimensionless groups (3.1) to (3.4).
 
-use crate::error::{check, positive, ParameterError};
+use crate::builder::with_fields;
+use crate::error::{check, positive, Error};
 use crate::real::Real;
 
 /// A journal bearing and its lubricant: what a rig knows before any fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bearing {
     /// Journal radius R, m.
     pub radius_m: f64,
@@ -20,6 +22,13 @@ pub struct Bearing {
     pub viscosity_pa_s: f64,
 }
 
+impl Default for Bearing {
+    /// As [`Bearing::new`].
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Bearing {
     /// The bearing of Cohn's thesis, 10W-40 oil (Tables 4.2 to 4.5).
     pub const THESIS: Self = Self {
@@ -31,12 +40,35 @@ impl Bearing {
         viscosity_pa_s: 0.002,
     };
 
+    /// One bearing whose sizes are still to be told, each by its `with_...`: what is left out
+    /// is refused by name.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            radius_m: f64::NAN,
+            length_m: f64::NAN,
+            clearance_m: f64::NAN,
+            mass_kg: f64::NAN,
+            count: 1,
+            viscosity_pa_s: f64::NAN,
+        }
+    }
+
+    with_fields! {
+        with_radius_m => radius_m: f64,
+        with_length_m => length_m: f64,
+        with_clearance_m => clearance_m: f64,
+        with_mass_kg => mass_kg: f64,
+        with_count => count: u32,
+        with_viscosity_pa_s => viscosity_pa_s: f64,
+    }
+
     /// Check every size once.
     ///
     /// # Errors
     /// Names the first size that is not positive and finite, or a clearance that is not
     /// smaller than the radius.
-    pub fn checked(self) -> Result<Self, ParameterError> {
+    pub fn checked(self) -> Result<Self, Error> {
         positive("radius_m", self.radius_m)?;
         positive("length_m", self.length_m)?;
         positive("clearance_m", self.clearance_m)?;
@@ -75,5 +107,23 @@ impl Bearing {
     /// The ratio `C R / L^2` of the viscous term in (3.14).
     pub fn viscous_ratio(&self) -> f64 {
         self.radius_m * self.clearance_m / (self.length_m * self.length_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bearing_says_which_size_it_was_not_told() {
+        let most = Bearing::new()
+            .with_radius_m(0.0127)
+            .with_length_m(0.01905)
+            .with_clearance_m(5.08e-5)
+            .with_mass_kg(2.27)
+            .with_count(4);
+        let error = most.checked().expect_err("no viscosity");
+        assert_eq!(error.name(), "viscosity_pa_s");
+        assert_eq!(most.with_viscosity_pa_s(0.002), Bearing::THESIS);
     }
 }

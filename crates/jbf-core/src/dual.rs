@@ -142,6 +142,8 @@ impl<const N: usize> MulAssign for Dual<N> {
     }
 }
 
+impl<const N: usize> crate::real::sealed::Sealed for Dual<N> {}
+
 impl<const N: usize> Real for Dual<N> {
     const HAS_SLOPES: bool = true;
     const ZERO: Self = Self {

@@ -1,7 +1,12 @@
 //! An incremental encoder: from a counter that rolls over to an angle that does not.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, within, Error};
 use crate::real::Real;
+
+/// Counts in a radian of the thesis's encoder.
+pub const THESIS_COUNTS_PER_RAD: f64 = 2387.3;
+/// Bits of the thesis's counter.
+pub const THESIS_BITS: u32 = 16;
 
 /// Counts to radians, roll-over and jumps.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +29,7 @@ pub struct State {
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sample<T> {
     /// Angle since the sample before, rad; zero in a jump.
     pub moved_rad: T,
@@ -45,16 +51,11 @@ impl<T: Real> Encoder<T> {
         bits: u32,
         top_speed_rad_s: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("counts_per_rad", counts_per_rad)?;
         positive("top_speed_rad_s", top_speed_rad_s)?;
         positive("dt_s", dt_s)?;
-        check(
-            (8..=32).contains(&bits),
-            "bits",
-            f64::from(bits),
-            "must lie between 8 and 32",
-        )?;
+        within("bits", f64::from(bits), [8.0, 32.0])?;
         let most = counts_per_rad * top_speed_rad_s * dt_s + 2.0;
         let half = libm::exp2(f64::from(bits) - 1.0);
         check(
@@ -102,6 +103,7 @@ impl<T: Real> Encoder<T> {
 
     /// Angle since the first sample, rad, without the loss of a sum of increments.
     #[inline]
+    #[must_use]
     pub fn angle_rad(&self, state: &State) -> T {
         let high = (state.total >> 20) as i32;
         let low = (state.total & 0xf_ffff) as i32;

@@ -2,46 +2,280 @@
 
 use core::fmt;
 
-/// A parameter that breaks its rule.
+/// Why something could not be built. Displayed as one line in lower case that names the
+/// parameter, the value and the rule: `radius_m = -1 must be positive and finite`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParameterError {
-    /// Name of the parameter, with its unit (`radius_m`).
-    pub name: &'static str,
-    /// The value that was given.
-    pub value: f64,
-    /// The rule that it breaks (`must be positive and finite`).
-    pub rule: &'static str,
+#[non_exhaustive]
+pub enum Error {
+    /// The catalogue has no law of that name.
+    UnknownLaw,
+    /// The catalogue has no effect of that name.
+    UnknownEffect,
+    /// Something that is needed was not given.
+    Missing {
+        /// Name of the parameter, with its unit (`load_n`).
+        name: &'static str,
+    },
+    /// Fewer values than parameters.
+    TooFew {
+        /// What the values are of.
+        name: &'static str,
+        /// How many were given.
+        given: usize,
+        /// How many there must be.
+        needed: usize,
+    },
+    /// A size that must be positive and finite.
+    NotPositive {
+        /// Name of the parameter, with its unit (`radius_m`).
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// A number that must be zero or positive, and finite.
+    Negative {
+        /// Name of the parameter, with its unit.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// A number that must be finite.
+    NotFinite {
+        /// Name of the parameter, with its unit.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// A value outside the bounds of its parameter, or none at all (NaN).
+    OutOfBounds {
+        /// Name of the parameter, with its unit.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+        /// Least value allowed.
+        lower: f64,
+        /// Largest value allowed.
+        upper: f64,
+    },
+    /// Any other rule of a single parameter.
+    Rule {
+        /// Name of the parameter, with its unit.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+        /// The rule that it breaks (`must be smaller than radius_m`).
+        rule: &'static str,
+    },
 }
 
-impl fmt::Display for ParameterError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {} {}", self.name, self.value, self.rule)
+/// The error under the name that it had as a struct.
+pub type ParameterError = Error;
+
+impl Error {
+    /// The parameter that breaks its rule; `law` or `effect` for an unknown one.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match *self {
+            Error::UnknownLaw => "law",
+            Error::UnknownEffect => "effect",
+            Error::Missing { name }
+            | Error::TooFew { name, .. }
+            | Error::NotPositive { name, .. }
+            | Error::Negative { name, .. }
+            | Error::NotFinite { name, .. }
+            | Error::OutOfBounds { name, .. }
+            | Error::Rule { name, .. } => name,
+        }
+    }
+
+    /// The value that was given, where there was one.
+    #[must_use]
+    pub const fn value(&self) -> Option<f64> {
+        match *self {
+            Error::UnknownLaw | Error::UnknownEffect | Error::Missing { .. } => None,
+            Error::TooFew { given, .. } => Some(given as f64),
+            Error::NotPositive { value, .. }
+            | Error::Negative { value, .. }
+            | Error::NotFinite { value, .. }
+            | Error::OutOfBounds { value, .. }
+            | Error::Rule { value, .. } => Some(value),
+        }
+    }
+
+    /// The rule that is broken, without the numbers in it.
+    #[must_use]
+    pub const fn rule(&self) -> &'static str {
+        match *self {
+            Error::UnknownLaw | Error::UnknownEffect => "is not in the catalogue",
+            Error::Missing { .. } => "is missing",
+            Error::TooFew { .. } => "are too few",
+            Error::NotPositive { .. } => "must be positive and finite",
+            Error::Negative { .. } => "must be zero or positive, and finite",
+            Error::NotFinite { .. } => "must be finite",
+            Error::OutOfBounds { .. } => "is outside its bounds",
+            Error::Rule { rule, .. } => rule,
+        }
     }
 }
 
-impl core::error::Error for ParameterError {}
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, rule) = (self.name(), self.rule());
+        match *self {
+            Error::OutOfBounds {
+                value,
+                lower,
+                upper,
+                ..
+            } => write!(f, "{name} = {value} must lie between {lower} and {upper}"),
+            Error::TooFew { given, needed, .. } => {
+                write!(f, "{name} {rule}: {given} of {needed}")
+            }
+            _ => match self.value() {
+                Some(value) => write!(f, "{name} = {value} {rule}"),
+                None => write!(f, "{name} {rule}"),
+            },
+        }
+    }
+}
 
-/// Check one rule; the error carries name, value and rule.
+impl core::error::Error for Error {}
+
+/// Check a rule that has no kind of its own.
 pub(crate) fn check(
     ok: bool,
     name: &'static str,
     value: f64,
     rule: &'static str,
-) -> Result<(), ParameterError> {
+) -> Result<(), Error> {
     if ok {
         Ok(())
     } else {
-        Err(ParameterError { name, value, rule })
+        Err(Error::Rule { name, value, rule })
     }
 }
 
 /// Most physical sizes: finite and above zero.
-pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), ParameterError> {
-    check(
-        value > 0.0 && value.is_finite(),
-        name,
-        value,
-        "must be positive and finite",
-    )
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(Error::NotPositive { name, value })
+    }
+}
+
+/// What may be absent: finite, zero or above.
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), Error> {
+    if value >= 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(Error::Negative { name, value })
+    }
+}
+
+/// A number of either sign.
+pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), Error> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(Error::NotFinite { name, value })
+    }
+}
+
+/// A value within bounds that both belong to them.
+pub(crate) fn within(
+    name: &'static str,
+    value: f64,
+    [lower, upper]: [f64; 2],
+) -> Result<(), Error> {
+    if value >= lower && value <= upper {
+        Ok(())
+    } else {
+        Err(Error::OutOfBounds {
+            name,
+            value,
+            lower,
+            upper,
+        })
+    }
+}
+
+/// What a constructor cannot do without.
+pub(crate) fn needed<V>(name: &'static str, value: Option<V>) -> Result<V, Error> {
+    value.ok_or(Error::Missing { name })
+}
+
+/// The value of one parameter in a list of them.
+pub(crate) fn given<T: Copy>(values: &[T], i: usize, name: &'static str) -> Result<T, Error> {
+    needed(name, values.get(i).copied())
+}
+
+/// A list with a value for each of so many parameters.
+pub(crate) fn enough(name: &'static str, given: usize, needed: usize) -> Result<(), Error> {
+    if given >= needed {
+        Ok(())
+    } else {
+        Err(Error::TooFew {
+            name,
+            given,
+            needed,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::string::ToString;
+
+    #[test]
+    fn every_message_names_parameter_value_and_rule() {
+        for (error, said) in [
+            (Error::UnknownLaw, "law is not in the catalogue"),
+            (Error::UnknownEffect, "effect is not in the catalogue"),
+            (Error::Missing { name: "load_n" }, "load_n is missing"),
+            (
+                Error::TooFew {
+                    name: "parameters",
+                    given: 2,
+                    needed: 4,
+                },
+                "parameters are too few: 2 of 4",
+            ),
+            (
+                positive("radius_m", -1.0).expect_err("negative"),
+                "radius_m = -1 must be positive and finite",
+            ),
+            (
+                not_negative("volts_per_n", f64::INFINITY).expect_err("infinite"),
+                "volts_per_n = inf must be zero or positive, and finite",
+            ),
+            (
+                finite("bias_m_s", f64::NAN).expect_err("no number"),
+                "bias_m_s = NaN must be finite",
+            ),
+            (
+                within("smooth", 0.6, [0.0, 0.5]).expect_err("outside"),
+                "smooth = 0.6 must lie between 0 and 0.5",
+            ),
+            (
+                check(false, "count", 0.0, "must be at least 1").expect_err("none"),
+                "count = 0 must be at least 1",
+            ),
+        ] {
+            assert_eq!(error.to_string(), said);
+            assert!(said.contains(error.name()), "{said}");
+        }
+    }
+
+    #[test]
+    fn rules_hold_at_their_ends() {
+        assert!(positive("x", 0.0).is_err() && positive("x", f64::MIN_POSITIVE).is_ok());
+        assert!(positive("x", f64::INFINITY).is_err() && positive("x", f64::NAN).is_err());
+        assert!(not_negative("x", 0.0).is_ok() && not_negative("x", -1e-300).is_err());
+        assert!(finite("x", f64::MAX).is_ok() && finite("x", f64::INFINITY).is_err());
+        assert!(within("x", 0.0, [0.0, 1.0]).is_ok() && within("x", 1.0, [0.0, 1.0]).is_ok());
+        assert!(within("x", f64::NAN, [0.0, 1.0]).is_err());
+    }
 }

@@ -11,7 +11,7 @@
 //! let law = Journal::new(&Bearing::THESIS, 104.0, &Parameters::TABLE_4_2, Clock::Journal)?;
 //! let steady = law.steady(0.02)?;
 //! assert!((steady.coefficient - 0.05782937675212433).abs() < 1e-9);
-//! # Ok::<(), jbf_core::ParameterError>(())
+//! # Ok::<(), jbf_core::Error>(())
 //! ```
 #![no_std]
 // One call, in `root.rs`, on Cortex-M with a floating-point unit; forbidden everywhere else.
@@ -30,40 +30,49 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 mod readme {}
 
+// What the physics stands on: numbers, names, errors.
 pub mod bearing;
-pub mod chain;
+mod builder;
 pub mod clock;
-pub mod compensator;
-pub mod controller;
 mod delay_line;
-pub mod driver;
 pub mod dual;
-pub mod effect;
-pub mod encoder;
 pub mod error;
 pub mod film;
 pub mod friction;
-pub mod law;
 pub mod motion;
-pub mod observer;
 pub mod page;
 mod path;
-pub mod plant;
 pub mod real;
-pub mod record;
-pub mod reference;
 pub mod relaxation;
 mod root;
+pub mod transition;
+
+// Laws, the effects round them, and how a chain of both runs.
+pub mod chain;
+pub mod effect;
+pub mod law;
+pub mod record;
 pub mod run;
 pub mod spec;
+
+// Integrators of fixed step, and trajectories to a tolerance.
+pub mod driver;
 pub mod stepper;
-pub mod transition;
+
+// The loop: counter in, voltage out, and the bench's shaft to try it on.
+pub mod compensator;
+pub mod control_law;
+pub mod controller;
+pub mod encoder;
+pub mod observer;
+pub mod plant;
+pub mod reference;
 
 pub use bearing::Bearing;
 pub use chain::Chain;
 pub use clock::Clock;
 pub use dual::Dual;
-pub use error::ParameterError;
+pub use error::{Error, ParameterError};
 pub use friction::Friction;
 pub use motion::Motion;
 pub use real::Real;

@@ -2,9 +2,16 @@
 
 use crate::real::Real;
 
-/// The imposed motion at one instant.
+/// The imposed motion at one instant: [`Motion::at_rest`] under a load, with what moves.
+///
+/// ```
+/// use jbf_core::Motion;
+/// let turning = Motion::at_rest(104.0).with_time_s(2.0).with_velocity_m_s(0.02);
+/// assert_eq!((turning.load_n, turning.angle_rad), (104.0, 0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct Motion<T> {
     /// Time since the run began, s.
     pub time_s: T,
@@ -19,7 +26,8 @@ pub struct Motion<T> {
 }
 
 impl<T: Real> Motion<T> {
-    /// At rest under a load.
+    /// At rest under a load, N, at time and angle zero.
+    #[must_use]
     pub fn at_rest(load_n: T) -> Self {
         Self {
             time_s: T::ZERO,
@@ -28,6 +36,46 @@ impl<T: Real> Motion<T> {
             angle_rad: T::ZERO,
             load_n,
         }
+    }
+
+    /// The same at another time, s.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_time_s(mut self, time_s: T) -> Self {
+        self.time_s = time_s;
+        self
+    }
+
+    /// The same at another surface speed, m/s.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_velocity_m_s(mut self, velocity_m_s: T) -> Self {
+        self.velocity_m_s = velocity_m_s;
+        self
+    }
+
+    /// The same with another rate of change of the speed, m/s^2.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_acceleration_m_s2(mut self, acceleration_m_s2: T) -> Self {
+        self.acceleration_m_s2 = acceleration_m_s2;
+        self
+    }
+
+    /// The same at another shaft angle, rad.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_angle_rad(mut self, angle_rad: T) -> Self {
+        self.angle_rad = angle_rad;
+        self
+    }
+
+    /// The same under another load on one bearing, N.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_load_n(mut self, load_n: T) -> Self {
+        self.load_n = load_n;
+        self
     }
 
     /// True where every quantity is finite.
@@ -90,6 +138,7 @@ pub(crate) fn sag<T: Real>(share: T) -> T {
 
 /// The journal's own motion, behind the drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct JournalMotion<T> {
     /// Surface speed of the journal, m/s.
     pub velocity_m_s: T,

@@ -1,7 +1,7 @@
 //! The page of one parameter, of a law or an effect: the one source of its name, its bounds, where a
 //! fit may start and what a mirror does to it.
 
-use crate::error::ParameterError;
+use crate::error::{given, within, ParameterError};
 use crate::real::Real;
 
 /// What becomes of a parameter where the machine is looked at in a mirror.
@@ -231,16 +231,9 @@ pub(crate) const fn same(a: &str, b: &str) -> bool {
 /// Names the first value that is missing or out of bounds.
 pub(crate) fn in_bounds<T: Real>(pages: &[Parameter], values: &[T]) -> Result<(), ParameterError> {
     for (i, p) in pages.iter().enumerate() {
-        let value = values.get(i).map_or(f64::NAN, |v| v.value());
-        if p.null == Some(value) {
-            continue;
-        }
-        if !(value >= p.lower && value <= p.upper) {
-            return Err(ParameterError {
-                name: p.name,
-                value,
-                rule: "is missing or outside the bounds of the catalogue",
-            });
+        let value = given(values, i, p.name)?.value();
+        if p.null != Some(value) {
+            within(p.name, value, [p.lower, p.upper])?;
         }
     }
     Ok(())

@@ -15,9 +15,10 @@
 // `!(x > 0)` is true of a NaN too, and means to be.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+use crate::builder::with_fields;
 use crate::chain::{self, Chain};
 use crate::effect::{EffectSet, Effects};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{not_negative, positive, Error};
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::Motion;
@@ -36,6 +37,7 @@ const LONGEST_STANDING_S: f64 = 0.02;
 
 /// Motor and shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Drive {
     /// Damping `a`, 1/s.
     pub damping_1_s: f64,
@@ -49,13 +51,42 @@ pub struct Drive {
 
 impl Drive {
     /// The thesis's motor and shaft. Its friction scale is not in the thesis: `volts_per_n` is
-    /// near what fits the "none" column of its Tables 6.1 and 6.2 (0.0283).
+    /// what fits the "none" columns of its Tables 6.1 and 6.2, as `jbf control tables` does.
     pub const THESIS: Self = Self {
         damping_1_s: 135.0,
         input_rad_s2_v: 457.0,
-        volts_per_n: 0.03,
+        volts_per_n: 0.02826,
         limit_v: 10.0,
     };
+
+    /// A drive by its a (1/s) and b (rad/s^2/V); friction scale and largest input are the
+    /// thesis's until they are told.
+    #[must_use]
+    pub const fn new(damping_1_s: f64, input_rad_s2_v: f64) -> Self {
+        Self {
+            damping_1_s,
+            input_rad_s2_v,
+            ..Self::THESIS
+        }
+    }
+
+    with_fields! {
+        with_volts_per_n => volts_per_n: f64,
+        with_limit_v => limit_v: f64,
+    }
+
+    /// True where a and b are those of another.
+    #[must_use]
+    pub fn turns_like(&self, other: &Self) -> bool {
+        self.damping_1_s == other.damping_1_s && self.input_rad_s2_v == other.input_rad_s2_v
+    }
+
+    /// Twice the speed that the largest input holds without friction, rad/s: what turns faster is
+    /// not the shaft, it is the encoder that jumps.
+    #[must_use]
+    pub fn top_speed_rad_s(&self) -> f64 {
+        2.0 * self.limit_v * self.input_rad_s2_v / self.damping_1_s
+    }
 }
 
 /// The plant, ready to step.
@@ -100,17 +131,12 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
     ///
     /// # Errors
     /// Names the number that is not positive and finite.
-    pub fn new(chain: Chain<T, L, E>, drive: Drive, step_s: f64) -> Result<Self, ParameterError> {
+    pub fn new(chain: Chain<T, L, E>, drive: Drive, step_s: f64) -> Result<Self, Error> {
         positive("damping_1_s", drive.damping_1_s)?;
         positive("input_rad_s2_v", drive.input_rad_s2_v)?;
         positive("limit_v", drive.limit_v)?;
         positive("step_s", step_s)?;
-        check(
-            drive.volts_per_n >= 0.0 && drive.volts_per_n.is_finite(),
-            "volts_per_n",
-            drive.volts_per_n,
-            "must be zero or positive, and finite",
-        )?;
+        not_negative("volts_per_n", drive.volts_per_n)?;
         let fall = -libm::expm1(-drive.damping_1_s * step_s);
         Ok(Self {
             chain,
@@ -124,6 +150,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
 
     /// At rest at angle zero under a load (N), having stood for `stood_s`: the film has been
     /// squeezed out, the contact has aged.
+    #[must_use]
     pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State, E> {
         let mut motion = Motion::at_rest(load_n);
         let mut chain = self.chain.start(&motion);

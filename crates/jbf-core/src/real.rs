@@ -7,11 +7,20 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A real number that the models can be evaluated over.
+/// What seals [`Real`]: the kinds of number are those of the crates of this project, so that an
+/// operation more is no break for others.
+#[doc(hidden)]
+pub mod sealed {
+    pub trait Sealed {}
+}
+
+/// A real number that the models can be evaluated over. It is sealed: `f32`, `f64`,
+/// [`crate::Dual`], and the lanes of `jbf-batch`.
 ///
 /// Comparisons look at the value alone; a derivative never decides a branch.
 pub trait Real:
-    Copy
+    sealed::Sealed
+    + Copy
     + Debug
     + PartialEq
     + PartialOrd
@@ -136,6 +145,8 @@ macro_rules! real {
         $t:ty, $limit:expr, $sqrt:path, $exp:path, $exp_m1:path, $ln:path, $sin:path, $cos:path, $pow:path,
         $abs:path
     ) => {
+        impl sealed::Sealed for $t {}
+
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;

@@ -9,11 +9,12 @@
 //!
 //! Source: Cohn (1998), Appendices D and E.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, finite, positive, Error};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 /// Shape of a periodic reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Wave {
     /// Sine.
     Sine,
@@ -68,14 +69,9 @@ impl Reference {
     ///
     /// # Errors
     /// The frequency must be positive, `high` above `low`, both finite.
-    pub fn new(
-        wave: Wave,
-        low: f64,
-        high: f64,
-        frequency_rad_s: f64,
-    ) -> Result<Self, ParameterError> {
+    pub fn new(wave: Wave, low: f64, high: f64, frequency_rad_s: f64) -> Result<Self, Error> {
         positive("frequency_rad_s", frequency_rad_s)?;
-        check(low.is_finite(), "low", low, "must be finite")?;
+        finite("low", low)?;
         check(
             high.is_finite() && high > low,
             "high",
@@ -102,6 +98,7 @@ impl Reference {
     }
 
     /// Value and rate at a time, s.
+    #[must_use]
     pub fn at(&self, time_s: f64) -> Target<f64> {
         let (span, period) = (self.high - self.low, self.period_s());
         let phase = time_s - libm::floor(time_s / period) * period;

@@ -52,8 +52,8 @@ impl<T: Real> Spec<'_, T> {
     /// Build the law, put the effects round it, and hand the chain on.
     ///
     /// # Errors
-    /// Names the first number that breaks its rule, an effect's before the law's; an unknown name is
-    /// reported as the parameter `effect` or `law`.
+    /// Names the first number that breaks its rule, an effect's before the law's, or says that
+    /// there is no such effect or law.
     pub fn chain<'e, V: AsRef<[T]>, U: Using<T>>(
         &self,
         effects: impl IntoIterator<Item = (&'e str, V)>,

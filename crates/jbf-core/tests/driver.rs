@@ -274,10 +274,7 @@ fn far_laws_are_followed() {
             k0: random.log_uniform(1e3, 1e9),
             gamma: random.log_uniform(0.1, 1e3),
         };
-        let bearing = Bearing {
-            mass_kg: random.log_uniform(0.01, 100.0),
-            ..Bearing::THESIS
-        };
+        let bearing = Bearing::THESIS.with_mass_kg(random.log_uniform(0.01, 100.0));
         let load_n = random.log_uniform(5.0, 2000.0);
         let clock = if random.chance(0.5) {
             Clock::Journal
@@ -317,7 +314,7 @@ fn bad_numbers_are_named() {
     let mut out = [0.0; 2];
     let mut name = |times: &[f64], tolerance: f64| {
         let refused = trajectory(&film, &motion, times, tolerance, &mut out);
-        refused.expect_err("refused").name
+        refused.expect_err("refused").name()
     };
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(name(&[0.0, 1.0], tolerance), "tolerance");
@@ -326,34 +323,31 @@ fn bad_numbers_are_named() {
         assert_eq!(name(&times, 1e-6), "times_s");
     }
     assert_eq!(
-        Sine::new(-0.1, 1.0).expect_err("refused").name,
+        Sine::new(-0.1, 1.0).expect_err("refused").name(),
         "amplitude_m_s"
     );
     assert_eq!(
-        Sine::new(0.1, 0.0).expect_err("refused").name,
+        Sine::new(0.1, 0.0).expect_err("refused").name(),
         "omega_rad_s"
     );
     let nan = f64::NAN;
     assert_eq!(
-        Sine::with_bias(0.1, 1.0, nan).expect_err("refused").name,
+        Sine::with_bias(0.1, 1.0, nan).expect_err("refused").name(),
         "bias_m_s"
     );
     assert_eq!(
-        Sampled::new(&[0.0], &[0.0]).expect_err("refused").name,
+        Sampled::new(&[0.0], &[0.0]).expect_err("refused").name(),
         "samples"
     );
     assert_eq!(
         Sampled::new(&[0.0, 0.0], &[0.0, 1.0])
             .expect_err("refused")
-            .name,
+            .name(),
         "time_s"
     );
-    let start = Start {
-        eps: Some(1.5),
-        ..Start::default()
-    };
+    let start = Start::default().with_eps(Some(1.5));
     let refused = follow(&film, &motion, &start, &[1.0], 1e-6, |_, _| {});
-    assert_eq!(refused.expect_err("refused").name, "eps");
+    assert_eq!(refused.expect_err("refused").name(), "eps");
     assert!(trajectory(&film, &motion, &[], 1e-6, &mut out).is_ok());
     assert!(trajectory(&film, &motion, &[0.0, 0.0], 1e9, &mut out).is_ok());
 }

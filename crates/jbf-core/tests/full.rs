@@ -169,12 +169,9 @@ fn a_jump_of_the_load_is_followed() {
 #[test]
 fn the_mass_is_checked() {
     for (mass_kg, name) in [(0.0, "mass_kg"), (1e-320, "mass_number")] {
-        let bearing = Bearing {
-            mass_kg,
-            ..Bearing::THESIS
-        };
+        let bearing = Bearing::THESIS.with_mass_kg(mass_kg);
         let error = JournalFull::new(&bearing, LOAD_N, &table_4_2::<f64>(), Clock::Journal)
             .expect_err(name);
-        assert_eq!(error.name, name);
+        assert_eq!(error.name(), name);
     }
 }

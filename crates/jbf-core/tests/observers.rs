@@ -42,7 +42,7 @@ fn a_jump_is_told_and_not_believed() {
 #[test]
 fn a_speed_that_hides_a_roll_over_is_refused() {
     let error = Encoder::<f64>::new(COUNTS_PER_RAD, 8, 68.0, DT_S).unwrap_err();
-    assert_eq!(error.name, "top_speed_rad_s");
+    assert_eq!(error.name(), "top_speed_rad_s");
 }
 
 /// Without loss: single precision keeps the last count after a billion.

@@ -18,7 +18,7 @@ use jbf_core::effect::{
     AsBristle, Beside, EffectSet, Effects, InContact, InDrive, InFilm, InInstrument, InLubricant,
     Place, Rig, UnderLoad,
 };
-use jbf_core::{Bearing, Chain, Clock, Motion};
+use jbf_core::{Bearing, Chain, Clock};
 
 type Drive = InDrive<DriveCompliance<f64>>;
 type Oil = InLubricant<ThermalThinning<f64>>;
@@ -41,10 +41,7 @@ fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
         rig,
     };
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
-    let motion = |t: f64| Motion {
-        load_n: 100.0 + 20.0 * (0.7 * t).sin(),
-        ..sines.at(t)
-    };
+    let motion = |t: f64| sines.at(t).with_load_n(100.0 + 20.0 * (0.7 * t).sin());
     let mut state = chain.start(&motion(0.0));
     let mut out = vec![state.reading_n];
     for i in 1..=700 {
@@ -149,7 +146,7 @@ fn nothing_of_ones_own_changes_nothing() {
 #[test]
 fn an_infinite_null_is_refused() {
     let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
-    assert_eq!(error.name, "sigma_1_m");
+    assert_eq!(error.name(), "sigma_1_m");
     assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
 }
 

@@ -2,11 +2,11 @@
 
 mod common;
 
-use common::bench::{plant, DT_S, LOAD_N};
+use common::bench::{plant, DRIVE, DT_S, LOAD_N};
 use common::constant_law::ConstantLaw;
 use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::{with_law, Named, Visitor};
-use jbf_core::plant::{Drive, Plant};
+use jbf_core::plant::Plant;
 use jbf_core::{Bearing, Chain, Clock};
 
 const H: f64 = 0.001;
@@ -24,8 +24,8 @@ fn chain<L>(law: L) -> Chain<f64, L> {
 
 /// A constant friction of `volts` on the thesis's drive.
 fn dry(volts: f64) -> Plant<f64, ConstantLaw> {
-    let coefficient = volts / (LOAD_N * Drive::THESIS.volts_per_n);
-    Plant::new(chain(ConstantLaw(coefficient)), Drive::THESIS, H).unwrap()
+    let coefficient = volts / (LOAD_N * DRIVE.volts_per_n);
+    Plant::new(chain(ConstantLaw(coefficient)), DRIVE, H).unwrap()
 }
 
 /// Without friction a step is the exact solution for a constant input.
@@ -76,7 +76,7 @@ fn it_sticks_for_an_hour() {
     let plant = plant(&[]);
     let mut state = plant.start(LOAD_N, 600.0);
     // The journal at rest holds f_m of its load.
-    let push = 0.9 * 0.26 * LOAD_N * Drive::THESIS.volts_per_n;
+    let push = 0.9 * 0.26 * LOAD_N * DRIVE.volts_per_n;
     let steps = (3600.0 / (DT_S / 2.0)) as u32;
     for _ in 0..steps {
         plant.step(&mut state, push, LOAD_N);
@@ -112,7 +112,7 @@ impl Visitor<f64> for Symmetric {
     type Output = f64;
 
     fn visit<L: Named<f64>>(self, law: L) -> f64 {
-        let plant = Plant::new(chain(law), Drive::THESIS, H).unwrap();
+        let plant = Plant::new(chain(law), DRIVE, H).unwrap();
         let mut there = plant.start(LOAD_N, 1.0);
         let mut back = there;
         let mut worst = 0.0_f64;
@@ -182,7 +182,7 @@ fn a_soft_drive_gives_way() {
         plant.step(&mut state, push_v, LOAD_N);
     }
     // Twist = torque / stiffness; a volt is 1/volts_per_n newtons on each of four bearings.
-    let torque_n_m = push_v / Drive::THESIS.volts_per_n * 4.0 * 0.0127;
+    let torque_n_m = push_v / DRIVE.volts_per_n * 4.0 * 0.0127;
     let twist = torque_n_m / 60.0;
     assert!(
         (state.angle_rad / twist - 1.0).abs() < 0.01,

@@ -101,10 +101,7 @@ fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
             k0: T::of(random.log_uniform(1.0, 1e12)),
             gamma: T::of(random.log_uniform(1e-3, 1e5)),
         };
-        let bearing = Bearing {
-            mass_kg: random.log_uniform(1e-3, 1e3),
-            ..Bearing::THESIS
-        };
+        let bearing = Bearing::THESIS.with_mass_kg(random.log_uniform(1e-3, 1e3));
         let base_n = random.log_uniform(1.0, 1e4);
         let law = JournalFull::new(&bearing, base_n, &p, Clock::Journal).expect("in the bounds");
         let mut state = law.start(T::of(base_n));

@@ -35,15 +35,15 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;
-        let sense = Sense {
-            angle_rad: t.cos(),
-            velocity_rad_s: -t.sin(),
-            error: 0.1 * (3.0 * t).sin(),
-            wanted_rad_s: -t.sin(),
-            wanted_rad_s2: -t.cos(),
-            base_v: 0.5 * (2.0 * t).cos(),
-            may_learn: true,
-        };
+        // Sense grows: it is filled in field by field.
+        let mut sense = Sense::default();
+        sense.angle_rad = t.cos();
+        sense.velocity_rad_s = -t.sin();
+        sense.error = 0.1 * (3.0 * t).sin();
+        sense.wanted_rad_s = -t.sin();
+        sense.wanted_rad_s2 = -t.cos();
+        sense.base_v = 0.5 * (2.0 * t).cos();
+        sense.may_learn = true;
         let answers = [
             compensator.step(&mut one, &sense),
             compensator.step(&mut other, &sense),

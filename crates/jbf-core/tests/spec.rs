@@ -56,7 +56,7 @@ fn it_is_the_chain_built_by_hand() {
 #[test]
 fn what_is_wrong_is_named() {
     let refused = |law: &str, values: &[f64], effects: &[(&str, &[f64])]| {
-        built(law, values, effects).expect_err("refused").name
+        built(law, values, effects).expect_err("refused").name()
     };
     assert_eq!(refused("no_such", &TABLE_4_2, &[]), "law");
     assert_eq!(

@@ -38,14 +38,13 @@ impl BatchRig {
         clock: &str,
         method: &str,
     ) -> PyResult<Self> {
-        let bearing = Bearing {
-            radius_m,
-            length_m,
-            clearance_m,
-            mass_kg,
-            count,
-            viscosity_pa_s,
-        };
+        let bearing = Bearing::new()
+            .with_radius_m(radius_m)
+            .with_length_m(length_m)
+            .with_clearance_m(clearance_m)
+            .with_mass_kg(mass_kg)
+            .with_count(count)
+            .with_viscosity_pa_s(viscosity_pa_s);
         Ok(Self {
             bearing: bearing.checked().map_err(wrong)?,
             clock: Clock::from_name(clock)

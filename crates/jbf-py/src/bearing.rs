@@ -1,6 +1,6 @@
 //! A bearing as Python hands it over: a dictionary of its sizes.
 
-use jbf_core::{Bearing, ParameterError};
+use jbf_core::{Bearing, Error};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -19,20 +19,19 @@ pub struct Sizes {
 impl Sizes {
     /// The bearing, checked.
     pub fn checked(self) -> PyResult<Bearing> {
-        Bearing {
-            radius_m: self.radius_m,
-            length_m: self.length_m,
-            clearance_m: self.clearance_m,
-            mass_kg: self.mass_kg,
-            count: self.count,
-            viscosity_pa_s: self.viscosity_pa_s,
-        }
-        .checked()
-        .map_err(refused)
+        Bearing::new()
+            .with_radius_m(self.radius_m)
+            .with_length_m(self.length_m)
+            .with_clearance_m(self.clearance_m)
+            .with_mass_kg(self.mass_kg)
+            .with_count(self.count)
+            .with_viscosity_pa_s(self.viscosity_pa_s)
+            .checked()
+            .map_err(refused)
     }
 }
 
 /// The core's error as Python's.
-pub fn refused(error: ParameterError) -> PyErr {
+pub fn refused(error: Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

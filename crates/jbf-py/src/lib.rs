@@ -31,6 +31,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
+    m.add_function(wrap_pyfunction!(control::constants::thesis_bearing, m)?)?;
+    m.add_function(wrap_pyfunction!(control::constants::control_constants, m)?)?;
+    m.add_function(wrap_pyfunction!(control::constants::control_gains, m)?)?;
     m.add_function(wrap_pyfunction!(control::control_reference, m)?)?;
     m.add_function(wrap_pyfunction!(control::control_run, m)?)?;
     Ok(())

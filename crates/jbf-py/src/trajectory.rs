@@ -131,11 +131,10 @@ impl Asked {
         runs: &[Run],
     ) -> Result<Vec<Result1>, ParameterError> {
         let (load_n, clock) = (self.load_n, self.clock);
-        let start = Start {
-            time_s: self.start_time_s,
-            eps: self.start_eps.map(T::of),
-            phi_rad: T::of(self.start_phi_rad),
-        };
+        let start = Start::default()
+            .with_time_s(self.start_time_s)
+            .with_eps(self.start_eps.map(T::of))
+            .with_phi_rad(T::of(self.start_phi_rad));
         if self.with_inertia {
             let film = JournalFull::new(&self.bearing, load_n, parameters, clock)?;
             all(&film, runs, &start, self.tolerance)
@@ -175,14 +174,13 @@ pub fn trajectories<'py>(
     load_n: f64,
     derivatives: bool,
 ) -> PyResult<Vec<Columns<'py>>> {
-    let bearing = Bearing {
-        radius_m,
-        length_m,
-        clearance_m,
-        mass_kg,
-        count,
-        viscosity_pa_s,
-    };
+    let bearing = Bearing::new()
+        .with_radius_m(radius_m)
+        .with_length_m(length_m)
+        .with_clearance_m(clearance_m)
+        .with_mass_kg(mass_kg)
+        .with_count(count)
+        .with_viscosity_pa_s(viscosity_pa_s);
     let clock = Clock::from_name(clock).ok_or_else(|| {
         PyValueError::new_err(format!("clock {clock:?} is neither journal nor thesis"))
     })?;

@@ -2,11 +2,9 @@
 //! compensator, limit. What is fingerprinted here is what the benchmarks and the firmware step.
 
 use crate::hash::Hash;
-use crate::shaft::{
-    asked, Shaft, COUNTS_PER_RAD, DAMPING_1_S, INPUT_RAD_S2_V, LOOP_STEPS, LOOP_STEP_S,
-};
+use crate::shaft::{asked, Shaft, COUNTS_PER_RAD, DRIVE, LOOP_STEPS, LOOP_STEP_S};
 use jbf_core::compensator::carried::{Bare, Carried, Whole};
-use jbf_core::compensator::learning::{Learned, Learning, Rule};
+use jbf_core::compensator::learning::{self, Learned, Learning, Rule};
 use jbf_core::compensator::observed::{Observed, Settings};
 use jbf_core::compensator::table::{Axis, Table};
 use jbf_core::compensator::{Compensator, Coulomb, NoCompensation, Repetitive};
@@ -20,8 +18,6 @@ use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
 
 const LOAD_N: f64 = 104.0;
-/// What one newton of friction on one bearing is in volts.
-const VOLTS_PER_N: f64 = 0.02827;
 /// Entries of a look-up table, cells of a lap.
 const ENTRIES: usize = 64;
 
@@ -51,18 +47,16 @@ pub fn around<T: Real, C: Compensator<T>>(
         velocity_observer()?,
         law,
         compensator,
-        Limits {
-            output_v: 10.0,
-            moving_v: 1.83,
-            patience_s: 0.1,
-        },
+        Limits::new(DRIVE.limit_v)
+            .with_moving_v(1.83)
+            .with_patience_s(0.1),
         LOOP_STEP_S,
     )
 }
 
 /// The velocity observer of Appendix E.
 pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
-    VelocityObserver::fed_forward(100.0, DAMPING_1_S, INPUT_RAD_S2_V, LOOP_STEP_S)
+    VelocityObserver::fed_forward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
 }
 
 /// The Coulomb friction observer.
@@ -70,17 +64,12 @@ pub fn coulomb_observer<T: Real>(
     gain: f64,
     exponent: f64,
 ) -> Result<CoulombObserver<T>, ParameterError> {
-    CoulombObserver::new(gain, exponent, INPUT_RAD_S2_V, 5.0, LOOP_STEP_S)
+    CoulombObserver::new(gain, exponent, DRIVE.input_rad_s2_v, 5.0, LOOP_STEP_S)
 }
 
 /// Compensation by it.
 pub fn coulomb<T: Real>(gain: f64, exponent: f64) -> Result<Coulomb<T>, ParameterError> {
-    Ok(Coulomb {
-        observer: coulomb_observer(gain, exponent)?,
-        damping_1_s: T::of(DAMPING_1_S),
-        input_rad_s2_v: T::of(INPUT_RAD_S2_V),
-        start_v: T::ZERO,
-    })
+    Ok(Coulomb::new(coulomb_observer(gain, exponent)?, &DRIVE))
 }
 
 fn parameters<T: Real>() -> Parameters<T> {
@@ -113,23 +102,15 @@ pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
 }
 
 fn bare<T: Real, L>(law: L) -> Bare<T, L> {
-    Bare {
-        law,
-        radius_m: T::of(Bearing::THESIS.radius_m),
-        volts_per_n: T::of(VOLTS_PER_N),
-        load_n: T::of(LOAD_N),
-    }
+    Bare::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
 }
 
 /// The reduced model with a contact that bends.
 pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterError> {
     let stiffness_1_m = T::of(0.26 * COUNTS_PER_RAD / 0.0127);
     let effects = Bending::new(&[stiffness_1_m])?;
-    Ok(Whole {
-        chain: Chain::round(reduced()?.law, effects, Some(&Bearing::THESIS)),
-        volts_per_n: T::of(VOLTS_PER_N),
-        load_n: T::of(LOAD_N),
-    })
+    let chain = Chain::round(reduced()?.law, effects, Some(&Bearing::THESIS));
+    Ok(Whole::new(chain, DRIVE.volts_per_n, LOAD_N))
 }
 
 /// The effects of [`chained`].
@@ -140,29 +121,20 @@ pub fn observed<T: Real, M: Carried<T>>(
     model: M,
     position: bool,
 ) -> Result<Observed<T, M>, ParameterError> {
-    let (stiffer_v_rad, stiffer_v_s_rad, approach_1_s, forward) = if position {
-        (1.5317, 0.0491, 10.0, 0.25164)
+    let settings = Settings::new(&DRIVE, 60.0, 0.05027, LOOP_STEP_S)
+        .with_learning_1_s(2.0)
+        .with_level_limit_v(0.73)
+        .with_rest_limit_v(0.73);
+    let settings = if position {
+        settings
+            .with_approach_1_s(10.0)
+            .with_stiffer_v_rad(1.5317)
+            .with_stiffer_v_s_rad(0.0491)
+            .with_law_forward_v_s_rad(0.25164)
     } else {
-        (0.0, 0.0, 0.0, 0.295)
+        settings.with_law_forward_v_s_rad(0.295)
     };
-    Observed::new(
-        model,
-        &Settings {
-            damping_1_s: DAMPING_1_S,
-            input_rad_s2_v: INPUT_RAD_S2_V,
-            bandwidth_rad_s: 60.0,
-            learning_1_s: 2.0,
-            level_limit_v: 0.73,
-            rest_limit_v: 0.73,
-            slow_rad_s: 0.05027,
-            approach_1_s,
-            breakaway: 1.0,
-            stiffer_v_rad,
-            stiffer_v_s_rad,
-            law_forward_v_s_rad: forward,
-            dt_s: LOOP_STEP_S,
-        },
-    )
+    Observed::new(model, &settings)
 }
 
 /// The thesis's learning compensator.
@@ -170,34 +142,22 @@ pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> 
     let p = Parameters {
         f_m: T::of(0.26),
         u_tr_m_s: T::of(0.05),
-        k0: T::of(650_000.0),
-        gamma: T::of(33.0),
+        k0: T::of(Learned::THESIS.k0),
+        gamma: T::of(Learned::THESIS.gamma),
     };
     let law = Journal::new(&Bearing::THESIS, LOAD_N, &p, Clock::Thesis)?.with_eps_tr(0.9747)?;
-    let rule = if position {
-        Rule::Position {
-            gate_rad: T::of(0.8),
-            clip_rad: T::of(0.3),
-        }
+    let learned = |k0, gamma| Learned { k0, gamma };
+    let (rule, gain) = if position {
+        (Rule::THESIS_POSITION, learned(12_500.0, 0.5))
     } else {
-        Rule::Velocity
+        (Rule::Velocity, learned(15_000.0, 2.0))
     };
-    let gain = if position {
-        (12_500.0, 0.5)
-    } else {
-        (15_000.0, 2.0)
-    };
-    let learned = |(k0, gamma)| Learned { k0, gamma };
-    Learning::new(
-        law,
-        33.0,
-        rule,
-        learned(gain),
-        [learned((1.0, 1e-3)), learned((1e8, 1e4))],
-        25.5,
-        Bearing::THESIS.radius_m,
-        LOOP_STEP_S,
-    )
+    let radius_m = Bearing::THESIS.radius_m;
+    let settings = learning::Settings::new(rule, Learned::THESIS, 25.5, radius_m, LOOP_STEP_S)
+        .with_gain(gain)
+        .with_least(learned(1.0, 1e-3))
+        .with_most(learned(1e8, 1e4));
+    Learning::new(law, &settings)
 }
 
 /// A look-up table against speed.

@@ -8,6 +8,8 @@
 //! A step is implicit in F, so that the shaft sticks. It is as light as can be: a microcontroller
 //! has to run it between the steps of the loop that it tests.
 
+use jbf_core::encoder::THESIS_COUNTS_PER_RAD;
+use jbf_core::plant::Drive;
 use jbf_core::reference::{Reference, Target, Wave};
 use jbf_core::Real;
 
@@ -20,12 +22,10 @@ pub const LOOP_STEPS: u32 = 8000;
 /// Steps of one part of it.
 const PART: u32 = 1000;
 
-/// The plant's damping `a`, 1/s.
-pub const DAMPING_1_S: f64 = 135.0;
-/// The plant's input gain `b`, rad/s^2/V.
-pub const INPUT_RAD_S2_V: f64 = 457.0;
+/// The thesis's drive, with the friction scale that these loops' friction was fitted with.
+pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.02827);
 /// Counts of the encoder in a radian; its counter has 16 bits.
-pub const COUNTS_PER_RAD: f64 = 2387.3;
+pub const COUNTS_PER_RAD: f64 = THESIS_COUNTS_PER_RAD;
 
 /// Friction holds up to this, V, under the load of the thesis.
 const LEVEL_V: f64 = 0.7;
@@ -78,13 +78,13 @@ pub struct Shaft<T> {
 
 impl<T: Real> Default for Shaft<T> {
     fn default() -> Self {
-        let keep = Real::exp(-DAMPING_1_S * LOOP_STEP_S);
+        let keep = Real::exp(-DRIVE.damping_1_s * LOOP_STEP_S);
         Self {
             speed_rad_s: T::ZERO,
             angle_rad: T::ZERO,
             counter: 0,
             keep: T::of(keep),
-            gain: T::of(INPUT_RAD_S2_V / DAMPING_1_S * (1.0 - keep)),
+            gain: T::of(DRIVE.input_rad_s2_v / DRIVE.damping_1_s * (1.0 - keep)),
         }
     }
 }

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from jbf import _core
+from jbf.control.constants import COUNTER_BITS, COUNTS_PER_RAD, DRIVE
 from jbf.errors import InputError
 from jbf.models import catalogue
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
 from jbf.models.vocabulary import Clock
-from jbf.records.rig import Bearing, Load, Lubricant, Rig
-
-if TYPE_CHECKING:
-    from jbf import _core
+from jbf.records.rig import Rig
 
 
 @dataclass(frozen=True)
@@ -42,12 +41,12 @@ class Bench:
         Step of the loop, s; the plant takes `inner_steps` steps in each.
     """
 
-    damping_1_s: float = 135.0
-    input_rad_s2_v: float = 457.0
-    volts_per_n: float = 0.02826
-    limit_v: float = 10.0
-    counts_per_rad: float = 2387.3
-    counter_bits: int = 16
+    damping_1_s: float = DRIVE["damping_1_s"]
+    input_rad_s2_v: float = DRIVE["input_rad_s2_v"]
+    volts_per_n: float = DRIVE["volts_per_n"]
+    limit_v: float = DRIVE["limit_v"]
+    counts_per_rad: float = COUNTS_PER_RAD
+    counter_bits: int = COUNTER_BITS
     input_noise_v: float = 0.005
     encoder_noise_counts: float = 0.0
     seed: int = 1
@@ -68,13 +67,13 @@ class Bench:
         if not 8 <= self.counter_bits <= 32:
             raise _wrong("counter_bits", self.counter_bits, "between 8 and 32")
 
+    def drive(self) -> dict[str, float]:
+        """Motor and shaft as the core takes them."""
+        return {name: getattr(self, name) for name in DRIVE}
+
     def core(self, model: Model) -> dict[str, Any]:
         """What the core's bench is built from."""
         names = (
-            "damping_1_s",
-            "input_rad_s2_v",
-            "volts_per_n",
-            "limit_v",
             "counts_per_rad",
             "counter_bits",
             "input_noise_v",
@@ -83,7 +82,8 @@ class Bench:
             "stood_s",
             "inner_steps",
         )
-        return {"model": core_model(model), **{name: getattr(self, name) for name in names}}
+        own = {name: getattr(self, name) for name in names}
+        return {"model": core_model(model), "drive": self.drive(), **own}
 
 
 def _wrong(name: str, value: float, rule: str) -> InputError:
@@ -123,12 +123,11 @@ def core_model(model: Model) -> dict[str, Any]:
     }
 
 
-THESIS_RIG = Rig(
-    bearing=Bearing(radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4),
-    lubricant=Lubricant(viscosity_pa_s=0.002),
-    load=Load(normal_n=104.0),
-)
+THESIS_RIG = Rig.thesis()
 """The rig of Cohn's thesis."""
+
+THESIS_LOAD_N = core_load_n(THESIS_RIG) or 1.0
+"""Its load on one bearing, N."""
 
 THESIS_BENCH = Bench()
 """The bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
@@ -147,7 +146,7 @@ ELASTIC: Mapping[str, Mapping[str, float]] = {
         "drive_compliance.J_kg_m2": 1.8e-4,
     },
     # The shaft turns by one encoder count before it slides.
-    "contact": {"presliding.sigma_1_m": 0.26 * 2387.3 / 0.0127},
+    "contact": {"presliding.sigma_1_m": 0.26 * COUNTS_PER_RAD / _core.thesis_bearing()["radius_m"]},
     "nothing": {},
 }
 """What gives way between motor and sliding: the timing belt, the contact, or nothing.

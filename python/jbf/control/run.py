@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from jbf import _core, results
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
-from jbf.control.schemes import SCHEMES, Scheme, core_loop, scheme
+from jbf.control.loop import core_loop
+from jbf.control.schemes import SCHEMES, Scheme, scheme
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED, TASKS, Task
 from jbf.errors import InputError
@@ -19,9 +20,6 @@ from jbf.models.model import Model, the_model
 from jbf.records.arguments import described, of_kind
 
 Array = npt.NDArray[np.float64]
-
-SATURATED, FROZEN, JUMPED, NOT_FINITE, FALLBACK = 1, 2, 4, 8, 16
-"""Flags of `Result.status`."""
 
 _NEVER = 2**62
 _COLUMNS = (

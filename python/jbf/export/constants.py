@@ -13,7 +13,10 @@ BEARING_FIELDS = ("radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_p
 
 @dataclass(frozen=True)
 class Block:
-    """A constant of several lines: how it opens, one line of it, how it closes."""
+    """A constant of several lines: how it opens, one line of it, how it closes.
+
+    A closing `;` ends the last line; anything else has a line of its own.
+    """
 
     opening: str
     line: str
@@ -22,6 +25,9 @@ class Block:
     def lines(self, rows: list[dict[str, str]], **words: str) -> list[str]:
         """The lines, each row's words put in."""
         body = [self.line.format(**row) for row in rows]
+        if self.closing == ";":
+            *body, last = body
+            return [self.opening.format(**words), *body, f"{last};"]
         return [self.opening.format(**words), *body, self.closing]
 
 

@@ -22,7 +22,7 @@ def _check(group: Group, name: str) -> list[str]:
 RUST = Language(
     infinity="f64::INFINITY",
     prefix="",
-    bearing=Block("pub const BEARING: Bearing = Bearing {{", "    {field}: {value},", "};"),
+    bearing=Block("pub const BEARING: Bearing = Bearing::new()", "    .with_{field}({value})", ";"),
     scalar="pub const LOAD_N: f64 = {value};",
     # One value a line, each with its name: rustfmt would put them on one.
     array=Block(

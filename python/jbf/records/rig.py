@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import tomlkit
 
+from jbf import _core
 from jbf.errors import InputError, quoted
 from jbf.records.toml_file import PathLike, number, read_toml, refuse_unknown, table
 from jbf.text_files import write_text
@@ -148,11 +149,9 @@ class Rig:
                 problem=f"{quoted(table)} is no parameter table of the thesis",
                 mend=f"choose from {', '.join(loads_n)}",
             )
-        return cls(
-            Bearing(radius_m=0.0127, length_m=0.01905, clearance_m=5.08e-5, mass_kg=2.27, count=4),
-            Lubricant(viscosity_pa_s=0.002),
-            Load(normal_n=loads_n[table]),
-        )
+        sizes = _core.thesis_bearing()
+        lubricant = Lubricant(viscosity_pa_s=sizes.pop("viscosity_pa_s"))
+        return cls(Bearing(**sizes), lubricant, Load(normal_n=loads_n[table]))
 
     def to_mapping(self) -> dict[str, dict[str, Any]]:
         """The nested mapping of plain values; sections that are None are left out."""

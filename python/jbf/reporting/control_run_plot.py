@@ -9,7 +9,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jbf.control.run import FALLBACK, Result
+from jbf.control.constants import FALLBACK
+from jbf.control.run import Result
 from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, axes_or_new, dress
 
 Array = npt.NDArray[np.float64]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from jbf.control.constants import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED
 from jbf.control.robustness import HARM, HELP, Outcome
-from jbf.control.run import FALLBACK, FROZEN, JUMPED, NOT_FINITE, SATURATED, Result
+from jbf.control.run import Result
 from jbf.control.task import RECORDED
 from jbf.reporting.paragraphs import columns
 from jbf.reporting.words import number

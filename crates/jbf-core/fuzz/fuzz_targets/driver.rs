@@ -49,15 +49,14 @@ fn run(bytes: &mut Unstructured<'_>) -> Result<()> {
         gamma: value(3)?,
     };
     let load_n = between(bytes, 10.0, 1e4)?;
-    let start = Start {
-        time_s: 0.0,
-        eps: if bytes.arbitrary()? {
-            Some(between(bytes, 0.01, 0.999)?)
-        } else {
-            None
-        },
-        phi_rad: between(bytes, -3.2, 3.2)?,
+    let eps = if bytes.arbitrary()? {
+        Some(between(bytes, 0.01, 0.999)?)
+    } else {
+        None
     };
+    let start = Start::default()
+        .with_eps(eps)
+        .with_phi_rad(between(bytes, -3.2, 3.2)?);
     let tolerance = between(bytes, 1e-12, 1.0)?;
     let spacing_s = between(bytes, 1e-4, 0.3)?;
     let times_s: [f64; SAMPLES] = core::array::from_fn(|i| spacing_s * i as f64);

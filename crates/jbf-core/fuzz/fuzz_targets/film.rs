@@ -21,10 +21,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
         k0: value(2)?,
         gamma: value(3)?,
     };
-    let bearing = Bearing {
-        mass_kg: between(bytes, 1e-3, 1e3)?,
-        ..Bearing::THESIS
-    };
+    let bearing = Bearing::THESIS.with_mass_kg(between(bytes, 1e-3, 1e3)?);
     let load_n = between(bytes, 1e-2, 1e5)?;
     let clock = if bytes.arbitrary()? {
         Clock::Journal

@@ -26,6 +26,7 @@ pub trait Carried<T: Real> {
 /// A law alone, without effects: the smallest and fastest. A law with a bristle is taken as if
 /// it slid at once.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Bare<T, L> {
     /// The law.
     pub law: L,
@@ -35,6 +36,20 @@ pub struct Bare<T, L> {
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
+}
+
+impl<T: Real, L> Bare<T, L> {
+    /// A law on a journal of a radius (m), with the volts that a newton of its friction on one
+    /// bearing makes, under a load (N).
+    #[must_use]
+    pub fn new(law: L, radius_m: f64, volts_per_n: f64, load_n: f64) -> Self {
+        Self {
+            law,
+            radius_m: T::of(radius_m),
+            volts_per_n: T::of(volts_per_n),
+            load_n: T::of(load_n),
+        }
+    }
 }
 
 /// A law's state with the speed it was last given.
@@ -74,6 +89,7 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
 
 /// A whole chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Whole<T: Real, L, E = Effects<T>> {
     /// The chain.
     pub chain: Chain<T, L, E>,
@@ -81,6 +97,19 @@ pub struct Whole<T: Real, L, E = Effects<T>> {
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
+}
+
+impl<T: Real, L, E> Whole<T, L, E> {
+    /// A chain, with the volts that a newton of its friction on one bearing makes, under a load
+    /// (N).
+    #[must_use]
+    pub fn new(chain: Chain<T, L, E>, volts_per_n: f64, load_n: f64) -> Self {
+        Self {
+            chain,
+            volts_per_n: T::of(volts_per_n),
+            load_n: T::of(load_n),
+        }
+    }
 }
 
 impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {

@@ -4,10 +4,12 @@
 
 use super::{Answer, Compensator, Sense};
 use crate::observer::coulomb::{CoulombObserver, State};
+use crate::plant::Drive;
 use crate::real::Real;
 
 /// `F_hat = a_hat sgn(v_hat)`.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Coulomb<T> {
     /// The observer.
     pub observer: CoulombObserver<T>,
@@ -17,6 +19,26 @@ pub struct Coulomb<T> {
     pub input_rad_s2_v: T,
     /// Level at the start, V: zero, or what an earlier run learned.
     pub start_v: T,
+}
+
+impl<T: Real> Coulomb<T> {
+    /// An observer of the friction of a drive.
+    #[must_use]
+    pub fn new(observer: CoulombObserver<T>, drive: &Drive) -> Self {
+        Self {
+            observer,
+            damping_1_s: T::of(drive.damping_1_s),
+            input_rad_s2_v: T::of(drive.input_rad_s2_v),
+            start_v: T::ZERO,
+        }
+    }
+
+    /// Begin from the level (V) that an earlier run learned, held within the observer's limit.
+    #[must_use]
+    pub fn resumed(mut self, level_v: T) -> Self {
+        self.start_v = level_v;
+        self
+    }
 }
 
 impl<T: Real> Compensator<T> for Coulomb<T> {
@@ -36,12 +58,6 @@ impl<T: Real> Compensator<T> for Coulomb<T> {
             self.observer.learn(state, &power, v, free);
         }
         let friction_v = level_v * v.sign();
-        Answer {
-            sum_v: friction_v,
-            friction_v,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [level_v, T::ZERO],
-        }
+        Answer::of(friction_v, [level_v, T::ZERO])
     }
 }

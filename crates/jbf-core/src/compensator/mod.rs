@@ -19,7 +19,8 @@ pub use table::Table;
 use crate::real::Real;
 
 /// What a compensator is told at each step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
 pub struct Sense<T> {
     /// Angle since the start, rad.
     pub angle_rad: T,
@@ -40,6 +41,7 @@ pub struct Sense<T> {
 /// A compensator's answer, in parts for logging.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct Answer<T> {
     /// Voltage to add to the control law's, V.
     pub sum_v: T,
@@ -51,6 +53,46 @@ pub struct Answer<T> {
     pub forward_v: T,
     /// Up to two learned numbers; their meaning is the compensator's.
     pub learned: [T; 2],
+}
+
+impl<T: Real> Answer<T> {
+    /// Nothing is sent out.
+    #[must_use]
+    pub fn nothing() -> Self {
+        Self {
+            sum_v: T::ZERO,
+            friction_v: T::ZERO,
+            correction_v: T::ZERO,
+            forward_v: T::ZERO,
+            learned: [T::ZERO; 2],
+        }
+    }
+
+    /// The friction that is believed in (V) is sent out, and nothing else; what was learned is
+    /// told beside it.
+    #[inline]
+    #[must_use]
+    pub fn of(friction_v: T, learned: [T; 2]) -> Self {
+        Self {
+            sum_v: friction_v,
+            friction_v,
+            learned,
+            ..Self::nothing()
+        }
+    }
+
+    /// The same in another kind of number.
+    #[must_use]
+    pub fn lift<U: Real>(&self) -> Answer<U> {
+        let lift = |value: T| U::of(value.value());
+        Answer {
+            sum_v: lift(self.sum_v),
+            friction_v: lift(self.friction_v),
+            correction_v: lift(self.correction_v),
+            forward_v: lift(self.forward_v),
+            learned: self.learned.map(lift),
+        }
+    }
 }
 
 /// A friction compensator.
@@ -86,6 +128,7 @@ pub trait Compensator<T: Real> {
     }
 
     /// One step.
+    #[must_use]
     fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
 }
 
@@ -100,12 +143,6 @@ impl<T: Real> Compensator<T> for NoCompensation {
 
     #[inline]
     fn step(&self, _state: &mut (), _sense: &Sense<T>) -> Answer<T> {
-        Answer {
-            sum_v: T::ZERO,
-            friction_v: T::ZERO,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [T::ZERO; 2],
-        }
+        Answer::nothing()
     }
 }

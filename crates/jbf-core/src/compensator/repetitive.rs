@@ -11,7 +11,7 @@
 //! section 2.4.1.
 
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
 /// Learning from lap to lap.
@@ -59,7 +59,7 @@ impl<T: Real, const N: usize> Repetitive<T, N> {
         lead_s: f64,
         limit_v: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("gain", gain)?;
         positive("limit_v", limit_v)?;
         positive("dt_s", dt_s)?;
@@ -70,12 +70,7 @@ impl<T: Real, const N: usize> Repetitive<T, N> {
             f64::from(steps_per_lap),
             "must be at least the number of cells",
         )?;
-        check(
-            (0.0..=0.5).contains(&smooth),
-            "smooth",
-            smooth,
-            "must lie between 0 and 0.5",
-        )?;
+        within("smooth", smooth, [0.0, 0.5])?;
         let steps = f64::from(steps_per_lap);
         let lead = libm::round(lead_s / dt_s / steps * N as f64);
         check(
@@ -155,12 +150,6 @@ impl<T: Real, const N: usize> Compensator<T> for Repetitive<T, N> {
             (Some(low), Some(high)) => low + (high - low) * share,
             _ => T::ZERO,
         };
-        Answer {
-            sum_v,
-            friction_v: sum_v,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [sum_v, T::ZERO],
-        }
+        Answer::of(sum_v, [sum_v, T::ZERO])
     }
 }

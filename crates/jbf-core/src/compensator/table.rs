@@ -4,11 +4,12 @@
 //! 2.4.1. Values between the entries lie on straight lines.
 
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, finite, positive, Error};
 use crate::real::Real;
 
 /// What the table is read by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Axis {
     /// |speed|, from zero; beyond the last entry that entry holds.
     Speed,
@@ -31,27 +32,12 @@ impl<T: Real, const N: usize> Table<T, N> {
     ///
     /// # Errors
     /// At least two levels, all finite; the width positive.
-    pub fn new(
-        level_v: [T; N],
-        axis: Axis,
-        width: f64,
-        viscous_v_s: f64,
-    ) -> Result<Self, ParameterError> {
+    pub fn new(level_v: [T; N], axis: Axis, width: f64, viscous_v_s: f64) -> Result<Self, Error> {
         positive("width", width)?;
         check(N >= 2, "entries", N as f64, "must be at least 2")?;
-        check(
-            viscous_v_s.is_finite(),
-            "viscous_v_s",
-            viscous_v_s,
-            "must be finite",
-        )?;
+        finite("viscous_v_s", viscous_v_s)?;
         for level in &level_v {
-            check(
-                level.is_finite(),
-                "level_v",
-                level.value(),
-                "must be finite",
-            )?;
+            finite("level_v", level.value())?;
         }
         Ok(Self {
             level_v,
@@ -63,6 +49,7 @@ impl<T: Real, const N: usize> Table<T, N> {
 
     /// The level at a speed (rad/s) or an angle (rad), V.
     #[inline]
+    #[must_use]
     pub fn at(&self, place: T) -> T {
         let last = T::from_i32(N as i32 - 1);
         let raw = place * self.inverse_width;
@@ -99,12 +86,6 @@ impl<T: Real, const N: usize> Compensator<T> for Table<T, N> {
             Axis::Angle => self.at(sense.angle_rad),
         };
         let friction_v = level_v * v.sign() + self.viscous_v_s * v;
-        Answer {
-            sum_v: friction_v,
-            friction_v,
-            correction_v: T::ZERO,
-            forward_v: T::ZERO,
-            learned: [level_v, T::ZERO],
-        }
+        Answer::of(friction_v, [level_v, T::ZERO])
     }
 }

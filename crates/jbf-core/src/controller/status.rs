@@ -22,6 +22,15 @@ impl Status {
     /// The control law acts alone, without compensation.
     pub const FALLBACK: Self = Self(16);
 
+    /// Every flag with its name, as logs and options spell it.
+    pub const NAMED: [(&'static str, Self); 5] = [
+        ("saturated", Self::SATURATED),
+        ("frozen", Self::FROZEN),
+        ("jumped", Self::JUMPED),
+        ("not_finite", Self::NOT_FINITE),
+        ("fallback", Self::FALLBACK),
+    ];
+
     /// True where any of `other`'s flags is set.
     #[inline]
     pub const fn has(self, other: Self) -> bool {

@@ -1,6 +1,6 @@
 //! The imposed surface speed as a function of time.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{finite, not_negative, positive, Error};
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
 
 /// An imposed surface speed, and where it is not smooth.
@@ -32,7 +32,7 @@ impl Sine {
     ///
     /// # Errors
     /// The amplitude must be finite and not negative, the frequency positive and finite.
-    pub fn new(amplitude_m_s: f64, omega_rad_s: f64) -> Result<Self, ParameterError> {
+    pub fn new(amplitude_m_s: f64, omega_rad_s: f64) -> Result<Self, Error> {
         Self::with_bias(amplitude_m_s, omega_rad_s, 0.0)
     }
 
@@ -40,19 +40,10 @@ impl Sine {
     ///
     /// # Errors
     /// As [`Sine::new`]; the bias must be finite.
-    pub fn with_bias(
-        amplitude_m_s: f64,
-        omega_rad_s: f64,
-        bias_m_s: f64,
-    ) -> Result<Self, ParameterError> {
-        check(
-            amplitude_m_s >= 0.0 && amplitude_m_s.is_finite(),
-            "amplitude_m_s",
-            amplitude_m_s,
-            "must be zero or positive, and finite",
-        )?;
+    pub fn with_bias(amplitude_m_s: f64, omega_rad_s: f64, bias_m_s: f64) -> Result<Self, Error> {
+        not_negative("amplitude_m_s", amplitude_m_s)?;
         positive("omega_rad_s", omega_rad_s)?;
-        check(bias_m_s.is_finite(), "bias_m_s", bias_m_s, "must be finite")?;
+        finite("bias_m_s", bias_m_s)?;
         let turns = libm::fabs(bias_m_s) < amplitude_m_s;
         Ok(Self {
             amplitude_m_s,

@@ -7,8 +7,15 @@ use crate::law::journal_full::JournalFull;
 use crate::real::Real;
 use crate::stepper::StiffSystem;
 
-/// A film that the driver can follow. Its first two states are `eps cos(phi)`, `eps sin(phi)`.
-pub trait Film<T: Real, const N: usize> {
+/// What seals [`Film`]: the driver's error control knows these films.
+mod sealed {
+    pub trait Sealed {}
+    impl<T> Sealed for crate::law::journal::Journal<T> {}
+    impl<T> Sealed for crate::law::journal_full::JournalFull<T> {}
+}
+
+/// A film that the driver can follow: [`Journal`] or [`JournalFull`]. Its first two states are `eps cos(phi)`, `eps sin(phi)`.
+pub trait Film<T: Real, const N: usize>: sealed::Sealed {
     /// The equations with asperities in touch, or without them, smooth everywhere.
     type System: StiffSystem<T, N> + Copy;
 

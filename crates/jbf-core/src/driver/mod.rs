@@ -14,7 +14,7 @@
 //! trajectory(&law, &motion, &times_s, 1e-9, &mut f)?;
 //! assert!((f[0] - 0.04785707000713).abs() < 1e-9);
 //! assert!((f[2] - 0.09170630580666).abs() < 1e-9);
-//! # Ok::<(), jbf_core::ParameterError>(())
+//! # Ok::<(), jbf_core::Error>(())
 //! ```
 
 mod excitation;
@@ -23,19 +23,22 @@ mod follow;
 mod goal;
 mod kinks;
 mod sampled;
+mod stretch;
+mod trial;
 
 pub use excitation::{Excitation, Function, Sine};
 pub use film::Film;
 pub use follow::follow;
 pub use sampled::Sampled;
 
-use crate::error::{check, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;
 use crate::real::Real;
 
 /// Where a trajectory starts; by default at time zero, as [`Law::start`](crate::law::Law::start)
 /// has it: asperities just in touch, attitude angle 0.15 rad, no velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Start<T> {
     /// Time, s.
     pub time_s: f64,
@@ -55,8 +58,32 @@ impl<T: Real> Default for Start<T> {
     }
 }
 
+impl<T: Real> Start<T> {
+    /// The same at another time, s.
+    #[must_use]
+    pub fn with_time_s(mut self, time_s: f64) -> Self {
+        self.time_s = time_s;
+        self
+    }
+
+    /// The same at another eccentricity ratio; none for eps_tr.
+    #[must_use]
+    pub fn with_eps(mut self, eps: Option<T>) -> Self {
+        self.eps = eps;
+        self
+    }
+
+    /// The same at another attitude angle, rad.
+    #[must_use]
+    pub fn with_phi_rad(mut self, phi_rad: T) -> Self {
+        self.phi_rad = phi_rad;
+        self
+    }
+}
+
 /// The film at one sample.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Sample<T> {
     /// `eps cos(phi)` and `eps sin(phi)`.
     pub xy: [T; 2],
@@ -76,6 +103,7 @@ impl Sample<f64> {
 
 /// What a trajectory cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Steps taken.
     pub steps: u32,
@@ -102,7 +130,7 @@ pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     times_s: &[f64],
     tolerance: f64,
     out: &mut [T],
-) -> Result<Cost, ParameterError> {
+) -> Result<Cost, Error> {
     follow(
         film,
         excitation,
@@ -117,17 +145,8 @@ pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     )
 }
 
-fn checked<T: Real>(
-    start: &Start<T>,
-    times_s: &[f64],
-    tolerance: f64,
-) -> Result<(), ParameterError> {
-    check(
-        tolerance > 0.0 && tolerance.is_finite(),
-        "tolerance",
-        tolerance,
-        "must be positive and finite",
-    )?;
+fn checked<T: Real>(start: &Start<T>, times_s: &[f64], tolerance: f64) -> Result<(), Error> {
+    positive("tolerance", tolerance)?;
     check(
         start.time_s.is_finite(),
         "time_s",

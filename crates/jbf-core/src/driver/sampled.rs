@@ -1,7 +1,7 @@
 //! A recorded speed, straight lines between its samples.
 
 use super::Excitation;
-use crate::error::{check, ParameterError};
+use crate::error::{check, finite, Error};
 
 /// Speed on straight lines between samples, constant before the first and after the last. A step
 /// lands on every sample: what a record does between two is not known, and a longer step could
@@ -17,7 +17,7 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// The slices must have one length, of two or more; times must rise; all must be finite.
-    pub fn new(time_s: &'a [f64], velocity_m_s: &'a [f64]) -> Result<Self, ParameterError> {
+    pub fn new(time_s: &'a [f64], velocity_m_s: &'a [f64]) -> Result<Self, Error> {
         check(
             time_s.len() == velocity_m_s.len() && time_s.len() >= 2,
             "samples",
@@ -33,7 +33,7 @@ impl<'a> Sampled<'a> {
             )?;
         }
         for &v in velocity_m_s {
-            check(v.is_finite(), "velocity_m_s", v, "must be finite")?;
+            finite("velocity_m_s", v)?;
         }
         Ok(Self {
             time_s,

@@ -18,12 +18,6 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::{same, values_fit};
 use crate::real::Real;
 
-const UNKNOWN: ParameterError = ParameterError {
-    name: "effect",
-    value: f64::NAN,
-    rule: "is not in the catalogue",
-};
-
 // Inside a stage effects act from left to right.
 signal_chain! {
     drive: InDrive [drive_compliance::DriveCompliance, backlash::Backlash],

@@ -114,13 +114,12 @@ macro_rules! signal_chain {
             /// parameters stand at an infinite null.
             ///
             /// # Errors
-            /// Names the parameter that breaks its rule; an unknown name is reported as
-            /// the parameter `effect`.
+            /// Names the parameter that breaks its rule, or says that there is no such effect.
             pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
                 $(if let Some(done) = self.$stage.set(name, parameters) {
                     return done;
                 })*
-                Err(UNKNOWN)
+                Err(ParameterError::UnknownEffect)
             }
         }
     };

@@ -102,12 +102,6 @@ pub trait Law<T: Real> {
     }
 }
 
-const UNKNOWN: ParameterError = ParameterError {
-    name: "law",
-    value: f64::NAN,
-    rule: "is not in the catalogue",
-};
-
 registry::laws! {
     journal::Journal,
     journal_full::JournalFull,

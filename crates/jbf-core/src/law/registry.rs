@@ -23,7 +23,7 @@ macro_rules! laws {
                 let law = <$module::$Type<T> as Named<T>>::build(bearing, load_n, values, clock)?;
                 return Ok(visitor.visit(law));
             })*
-            Err(UNKNOWN)
+            Err(ParameterError::UnknownLaw)
         }
 
         /// The Rust type of the law of that name, as `law::NAME::TYPE` has it.
@@ -55,7 +55,7 @@ macro_rules! laws {
                 }
                 return Ok(());
             })*
-            Err(UNKNOWN)
+            Err(ParameterError::UnknownLaw)
         }
     };
 }

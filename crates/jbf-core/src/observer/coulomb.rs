@@ -14,7 +14,7 @@
 //! so that no error builds up on the way through zero. With p = 1 this never acts. At v = 0
 //! exactly the sign is zero and the observer holds.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, positive, Error};
 use crate::real::Real;
 
 /// Gains of the Coulomb observer.
@@ -57,7 +57,7 @@ impl<T: Real> CoulombObserver<T> {
         input_rad_s2_v: f64,
         limit_v: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("gain", gain)?;
         positive("exponent", exponent)?;
         positive("input_rad_s2_v", input_rad_s2_v)?;
@@ -91,6 +91,7 @@ impl<T: Real> CoulombObserver<T> {
 
     /// phi at a speed, rad/s.
     #[inline]
+    #[must_use]
     pub fn power(&self, velocity_rad_s: T) -> Power<T> {
         let w = velocity_rad_s.abs();
         if self.linear {
@@ -120,6 +121,7 @@ impl<T: Real> CoulombObserver<T> {
 
     /// The level `a_hat`, V.
     #[inline]
+    #[must_use]
     pub fn level_v(&self, state: &State<T>, power: &Power<T>) -> T {
         state.z_v - self.gain * power.value
     }
@@ -138,6 +140,7 @@ impl<T: Real> CoulombObserver<T> {
     }
 
     /// A state that has learned a level, V, at rest; held within the limit.
+    #[must_use]
     pub fn learned(&self, level_v: T) -> State<T> {
         let rest = self.power(T::ZERO);
         State {

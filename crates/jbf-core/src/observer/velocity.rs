@@ -10,8 +10,11 @@
 //! The step keeps v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. Term for term that is
 //! the thesis's Euler step, and neither the angle nor its rounding grows with the hours.
 
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
+
+/// The thesis's gain `k`, 1/s.
+pub const THESIS_1_S: f64 = 15.0;
 
 /// Gains of the velocity observer. Its state is the speed, rad/s.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +29,7 @@ impl<T: Real> VelocityObserver<T> {
     ///
     /// # Errors
     /// The gain must be positive, and `k dt` below 1.
-    pub fn plain(gain_1_s: f64, dt_s: f64) -> Result<Self, ParameterError> {
+    pub fn plain(gain_1_s: f64, dt_s: f64) -> Result<Self, Error> {
         Self::fed_forward(gain_1_s, 0.0, 0.0, dt_s)
     }
 
@@ -39,19 +42,14 @@ impl<T: Real> VelocityObserver<T> {
         damping_1_s: f64,
         input_rad_s2_v: f64,
         dt_s: f64,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, Error> {
         positive("gain_1_s", gain_1_s)?;
         positive("dt_s", dt_s)?;
         for (name, value) in [
             ("damping_1_s", damping_1_s),
             ("input_rad_s2_v", input_rad_s2_v),
         ] {
-            check(
-                value >= 0.0 && value.is_finite(),
-                name,
-                value,
-                "must be zero or positive, and finite",
-            )?;
+            not_negative(name, value)?;
         }
         let decay = (gain_1_s + damping_1_s) * dt_s;
         check(
@@ -69,6 +67,7 @@ impl<T: Real> VelocityObserver<T> {
 
     /// The estimate once the shaft has moved by `moved_rad`, rad/s. Call before the control law.
     #[inline]
+    #[must_use]
     pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
         velocity_rad_s + self.gain_1_s * moved_rad
     }
@@ -76,6 +75,7 @@ impl<T: Real> VelocityObserver<T> {
     /// What becomes of the estimate until the next sample, under the input `u_v` (V; of no
     /// account to the plain form). Call after the control law.
     #[inline]
+    #[must_use]
     pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {
         self.keep * velocity_rad_s + self.input * u_v
     }

@@ -2,7 +2,7 @@
 
 use super::{chain_round, law};
 use jbf_core::compensator::carried::Whole;
-use jbf_core::compensator::learning::{Learned, Rule};
+use jbf_core::compensator::learning::{self, Learned, Rule};
 use jbf_core::compensator::observed::Settings;
 use jbf_core::compensator::table::Axis;
 use jbf_core::compensator::{
@@ -20,13 +20,15 @@ use jbf_core::{Chain, Clock, Real};
 pub const DT_S: f64 = 0.002;
 /// Counts of the encoder.
 pub const COUNTS_PER_RAD: f64 = 2387.3;
+/// The thesis's drive; a newton of friction is 0.03 V here.
+pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.03);
 /// Load, N.
 pub const LOAD_N: f64 = 104.0;
 
 /// The plant of the bench: Table 4.2's friction with effects, 1 ms steps.
 pub fn plant(effects: &[(&str, &[f64])]) -> Plant<f64, Journal<f64>> {
     let chain: Chain<f64, Journal<f64>> = chain_round(law(Clock::Journal), effects);
-    Plant::new(chain, Drive::THESIS, DT_S / 2.0).expect("the thesis's drive")
+    Plant::new(chain, DRIVE, DT_S / 2.0).expect("the thesis's drive")
 }
 
 /// Which quantity is controlled.
@@ -44,7 +46,7 @@ pub fn controller<T: Real, C: Compensator<T>>(
     let encoder = Encoder::new(COUNTS_PER_RAD, 16, 68.0, DT_S).expect("encoder");
     let (observer, base) = match control {
         Control::Position => (
-            VelocityObserver::fed_forward(15.0, 135.0, 457.0, DT_S),
+            VelocityObserver::fed_forward(15.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, DT_S),
             BaseLaw::thesis_position(),
         ),
         Control::Velocity => (
@@ -52,11 +54,7 @@ pub fn controller<T: Real, C: Compensator<T>>(
             BaseLaw::thesis_velocity(),
         ),
     };
-    let limits = Limits {
-        output_v: 10.0,
-        moving_v: 3.0,
-        patience_s: 0.1,
-    };
+    let limits = Limits::new(10.0).with_moving_v(3.0).with_patience_s(0.1);
     Controller::new(
         encoder,
         observer.expect("observer"),
@@ -70,65 +68,43 @@ pub fn controller<T: Real, C: Compensator<T>>(
 
 /// The Coulomb observer's compensator.
 pub fn coulomb<T: Real>() -> Coulomb<T> {
-    Coulomb {
-        observer: CoulombObserver::new(0.01, 1.0, 457.0, 3.0, DT_S).expect("gains"),
-        damping_1_s: T::of(135.0),
-        input_rad_s2_v: T::of(457.0),
-        start_v: T::ZERO,
-    }
+    let observer = CoulombObserver::new(0.01, 1.0, DRIVE.input_rad_s2_v, 3.0, DT_S);
+    Coulomb::new(observer.expect("gains"), &DRIVE)
 }
 
 /// The thesis's learning compensator.
 pub fn learning<T: Real>(control: Control) -> Learning<T> {
     let rule = match control {
-        Control::Position => Rule::Position {
-            gate_rad: T::of(0.8),
-            clip_rad: T::of(0.3),
-        },
+        Control::Position => Rule::THESIS_POSITION,
         Control::Velocity => Rule::Velocity,
     };
     let l = |k0, gamma| Learned { k0, gamma };
-    Learning::new(
-        law(Clock::Thesis),
-        33.0,
-        rule,
-        l(12_500.0, 0.5),
-        [l(1.0, 1e-3), l(1e7, 1e3)],
-        5.1,
-        0.0127,
-        DT_S,
-    )
-    .expect("gains")
+    let settings = learning::Settings::new(rule, Learned::THESIS, 5.1, 0.0127, DT_S)
+        .with_gain(l(12_500.0, 0.5))
+        .with_least(l(1.0, 1e-3))
+        .with_most(l(1e7, 1e3));
+    Learning::new(law(Clock::Thesis), &settings).expect("gains")
 }
 
 /// The observed compensator's settings on this bench.
 pub fn settings(control: Control) -> Settings {
-    let position = control == Control::Position;
-    Settings {
-        damping_1_s: 135.0,
-        input_rad_s2_v: 457.0,
-        bandwidth_rad_s: 60.0,
-        learning_1_s: 2.0,
-        level_limit_v: 0.8,
-        rest_limit_v: 0.8,
-        slow_rad_s: 0.05,
-        approach_1_s: if position { 10.0 } else { 0.0 },
-        breakaway: 1.0,
-        stiffer_v_rad: if position { 1.53 } else { 0.0 },
-        stiffer_v_s_rad: if position { 0.049 } else { 0.0 },
-        law_forward_v_s_rad: if position { 0.25164 } else { 0.295 },
-        dt_s: DT_S,
+    let s = Settings::new(&DRIVE, 60.0, 0.05, DT_S)
+        .with_learning_1_s(2.0)
+        .with_level_limit_v(0.8)
+        .with_rest_limit_v(0.8);
+    match control {
+        Control::Position => s
+            .with_approach_1_s(10.0)
+            .with_stiffer_v_rad(1.53)
+            .with_stiffer_v_s_rad(0.049)
+            .with_law_forward_v_s_rad(0.25164),
+        Control::Velocity => s.with_law_forward_v_s_rad(0.295),
     }
 }
 
 /// The observed compensator round a bare law.
 pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
-    let model = Bare {
-        law: law(Clock::Journal),
-        radius_m: T::of(0.0127),
-        volts_per_n: T::of(Drive::THESIS.volts_per_n),
-        load_n: T::of(LOAD_N),
-    };
+    let model = Bare::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 
@@ -137,11 +113,8 @@ pub fn observed_with<T: Real>(
     control: Control,
     effects: &[(&str, &[f64])],
 ) -> Observed<T, Whole<T, Journal<T>>> {
-    let model = Whole {
-        chain: chain_round(law(Clock::Journal), effects),
-        volts_per_n: T::of(Drive::THESIS.volts_per_n),
-        load_n: T::of(LOAD_N),
-    };
+    let chain = chain_round(law(Clock::Journal), effects);
+    let model = Whole::new(chain, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 

@@ -74,10 +74,7 @@ impl Sines {
 
     /// The same under another load, N.
     pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
-        Motion {
-            load_n: T::of(load_n),
-            ..self.at(time_s)
-        }
+        self.at(time_s).with_load_n(T::of(load_n))
     }
 
     pub fn at<T: Real>(&self, time_s: f64) -> Motion<T> {
@@ -98,13 +95,11 @@ impl Sines {
         if still {
             (v, a) = (0.0, 0.0);
         }
-        Motion {
-            time_s: T::of(time_s),
-            velocity_m_s: T::of(self.sign * v),
-            acceleration_m_s2: T::of(self.sign * a),
-            angle_rad: T::of(self.sign * path_m / Bearing::THESIS.radius_m),
-            load_n: T::of(LOAD_N),
-        }
+        Motion::at_rest(T::of(LOAD_N))
+            .with_time_s(T::of(time_s))
+            .with_velocity_m_s(T::of(self.sign * v))
+            .with_acceleration_m_s2(T::of(self.sign * a))
+            .with_angle_rad(T::of(self.sign * path_m / Bearing::THESIS.radius_m))
     }
 }
 
@@ -121,9 +116,7 @@ pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
 
 /// At rest at an angle, rad.
 pub fn held<T: Real>(angle_rad: f64, time_s: f64) -> Motion<T> {
-    Motion {
-        time_s: T::of(time_s),
-        angle_rad: T::of(angle_rad),
-        ..Motion::at_rest(T::of(LOAD_N))
-    }
+    Motion::at_rest(T::of(LOAD_N))
+        .with_time_s(T::of(time_s))
+        .with_angle_rad(T::of(angle_rad))
 }

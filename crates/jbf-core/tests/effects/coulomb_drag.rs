@@ -2,15 +2,11 @@
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
-use jbf_core::Motion;
 
 #[test]
 fn adds_its_force_with_the_sign_of_the_motion() {
     let sines = Sines::two_way(1.0);
-    let motion = |t: f64| Motion {
-        load_n: 104.0 + 30.0 * (3.0 * t).sin(),
-        ..sines.at(t)
-    };
+    let motion = |t: f64| sines.at(t).with_load_n(104.0 + 30.0 * (3.0 * t).sin());
     let bare = readings(&chain::<f64>(&[]), 0.01, 700, motion);
     let with = readings(
         &chain::<f64>(&[("coulomb_drag", &[1.7])]),

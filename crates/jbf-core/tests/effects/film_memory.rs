@@ -3,7 +3,6 @@
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
-use jbf_core::Motion;
 
 #[test]
 fn a_faster_clock_is_a_slower_motion() {
@@ -12,9 +11,8 @@ fn a_faster_clock_is_a_slower_motion() {
     for factor in [0.3, 0.5, 2.0, 2.7] {
         let with = chain::<f64>(&[("film_memory", &[factor])]);
         let got = readings(&with, dt, 3000, |t| sines.at(t));
-        let slow = readings(&chain::<f64>(&[]), factor * dt, 3000, |t| Motion {
-            time_s: t,
-            ..sines.at(dt * (t / (factor * dt)).round())
+        let slow = readings(&chain::<f64>(&[]), factor * dt, 3000, |t| {
+            sines.at(dt * (t / (factor * dt)).round()).with_time_s(t)
         });
         let bare = readings(&chain::<f64>(&[]), dt, 3000, |t| sines.at(t));
         let gap = |a: &[f64]| {

@@ -9,17 +9,15 @@ use jbf_core::{Motion, Real};
 /// A jerky motion: jumps of speed, of load and of angle that no machine makes.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
-    Motion {
-        time_s: T::of(time_s),
-        velocity_m_s: T::of(if random.chance(0.2) { 0.0 } else { speed }),
-        acceleration_m_s2: T::of(random.uniform(-1e3, 1e3)),
-        angle_rad: T::of(random.uniform(-1e3, 1e3)),
-        load_n: T::of(if random.chance(0.1) {
-            random.log_uniform(1.0, 1e4)
-        } else {
-            LOAD_N
-        }),
-    }
+    Motion::at_rest(T::of(if random.chance(0.1) {
+        random.log_uniform(1.0, 1e4)
+    } else {
+        LOAD_N
+    }))
+    .with_time_s(T::of(time_s))
+    .with_velocity_m_s(T::of(if random.chance(0.2) { 0.0 } else { speed }))
+    .with_acceleration_m_s2(T::of(random.uniform(-1e3, 1e3)))
+    .with_angle_rad(T::of(random.uniform(-1e3, 1e3)))
 }
 
 fn check<T: Real>(seed: u64) {
@@ -71,18 +69,9 @@ fn a_lost_sample_changes_nothing() {
             let to = sines.at::<f64>(0.01 * i as f64);
             let before = state.reading_n;
             let lost = [
-                Motion {
-                    velocity_m_s: f64::NAN,
-                    ..to
-                },
-                Motion {
-                    angle_rad: f64::INFINITY,
-                    ..to
-                },
-                Motion {
-                    load_n: f64::NAN,
-                    ..to
-                },
+                to.with_velocity_m_s(f64::NAN),
+                to.with_angle_rad(f64::INFINITY),
+                to.with_load_n(f64::NAN),
             ];
             for motion in &lost {
                 assert_eq!(chain.step(&mut state, motion, 0.01), before);

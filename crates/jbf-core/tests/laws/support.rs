@@ -68,13 +68,11 @@ pub fn anywhere(law: &Info, random: &mut Random) -> Vec<f64> {
 
 /// A speed at a time, with place and nothing else.
 pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T> {
-    Motion {
-        time_s: T::of(time_s),
-        velocity_m_s: T::of(velocity_m_s),
-        acceleration_m_s2: T::ZERO,
-        angle_rad: T::of(place_m),
-        load_n: T::ONE,
-    }
+    Motion::at_rest(T::ONE)
+        .with_time_s(T::of(time_s))
+        .with_velocity_m_s(T::of(velocity_m_s))
+        .with_acceleration_m_s2(T::ZERO)
+        .with_angle_rad(T::of(place_m))
 }
 
 /// A sine of a place, amplitude in m.

@@ -1,7 +1,7 @@
 //! The bench itself: plant, encoder, noise, faults, and the log of a run.
 
-use super::compensators::Stepping;
 use super::plant::{PlantSpec, Shaft};
+use super::running::Stepping;
 use jbf_core::reference::Target;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;

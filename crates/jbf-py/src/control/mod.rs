@@ -2,18 +2,22 @@
 
 mod bench;
 mod compensators;
+pub mod constants;
+mod learning;
 mod model;
+mod observed;
 mod plant;
+mod running;
 mod settings;
 
 use crate::bearing::refused;
 use bench::{Faults, Log, Noise};
-use compensators::Stepping;
 use jbf_core::reference::{Reference, Wave};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use running::Stepping;
 use settings::LoopSpec;
 
 /// Value and rate of a periodic reference at `samples` steps of `dt_s` from zero.

@@ -7,15 +7,31 @@ use jbf_core::plant::{Drive, Plant, State};
 use jbf_core::Chain;
 use pyo3::prelude::*;
 
+/// Motor and shaft as Python hands them over.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct DriveSpec {
+    damping_1_s: f64,
+    input_rad_s2_v: f64,
+    volts_per_n: f64,
+    limit_v: f64,
+}
+
+impl DriveSpec {
+    /// The core's drive.
+    pub fn drive(&self) -> Drive {
+        Drive::new(self.damping_1_s, self.input_rad_s2_v)
+            .with_volts_per_n(self.volts_per_n)
+            .with_limit_v(self.limit_v)
+    }
+}
+
 /// The bench as Python hands it over.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct PlantSpec {
     model: ModelSpec,
-    damping_1_s: f64,
-    input_rad_s2_v: f64,
-    volts_per_n: f64,
-    limit_v: f64,
+    drive: DriveSpec,
     pub counts_per_rad: f64,
     pub counter_bits: u32,
     pub input_noise_v: f64,
@@ -63,14 +79,8 @@ impl Using<f64> for Build<'_> {
 
     fn with<L: Named<f64>>(self, chain: Chain<f64, L>) -> Self::Output {
         let s = self.spec;
-        let drive = Drive {
-            damping_1_s: s.damping_1_s,
-            input_rad_s2_v: s.input_rad_s2_v,
-            volts_per_n: s.volts_per_n,
-            limit_v: s.limit_v,
-        };
         let step_s = self.dt_s / f64::from(s.inner_steps);
-        let plant = Plant::new(chain, drive, step_s).map_err(refused)?;
+        let plant = Plant::new(chain, s.drive.drive(), step_s).map_err(refused)?;
         let state = plant.start(self.load_n, s.stood_s);
         Ok(Box::new(Running {
             plant,

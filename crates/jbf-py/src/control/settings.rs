@@ -1,67 +1,72 @@
 //! The loop round a compensator, as Python hands it over.
 
+use super::plant::DriveSpec;
 use crate::bearing::refused;
 use jbf_core::compensator::Compensator;
 use jbf_core::controller::{BaseLaw, Controller, Limits};
 use jbf_core::encoder::Encoder;
-use jbf_core::observer::VelocityObserver;
-use jbf_core::Real;
+use jbf_core::observer::{velocity, VelocityObserver};
+use jbf_core::{Error, Real};
 use pyo3::prelude::*;
 
-/// Encoder, observer, control law and limits.
+/// The drive that the loop believes in, its encoder, and when to stop believing; the control law
+/// and the velocity observer are the thesis's on that drive.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct LoopSpec {
     pub dt_s: f64,
     /// Position control, else velocity control.
     pub position: bool,
-    /// k1 and k2, or g and C.
-    gains: (f64, f64),
-    observer_1_s: f64,
-    observer_damping_1_s: f64,
-    observer_input_rad_s2_v: f64,
+    pub drive: DriveSpec,
     counts_per_rad: f64,
     counter_bits: u32,
-    top_speed_rad_s: f64,
-    output_limit_v: f64,
-    moving_v: f64,
-    patience_s: f64,
+    /// None for a loop that only a jump of the counter stops.
+    moving_v: Option<f64>,
+    patience_s: Option<f64>,
 }
 
 impl LoopSpec {
+    /// The control law.
+    pub fn law(&self) -> BaseLaw<f64> {
+        let drive = self.drive.drive();
+        if self.position {
+            BaseLaw::position(&drive)
+        } else {
+            BaseLaw::velocity(&drive)
+        }
+    }
+
     /// The loop round a compensator.
     pub fn round<T: Real, C: Compensator<T>>(&self, compensator: C) -> PyResult<Controller<T, C>> {
+        let drive = self.drive.drive();
+        let top_speed_rad_s = drive.top_speed_rad_s();
         let encoder = Encoder::new(
             self.counts_per_rad,
             self.counter_bits,
-            self.top_speed_rad_s,
+            top_speed_rad_s,
             self.dt_s,
         )
         .map_err(refused)?;
-        let observer = VelocityObserver::fed_forward(
-            self.observer_1_s,
-            self.observer_damping_1_s,
-            self.observer_input_rad_s2_v,
-            self.dt_s,
-        )
-        .map_err(refused)?;
-        let (first, second) = (T::of(self.gains.0), T::of(self.gains.1));
-        let law = if self.position {
-            BaseLaw::Position {
-                angle_v_rad: first,
-                speed_v_s_rad: second,
-            }
-        } else {
-            BaseLaw::Velocity {
-                speed_v_s_rad: first,
-                forward_v_s_rad: second,
-            }
-        };
-        let limits = Limits {
-            output_v: self.output_limit_v,
-            moving_v: self.moving_v,
-            patience_s: self.patience_s,
-        };
+        let observer = self.observer().map_err(refused)?;
+        let mut limits = Limits::new(drive.limit_v);
+        if let Some(moving_v) = self.moving_v {
+            limits = limits.with_moving_v(moving_v);
+        }
+        if let Some(patience_s) = self.patience_s {
+            limits = limits.with_patience_s(patience_s);
+        }
+        let law = self.law().lift();
         Controller::new(encoder, observer, law, compensator, limits, self.dt_s).map_err(refused)
+    }
+
+    /// Appendix E's observer in position control, Appendix D's in velocity control.
+    fn observer<T: Real>(&self) -> Result<VelocityObserver<T>, Error> {
+        if self.position {
+            let drive = self.drive.drive();
+            let (a, b) = (drive.damping_1_s, drive.input_rad_s2_v);
+            VelocityObserver::fed_forward(velocity::THESIS_1_S, a, b, self.dt_s)
+        } else {
+            VelocityObserver::plain(velocity::THESIS_1_S, self.dt_s)
+        }
     }
 }

@@ -32,13 +32,13 @@ fn two_way<T: Real>(step: u32, omega_rad_s: f64) -> Motion<T> {
         Real::sin(omega_rad_s * time_s),
         Real::cos(omega_rad_s * time_s),
     );
-    Motion {
-        time_s: T::of(time_s),
-        velocity_m_s: T::of(0.127 * sin),
-        acceleration_m_s2: T::of(0.127 * omega_rad_s * cos),
-        angle_rad: T::of(0.127 / omega_rad_s * (1.0 - cos) / Bearing::THESIS.radius_m),
-        load_n: T::of(104.0),
-    }
+    Motion::at_rest(T::of(104.0))
+        .with_time_s(T::of(time_s))
+        .with_velocity_m_s(T::of(0.127 * sin))
+        .with_acceleration_m_s2(T::of(0.127 * omega_rad_s * cos))
+        .with_angle_rad(T::of(
+            0.127 / omega_rad_s * (1.0 - cos) / Bearing::THESIS.radius_m,
+        ))
 }
 
 fn ends<T: Real>(step: u32, omega_rad_s: f64) -> (Motion<T>, Motion<T>) {

@@ -3,7 +3,7 @@
 use super::{Journal, Loaded, Parameters};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, not_negative, positive, ParameterError};
 use crate::real::Real;
 use core::f64::consts::PI;
 
@@ -21,20 +21,10 @@ impl<T: Real> Journal<T> {
         let bearing = bearing.checked()?;
         positive("load_n", load_n)?;
         let p = parameters;
-        check(
-            p.f_m.is_finite() && p.f_m >= T::ZERO,
-            "f_m",
-            p.f_m.value(),
-            "must be zero or positive, and finite",
-        )?;
+        not_negative("f_m", p.f_m.value())?;
         positive("U_tr_m_s", p.u_tr_m_s.value())?;
         positive("K0", p.k0.value())?;
-        check(
-            p.gamma.is_finite() && p.gamma >= T::ZERO,
-            "gamma",
-            p.gamma.value(),
-            "must be zero or positive, and finite",
-        )?;
+        not_negative("gamma", p.gamma.value())?;
         let fb_per_n = bearing.load_number(T::ONE, p.u_tr_m_s);
         let mut law = Self {
             fb_per_n,

@@ -3,7 +3,7 @@
 use super::{Journal, Parameters, PARAMETERS, SUMMARY};
 use crate::bearing::Bearing;
 use crate::clock::Clock;
-use crate::error::{check, ParameterError};
+use crate::error::{enough, needed, ParameterError};
 use crate::law::{Info, Named, SteadyCurve};
 use crate::real::Real;
 
@@ -37,25 +37,9 @@ pub(in crate::law) fn parts<'a, T: Real>(
     load_n: Option<f64>,
     values: &[T],
 ) -> Result<(&'a Bearing, f64, Parameters<T>), ParameterError> {
-    const NEEDED: &str = "is missing: the law computes from the bearing";
-    check(
-        values.len() >= PARAMETERS.len(),
-        "parameters",
-        values.len() as f64,
-        "are too few for the law",
-    )?;
-    let (Some(bearing), Some(load_n)) = (bearing, load_n) else {
-        let name = if bearing.is_none() {
-            "bearing"
-        } else {
-            "load_n"
-        };
-        return Err(ParameterError {
-            name,
-            value: f64::NAN,
-            rule: NEEDED,
-        });
-    };
+    enough("parameters", values.len(), PARAMETERS.len())?;
+    let bearing = needed("bearing", bearing)?;
+    let load_n = needed("load_n", load_n)?;
     let parameters = Parameters {
         f_m: values[0],
         u_tr_m_s: values[1],

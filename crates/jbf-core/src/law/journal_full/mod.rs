@@ -43,10 +43,6 @@ use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
 
-/// One line for the catalogue.
-pub const SUMMARY: &str =
-    "hydrodynamic journal bearing with the journal's inertia (full Harnoy-Friedland model)";
-
 /// Where a step is cut in three while the rates fall onto the film's: at a start and after a
 /// jump of the load. In one step of 2 ms the fall would cost 2e-4 of the friction's peak, in three 6e-7.
 const CUTS: [f64; 2] = [0.05, 0.2];

@@ -18,48 +18,22 @@
 //! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
 //! chapter 7.
 
+mod poles;
+mod settings;
+
+pub use settings::Settings;
+
 use super::carried::Carried;
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::{check, Error};
 use crate::friction::Friction;
 use crate::real::Real;
+use poles::poles;
 
 /// Time constants of the observer that a wrong friction may need to be found out. A shaft that
 /// turns for longer without a count, at the speed that the largest correction makes, makes the
 /// encoder doubtful.
 const FINDING_OUT: f64 = 3.0;
-
-/// Settings of [`Observed`], in SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// The plant's damping `a`, 1/s.
-    pub damping_1_s: f64,
-    /// The plant's input gain `b`, rad/s^2/V.
-    pub input_rad_s2_v: f64,
-    /// Poles of the observer, rad/s.
-    pub bandwidth_rad_s: f64,
-    /// Rate at which a lasting correction is taken for friction, 1/s.
-    pub learning_1_s: f64,
-    /// Most that the level may be corrected by, V, either way.
-    pub level_limit_v: f64,
-    /// Most that the rest may be, V, either way.
-    pub rest_limit_v: f64,
-    /// Speed below which the shaft counts as slow, rad/s: some times the noise of the estimate.
-    pub slow_rad_s: f64,
-    /// What an error of angle asks for in speed, 1/s; zero in velocity control.
-    pub approach_1_s: f64,
-    /// Share of the level that is sent out where the shaft is slow; below one it cannot hunt.
-    pub breakaway: f64,
-    /// Feedback beside the control law's: the compensated plant is known, and bears more.
-    /// Of the angle's error, V/rad.
-    pub stiffer_v_rad: f64,
-    /// Of the speed's error, V s/rad.
-    pub stiffer_v_s_rad: f64,
-    /// What the control law itself feeds forward of the wanted speed, V s/rad.
-    pub law_forward_v_s_rad: f64,
-    /// Time step of the loop, s.
-    pub dt_s: f64,
-}
 
 /// The learned corrections: what is worth keeping over a power cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,39 +87,8 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     ///
     /// # Errors
     /// Names the setting that breaks its rule.
-    pub fn new(model: M, s: &Settings) -> Result<Self, ParameterError> {
-        positive("damping_1_s", s.damping_1_s)?;
-        positive("input_rad_s2_v", s.input_rad_s2_v)?;
-        positive("bandwidth_rad_s", s.bandwidth_rad_s)?;
-        positive("slow_rad_s", s.slow_rad_s)?;
-        positive("dt_s", s.dt_s)?;
-        for (name, value) in [
-            ("learning_1_s", s.learning_1_s),
-            ("level_limit_v", s.level_limit_v),
-            ("rest_limit_v", s.rest_limit_v),
-            ("approach_1_s", s.approach_1_s),
-            ("breakaway", s.breakaway),
-        ] {
-            check(
-                value >= 0.0 && value.is_finite(),
-                name,
-                value,
-                "must be zero or positive, and finite",
-            )?;
-        }
-        for (name, value) in [
-            ("stiffer_v_rad", s.stiffer_v_rad),
-            ("stiffer_v_s_rad", s.stiffer_v_s_rad),
-            ("law_forward_v_s_rad", s.law_forward_v_s_rad),
-        ] {
-            check(value.is_finite(), name, value, "must be finite")?;
-        }
-        check(
-            s.learning_1_s * s.dt_s < 1.0,
-            "learning_1_s",
-            s.learning_1_s,
-            "is too large for the time step",
-        )?;
+    pub fn new(model: M, s: &Settings) -> Result<Self, Error> {
+        s.check()?;
         let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
         let gain = s.input_rad_s2_v / s.damping_1_s * fall;
         let wrong_rad_s =
@@ -212,43 +155,6 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
     fn level_v(&self, state: &State<T, M::State>) -> T {
         (state.friction.jump + state.learned.level_v).max(T::ZERO)
     }
-}
-
-/// Gains that place the poles of the sampled observer, two at `p` and the third where the plant's
-/// own pole is, or at `p` too where that is faster: Ackermann's formula for angle, speed and
-/// disturbance, seen through the angle after each step. A pole slower than the plant's own would
-/// make the first gain negative, and a stuck observer would run away.
-fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
-    let h = 0.5 * dt_s;
-    // The prediction: x + h (v + v'), v' = keep v - gain d, d.
-    let (a12, a13) = (h * (1.0 + keep), -h * gain);
-    // Rows C A, C A^2, C A^3 of what is seen, A = [1 a12 a13; 0 keep -gain; 0 0 1]; their solution
-    // against (0, 0, 1).
-    let next = |r: [f64; 3]| {
-        [
-            r[0],
-            r[0] * a12 + r[1] * keep,
-            r[0] * a13 - r[1] * gain + r[2],
-        ]
-    };
-    let r1 = [1.0, a12, a13];
-    let r2 = next(r1);
-    let r3 = next(r2);
-    // The first entry of each row is 1: eliminate it, then two equations are left.
-    let (b1, c1) = (r2[1] - r1[1], r2[2] - r1[2]);
-    let (b2, c2) = (r3[1] - r2[1], r3[2] - r2[2]);
-    let determinant = b1 * c2 - b2 * c1;
-    let (q1, q2) = (-c1 / determinant, b1 / determinant);
-    let q0 = -(r1[1] * q1 + r1[2] * q2);
-    // phi(A) q, phi(A) = (A - p)^2 (A - own), a factor at a time.
-    let less = |p: f64, q: [f64; 3]| {
-        [
-            (1.0 - p) * q[0] + a12 * q[1] + a13 * q[2],
-            (keep - p) * q[1] - gain * q[2],
-            (1.0 - p) * q[2],
-        ]
-    };
-    less(p, less(p, less(p.min(keep), [q0, q1, q2])))
 }
 
 impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {

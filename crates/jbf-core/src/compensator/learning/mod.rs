@@ -12,26 +12,18 @@
 //!
 //! Source: Cohn (1998), sections 6.4 and 6.5, Figure 6.1, Appendices D and E.
 
+mod rule;
+mod settings;
+
+pub use rule::Rule;
+pub use settings::Settings;
+
 use super::{Answer, Compensator, Sense};
-use crate::error::{check, positive, ParameterError};
+use crate::error::Error;
 use crate::law::journal::{Journal, State as Film};
 use crate::law::Law;
 use crate::real::Real;
 use crate::stepper::Euler;
-
-/// What the error means, and so how it teaches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rule<T> {
-    /// Error of speed.
-    Velocity,
-    /// Error of angle: no learning beyond `gate_rad`, the error clipped to `clip_rad`.
-    Position {
-        /// 0.8 rad in the thesis.
-        gate_rad: T,
-        /// 0.3 rad in the thesis.
-        clip_rad: T,
-    },
-}
 
 /// The two learned parameters. They are what is worth keeping over a power cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +33,14 @@ pub struct Learned<T> {
     pub k0: T,
     /// Slope factor of the viscous term.
     pub gamma: T,
+}
+
+impl Learned<f64> {
+    /// What the thesis's programs start from.
+    pub const THESIS: Self = Self {
+        k0: 650_000.0,
+        gamma: 33.0,
+    };
 }
 
 /// The thesis's compensator.
@@ -67,66 +67,30 @@ pub struct State<T> {
 }
 
 impl<T: Real> Learning<T> {
-    /// A film (its K0 is the one that is learned from), the gamma that it was built with, what a
-    /// coefficient of 1 is in volts (25.5 V by the thesis's listings), the journal's radius (m), the learning
-    /// gains per step, and the bounds of what may be learned.
+    /// A film, whose K0 is the one that is learned from, and settings.
     ///
     /// # Errors
-    /// Sizes must be positive, gains not negative, the bounds hold the start between them.
-    #[allow(clippy::too_many_arguments)]
-    pub fn new(
-        law: Journal<T>,
-        gamma: f64,
-        rule: Rule<T>,
-        gain: Learned<f64>,
-        bounds: [Learned<f64>; 2],
-        volts: f64,
-        radius_m: f64,
-        dt_s: f64,
-    ) -> Result<Self, ParameterError> {
-        positive("gamma", gamma)?;
-        positive("volts", volts)?;
-        positive("radius_m", radius_m)?;
-        positive("dt_s", dt_s)?;
-        for (name, g) in [("gain.k0", gain.k0), ("gain.gamma", gain.gamma)] {
-            check(
-                g >= 0.0 && g.is_finite(),
-                name,
-                g,
-                "must be zero or positive, and finite",
-            )?;
-        }
-        let k0 = law.k0.value();
-        let [least, most] = bounds;
-        for (name, value, low, high) in [
-            ("k0", k0, least.k0, most.k0),
-            ("gamma", gamma, least.gamma, most.gamma),
-        ] {
-            check(
-                low > 0.0 && low <= value && value <= high && high.is_finite(),
-                name,
-                value,
-                "must lie within the bounds of learning, which are positive and finite",
-            )?;
-        }
+    /// Names the setting that breaks its rule; the bounds must hold the start between them.
+    pub fn new(law: Journal<T>, s: &Settings) -> Result<Self, Error> {
+        s.check(law.k0.value())?;
         let lift = |l: Learned<f64>| Learned {
             k0: T::of(l.k0),
             gamma: T::of(l.gamma),
         };
         Ok(Self {
             law,
-            rule,
-            gain: lift(gain),
+            rule: s.rule.lift(),
+            gain: lift(s.gain),
             begin: Learned {
                 k0: law.k0,
-                gamma: T::of(gamma),
+                gamma: T::of(s.gamma),
             },
-            least: lift(least),
-            most: lift(most),
-            inverse_gamma: T::of(1.0 / gamma),
-            radius_m: T::of(radius_m),
-            volts: T::of(volts),
-            dt_s: T::of(dt_s),
+            least: lift(s.least),
+            most: lift(s.most),
+            inverse_gamma: T::of(1.0 / s.gamma),
+            radius_m: T::of(s.radius_m),
+            volts: T::of(s.volts),
+            dt_s: T::of(s.dt_s),
         })
     }
 
@@ -145,35 +109,6 @@ impl<T: Real> Learning<T> {
         Learned {
             k0: l.k0.max(self.least.k0).min(self.most.k0),
             gamma: l.gamma.max(self.least.gamma).min(self.most.gamma),
-        }
-    }
-
-    /// Which way, and how far, the error pushes a parameter: the thesis's `-e sgn(v)`.
-    #[inline]
-    fn lesson(&self, sense: &Sense<T>) -> T {
-        let (v, e) = (sense.velocity_rad_s, sense.error);
-        match self.rule {
-            Rule::Velocity => -e * v.sign(),
-            Rule::Position { gate_rad, clip_rad } => {
-                let size = e.abs();
-                if size >= gate_rad {
-                    T::ZERO
-                } else if v * e > T::ZERO {
-                    -size.min(clip_rad)
-                } else {
-                    size.min(clip_rad)
-                }
-            }
-        }
-    }
-
-    /// Sign of the friction in the sum.
-    #[inline]
-    fn direction(&self, sense: &Sense<T>) -> T {
-        match self.rule {
-            Rule::Velocity => sense.velocity_rad_s.sign(),
-            Rule::Position { .. } if sense.error > T::ZERO => -T::ONE,
-            Rule::Position { .. } => T::ONE,
         }
     }
 }
@@ -198,10 +133,10 @@ impl<T: Real> Compensator<T> for Learning<T> {
         let sliding = law.friction(&state.film, speed_m_s);
         let viscous = sliding.smooth * (state.learned.gamma * self.inverse_gamma);
         let size_v = (sliding.jump + viscous) * self.volts;
-        let sum_v = size_v * self.direction(sense);
+        let sum_v = size_v * self.rule.direction(sense);
         let learned = state.learned;
         if sense.may_learn {
-            let lesson = self.lesson(sense);
+            let lesson = self.rule.lesson(sense);
             let mut next = learned;
             if state.film.eps() > state.film.eps_tr() {
                 next.k0 += self.gain.k0 * lesson;

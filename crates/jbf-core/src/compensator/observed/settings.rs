@@ -1,0 +1,184 @@
+//! Settings of the observed compensator.
+
+use crate::builder::with_fields;
+use crate::control_law::BaseLaw;
+use crate::error::{check, finite, not_negative, positive, Error};
+use crate::plant::Drive;
+
+/// Settings of [`super::Observed`], in SI units. `jbf control tune` computes them from a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// The plant's damping `a`, 1/s.
+    pub damping_1_s: f64,
+    /// The plant's input gain `b`, rad/s^2/V.
+    pub input_rad_s2_v: f64,
+    /// Poles of the observer, rad/s.
+    pub bandwidth_rad_s: f64,
+    /// Rate at which a lasting correction is taken for friction, 1/s.
+    pub learning_1_s: f64,
+    /// Most that the level may be corrected by, V, either way.
+    pub level_limit_v: f64,
+    /// Most that the rest may be, V, either way.
+    pub rest_limit_v: f64,
+    /// Speed below which the shaft counts as slow, rad/s: some times the noise of the estimate.
+    pub slow_rad_s: f64,
+    /// What an error of angle asks for in speed, 1/s; zero in velocity control.
+    pub approach_1_s: f64,
+    /// Share of the level that is sent out where the shaft is slow; below one it cannot hunt.
+    pub breakaway: f64,
+    /// Feedback beside the control law's: the compensated plant is known, and bears more.
+    /// Of the angle's error, V/rad.
+    pub stiffer_v_rad: f64,
+    /// Of the speed's error, V s/rad.
+    pub stiffer_v_s_rad: f64,
+    /// What the control law itself feeds forward of the wanted speed, V s/rad.
+    pub law_forward_v_s_rad: f64,
+    /// Time step of the loop, s.
+    pub dt_s: f64,
+}
+
+impl Settings {
+    /// For a drive, an observer of a bandwidth (rad/s), a speed (rad/s) below which the shaft
+    /// counts as slow, and a step of the loop (s). It corrects nothing until it is given limits,
+    /// and stands beside no control law until it is told which.
+    #[must_use]
+    pub const fn new(drive: &Drive, bandwidth_rad_s: f64, slow_rad_s: f64, dt_s: f64) -> Self {
+        Self {
+            damping_1_s: drive.damping_1_s,
+            input_rad_s2_v: drive.input_rad_s2_v,
+            bandwidth_rad_s,
+            learning_1_s: 0.0,
+            level_limit_v: 0.0,
+            rest_limit_v: 0.0,
+            slow_rad_s,
+            approach_1_s: 0.0,
+            breakaway: 1.0,
+            stiffer_v_rad: 0.0,
+            stiffer_v_s_rad: 0.0,
+            law_forward_v_s_rad: 0.0,
+            dt_s,
+        }
+    }
+
+    with_fields! {
+        with_learning_1_s => learning_1_s: f64,
+        with_level_limit_v => level_limit_v: f64,
+        with_rest_limit_v => rest_limit_v: f64,
+        with_approach_1_s => approach_1_s: f64,
+        with_breakaway => breakaway: f64,
+        with_stiffer_v_rad => stiffer_v_rad: f64,
+        with_stiffer_v_s_rad => stiffer_v_s_rad: f64,
+        with_law_forward_v_s_rad => law_forward_v_s_rad: f64,
+    }
+
+    /// Beside this control law. A position loop is stiffened to a natural frequency `loop_rad_s`
+    /// and approaches its goal with a third of it; to a velocity loop the frequency is of no
+    /// account.
+    #[must_use]
+    pub fn beside(mut self, law: &BaseLaw<f64>, loop_rad_s: f64) -> Self {
+        self.law_forward_v_s_rad = law.forward_v_s_rad();
+        if let BaseLaw::Position { .. } = law {
+            let drive = Drive::new(self.damping_1_s, self.input_rad_s2_v);
+            let [wanted, has] = [BaseLaw::placed(loop_rad_s, &drive).gains(), law.gains()];
+            self.stiffer_v_rad = wanted[0] - has[0];
+            self.stiffer_v_s_rad = wanted[1] - has[1];
+            self.approach_1_s = loop_rad_s / 3.0;
+        } else {
+            self.stiffer_v_rad = 0.0;
+            self.stiffer_v_s_rad = 0.0;
+            self.approach_1_s = 0.0;
+        }
+        self
+    }
+
+    pub(super) fn check(&self) -> Result<(), Error> {
+        positive("damping_1_s", self.damping_1_s)?;
+        positive("input_rad_s2_v", self.input_rad_s2_v)?;
+        positive("bandwidth_rad_s", self.bandwidth_rad_s)?;
+        positive("slow_rad_s", self.slow_rad_s)?;
+        positive("dt_s", self.dt_s)?;
+        not_negative("learning_1_s", self.learning_1_s)?;
+        not_negative("level_limit_v", self.level_limit_v)?;
+        not_negative("rest_limit_v", self.rest_limit_v)?;
+        not_negative("approach_1_s", self.approach_1_s)?;
+        not_negative("breakaway", self.breakaway)?;
+        finite("stiffer_v_rad", self.stiffer_v_rad)?;
+        finite("stiffer_v_s_rad", self.stiffer_v_s_rad)?;
+        finite("law_forward_v_s_rad", self.law_forward_v_s_rad)?;
+        check(
+            self.learning_1_s * self.dt_s < 1.0,
+            "learning_1_s",
+            self.learning_1_s,
+            "is too large for the time step",
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAIN: Settings = Settings::new(&Drive::THESIS, 60.0, 0.05, 0.002);
+
+    #[test]
+    fn a_position_loop_is_stiffened_to_its_frequency() {
+        let law = BaseLaw::position(&Drive::THESIS);
+        let s = PLAIN.beside(&law, 30.0);
+        // Both feedbacks together have the poles of 30 rad/s.
+        let [k1, k2] = law.gains();
+        let (c0, c1) = (
+            457.0 * (k1 + s.stiffer_v_rad),
+            135.0 + 457.0 * (k2 + s.stiffer_v_s_rad),
+        );
+        assert!((c0 - 900.0).abs() < 1e-9 && (c1 - 30.0 * 2f64.sqrt()).abs() < 1e-9);
+        assert_eq!((s.approach_1_s, s.law_forward_v_s_rad), (10.0, 0.25164));
+    }
+
+    #[test]
+    fn a_velocity_loop_is_left_as_it_is() {
+        let s = PLAIN.beside(&BaseLaw::velocity(&Drive::THESIS), 30.0);
+        assert_eq!(s, PLAIN.with_law_forward_v_s_rad(0.295));
+    }
+
+    #[test]
+    fn each_setting_is_checked_by_name() {
+        assert!(PLAIN.check().is_ok());
+        for (bad, name) in [
+            (
+                Settings::new(&Drive::new(0.0, 1.0), 60.0, 0.05, 0.002),
+                "damping_1_s",
+            ),
+            (
+                Settings::new(&Drive::new(1.0, -1.0), 60.0, 0.05, 0.002),
+                "input_rad_s2_v",
+            ),
+            (
+                Settings::new(&Drive::THESIS, f64::NAN, 0.05, 0.002),
+                "bandwidth_rad_s",
+            ),
+            (
+                Settings::new(&Drive::THESIS, 60.0, 0.0, 0.002),
+                "slow_rad_s",
+            ),
+            (
+                Settings::new(&Drive::THESIS, 60.0, 0.05, f64::INFINITY),
+                "dt_s",
+            ),
+            (PLAIN.with_learning_1_s(-1.0), "learning_1_s"),
+            (PLAIN.with_learning_1_s(500.0), "learning_1_s"),
+            (PLAIN.with_level_limit_v(-1.0), "level_limit_v"),
+            (PLAIN.with_rest_limit_v(f64::NAN), "rest_limit_v"),
+            (PLAIN.with_approach_1_s(-1.0), "approach_1_s"),
+            (PLAIN.with_breakaway(f64::INFINITY), "breakaway"),
+            (PLAIN.with_stiffer_v_rad(f64::NAN), "stiffer_v_rad"),
+            (PLAIN.with_stiffer_v_s_rad(f64::NAN), "stiffer_v_s_rad"),
+            (
+                PLAIN.with_law_forward_v_s_rad(f64::NAN),
+                "law_forward_v_s_rad",
+            ),
+        ] {
+            assert_eq!(bad.check().expect_err(name).name(), name);
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The control laws before compensation, and where their gains come from: the thesis's two,
+//! section 6.3.
+//!
+//! ```text
+//! position   u = -k1 (x - x_ref) - k2 v_hat         s^2 + (a + b k2) s + b k1
+//! velocity   u = -g (v_hat - v_ref) + C v_ref       g b = 457 1/s, C = a/b
+//! ```
+//!
+//! On the thesis's drive ([`Drive::THESIS`]) the gains are the thesis's own, to the digit; on any
+//! other those that give the compensated plant the same poles.
+
+use crate::plant::Drive;
+use crate::real::Real;
+use crate::reference::Target;
+
+/// A control law before compensation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BaseLaw<T> {
+    /// Angle follows the reference.
+    Position {
+        /// `k1`, V/rad.
+        angle_v_rad: T,
+        /// `k2`, V s/rad.
+        speed_v_s_rad: T,
+    },
+    /// Speed follows the reference.
+    Velocity {
+        /// `g`, V s/rad.
+        speed_v_s_rad: T,
+        /// `C`, V s/rad.
+        forward_v_s_rad: T,
+    },
+}
+
+/// The thesis's position loop without friction, `s^2 + 20 s + 200`: poles at -10 +- 10i.
+const THESIS_POLYNOMIAL: [f64; 2] = [200.0, 20.0];
+
+impl BaseLaw<f64> {
+    /// The thesis's position control: `k1`, `k2` as Appendix E has them.
+    pub const THESIS_POSITION: Self = Self::Position {
+        angle_v_rad: 0.43764,
+        speed_v_s_rad: -0.25164,
+    };
+
+    /// The thesis's velocity control: `g`, `C` as Appendix D has them.
+    pub const THESIS_VELOCITY: Self = Self::Velocity {
+        speed_v_s_rad: 1.0,
+        forward_v_s_rad: 0.295,
+    };
+
+    /// The thesis's position control on a drive: poles at -10 +- 10i.
+    #[must_use]
+    pub fn position(drive: &Drive) -> Self {
+        if drive.turns_like(&Drive::THESIS) {
+            return Self::THESIS_POSITION;
+        }
+        Self::with_polynomial(THESIS_POLYNOMIAL, drive)
+    }
+
+    /// The thesis's velocity control on a drive: as stiff, and the speed that is wanted fed
+    /// forward.
+    #[must_use]
+    pub fn velocity(drive: &Drive) -> Self {
+        if drive.turns_like(&Drive::THESIS) {
+            return Self::THESIS_VELOCITY;
+        }
+        Self::Velocity {
+            speed_v_s_rad: Drive::THESIS.input_rad_s2_v / drive.input_rad_s2_v,
+            forward_v_s_rad: drive.damping_1_s / drive.input_rad_s2_v,
+        }
+    }
+
+    /// Position control with both poles at `w (-1 +- i)/sqrt(2)`, w in rad/s.
+    #[must_use]
+    pub fn placed(natural_rad_s: f64, drive: &Drive) -> Self {
+        let w = natural_rad_s;
+        Self::with_polynomial([w * w, w * core::f64::consts::SQRT_2], drive)
+    }
+
+    /// Position control that makes `s^2 + c1 s + c0` of the plant, from `[c0, c1]`.
+    fn with_polynomial([c0, c1]: [f64; 2], drive: &Drive) -> Self {
+        Self::Position {
+            angle_v_rad: c0 / drive.input_rad_s2_v,
+            speed_v_s_rad: (c1 - drive.damping_1_s) / drive.input_rad_s2_v,
+        }
+    }
+
+    /// Both gains in the order of the law above: `k1` and `k2`, or `g` and `C`.
+    #[must_use]
+    pub fn gains(&self) -> [f64; 2] {
+        match *self {
+            Self::Position {
+                angle_v_rad,
+                speed_v_s_rad,
+            } => [angle_v_rad, speed_v_s_rad],
+            Self::Velocity {
+                speed_v_s_rad,
+                forward_v_s_rad,
+            } => [speed_v_s_rad, forward_v_s_rad],
+        }
+    }
+
+    /// What the law feeds forward of the wanted speed, V s/rad. The position law knows the speed
+    /// that it has, not the one that it should have: it feeds `-k2` of it.
+    #[must_use]
+    pub fn forward_v_s_rad(&self) -> f64 {
+        match *self {
+            Self::Position { speed_v_s_rad, .. } => -speed_v_s_rad,
+            Self::Velocity {
+                forward_v_s_rad, ..
+            } => forward_v_s_rad,
+        }
+    }
+
+    /// The same law in another kind of number.
+    #[must_use]
+    pub fn lift<T: Real>(&self) -> BaseLaw<T> {
+        let [first, second] = self.gains().map(T::of);
+        match self {
+            Self::Position { .. } => BaseLaw::Position {
+                angle_v_rad: first,
+                speed_v_s_rad: second,
+            },
+            Self::Velocity { .. } => BaseLaw::Velocity {
+                speed_v_s_rad: first,
+                forward_v_s_rad: second,
+            },
+        }
+    }
+}
+
+impl<T: Real> BaseLaw<T> {
+    /// [`BaseLaw::THESIS_POSITION`] in this kind of number.
+    #[must_use]
+    pub fn thesis_position() -> Self {
+        BaseLaw::THESIS_POSITION.lift()
+    }
+
+    /// [`BaseLaw::THESIS_VELOCITY`] in this kind of number.
+    #[must_use]
+    pub fn thesis_velocity() -> Self {
+        BaseLaw::THESIS_VELOCITY.lift()
+    }
+
+    /// What is controlled minus what is wanted.
+    #[inline]
+    pub fn error(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
+        match self {
+            Self::Position { .. } => angle_rad - target.value,
+            Self::Velocity { .. } => velocity_rad_s - target.value,
+        }
+    }
+
+    /// The control voltage, V.
+    #[inline]
+    pub fn output_v(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
+        match *self {
+            Self::Position {
+                angle_v_rad,
+                speed_v_s_rad,
+            } => -angle_v_rad * (angle_rad - target.value) - speed_v_s_rad * velocity_rad_s,
+            Self::Velocity {
+                speed_v_s_rad,
+                forward_v_s_rad,
+            } => -speed_v_s_rad * (velocity_rad_s - target.value) + forward_v_s_rad * target.value,
+        }
+    }
+
+    /// Speed and acceleration that the target asks for, rad/s and rad/s^2.
+    #[inline]
+    pub fn wanted(&self, target: &Target<T>) -> [T; 2] {
+        match self {
+            Self::Position { .. } => [target.rate, T::ZERO],
+            Self::Velocity { .. } => [target.value, target.rate],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Real and imaginary part of the upper pole of `s^2 + (a + b k2) s + b k1`.
+    fn pole(law: &BaseLaw<f64>, drive: &Drive) -> [f64; 2] {
+        let [k1, k2] = law.gains();
+        let half = 0.5 * (drive.damping_1_s + drive.input_rad_s2_v * k2);
+        [-half, libm::sqrt(drive.input_rad_s2_v * k1 - half * half)]
+    }
+
+    #[test]
+    fn poles_are_where_they_are_placed() {
+        let other = Drive::new(10.0, 100.0);
+        for (law, drive, side, within) in [
+            // The thesis prints five digits.
+            (BaseLaw::THESIS_POSITION, Drive::THESIS, 10.0, 1e-3),
+            (BaseLaw::position(&other), other, 10.0, 1e-12),
+            (
+                BaseLaw::placed(30.0, &other),
+                other,
+                30.0 / 2f64.sqrt(),
+                1e-12,
+            ),
+            (
+                BaseLaw::placed(30.0, &Drive::THESIS),
+                Drive::THESIS,
+                30.0 / 2f64.sqrt(),
+                1e-12,
+            ),
+        ] {
+            let [real, imaginary] = pole(&law, &drive);
+            assert!((real / -side - 1.0).abs() < within, "{law:?}: {real}");
+            assert!(
+                (imaginary / side - 1.0).abs() < within,
+                "{law:?}: {imaginary}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_thesiss_drive_has_the_thesiss_gains() {
+        let volts = Drive::THESIS.with_volts_per_n(0.5).with_limit_v(24.0);
+        assert_eq!(BaseLaw::position(&volts), BaseLaw::THESIS_POSITION);
+        assert_eq!(BaseLaw::velocity(&volts), BaseLaw::THESIS_VELOCITY);
+        // And the rule for other drives gives the same, as far as the thesis prints it.
+        let near = Drive::new(135.0 + 1e-9, 457.0);
+        let [g, c] = BaseLaw::velocity(&near).gains();
+        assert!((g - 1.0).abs() < 1e-9 && (c - 0.295).abs() < 5e-4);
+        let [k1, k2] = BaseLaw::position(&near).gains();
+        assert!((k1 - 0.43764).abs() < 5e-6 && (k2 + 0.25164).abs() < 5e-6);
+    }
+
+    #[test]
+    fn a_velocity_law_is_as_stiff_on_any_drive() {
+        let drive = Drive::new(10.0, 100.0);
+        let [g, c] = BaseLaw::velocity(&drive).gains();
+        assert!((g * drive.input_rad_s2_v - 457.0).abs() < 1e-12);
+        // At the wanted speed without friction nothing is left to correct.
+        assert!((c * drive.input_rad_s2_v - drive.damping_1_s).abs() < 1e-12);
+        assert_eq!(BaseLaw::velocity(&drive).forward_v_s_rad(), c);
+    }
+}

@@ -1,0 +1,170 @@
+//! Is the encoder to be believed? Three things are held against it: no count under a voltage that
+//! surely moves the shaft, a compensator that knows the shaft to turn without one, a jump.
+
+use super::Status;
+use crate::encoder;
+use crate::real::Real;
+
+/// A doubt lasts at most `2^this` times the patience.
+const LONGEST_DOUBT: u32 = 7;
+
+/// What a loop asks of its encoder.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight<T> {
+    /// A voltage that surely moves the shaft.
+    pub(super) moving_v: T,
+    /// Steps after which a still counter is frozen, and after which a loop that sees again
+    /// compensates again.
+    pub(super) patience: u32,
+}
+
+/// What is held against the encoder, in steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct State {
+    /// Without a count under a voltage that moves the shaft.
+    pushed: u32,
+    /// For which the compensator's doubt still holds.
+    doubt: u32,
+    /// Doubts since the last count.
+    doubts: u32,
+    /// For which the loop stays blind.
+    blind: u32,
+}
+
+impl<T: Real> Sight<T> {
+    /// Look at a sample: the flags of the encoder, and whether the loop is blind: now, or so
+    /// short a time ago that it may be again.
+    #[inline]
+    pub(super) fn step(
+        &self,
+        state: &mut State,
+        sample: &encoder::Sample<T>,
+        applied_v: T,
+        doubted: bool,
+        target: Status,
+    ) -> (Status, bool) {
+        let mut status = target;
+        if sample.jumped {
+            status |= Status::JUMPED;
+        }
+        if self.frozen(state, sample, applied_v, doubted) {
+            status |= Status::FROZEN;
+        }
+        let unsound = Status::FROZEN | Status::JUMPED | Status::NOT_FINITE;
+        if status.has(unsound) {
+            state.blind = self.patience;
+        } else {
+            state.blind = state.blind.saturating_sub(1);
+        }
+        (status, state.blind > 0)
+    }
+
+    #[inline]
+    fn frozen(
+        &self,
+        state: &mut State,
+        sample: &encoder::Sample<T>,
+        applied_v: T,
+        doubted: bool,
+    ) -> bool {
+        if sample.still == 0 {
+            state.pushed = 0;
+        } else if applied_v.abs() >= self.moving_v {
+            state.pushed = state.pushed.saturating_add(1);
+        } else if state.pushed < self.patience {
+            // Once frozen, only a count shows that the encoder lives again.
+            state.pushed = 0;
+        }
+        if sample.still == 0 {
+            (state.doubt, state.doubts) = (0, 0);
+        } else if doubted {
+            // A doubt may be wrong, and the control law alone too weak to show it: compensation is
+            // tried again, after a time that doubles.
+            state.doubt = self.patience << state.doubts.min(LONGEST_DOUBT);
+            state.doubts = state.doubts.saturating_add(1);
+        } else {
+            state.doubt = state.doubt.saturating_sub(1);
+        }
+        state.pushed >= self.patience || state.doubt > 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIGHT: Sight<f64> = Sight {
+        moving_v: 1.0,
+        patience: 3,
+    };
+
+    fn sample(still: u32, jumped: bool) -> encoder::Sample<f64> {
+        encoder::Sample {
+            moved_rad: 0.0,
+            jumped,
+            still,
+        }
+    }
+
+    /// Steps until the loop sees again, where nothing more is held against the encoder.
+    fn blind_for(state: &mut State, still: u32) -> u32 {
+        (0..10_000)
+            .take_while(|_| {
+                SIGHT
+                    .step(state, &sample(still, false), 0.0, false, Status::OK)
+                    .1
+            })
+            .count() as u32
+    }
+
+    #[test]
+    fn a_still_counter_is_frozen_under_a_voltage_that_moves() {
+        let mut state = State::default();
+        for step in 1..=2 {
+            let (status, blind) =
+                SIGHT.step(&mut state, &sample(step, false), 1.0, false, Status::OK);
+            assert!(status == Status::OK && !blind);
+        }
+        let (status, blind) = SIGHT.step(&mut state, &sample(3, false), 1.0, false, Status::OK);
+        assert!(status == Status::FROZEN && blind);
+        // A voltage that does not move the shaft proves nothing; a count does.
+        let (status, _) = SIGHT.step(&mut state, &sample(4, false), 0.0, false, Status::OK);
+        assert!(status == Status::FROZEN);
+        let (status, blind) = SIGHT.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
+        assert!(status == Status::OK && blind);
+        assert_eq!(blind_for(&mut state, 0), 1);
+    }
+
+    #[test]
+    fn a_weak_voltage_never_freezes() {
+        let mut state = State::default();
+        for step in 1..100 {
+            let (status, _) = SIGHT.step(&mut state, &sample(step, false), 0.99, false, Status::OK);
+            assert!(status == Status::OK);
+        }
+    }
+
+    #[test]
+    fn a_jump_and_a_bad_target_blind_for_the_patience() {
+        for (jumped, target) in [(true, Status::OK), (false, Status::NOT_FINITE)] {
+            let mut state = State::default();
+            let (status, blind) = SIGHT.step(&mut state, &sample(0, jumped), 0.0, false, target);
+            assert!(blind && status.has(Status::JUMPED) == jumped && status.has(target) != jumped);
+            assert_eq!(blind_for(&mut state, 0), 2);
+        }
+    }
+
+    #[test]
+    fn a_doubt_doubles_and_a_count_ends_it() {
+        let mut state = State::default();
+        let mut lasted = [0; 3];
+        for time in &mut lasted {
+            SIGHT.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
+            *time = blind_for(&mut state, 9);
+        }
+        assert_eq!(lasted, [3 - 1 + 2, 6 - 1 + 2, 12 - 1 + 2]);
+        SIGHT.step(&mut state, &sample(0, false), 0.0, false, Status::OK);
+        SIGHT.step(&mut state, &sample(9, false), 0.0, true, Status::OK);
+        assert_eq!(blind_for(&mut state, 9), 3 - 1 + 2);
+    }
+}

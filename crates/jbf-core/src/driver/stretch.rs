@@ -1,0 +1,196 @@
+//! A stretch: from one kink of the excitation to the next, in steps that the error allows.
+//!
+//! A step is tried and judged (`trial.rs`), then taken or not. What a stretch remembers from one
+//! trial to the next is its [`Aim`]:
+//!
+//! ```text
+//! aim            what the step does                          next aim
+//! Ahead, Turned  asperities touch or part inside it          Touch
+//! Ahead, Touch   it began on the other side already          Turned, on that side
+//! Touch          its error is too large                      Ahead
+//! Touch          it is sound and lands on eps_tr             Ahead, on the other side
+//! Ahead, Turned  it is sound                                 Ahead
+//! ```
+
+use super::follow::Way;
+use super::goal::inverse_root;
+use super::trial::{Tried, Verdict};
+use super::{Excitation, Film, Sample};
+use crate::real::Real;
+use crate::stepper::Linear;
+
+/// What the next step is to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Aim {
+    /// Go as far as the error allows.
+    Ahead,
+    /// Land on eps_tr, which lies so many seconds ahead; beyond it the other side begins.
+    Touch(f64),
+    /// Go ahead on a side that was just found out; where even that seems wrong, the journal stands
+    /// at eps_tr, and the step is taken.
+    Turned,
+}
+
+/// The equations where a step begins.
+pub(super) struct Here<T, const N: usize> {
+    /// Speed, m/s.
+    pub(super) speed_m_s: f64,
+    pub(super) linear: Linear<T, N>,
+    /// Rate of the equations' input.
+    pub(super) rate: T,
+}
+
+/// A stretch on its way.
+pub(super) struct Stretch<T, Y, const N: usize> {
+    /// Sign of the speed.
+    pub(super) direction: f64,
+    /// Where it ends, s.
+    pub(super) end_s: f64,
+    pub(super) system: Y,
+    pub(super) aim: Aim,
+    pub(super) here: Here<T, N>,
+}
+
+impl<T, F, E, S, const N: usize> Way<'_, T, F, E, S, N>
+where
+    T: Real,
+    F: Film<T, N>,
+    E: Excitation,
+    S: FnMut(usize, &Sample<T>),
+{
+    /// From here to the next kink of the excitation or the last sample.
+    pub(super) fn stretch(&mut self) {
+        let mut stretch = self.begin();
+        while self.time_s < stretch.end_s {
+            let tried = self.attempt(&stretch);
+            match self.judge(&stretch, &tried) {
+                Verdict::TooLong(share) => {
+                    self.cost.rejected += 1;
+                    self.step_s = (tried.step_s * share).max(tried.shortest_s);
+                    if let Aim::Touch(_) = stretch.aim {
+                        stretch.aim = Aim::Ahead;
+                    }
+                }
+                Verdict::Stuck => self.wait(&mut stretch, &tried),
+                Verdict::Reverses(zero_s) => {
+                    self.cost.rejected += 1;
+                    stretch.end_s = zero_s;
+                }
+                Verdict::Touches(ahead_s) => {
+                    self.cost.rejected += 1;
+                    stretch.aim = Aim::Touch(ahead_s);
+                }
+                Verdict::WrongSide => {
+                    self.cost.rejected += 1;
+                    self.change_side(&mut stretch);
+                    stretch.aim = Aim::Turned;
+                    self.look(&mut stretch);
+                }
+                Verdict::Sound(along) => self.take(&mut stretch, &tried, &along),
+            }
+        }
+        self.time_s = stretch.end_s;
+    }
+
+    fn begin(&mut self) -> Stretch<T, F::System, N> {
+        let last = self.times_s[self.times_s.len() - 1];
+        let end_s = self.excitation.next_kink_s(self.time_s).min(last);
+        let direction = self.direction(end_s);
+        let system = self.film.system(self.touching);
+        let speed_m_s = self.excitation.velocity_m_s(self.time_s);
+        let input = self.input(direction * speed_m_s);
+        Stretch {
+            direction,
+            end_s,
+            here: Here {
+                speed_m_s,
+                linear: self.linearise(&system, input),
+                rate: self.input_rate(direction),
+            },
+            system,
+            aim: Aim::Ahead,
+        }
+    }
+
+    /// Sign of the speed on the stretch that ends at `end_s`.
+    fn direction(&self, end_s: f64) -> f64 {
+        let ahead = (0.01 * self.step_s).min(0.5 * (end_s - self.time_s));
+        self.excitation.velocity_m_s(self.time_s + ahead).sign()
+    }
+
+    /// The input of the equations at an unsigned speed, m/s.
+    #[inline]
+    pub(super) fn input(&self, speed_m_s: f64) -> T {
+        T::of(speed_m_s) * self.film.journal().inverse_u_tr
+    }
+
+    /// Its rate here.
+    #[inline]
+    fn input_rate(&self, direction: f64) -> T {
+        let journal = self.film.journal();
+        T::of(direction * self.excitation.acceleration_m_s2(self.time_s))
+            * journal.inverse_u_tr
+            * (T::ONE / journal.rate)
+    }
+
+    /// The equations anew, where the place or the side has changed.
+    #[inline]
+    fn look(&mut self, stretch: &mut Stretch<T, F::System, N>) {
+        let input = self.input(stretch.direction * stretch.here.speed_m_s);
+        stretch.here.linear = self.linearise(&stretch.system, input);
+        stretch.here.rate = self.input_rate(stretch.direction);
+    }
+
+    fn change_side(&mut self, stretch: &mut Stretch<T, F::System, N>) {
+        self.touching = !self.touching;
+        stretch.system = self.film.system(self.touching);
+    }
+
+    /// Take a sound step: to its end, and, where it was to land on eps_tr, to the other side.
+    #[inline]
+    fn take(
+        &mut self,
+        stretch: &mut Stretch<T, F::System, N>,
+        tried: &Tried<T, N>,
+        along: &[[T; 5]; 2],
+    ) {
+        self.state = tried.stages.end;
+        self.emit(along, tried.step_s, tried.to_s);
+        self.cost.steps += 1;
+        if let Aim::Touch(_) = stretch.aim {
+            self.change_side(stretch);
+        } else {
+            let factor = (0.8 * inverse_root(tried.share.max(1e-8))).min(5.0);
+            let next_s = tried.step_s * factor;
+            if tried.step_s == self.step_s || factor < 1.0 || next_s > self.step_s {
+                self.step_s = next_s;
+            }
+        }
+        stretch.aim = Aim::Ahead;
+        self.go_on(stretch, tried);
+    }
+
+    /// Nothing left to try: the film waits where it is.
+    #[cold]
+    fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<T, N>) {
+        let [x, y] = [self.state[0], self.state[1]];
+        self.state = self.film.at([x, y]);
+        let still = |place: T| [place, T::ZERO, T::ZERO, T::ZERO, T::ZERO];
+        self.emit(&[still(x), still(y)], tried.step_s, tried.to_s);
+        self.step_s = 1e4 * tried.shortest_s;
+        if let Aim::Touch(_) = stretch.aim {
+            stretch.aim = Aim::Ahead;
+        }
+        self.go_on(stretch, tried);
+    }
+
+    /// Stand at the end of a step, and look there if the stretch goes on.
+    #[inline]
+    fn go_on(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<T, N>) {
+        self.time_s = tried.to_s;
+        stretch.here.speed_m_s = tried.speed_m_s;
+        if self.time_s < stretch.end_s {
+            self.look(stretch);
+        }
+    }
+}

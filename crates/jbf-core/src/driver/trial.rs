@@ -1,0 +1,197 @@
+//! One step of a stretch, tried and judged; it changes nothing but the count of what it cost.
+
+use super::follow::{radius, Way};
+use super::goal::inverse_root;
+use super::kinks::{eps_along, root};
+use super::stretch::{Aim, Stretch};
+use super::{Excitation, Film, Sample};
+use crate::real::Real;
+use crate::stepper::rodas5p::{self, Input, Stages};
+use crate::stepper::rodas5p_tableau::NODES;
+
+/// A step that was tried.
+pub(super) struct Tried<T, const N: usize> {
+    pub(super) step_s: f64,
+    /// Where it ends, s, and the speed there, m/s.
+    pub(super) to_s: f64,
+    pub(super) speed_m_s: f64,
+    pub(super) stages: Stages<T, N>,
+    /// Its error over what is allowed.
+    pub(super) share: f64,
+    /// Finite, and no leap across the gap.
+    pub(super) sound: bool,
+    /// The shortest step that time resolves here, s.
+    pub(super) shortest_s: f64,
+}
+
+/// What a tried step turned out to be.
+pub(super) enum Verdict<T> {
+    /// Its error is too large: try this much of it.
+    TooLong(f64),
+    /// As short as time resolves, and still none that the film could take.
+    Stuck,
+    /// The speed changes its sign at this time inside it.
+    Reverses(f64),
+    /// Asperities touch or part inside it, so many seconds from its start.
+    Touches(f64),
+    /// It began on the other side of eps_tr than was thought.
+    WrongSide,
+    /// Sound; place along it, as polynomials.
+    Sound([[T; 5]; 2]),
+}
+
+/// What a step does at eps_tr.
+enum Touch {
+    /// It stays on its side.
+    No,
+    /// It passes at this share of its length.
+    At(f64),
+    /// It began on the other side already.
+    Wrong,
+}
+
+impl<T, F, E, S, const N: usize> Way<'_, T, F, E, S, N>
+where
+    T: Real,
+    F: Film<T, N>,
+    E: Excitation,
+    S: FnMut(usize, &Sample<T>),
+{
+    /// How long the next step shall be, s: never a remainder too short to be worth a step.
+    #[inline]
+    fn length(&self, stretch: &Stretch<T, F::System, N>) -> f64 {
+        let room = stretch.end_s - self.time_s;
+        let (wanted, landing) = match stretch.aim {
+            Aim::Touch(ahead_s) => (ahead_s, true),
+            Aim::Ahead | Aim::Turned => (self.step_s, false),
+        };
+        if wanted >= 0.999 * room {
+            room
+        } else if wanted > 0.5 * room && !landing {
+            0.5 * room
+        } else {
+            wanted
+        }
+    }
+
+    #[inline]
+    pub(super) fn attempt(&mut self, stretch: &Stretch<T, F::System, N>) -> Tried<T, N> {
+        let step_s = self.length(stretch);
+        let to_s = if step_s == stretch.end_s - self.time_s {
+            stretch.end_s
+        } else {
+            self.time_s + step_s
+        };
+        let dt = T::of(step_s) * self.film.journal().rate;
+        let input = |speed_m_s: f64| self.input(stretch.direction * speed_m_s);
+        let speed_at = |c: f64| self.excitation.velocity_m_s(self.time_s + c * step_s);
+        let speed_m_s = self.excitation.velocity_m_s(to_s);
+        let seen = Input {
+            at_nodes: NODES.map(|c| input(speed_at(c))),
+            at_end: input(speed_m_s),
+            change: stretch.here.rate * dt,
+        };
+        let stages = rodas5p::step(
+            &stretch.system,
+            &stretch.here.linear,
+            &self.state,
+            &seen,
+            dt,
+        );
+        self.cost.slopes += 7;
+        let (eps_here, eps) = (radius(&self.state), radius(&stages.end));
+        let depth = eps - self.loaded.eps_tr.value();
+        let error = stages.error();
+        let share = self
+            .goal
+            .share([error[0].value(), error[1].value()], depth, eps);
+        let clock = self.film.journal().rate.value();
+        Tried {
+            step_s,
+            to_s,
+            speed_m_s,
+            stages,
+            share,
+            // No step takes more than three quarters of the gap: asperities told to be free hold
+            // nothing back.
+            sound: share.is_finite() && 1.0 - eps > 0.25 * (1.0 - eps_here),
+            shortest_s: 1e-14 / clock + 4e-16 * libm::fabs(self.time_s),
+        }
+    }
+
+    #[inline]
+    pub(super) fn judge(
+        &mut self,
+        stretch: &Stretch<T, F::System, N>,
+        tried: &Tried<T, N>,
+    ) -> Verdict<T> {
+        if tried.step_s > tried.shortest_s {
+            if !tried.sound {
+                return Verdict::TooLong(0.1);
+            }
+            if tried.share > 1.0 {
+                return Verdict::TooLong((0.9 * inverse_root(tried.share)).clamp(0.1, 0.9));
+            }
+        } else {
+            self.cost.forced += 1;
+            if !tried.sound {
+                return Verdict::Stuck;
+            }
+        }
+        if let Some(zero_s) = self.untold_reversal(stretch.direction, tried) {
+            return Verdict::Reverses(zero_s);
+        }
+        let stages = &tried.stages;
+        let along = [
+            stages.quartic(&self.state, 0),
+            stages.quartic(&self.state, 1),
+        ];
+        match (self.passes_touch(&along), stretch.aim) {
+            (Touch::Wrong, Aim::Ahead | Aim::Touch(_)) => Verdict::WrongSide,
+            (Touch::At(share), Aim::Ahead | Aim::Turned)
+                if share * tried.step_s > tried.shortest_s =>
+            {
+                Verdict::Touches(share * tried.step_s)
+            }
+            _ => Verdict::Sound(along),
+        }
+    }
+
+    /// Where inside a step the speed leaves `direction`, if it does.
+    #[inline]
+    fn untold_reversal(&self, direction: f64, tried: &Tried<T, N>) -> Option<f64> {
+        if tried.speed_m_s * direction > 0.0 || tried.speed_m_s == direction {
+            return None;
+        }
+        self.reversal_before(tried.to_s, tried.speed_m_s)
+    }
+
+    #[cold]
+    fn reversal_before(&self, to_s: f64, at_end: f64) -> Option<f64> {
+        let speed = |t: f64| self.excitation.velocity_m_s(t);
+        // A kink that was told: landed on, but for rounding.
+        let ahead = 1e-3 * (to_s - self.time_s);
+        if libm::fabs(at_end) <= 1e-9 * libm::fabs(speed(to_s - ahead) - at_end) / 1e-3 {
+            return None;
+        }
+        let zero = root(self.time_s + ahead, to_s, 1e-15 * libm::fabs(to_s), speed);
+        (zero > self.time_s + ahead).then_some(zero)
+    }
+
+    /// Does the eccentricity leave its side of eps_tr along a step?
+    fn passes_touch(&self, along: &[[T; 5]; 2]) -> Touch {
+        let side = if self.touching { 1.0 } else { -1.0 };
+        let eps_tr = self.loaded.eps_tr.value();
+        let inside = |s: f64| side * (eps_along(along, s) - eps_tr);
+        let Some(beyond) = [1.0, 0.5]
+            .into_iter()
+            .find(|&s| inside(s) < -self.goal.band)
+        else {
+            return Touch::No;
+        };
+        if inside(0.0) <= 0.0 {
+            return Touch::Wrong;
+        }
+        Touch::At(root(0.0, beyond, 1e-6, inside))
+    }
+}

@@ -1,0 +1,58 @@
+//! Numbers that Python asks for and does not keep itself: the thesis's bench, the gains of the
+//! control laws, the flags of a loop.
+
+use super::compensators::ENTRIES;
+use jbf_core::controller::{BaseLaw, Status};
+use jbf_core::observer::velocity;
+use jbf_core::plant::Drive;
+use jbf_core::{encoder, Bearing};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Sizes of the thesis's bearing, and its lubricant.
+#[pyfunction]
+pub fn thesis_bearing(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let (d, b) = (PyDict::new(py), Bearing::THESIS);
+    d.set_item("radius_m", b.radius_m)?;
+    d.set_item("length_m", b.length_m)?;
+    d.set_item("clearance_m", b.clearance_m)?;
+    d.set_item("mass_kg", b.mass_kg)?;
+    d.set_item("count", b.count)?;
+    d.set_item("viscosity_pa_s", b.viscosity_pa_s)?;
+    Ok(d)
+}
+
+/// The thesis's drive, encoder and velocity observer, the entries of a table, and the flags of a
+/// loop by name.
+#[pyfunction]
+pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let (d, drive, thesis) = (PyDict::new(py), PyDict::new(py), Drive::THESIS);
+    drive.set_item("damping_1_s", thesis.damping_1_s)?;
+    drive.set_item("input_rad_s2_v", thesis.input_rad_s2_v)?;
+    drive.set_item("volts_per_n", thesis.volts_per_n)?;
+    drive.set_item("limit_v", thesis.limit_v)?;
+    d.set_item("drive", drive)?;
+    d.set_item("counts_per_rad", encoder::THESIS_COUNTS_PER_RAD)?;
+    d.set_item("counter_bits", encoder::THESIS_BITS)?;
+    d.set_item("observer_1_s", velocity::THESIS_1_S)?;
+    d.set_item("table_entries", ENTRIES)?;
+    let flags = PyDict::new(py);
+    for (name, flag) in Status::NAMED {
+        flags.set_item(name, flag.bits())?;
+    }
+    d.set_item("flags", flags)?;
+    Ok(d)
+}
+
+/// Gains of the thesis's control law on a drive: k1 and k2 of the position law, g and C of the
+/// velocity law.
+#[pyfunction]
+pub fn control_gains(position: bool, damping_1_s: f64, input_rad_s2_v: f64) -> (f64, f64) {
+    let drive = Drive::new(damping_1_s, input_rad_s2_v);
+    let law = if position {
+        BaseLaw::position(&drive)
+    } else {
+        BaseLaw::velocity(&drive)
+    };
+    law.gains().into()
+}

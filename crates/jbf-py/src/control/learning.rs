@@ -1,0 +1,73 @@
+//! The learning compensator as Python hands it over.
+
+use super::settings::LoopSpec;
+use crate::bearing::{refused, Sizes};
+use jbf_core::compensator::learning::{Learned, Learning, Rule, Settings};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::{Clock, Real};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The film that runs in the loop, and how it learns; gains that are none are the thesis's.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct LearningSpec {
+    bearing: Sizes,
+    load_n: f64,
+    clock: String,
+    f_m: f64,
+    u_tr_m_s: f64,
+    k0: f64,
+    gamma: f64,
+    eps_tr: Option<f64>,
+    volts: f64,
+    k0_gain: Option<f64>,
+    gamma_gain: Option<f64>,
+    k0_bounds: (f64, f64),
+    gamma_bounds: (f64, f64),
+}
+
+impl LearningSpec {
+    /// The compensator for a loop.
+    pub fn compensator<T: Real>(self, settings: &LoopSpec) -> PyResult<Learning<T>> {
+        let bearing = self.bearing.checked()?;
+        let clock = Clock::from_name(&self.clock)
+            .ok_or_else(|| PyValueError::new_err("clock is neither journal nor thesis"))?;
+        let parameters = Parameters {
+            f_m: T::of(self.f_m),
+            u_tr_m_s: T::of(self.u_tr_m_s),
+            k0: T::of(self.k0),
+            gamma: T::of(self.gamma),
+        };
+        let law = Journal::new(&bearing, self.load_n, &parameters, clock)
+            .and_then(|law| match self.eps_tr {
+                Some(eps_tr) => law.with_eps_tr(eps_tr),
+                None => Ok(law),
+            })
+            .map_err(refused)?;
+        let rule = if settings.position {
+            Rule::THESIS_POSITION
+        } else {
+            Rule::Velocity
+        };
+        let begin = Learned {
+            k0: self.k0,
+            gamma: self.gamma,
+        };
+        let learning = Settings::new(rule, begin, self.volts, bearing.radius_m, settings.dt_s);
+        let learning = learning
+            .with_gain(Learned {
+                k0: self.k0_gain.unwrap_or(learning.gain.k0),
+                gamma: self.gamma_gain.unwrap_or(learning.gain.gamma),
+            })
+            .with_least(Learned {
+                k0: self.k0_bounds.0,
+                gamma: self.gamma_bounds.0,
+            })
+            .with_most(Learned {
+                k0: self.k0_bounds.1,
+                gamma: self.gamma_bounds.1,
+            });
+        Learning::new(law, &learning).map_err(refused)
+    }
+}

@@ -1,0 +1,27 @@
+"""Numbers that the core keeps: the thesis's bench, and what the flags of a loop are."""
+
+from __future__ import annotations
+
+from jbf import _core
+
+_CORE = _core.control_constants()
+
+DRIVE = _CORE["drive"]
+"""a, b, friction scale and largest input of the thesis's drive, by the names of `Bench`."""
+
+COUNTS_PER_RAD = _CORE["counts_per_rad"]
+COUNTER_BITS = _CORE["counter_bits"]
+"""The thesis's encoder."""
+
+OBSERVER_1_S = _CORE["observer_1_s"]
+"""Gain of the thesis's velocity observer."""
+
+TABLE_ENTRIES = _CORE["table_entries"]
+"""Levels in a look-up table."""
+
+SATURATED = _CORE["flags"]["saturated"]
+FROZEN = _CORE["flags"]["frozen"]
+JUMPED = _CORE["flags"]["jumped"]
+NOT_FINITE = _CORE["flags"]["not_finite"]
+FALLBACK = _CORE["flags"]["fallback"]
+"""Flags of `Result.status`."""

@@ -1,0 +1,60 @@
+"""The compensators that users choose between, each with the numbers that its core part needs."""
+
+from __future__ import annotations
+
+from jbf.control.bench import thesis_model
+from jbf.control.loop import gains
+from jbf.control.schemes.carried import Observed, Table
+from jbf.control.schemes.learning import LISTED_VOLTS, Learning
+from jbf.control.schemes.plain import Coulomb, NoCompensation, Repetitive
+from jbf.control.schemes.scheme import Scheme
+from jbf.control.settings import Settings
+from jbf.control.tuning import friction_level_v
+from jbf.errors import InputError, did_you_mean
+from jbf.models.model import Model
+
+SCHEMES = ("none", "learning", "coulomb", "table", "repetitive", "observed")
+"""Names that `scheme` knows."""
+
+
+def scheme(name: str, model: Model | None = None, settings: Settings | None = None) -> Scheme:
+    """The scheme of that name; `model` is what it knows of friction, where it knows any.
+
+    Without a model the learning scheme has the thesis's own numbers, a table and the observed
+    compensator the friction that fits the thesis's bench.
+
+    Raises
+    ------
+    InputError
+        The name is not known, or the scheme does not go with the model's law.
+    """
+    if name == "table":
+        return Table(thesis_model() if model is None else model)
+    if name == "observed":
+        return Observed(thesis_model() if model is None else model, settings)
+    if name == "learning":
+        return Learning() if model is None else Learning.of(model)
+    plain: dict[str, type[NoCompensation | Coulomb | Repetitive]] = {
+        "none": NoCompensation,
+        "coulomb": Coulomb,
+        "repetitive": Repetitive,
+    }
+    if name not in plain:
+        raise InputError(problem=f'there is no scheme "{name}"', mend=did_you_mean(name, SCHEMES))
+    return plain[name]()
+
+
+__all__ = [
+    "LISTED_VOLTS",
+    "SCHEMES",
+    "Coulomb",
+    "Learning",
+    "NoCompensation",
+    "Observed",
+    "Repetitive",
+    "Scheme",
+    "Table",
+    "friction_level_v",
+    "gains",
+    "scheme",
+]

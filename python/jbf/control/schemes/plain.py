@@ -1,0 +1,71 @@
+"""Schemes that know a few numbers of friction, or none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from jbf.control.bench import Bench
+from jbf.control.constants import OBSERVER_1_S
+from jbf.control.loop import gains
+from jbf.control.schemes.scheme import Unguarded
+from jbf.control.task import Task
+
+
+@dataclass(frozen=True)
+class NoCompensation(Unguarded):
+    """The control law alone."""
+
+    name: str = "none"
+
+    def core(self, task: Task, bench: Bench) -> dict[str, Any]:
+        """See `Scheme`."""
+        return {"kind": "none"}
+
+
+@dataclass(frozen=True)
+class Coulomb(Unguarded):
+    """The Coulomb friction observer, (6.1): gain k_F, exponent p, the most it may learn."""
+
+    gain: float = 0.01
+    exponent: float = 1.0
+    limit_v: float = 5.0
+    start_v: float = 0.0
+    name: str = "coulomb"
+
+    def core(self, task: Task, bench: Bench) -> dict[str, Any]:
+        """See `Scheme`."""
+        return {
+            "kind": "coulomb",
+            "gain": self.gain,
+            "exponent": self.exponent,
+            "limit_v": self.limit_v,
+            "start_v": self.start_v,
+        }
+
+
+@dataclass(frozen=True)
+class Repetitive(Unguarded):
+    """Learning from lap to lap: gain in volts per unit of error, smoothing, lead, limit."""
+
+    gain: float | None = None
+    smooth: float = 0.1
+    lead_s: float | None = None
+    limit_v: float = 3.0
+    name: str = "repetitive"
+
+    def core(self, task: Task, bench: Bench) -> dict[str, Any]:
+        """See `Scheme`."""
+        # Half of what the loop's stiffness against a steady disturbance would take.
+        g, c = gains(task, bench)
+        stuck = bench.input_rad_s2_v / (bench.damping_1_s + OBSERVER_1_S)
+        stiffness = g / (1.0 + c * stuck) if task.is_position else g + c
+        lead = (0.1 if task.is_position else 0.02) if self.lead_s is None else self.lead_s
+        return {
+            "kind": "repetitive",
+            "steps_per_lap": round(task.period_s / bench.dt_s),
+            "lap_gain": 0.5 * stiffness if self.gain is None else self.gain,
+            "smooth": self.smooth,
+            "lead_s": lead,
+            "limit_v": self.limit_v,
+        }

@@ -14,6 +14,8 @@ from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 
 N = 1000
+BARE_N = 2.0
+"""RMS of the bare law."""
 LAW = 3
 """Parameters of the law; each effect brings one more."""
 SAMPLES = Samples(("run",), (0.02,), (np.ones(N, bool),), (np.ones(N),))
@@ -21,7 +23,7 @@ Set = frozenset[str]
 
 
 def solution(effects: Iterable[str], gain: float, smooth: int = 1, slope: float = 0.0) -> Solution:
-    """A residual of 1 N less what gains so much in twice the log likelihood.
+    """A residual of 2 N less what gains so much in twice the log likelihood.
 
     Parameters
     ----------
@@ -31,7 +33,7 @@ def solution(effects: Iterable[str], gain: float, smooth: int = 1, slope: float 
         Share of the residual that a next step would take away.
     """
     sign = np.where(np.arange(N) // smooth % 2, 1.0, -1.0)
-    residual = float(np.exp(-gain / (2.0 * N))) * sign
+    residual = BARE_N * float(np.exp(-gain / (2.0 * N))) * sign
     effects = tuple(effects)
     jacobian = np.zeros((N, LAW + len(effects)))
     jacobian[: round(slope * N), 0] = residual[: round(slope * N)]

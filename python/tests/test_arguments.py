@@ -21,7 +21,7 @@ ANYTHING: Any = None
 CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "effects a word": (
         lambda: jbf.fit(RIG, [RUN], effects="presliding"),
-        'effects is the one word "presliding"; write a list: effects=["presliding"]',
+        'effects is text where a list of names is meant; write effects=["presliding"]',
     ),
     "effects none": (lambda: jbf.fit(RIG, [RUN], effects=ANYTHING), "effects is None; write a"),
     "effects numbers": (lambda: Model(RIG, effects=[1]), "effects holds an int"),

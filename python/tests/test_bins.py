@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from jbf import Fit, Run, compare
+from jbf.comparison.axes import all_axes
 from jbf.comparison.bins import Axis, Bin, Binned, label
 from jbf.comparison.patterns import Failure, pattern_words
 from jbf.reporting.bin_axes import bin_axis
@@ -92,3 +94,15 @@ def test_runs_called_after_directions_have_none() -> None:
 def test_a_pattern_of_very_many_bins_has_words() -> None:
     runs = [Bin(str(i)) for i in range(80)]
     assert _words("run", runs, [1.0] * 80).startswith("all of run, one sign throughout")
+
+
+def test_samples_go_into_the_bin_of_their_motion(bare_fit: Fit, runs: list[Run]) -> None:
+    comparison = compare(bare_fit.model, runs)
+    for axis in all_axes(comparison.campaign, 0.055):
+        for p, places in zip(comparison.campaign.prepared, axis.places, strict=True):
+            v = p.motion.velocity_m_s
+            for i, b in enumerate(axis.bins):
+                if b.direction > 0:
+                    assert np.all(v[places == i] > 0.0)
+                elif b.direction < 0 and not b.with_rest:
+                    assert np.all(v[places == i] < 0.0)

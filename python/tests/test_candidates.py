@@ -15,7 +15,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from made_up import solution
+from made_up import BARE_N, solution
 
 RING = "drive_compliance"
 
@@ -98,11 +98,11 @@ def test_a_ringing_drive_is_no_start_for_others(campaign: Campaign, fits: Fits) 
 def test_a_better_peak_voids_what_followed_from_the_other(campaign: Campaign, fits: Fits) -> None:
     every = Candidates(campaign, "coulomb", "journal")
     before = every.left_out_rms(["sensor_lag"])
-    assert before == pytest.approx(1.0)
+    assert before == pytest.approx(BARE_N)
     fits.peaks = 200.0
     found = every.search_peaks(["sensor_lag"])
     assert every.converge(["sensor_lag"]) is found
-    assert every.left_out_rms(["sensor_lag"]) == pytest.approx(np.exp(-200.0 / 2000.0))
+    assert every.left_out_rms(["sensor_lag"]) == pytest.approx(BARE_N * np.exp(-200.0 / 2000.0))
     # Once for each set.
     count = len(fits.notes)
     assert every.search_peaks(["sensor_lag"]) is found

@@ -160,12 +160,12 @@ def test_a_stand_in_found_first_goes_when_the_truth_is_whole() -> None:
 @pytest.mark.parametrize(("strength", "told"), [(61.0, True), (59.0, False)])
 def test_what_fits_and_does_not_predict_is_structure(strength: float, told: bool) -> None:
     gains = {"": 0.0, "sensor_lag": price(1, N, 2, DEFAULT) + strength}
-    left_out = {frozenset[str](): 1.0, frozenset(["sensor_lag"]): 1.1}
+    left_out = {frozenset[str](): 2.0, frozenset(["sensor_lag"]): 2.1}
     found = MadeUp(["sensor_lag", "sensor_drift"], sets(gains), left_out=left_out)
     present, steps, refused = recipe._select(cast(Candidates, found), 0.5)
     assert present == ()
     assert steps[0].trials[0].outcome == "rejected"
     assert [r.axis for r in refused] == (["run"] if told else [])
     if told:
-        assert "sensor_lag fits 1 N down to 0.95" in refused[0].where
+        assert "sensor_lag fits 2 N down to 1.9" in refused[0].where
         assert refused[0].share == pytest.approx(1.0 - np.exp(-gains["sensor_lag"] / N))

@@ -98,28 +98,13 @@ def test_bad_models_are_refused() -> None:
         Model(Rig.thesis(), effects=["position_ripple"]).predict(no_angle)
 
 
-def test_the_catalogue_is_complete() -> None:
-    assert list(effects()) == [
-        "drive_compliance",
-        "backlash",
-        "shear_thinning",
-        "thermal_thinning",
-        "load_dependence",
-        "film_memory",
-        "wear_in",
-        "dwell_stiction",
-        "stribeck_excess",
-        "direction_asymmetry",
-        "position_ripple",
-        "presliding",
-        "coulomb_drag",
-        "quadratic_drag",
-        "inertia_leak",
-        "sensor_lag",
-        "time_delay",
-        "sensor_offset",
-        "sensor_drift",
-    ]
+STAGES = ("drive", "lubricant", "film", "contact", "other friction", "instrument")
+
+
+def test_the_catalogue_is_in_the_order_of_the_chain_and_its_pages_are_full() -> None:
+    stages = [STAGES.index(effect.stage) for effect in effects().values()]
+    assert stages == sorted(stages)
+    assert set(stages) == set(range(len(STAGES)))
     for effect in effects().values():
         assert effect.equation
         assert effect.source

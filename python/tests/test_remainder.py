@@ -16,6 +16,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.replicates import find_replicates
+from jbf.diagnosis.tones import find_tones
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import approach, settle
 from jbf.estimation.noise import Noise
@@ -24,6 +25,7 @@ from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 SIGMA_N = 0.3
+LOOSE = replace(DEFAULT, tone_share=0.0)
 
 
 @cache
@@ -130,3 +132,26 @@ def test_a_cell_that_is_not_straight_shows_along_the_force() -> None:
 
     found = find_remainder(*_with(bent, 5))
     assert "force" in {r.axis for r in found}
+
+
+def test_a_tone_is_seen_where_chance_would_not_show_it() -> None:
+    """Of white noise a line of the spectrum is exponential; a tone of amplitude A adds
+    A^2 n / (4 sigma^2) to it (Fisher 1929)."""
+    problem, solution = _solved()
+    samples, prepared = solution.samples, problem.campaign.prepared
+    n, run = len(samples.counted[1]), 1
+    assert samples.counted[run].mean() > 0.95
+    # A whole number of turns: the tone falls on one line.
+    frequency = round(4.7 * n * samples.steps_s[run]) / (n * samples.steps_s[run])
+    lines = n / 2.0 - 8.0
+    least = float(np.sqrt(4.0 * np.log(lines / DEFAULT.tone_chance) / n))
+    seen = {}
+    for part in (0.75, 1.3):
+        seen[part] = 0
+        for seed in range(25):
+            e = [_white(np.random.default_rng(100 * seed + i), i) for i in range(len(prepared))]
+            tone = np.sin(2.0 * np.pi * frequency * prepared[run].run.time_s + seed)
+            e[run] = e[run] + part * least * SIGMA_N * tone
+            seen[part] += bool(find_tones(prepared, samples, e, e, LOOSE))
+    assert seen[0.75] <= 4
+    assert seen[1.3] >= 21

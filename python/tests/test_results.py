@@ -126,3 +126,12 @@ def test_words_of_a_result_need_no_matplotlib() -> None:
 def test_jbf_itself_imports_neither_scipy_nor_matplotlib() -> None:
     code = "import jbf, sys; sys.exit(bool({'scipy', 'matplotlib', 'jinja2'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_picture_of_a_fit_shows_its_residuals_and_its_errors(full_fit: Fit) -> None:
+    left, right = full_fit.plot()
+    shown = np.concatenate([np.asarray(line.get_ydata()) for line in right.lines[:-1]])
+    np.testing.assert_array_equal(shown, np.concatenate(full_fit.residuals))
+    labels = [t.get_text() for t in left.get_yticklabels()]
+    assert labels[0].startswith("f_m\n0.2597 ± ") or labels[0].startswith("f_m\n0.25972 ± ")
+    assert len(labels) == len(left.containers) == len(full_fit.parameters)

@@ -1,4 +1,4 @@
-"""The house keeps its rules: rooms import one way, each says what it is, and no file outgrows it."""
+"""The house keeps its rules: rooms import one way, each says what it is, no file outgrows it."""
 
 from __future__ import annotations
 

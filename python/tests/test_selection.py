@@ -10,7 +10,7 @@ import pytest
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
-from made_up import MadeUp, N, sets
+from made_up import BARE_N, MadeUp, N, sets
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
 PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
@@ -80,10 +80,10 @@ def test_a_smooth_error_counts_for_less() -> None:
 
 def held_out(gain: float, share: float) -> Round:
     """A candidate that gains a share of its gain in mean square on runs left out."""
-    fitted = float(np.exp(-gain / N))
+    gained = BARE_N**2 * (1.0 - float(np.exp(-gain / N)))
     left_out = {
-        frozenset[str](): 2.0,
-        frozenset(["sensor_lag"]): float(np.sqrt(4.0 - share * (1.0 - fitted))),
+        frozenset[str](): 3.0,
+        frozenset(["sensor_lag"]): float(np.sqrt(9.0 - share * gained)),
     }
     return tried(made({"sensor_lag": gain}, left_out=left_out))
 
@@ -109,7 +109,7 @@ def test_after_a_veto_the_next_one_leads() -> None:
     found = tried(
         made(
             {"sensor_offset": 300, "sensor_drift": 200},
-            left_out={frozenset(["sensor_offset"]): 1.5},
+            left_out={frozenset(["sensor_offset"]): 2.5},
         )
     )
     assert found.leader == "sensor_drift"

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from jbf import export
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, command
 from jbf.errors import InputError
+from jbf.export import c, rust
 
 
 def add(commands: Commands) -> None:
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     name = Path(arguments.model).name
     texts = {}
     try:
-        for path, write in ((arguments.rust, export.rust), (arguments.c, export.c)):
+        for path, write in ((arguments.rust, rust), (arguments.c, c)):
             if path is not None:
                 texts[path] = write(model, name)
     except InputError as error:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jbf import _core, results
+from jbf import _core
 from jbf.control.bench import THESIS_BENCH, Bench, thesis_model
 from jbf.control.loop import core_loop
 from jbf.control.schemes import SCHEMES, Scheme, scheme
@@ -18,6 +18,7 @@ from jbf.errors import InputError
 from jbf.models.chain import core_load_n, core_refusals
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import described, of_kind
+from jbf.results import Result as SharedResult
 
 Array = npt.NDArray[np.float64]
 
@@ -44,7 +45,7 @@ _COLUMNS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result(results.Result):
+class Result(SharedResult):
     """Arrays of shape (n,), one value a step of the loop.
 
     Attributes

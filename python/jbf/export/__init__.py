@@ -1,7 +1,7 @@
 """A fitted model as source for firmware: Rust for the crate `jbf-core`, C for its C interface.
 
-In comes a `jbf.Model`; out comes text: the constants of exactly the law and the effects of the
-model, and the calls that build it. The physics stays in the core, so that a step on the target has
+Comes in: a `Model`. Goes out: text, the constants of exactly the law and the effects of the model,
+and the calls that build it. The physics stays in the core, so that a step on the target has
 the bits of `jbf predict`. In Rust the effects are a typed set: the target keeps memory for those of
 the model and for no others.
 
@@ -9,8 +9,7 @@ the model and for no others.
 - `constants`: the constants, in the words of a language.
 - `rust`, `c`: the languages, and the calls round the constants.
 
-This room imports `models` and `errors`, nothing of estimation, diagnosis or reports; the command
-line imports it.
+May import: `jbf.models`; nothing of estimation, diagnosis or reports.
 """
 
 from jbf.export.c import c

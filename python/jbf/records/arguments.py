@@ -96,8 +96,8 @@ def names(value: object, what: str) -> tuple[str, ...]:
     """
     if isinstance(value, str):
         raise InputError(
-            problem=f"{what} is the one word {quoted(value)}",
-            mend=f'write a list: {what}=["{value}"]',
+            problem=f"{what} is text where a list of names is meant",
+            mend=f"write {what}=[{quoted(value) if value else ''}]",
         )
     if not isinstance(value, Iterable):
         raise InputError(

@@ -20,7 +20,7 @@ def refused(call: Callable[[], Any], words: str) -> None:
 
 @pytest.mark.parametrize("name", ["presliding", "sensor_offset", ""])
 def test_text_where_a_list_of_names_is_meant(name: str) -> None:
-    words = f'effects is the one word "{name}"; write a list'
+    words = "effects is text where a list of names is meant"
     refused(lambda: fit(Rig(), RUNS, name, law="coulomb"), words)
     refused(lambda: fit(Rig(), RUNS, effects=name, law="coulomb"), words)
     refused(lambda: Model(Rig(), "coulomb", effects=name), words)

@@ -6,7 +6,7 @@
 Simulates campaigns with the independent simulator (`simulator/rigsim/recording`), or takes labelled
 ones from disk, and reads, diagnoses and judges them. `--out F` keeps one JSON line a campaign; a
 second call with the same file goes on from it. Each diagnosis is a process of its own, ended
-after `--limit` seconds.
+after `--limit` seconds of the processor's time.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--heldout", type=Path, help="clean runs of the same rigs: NAME/*.csv")
     parser.add_argument("--only", default="", help="only campaigns whose name holds one of these")
     parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
-    parser.add_argument("--limit", type=float, default=300.0, help="seconds for a diagnosis; 300")
+    parser.add_argument("--limit", type=float, default=300.0, help="CPU s for a diagnosis; 300")
     parser.add_argument("--least", type=float, metavar="SHARE", help="fail where fewer are right")
     parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
     return parser

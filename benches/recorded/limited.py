@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 import time
@@ -11,11 +12,15 @@ from pathlib import Path
 
 from case import Case, Row
 
+PATIENCE = 5.0
+OUT_OF_TIME = {-int(s) for s in (getattr(signal, "SIGXCPU", 0), getattr(signal, "SIGKILL", 0)) if s}
 ONE = Path(__file__).with_name("one.py")
 
 
 def scored(case: Case, limit_s: float) -> Row:
-    """The row of a case; judged `failed`, and why, where it took over `limit_s` or broke."""
+    """The row of a case; judged `failed`, and why, where it broke, or took over `limit_s` (s of the
+    processor's time; where that cannot be limited, and where it waits, `PATIENCE` times as much).
+    """
     row: Row = {
         "key": case.key,
         "kind": case.kind,
@@ -27,14 +32,16 @@ def scored(case: Case, limit_s: float) -> Row:
     begun = time.monotonic()
     try:
         done = subprocess.run(
-            [sys.executable, str(ONE)],
+            [sys.executable, str(ONE), f"{limit_s:g}"],
             input=json.dumps(asdict(case)),
             capture_output=True,
             text=True,
-            timeout=limit_s,
+            timeout=PATIENCE * limit_s,
         )
     except subprocess.TimeoutExpired:
-        return row | _failed(f"over {limit_s:g} s", limit_s)
+        return row | _failed(f"over {PATIENCE * limit_s:g} s", limit_s)
+    if done.returncode in OUT_OF_TIME:
+        return row | _failed(f"over {limit_s:g} s of the processor's time", limit_s)
     if done.returncode:
         last = [line for line in done.stderr.splitlines() if line.strip()] or ["no word"]
         return row | _failed(last[-1], time.monotonic() - begun)
@@ -54,4 +61,5 @@ def _failed(why: str, seconds: float) -> Row:
         "not_found": [],
         "untrue_findings": [],
         "seconds": seconds,
+        "cpu_s": seconds,
     }

@@ -22,15 +22,19 @@ def _found(rows: Sequence[Row]) -> str:
     return f"{told} of {total}" if total else "-"
 
 
+def _cpu_s(row: Row) -> float:
+    return float(row["cpu_s"])
+
+
 def _seconds(rows: Sequence[Row]) -> list[str]:
-    seconds = [row["seconds"] for row in rows]
+    seconds = [_cpu_s(row) for row in rows]
     return [f"{np.median(seconds):.0f}", f"{max(seconds):.0f}"]
 
 
 def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
     """Outcomes, held-out error over the noise, artefacts found, and time, group by group."""
     heads = [title, "campaigns", *OUTCOMES, "all named"]
-    heads += ["held-out, median", "worst", "artefacts found", "s, median", "worst"]
+    heads += ["held-out, median", "worst", "artefacts found", "CPU s, median", "worst"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for name in sorted({of(row) for row in rows}):
         own = [row for row in rows if of(row) == name]
@@ -99,9 +103,10 @@ def line(row: Row) -> str:
     said = ",".join(row["named"]) or "-"
     held = f"{row['held_out_over_noise']:7.3f}" if "held_out_over_noise" in row else "      -"
     hidden = ",".join(row["effects"]) or "-"
+    why = ",".join(row["findings"]) or row.get("why", "")
     return (
         f"{row['key']:44} {hidden:34} {row['verdict']:12} {said:34} {row['judged']:14}{held}"
-        f"{row['seconds']:7.1f} s  {','.join(row['findings']) or row.get('why', '')}"
+        f"{row['cpu_s']:7.1f} s  {why}"
     )
 
 

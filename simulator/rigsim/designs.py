@@ -14,7 +14,7 @@ from scipy.integrate import odeint
 
 from .bearing import Base, Bearing
 from .catalogue import draw
-from .film import START_PHI, Film
+from .film import Film
 from .lubricant import Parameters
 from .seeds import Rng, log_uniform, stream
 
@@ -105,17 +105,25 @@ def draw_effects(
     return {n: draw_effect(n, base, stream(seed, "effect", n), strength) for n in names}
 
 
-def draw_film_start(base: Base, rng: Rng) -> tuple[float, float]:
-    """A film (eps, phi) as what went before a run left it: standing, or at some steady speed."""
+def draw_film_start(base: Base, speed_m_s: float, rng: Rng) -> tuple[float, float]:
+    """A film (eps, phi) of a run that begins at some speed, not settled at that speed.
+
+    It is as at another steady speed, up to three times slower or faster, or as at the transition.
+    A run that begins at rest may find it standing on its asperities, or on its way there.
+    """
     film = Film.of(base)
-    if rng.random() < 0.3:
-        return film.eps_tr + math.sqrt(film.load_group / film.stiffness), START_PHI * rng.uniform()
-    ub = log_uniform(rng, 0.05, 3.0)
-    settle_s = 60.0 / film.clock_hz
+    eps, phi = film.start()
+    ub = abs(speed_m_s) / base.U_tr
+    if ub < 0.02:
+        standing = film.eps_tr + math.sqrt(film.load_group / film.stiffness)
+        return float(rng.uniform(eps, standing)), phi * float(rng.uniform())
+    if rng.random() < 0.25:
+        return eps, phi
+    other = ub * log_uniform(rng, 1.0 / 3.0, 3.0)
     states = odeint(
-        lambda _t, y: film.rates(y[0], y[1], ub),
+        lambda _t, y: film.rates(y[0], y[1], other),
         film.start(),
-        np.array([0.0, settle_s]),
+        np.array([0.0, 60.0 / film.clock_hz]),
         tfirst=True,
     )
     return float(states[-1, 0]), float(states[-1, 1])

@@ -41,13 +41,20 @@ class CompliantDrive:
         self.start_angle = start_angle
         self.n = chain.size
 
-    def run(self, motion: Motion, times: Vector) -> Vector:
-        """Load cell force (N), before offset and drift, at `times` (s)."""
+    def run(self, motion: Motion, times: Vector, *, under_way: bool = False) -> Vector:
+        """Load cell force (N), before offset and drift, at `times` (s).
+
+        The drive begins untwisted, or, `under_way`, with the twist of the friction at its start.
+        """
         force = np.zeros(len(times))
         first = motion.pieces[0]
         v, a = first.speed(0.0), first.acceleration(0.0)
         inner = self.chain.start(v, a, Path(angle_rad=self.start_angle))
         self.y = np.array([*inner, 0.0, v / self.radius_m])
+        if under_way:
+            sign = (v > 0.0) - (v < 0.0)
+            friction = self.chain.bearing(inner, v, sign, Path(angle_rad=self.start_angle))
+            self.y[-2] = first.position(0.0) / self.radius_m - self.arm * friction / self.k
         self.slid = self.since_rest = self.dwell = 0.0
         self.stuck_from: float | None = None
         self.mode = 2 if self.chain.bristled else first.sign

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from .designs import Design
@@ -22,11 +22,16 @@ Knots = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Plan:
-    """A run: `length_s` of `motion` from `LEAD_IN_S` on, recorded under a share of the load."""
+    """A run: `length_s` of `motion` from `begins_s` on, recorded under a share of the load.
+
+    One that begins before its motion (below 0 s) finds the rig at rest, as a motion begins. Others
+    find it under way, with a film of unknown history.
+    """
 
     motion: Motion
     length_s: float
     load_share: float = 1.0
+    begins_s: float = LEAD_IN_S
 
 
 def _length(omega: float, rng: Rng) -> float:
@@ -110,14 +115,22 @@ def steady(name: str, top: float, _omega: float, rng: Rng) -> Plan:
     return Plan(polyline(name, knots), knots[-1][0] - LEAD_IN_S - TAIL_S)
 
 
+def from_rest(name: str, top: float, omega: float, rng: Rng) -> Plan:
+    """A sine through zero that begins there."""
+    length = _length(omega, rng)
+    return Plan(
+        multisine(name, length + TAIL_S, [(top * rng.uniform(0.8, 1.0), omega, 0.0)]), length
+    )
+
+
 def tones(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Three sines at once."""
+    """Three sines at once, from rest."""
     rates = [0.2 * rng.uniform(0.7, 1.4), 0.7 * rng.uniform(0.7, 1.4), 1.8 * rng.uniform(0.7, 1.4)]
     parts = [
-        (share * top, omega, float(rng.uniform(0.0, 2.0 * math.pi)))
+        (share * top, omega, float(rng.choice([0.0, math.pi])))
         for share, omega in zip((0.45, 0.3, 0.2), rates, strict=True)
     ]
-    return Plan(multisine(name, LEAD_IN_S + 40.0 + TAIL_S, parts), 40.0)
+    return Plan(multisine(name, 40.0 + TAIL_S, parts), 40.0)
 
 
 Maker = Callable[[str, float, float, Rng], Plan]
@@ -160,14 +173,20 @@ def campaign(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
 
 
 def held_out(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
-    """Other motions for the same rig; one under a load between, where the load is what matters."""
+    """Other motions for the same rig; one under a load between, where the load is what matters.
+
+    All begin at rest, between two samples: what went before, no model of the rig can predict.
+    """
     rng = stream(seed, "held out")
     makers: list[tuple[str, Maker, float]] = [
-        ("h_sine", two_way, log_uniform(rng, 0.3, 1.2)),
+        ("h_sine", from_rest, log_uniform(rng, 0.3, 1.2)),
         ("h_tones", tones, 0.0),
         ("h_stops", stops, 0.0),
     ]
-    plans = _named(makers, design.top_m_s, rng)
+    plans = [
+        replace(plan, begins_s=-float(rng.uniform(0.05, 0.95)) / design.rate_hz)
+        for plan in _named(makers, design.top_m_s, rng)
+    ]
     if "load_dependence" in effects:
-        plans[0] = Plan(plans[0].motion, plans[0].length_s, 1.15)
+        plans[0] = replace(plans[0], load_share=1.15)
     return plans

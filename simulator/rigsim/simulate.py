@@ -49,7 +49,10 @@ def cell_force(
     start_angle_rad: float = 0.0,
     film_start: tuple[float, float] | None = None,
 ) -> Vector:
-    """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending)."""
+    """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending).
+
+    With a `film_start` the rig is under way: a compliant drive has the twist of its friction.
+    """
     radius = base.bearing.radius_m
     journal = motion
     if "backlash" in effects:
@@ -61,7 +64,7 @@ def cell_force(
         drive = CompliantDrive(
             chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
         )
-        return drive.run(journal, seen)
+        return drive.run(journal, seen, under_way=film_start is not None)
     return run_rigid(chain, journal, seen, radius, start_angle_rad)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from ..campaign import rig_toml
 from ..catalogue import check
 from ..designs import Design, draw_design, draw_effects, draw_film_start
-from ..excitation import LEAD_IN_S, Plan, campaign, held_out
+from ..excitation import Plan, campaign, held_out
 from ..lubricant import Parameters
 from ..record import Record
 from ..seeds import stream
@@ -24,13 +24,17 @@ from .draft import Artefact, Signals, Sizes
 from .logger import logged, sizes_of
 
 Runs = dict[str, Record]
+NEED_PEAK = {"saturation", "noise_with_force"}
 
 
 def _signals(design: Design, effects: Parameters, plan: Plan, seed: int) -> Signals:
     rng = stream(seed, "start", plan.motion.name)
     base = under_load(design.base, round(plan.load_share * design.base.load_n, 1), effects)
     angle = float(rng.uniform(0.0, 2.0 * math.pi))
-    return Signals(base, effects, plan.motion, LEAD_IN_S, angle, draw_film_start(base, rng))
+    film = None
+    if plan.begins_s > 0.0:
+        film = draw_film_start(base, plan.motion.pieces[0].speed(0.0), rng)
+    return Signals(base, effects, plan.motion, plan.begins_s, angle, film)
 
 
 def recorded(
@@ -64,15 +68,21 @@ def recorded(
     sizes = sizes_of(done_by, artefact_strength, seed)
     plans = (held_out if for_held_out else campaign)(design, names, seed)
     records: Runs = {}
+    peak_n = design.base.f_m * design.base.load_n
+    if NEED_PEAK & set(sizes):
+        peak_n = _peak([_signals(design, hidden, plan, seed) for plan in plans])
     recording: list[dict[str, Any]] = []
     over_noise = dict.fromkeys(hidden, 0.0)
     for plan in plans:
         signals = _signals(design, hidden, plan, seed)
-        record, done = _logged(signals, plan, design, [(a, sizes[a.name]) for a in done_by], seed)
+        does = [(a, sizes[a.name]) for a in done_by]
+        record, done = _logged(signals, plan, design, peak_n, does, seed)
         records[plan.motion.name] = record
         recording += done
         for name in hidden:
-            over_noise[name] = max(over_noise[name], _share(signals, name, record, design))
+            rest = {other: values for other, values in hidden.items() if other != name}
+            bare = _signals(design, rest, plan, seed)
+            over_noise[name] = max(over_noise[name], _gap(signals, bare, record) / design.noise_n)
     truth = {
         "effects": hidden,
         "artefacts": list(artefacts),
@@ -87,14 +97,26 @@ def recorded(
     return records, truth
 
 
+def _peak(runs: Sequence[Signals]) -> float:
+    """The force that a campaign hardly ever exceeds, N."""
+    coarse = [s.force(np.arange(0.0, s.motion.duration_s - s.begins_s, 0.05)) for s in runs]
+    return float(np.quantile(np.abs(np.concatenate(coarse)), 0.995))
+
+
 def _logged(
-    signals: Signals, plan: Plan, design: Design, artefacts: list[tuple[Artefact, Sizes]], seed: int
+    signals: Signals,
+    plan: Plan,
+    design: Design,
+    peak_n: float,
+    artefacts: list[tuple[Artefact, Sizes]],
+    seed: int,
 ) -> tuple[Record, list[dict[str, Any]]]:
     return logged(
         signals,
         plan.length_s,
         design.rate_hz,
         design.noise_n,
+        peak_n,
         design.counts_per_rad,
         artefacts,
         seed,
@@ -102,11 +124,10 @@ def _logged(
     )
 
 
-def _share(signals: Signals, effect: str, record: Record, design: Design) -> float:
-    """RMS of what an effect does to a run over the noise: how well it can be seen at all."""
+def _gap(signals: Signals, bare: Signals, record: Record) -> float:
+    """RMS of what an effect does to a run, N: how well it can be seen at all."""
     times = record.time_s
-    gap = signals.force(times) - signals.without(effect).force(times)
-    return float(np.sqrt(np.mean(gap**2))) / design.noise_n
+    return float(np.sqrt(np.mean((signals.force(times) - bare.force(times)) ** 2)))
 
 
 def write_recorded(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -37,14 +37,17 @@ Sizes = dict[str, float]
 
 @dataclass(frozen=True)
 class Signals:
-    """The exact signals of a run, at any instant; 0 s is the record's first."""
+    """The exact signals of a run, at any instant; 0 s is the record's first.
+
+    `film_start` is None in a run that begins as its motion does.
+    """
 
     base: Base
     effects: Parameters
     motion: Motion
     begins_s: float
     start_angle_rad: float
-    film_start: tuple[float, float]
+    film_start: tuple[float, float] | None
 
     def _into_motion(self, times: Vector) -> Vector:
         return np.clip(times + self.begins_s, 0.0, self.motion.duration_s)
@@ -69,11 +72,6 @@ class Signals:
         """Angle of the encoder (rad)."""
         position = commanded(self.motion, self._into_motion(times))[1]
         return self.start_angle_rad + position / self.base.bearing.radius_m
-
-    def without(self, effect: str) -> Signals:
-        """The same run of a rig that has not this effect."""
-        rest = {name: values for name, values in self.effects.items() if name != effect}
-        return replace(self, effects=rest)
 
 
 @dataclass

@@ -19,6 +19,7 @@ def logged(
     length_s: float,
     rate_hz: float,
     noise_n: float,
+    peak_n: float,
     counts_per_rad: float,
     artefacts: Iterable[tuple[Artefact, Sizes]],
     seed: int,
@@ -26,7 +27,6 @@ def logged(
 ) -> tuple[Record, list[dict[str, Any]]]:
     """The record of a run, and what each artefact did to it: kind, channel, run, size."""
     stamps = np.arange(int(length_s * rate_hz)) / rate_hz
-    peak_n = signals.base.f_m * signals.base.load_n
     draft = Draft(signals, stamps, noise_n, peak_n, counts_per_rad)
     done: list[dict[str, Any]] = []
     here = list(artefacts)

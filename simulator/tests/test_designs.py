@@ -1,0 +1,85 @@
+"""Rigs of other designs are sound, differ, and move as people move them."""
+
+import numpy as np
+import pytest
+from rigsim import CATALOGUE
+from rigsim.designs import draw_design, draw_effect, draw_film_start
+from rigsim.excitation import FASTEST, SLOWEST, campaign, held_out
+from rigsim.film import Film
+
+SEEDS = range(40)
+
+
+def test_designs_are_within_what_such_rigs_have():
+    designs = [draw_design(seed) for seed in SEEDS]
+    assert draw_design(3) == draw_design(3)
+    loads = np.array([d.base.load_n for d in designs])
+    assert loads.min() < 80.0
+    assert loads.max() > 180.0
+    assert ((loads >= 50.0) & (loads <= 250.0)).all()
+    assert {d.rate_hz for d in designs} == {50.0, 100.0, 200.0}
+    for d in designs:
+        assert d.base.transition_eccentricity() + (d.base.load_group / d.base.K0) ** 0.5 < 1.0
+        assert 0.01 <= d.noise_n / (d.base.f_m * d.base.load_n) <= 0.025
+
+
+def test_campaigns_have_three_to_seven_runs_that_begin_anywhere():
+    counts, moving = [], []
+    for seed in SEEDS:
+        plans = campaign(draw_design(seed), (), seed)
+        counts.append(len(plans))
+        assert len({p.motion.name for p in plans}) == len(plans)
+        for plan in plans:
+            assert plan.begins_s > 0.0
+            assert plan.begins_s + plan.length_s < plan.motion.duration_s
+            moving.append(abs(plan.motion.pieces[0].speed(0.0)) > 1e-3)
+    assert min(counts) == 3
+    assert max(counts) == 7
+    assert 0.3 < np.mean(moving) < 0.8
+    assert 0.0 < SLOWEST < FASTEST
+
+
+def test_stops_do_not_fall_on_samples():
+    design = draw_design(1)
+    plan = next(p for p in campaign(design, (), 1) if "stops" in p.motion.name)
+    ends = np.array([p.t1 for p in plan.motion.pieces[:-1]]) - plan.begins_s
+    off = np.abs(ends * design.rate_hz - np.round(ends * design.rate_hz))
+    assert np.mean(off > 0.02) > 0.8
+
+
+def test_load_dependence_is_run_under_three_loads():
+    for seed in range(5):
+        plans = campaign(draw_design(seed), ("load_dependence",), seed)
+        assert len({p.load_share for p in plans}) == 3
+
+
+def test_held_out_runs_begin_at_rest_between_samples():
+    design = draw_design(2)
+    for plan in held_out(design, (), 2):
+        assert -1.0 / design.rate_hz < plan.begins_s < 0.0
+        assert plan.motion.pieces[0].speed(0.0) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_effects_are_scaled_to_the_rig(name):
+    light, heavy = (
+        min((draw_design(s) for s in SEEDS), key=lambda d: d.base.f_m * d.base.load_n),
+        max((draw_design(s) for s in SEEDS), key=lambda d: d.base.f_m * d.base.load_n),
+    )
+    small, large = (draw_effect(name, d.base, np.random.default_rng(1)) for d in (light, heavy))
+    ratio = heavy.base.f_m * heavy.base.load_n / (light.base.f_m * light.base.load_n)
+    pushed = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia_leak": "m_e"}
+    if name in pushed:
+        assert large[pushed[name]] / small[pushed[name]] == pytest.approx(ratio)
+    assert set(small) == set(CATALOGUE[name])
+
+
+def test_films_begin_unsettled():
+    base = draw_design(4).base
+    film = Film.of(base)
+    rng = np.random.default_rng(1)
+    moving = [draw_film_start(base, 0.03, rng)[0] for _ in range(20)]
+    resting = [draw_film_start(base, 0.0, rng)[0] for _ in range(20)]
+    assert np.ptp(moving) > 1e-3
+    assert min(resting) >= film.eps_tr
+    assert max([*moving, *resting]) < 1.0

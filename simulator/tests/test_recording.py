@@ -1,0 +1,251 @@
+"""Each artefact does what it says, and says what it did; one thing more moves nothing else."""
+
+import json
+
+import numpy as np
+import pytest
+from rigsim.recording import ARTEFACTS, OFF_GRID, STRENGTHS, recorded, write_recorded
+from rigsim.recording.catalogue import chosen
+
+SEED = 6  # a small campaign
+CLEAN, CLEAN_TRUTH = recorded(SEED)
+NOISE_N = CLEAN_TRUTH["noise_n"]
+
+
+def with_(*artefacts, strength="usual", seed=SEED):
+    """Runs of a recording and what was done to them, by run."""
+    records, truth = recorded(seed, (), artefacts, strength)
+    done = {entry["run"]: entry for entry in truth["recording"] if entry["kind"] == artefacts[0]}
+    assert set(done) == set(records)
+    return records, {run: entry["size"] for run, entry in done.items()}
+
+
+def pairs(*artefacts, strength="usual"):
+    """Clean run, the same run with artefacts, and what was done, run by run."""
+    records, sizes = with_(*artefacts, strength=strength)
+    return [(CLEAN[name], records[name], sizes[name]) for name in CLEAN]
+
+
+def test_off_grid_is_clean_and_repeats():
+    again, truth = recorded(SEED)
+    assert truth == CLEAN_TRUTH
+    assert truth["recording"] == []
+    for name, record in CLEAN.items():
+        np.testing.assert_array_equal(record.friction_n, again[name].friction_n)
+        noise = record.friction_n - record.clean_friction_n
+        assert np.std(noise) == pytest.approx(NOISE_N, rel=0.1)
+
+
+@pytest.mark.parametrize("name", ARTEFACTS)
+def test_touches_its_own_channel_alone(name):
+    of = {
+        "force": {"friction_n"},
+        "position": {"angle_rad"},
+        "speed": {"velocity_m_s", "angle_rad"},
+        "time": {"friction_n", "velocity_m_s", "angle_rad"},
+        "load": {"load_n"},
+        "rig": {"friction_n"},
+    }
+    if name == "gaps":
+        return
+    changed = set()
+    for clean, record, _ in pairs(name):
+        np.testing.assert_array_equal(record.time_s, clean.time_s)
+        for column in ("friction_n", "velocity_m_s", "angle_rad", "load_n"):
+            if not np.array_equal(getattr(record, column), getattr(clean, column)):
+                changed.add(column)
+    assert changed <= of[ARTEFACTS[name].channel]
+    assert changed
+
+
+@pytest.mark.parametrize("name", ARTEFACTS)
+def test_says_what_it_did_and_repeats(name):
+    for strength in STRENGTHS:
+        one, sizes = with_(name, strength=strength)
+        two, again = with_(name, strength=strength)
+        assert sizes == again
+        assert all(np.isfinite(list(size.values())).all() for size in sizes.values())
+        for run, record in one.items():
+            np.testing.assert_array_equal(record.friction_n, two[run].friction_n)
+            assert np.isfinite(record.friction_n).all()
+            assert np.isfinite(record.velocity_m_s).all()
+            assert (np.diff(record.time_s) > 0.0).all()
+
+
+def test_a_second_artefact_does_not_move_the_first():
+    alone, one = with_("spikes")
+    both, two = with_("spikes", "noisy_load")
+    assert one == two
+    for name, record in alone.items():
+        np.testing.assert_array_equal(record.friction_n, both[name].friction_n)
+
+
+def test_slow_force_is_drawn_as_lines_or_held():
+    seen = set()
+    for seed in (0, 6, 13, 25, 68, 92):
+        records, sizes = with_("slow_force", strength="severe", seed=seed)
+        for name, record in records.items():
+            bends = np.diff(record.friction_n, 2)
+            still = np.mean(np.diff(record.friction_n) == 0.0)
+            straight = np.mean(np.abs(bends) < 1e-9)
+            assert (still if sizes[name]["held"] else straight) > 0.25
+            seen.add(sizes[name]["held"])
+    assert seen == {0.0, 1.0}
+
+
+def test_skew_shifts_each_run_by_its_own():
+    late = []
+    for clean, record, size in pairs("skew"):
+        moved = np.interp(clean.time_s - size["late_s"], clean.time_s, clean.clean_friction_n)
+        kept = slice(20, -20)
+        before = np.std((record.clean_friction_n - clean.clean_friction_n)[kept])
+        after = np.std((record.clean_friction_n - moved)[kept])
+        assert after < before
+        assert 0.006 <= abs(size["late_s"]) <= 0.014
+        late.append(size["late_s"])
+    assert len(set(late)) == len(late)
+
+
+def test_a_drifting_clock_is_right_at_first():
+    for clean, record, size in pairs("drifting_clock"):
+        gap = np.abs(record.clean_friction_n - clean.clean_friction_n)
+        assert gap[0] < 1e-9
+        assert size["late_at_end_s"] == pytest.approx(size["share"] * clean.time_s[-1])
+
+
+def test_jitter_has_its_size_and_even_stamps():
+    for _, record, size in pairs("jitter"):
+        assert np.ptp(np.diff(record.time_s)) < 1e-9
+        assert size["rms_s"] == pytest.approx(3e-3, rel=0.15)
+
+
+def test_zero_and_gain_are_of_a_run():
+    for clean, record, size in pairs("retared"):
+        np.testing.assert_allclose(record.friction_n - clean.friction_n, size["zero_n"])
+    for clean, record, size in pairs("gain_by_run"):
+        gap = record.friction_n - clean.friction_n
+        np.testing.assert_allclose(gap, (size["gain"] - 1.0) * clean.clean_friction_n, atol=1e-12)
+
+
+def test_saturation_clips_and_steps_are_steps():
+    clipped = 0.0
+    for _, record, size in pairs("saturation"):
+        assert np.max(np.abs(record.friction_n)) <= size["limit_n"]
+        clipped += size["share_clipped"]
+    assert clipped > 0.01
+    for _, record, size in pairs("quantised"):
+        steps = record.friction_n / size["step_n"]
+        np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
+        assert 1.5 <= size["step_n"] / NOISE_N <= 3.5
+
+
+def test_spikes_are_as_large_and_as_rare_as_said():
+    for clean, record, size in pairs("spikes"):
+        gap = np.abs(record.friction_n - clean.friction_n)
+        assert np.sum(gap > 0.0) == size["samples"]
+        assert np.max(gap) == pytest.approx(size["largest_n"])
+        assert (gap[gap > 0.0] > 9.9 * NOISE_N).all()
+
+
+def test_dropouts_stand_still():
+    for clean, record, size in pairs("dropout"):
+        changed = np.flatnonzero(record.friction_n != clean.friction_n)
+        assert 0 < len(changed) <= size["samples"]
+        assert np.mean(np.diff(record.friction_n)[changed - 1] == 0.0) == 1.0
+
+
+def test_position_glitches_are_single_samples():
+    for clean, record, size in pairs("position_glitch"):
+        gap = np.abs(record.angle_rad - clean.angle_rad)
+        assert np.sum(gap > 0.0) == size["samples"]
+        assert np.max(gap) == pytest.approx(size["largest_rad"])
+
+
+def test_gaps_lose_rows_and_a_stretch():
+    for clean, record, size in pairs("gaps"):
+        assert len(clean.time_s) - len(record.time_s) == size["rows"]
+        assert np.max(np.diff(record.time_s)) >= size["stretch_s"]
+        kept = np.isin(clean.time_s, record.time_s)
+        np.testing.assert_array_equal(record.friction_n, clean.friction_n[kept])
+
+
+def test_noise_has_the_shape_asked_for():
+    tails, grows, levels = [], [], []
+    for _, record, _ in pairs("heavy_tails"):
+        tails.append((record.friction_n - record.clean_friction_n) / NOISE_N)
+    every = np.concatenate(tails)
+    assert np.mean(np.abs(every) > 4.0) > 1e-3  # white noise: 6e-5
+    for clean, record, size in pairs("noise_with_force"):
+        noise = record.friction_n - record.clean_friction_n
+        large = np.abs(clean.clean_friction_n) > np.median(np.abs(clean.clean_friction_n))
+        grows.append(np.std(noise[large]) / np.std(noise[~large]))
+        assert size["at_peak"] >= 1.0
+    assert np.median(grows) > 1.15
+    for _, record, size in pairs("noise_by_run"):
+        noise = np.std(record.friction_n - record.clean_friction_n)
+        assert noise == pytest.approx(size["times"] * NOISE_N, rel=0.1)
+        levels.append(size["times"])
+    assert len(set(levels)) == len(levels)
+
+
+def test_long_memory_is_long():
+    for clean, record, size in pairs("long_memory"):
+        extra = record.friction_n - clean.friction_n
+        apart = round(0.2 / (clean.time_s[1] - clean.time_s[0]))
+        centred = extra - np.mean(extra)
+        assert np.mean(centred[apart:] * centred[:-apart]) > 0.4 * np.mean(centred**2)
+        assert 0.2 * size["sd_n"] < np.std(extra) < 2.0 * size["sd_n"]
+
+
+def test_runs_differ_in_their_oil():
+    factors = [size["U_tr"] for _, _, size in pairs("runs_differ")]
+    assert len(set(factors)) == len(factors)
+    assert all(0.7 < f < 1.3 for f in factors)
+
+
+def test_speeds_from_counts_are_differences_of_them():
+    for clean, record, size in pairs("backward_velocity"):
+        step = clean.time_s[1] - clean.time_s[0]
+        counts = record.angle_rad * size["counts_per_rad"]
+        np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)
+        radius = CLEAN_TRUTH["base"]["bearing"]["radius_m"]
+        wanted = np.diff(record.angle_rad) * radius / step
+        np.testing.assert_allclose(record.velocity_m_s[1:], wanted, atol=1e-9)
+    for clean, record, size in pairs("coarse_velocity"):
+        step = clean.time_s[1] - clean.time_s[0]
+        assert size["over_s"] == pytest.approx(5.0 * step)
+        assert np.std(record.velocity_m_s - clean.velocity_m_s) < 0.2 * np.std(clean.velocity_m_s)
+
+
+def test_a_filtered_speed_is_smooth_and_late():
+    for clean, record, size in pairs("filtered_velocity"):
+        assert size["cut_hz"] == pytest.approx(5.0)
+        late = np.interp(clean.time_s - 0.045, clean.time_s, clean.velocity_m_s)
+        kept = clean.time_s > 0.3  # 2nd order, 5 Hz: 45 ms late
+        gap = np.std((record.velocity_m_s - late)[kept])
+        assert gap < 0.6 * np.std((record.velocity_m_s - clean.velocity_m_s)[kept]) + 2e-4
+
+
+def test_a_noisy_load_is_noise_on_a_constant():
+    for clean, record, size in pairs("noisy_load"):
+        share = record.load_n / clean.load_n - 1.0
+        assert np.std(share) == pytest.approx(size["sd"], rel=0.1)
+        assert abs(np.mean(share)) < 0.1 * size["sd"]
+
+
+def test_what_cannot_be_is_refused():
+    with pytest.raises(ValueError, match="no artefact named magic"):
+        chosen(("magic",))
+    with pytest.raises(ValueError, match="not more"):
+        chosen(("coarse_velocity", "filtered_velocity"))
+    assert [a.name for a in chosen(("quantised", "jitter", OFF_GRID))] == ["jitter", "quantised"]
+
+
+def test_files(tmp_path):
+    truth = write_recorded(tmp_path / "a", tmp_path / "b", SEED, ["sensor_offset"], ["gaps"])
+    assert sorted(p.stem for p in (tmp_path / "a").glob("*.csv")) == sorted(CLEAN)
+    assert len(list((tmp_path / "b").glob("*.csv"))) == 3
+    assert (tmp_path / "a" / "rig.toml").read_text() == (tmp_path / "b" / "rig.toml").read_text()
+    assert json.loads((tmp_path / "a.json").read_text()) == truth
+    assert {entry["kind"] for entry in truth["recording"]} == {"gaps"}
+    assert truth["effect_to_noise"]["sensor_offset"] > 0.1

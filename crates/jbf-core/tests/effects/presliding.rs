@@ -110,3 +110,27 @@ fn on_coulombs_law_it_is_dahls() {
         assert!((a - b).abs() < 1e-9 * kinetic_n, "{i}: {a} {b}");
     }
 }
+
+/// A turn inside a step from one speed to another: the zero lies where a straight line between them
+/// has it, and only what is slid beyond it bends the bristles back.
+#[test]
+fn a_turn_between_unlike_speeds_is_where_the_line_crosses_zero() {
+    let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
+    let dt_s = 0.01;
+    for share in [0.2, 0.5, 0.75, 0.9] {
+        // Speeds whose line crosses zero at that share of the step.
+        let (before, after) = (SPEED_M_S * share, -SPEED_M_S * (1.0 - share));
+        let got = readings(&chain, dt_s, 20, |t| {
+            constant::<f64>(if t < 10.5 * dt_s { before } else { after }, t)
+        });
+        for (i, r) in got.iter().enumerate() {
+            let back = (1.0 - share) * dt_s * 0.5 + dt_s * (i as f64 - 11.0);
+            let expected = if i < 11 {
+                1.0
+            } else {
+                2.0 * (after * back * SIGMA_1_M / F).exp() - 1.0
+            };
+            assert!((r / (F * LOAD_N) - expected).abs() < 1e-12, "{share} {i}");
+        }
+    }
+}

@@ -107,14 +107,16 @@ class Copy:
             return False
         return done.returncode == 0
 
-    def apply(self, mutant: Mutant) -> bool:
-        """Put a fault in; False where its place is not there, or there more than once."""
+    def has_place(self, mutant: Mutant) -> bool:
+        """True where the place of a fault is there once."""
         path = self.folder / mutant.file
         text = path.read_text("utf-8") if path.is_file() else ""
-        if text.count(mutant.old) != 1 or mutant.new == mutant.old:
-            return False
-        path.write_text(text.replace(mutant.old, mutant.new), "utf-8")
-        return True
+        return text.count(mutant.old) == 1 and mutant.new != mutant.old
+
+    def apply(self, mutant: Mutant) -> None:
+        """Put a fault in."""
+        path = self.folder / mutant.file
+        path.write_text(path.read_text("utf-8").replace(mutant.old, mutant.new), "utf-8")
 
     def restore(self, mutant: Mutant) -> None:
         """Take the fault out; the file is newer than before, as builds want it."""
@@ -128,13 +130,14 @@ def try_one(copy: Copy, mutant: Mutant, passing: dict[str, bool]) -> Outcome:
     def outcome(word: str) -> Outcome:
         return Outcome(mutant, word, time.monotonic() - begun)
 
+    if not copy.has_place(mutant):
+        return outcome("does not apply")
     # A test that fails anyway notices nothing.
     if mutant.test not in passing:
         passing[mutant.test] = copy.passes(mutant.test)
     if not passing[mutant.test]:
         return outcome("test fails without it")
-    if not copy.apply(mutant):
-        return outcome("does not apply")
+    copy.apply(mutant)
     try:
         return outcome("LIVES" if copy.passes(mutant.test) else "noticed")
     finally:

@@ -5,8 +5,8 @@
 
 Simulates campaigns with the independent simulator (`simulator/rigsim/recording`), or takes labelled
 ones from disk, and reads, diagnoses and judges them. `--out F` keeps one JSON line a campaign; a
-second call with the same file goes on from it. Each diagnosis is a process of its own, ended
-after `--limit` seconds of the processor's time.
+second call with the same file goes on from it, and with `--first 0` prints its tables alone. Each
+diagnosis is a process of its own, ended after `--limit` seconds of the processor's time.
 """
 
 from __future__ import annotations

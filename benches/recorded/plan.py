@@ -107,7 +107,8 @@ def short(first_seed: int = 1) -> list[Task]:
     seeds = itertools.count(A_ROUND * first_seed)
     found = []
     for artefacts, effects in SHORT:
-        task = Task("single" if effects else "none", 0, effects, artefacts, "usual")
+        strength = "-" if artefacts == (OFF_GRID,) else "usual"
+        task = Task("single" if effects else "none", 0, effects, artefacts, strength)
         seed = next(s for s in seeds if _samples(s, effects) < FEW_SAMPLES)
         found.append(replace(task, seed=seed))
     return found

@@ -84,6 +84,12 @@ def draw_design(seed: int) -> Design:
     )
 
 
+def _heat_w(base: Base) -> float:
+    """About the power of a bearing's friction in a run at 1.5 U_tr (W)."""
+    shear = Film.of(base).shear(base.transition_eccentricity(), 1.5)
+    return base.load_n * base.U_tr * (0.05 * base.f_m + shear)
+
+
 def draw_effect(name: str, base: Base, rng: Rng, strength: float = 1.0) -> dict[str, float]:
     """Random parameters of an effect, scaled to a rig."""
     values = draw(name, rng, strength)
@@ -93,8 +99,8 @@ def draw_effect(name: str, base: Base, rng: Rng, strength: float = 1.0) -> dict[
     if name == "drive_compliance":  # the drive is sized for the torque; its modes stay
         turned = share * base.bearing.radius_m / USUAL_RADIUS_M
         values = {key: value * turned for key, value in values.items()}
-    if name == "thermal_thinning":  # beta_q is by the joule
-        values["beta_q"] /= share
+    if name == "thermal_thinning":
+        values["beta_q"] *= _heat_w(Base()) / _heat_w(base)
     return values
 
 

@@ -10,11 +10,14 @@ from functools import cache
 import numpy as np
 import pytest
 from by_hand import Array, Friction, coulomb, four_runs, wandering
-from jbf import Diagnosis, Rig, Run, diagnose
+from jbf import Diagnosis, Rig, Run, diagnose, effects
 from jbf.diagnosis import Trial
 
 NOISE_N = 0.1
-CANDIDATES = 12
+CANDIDATES = sum(
+    "coulomb" not in e.refused and not {"angle", "path", "loads"} & set(e.needs)
+    for e in effects().values()
+)
 """Effects that go with Coulomb's law and need neither angle nor path nor loads."""
 
 

@@ -41,8 +41,8 @@ class Result:
         return drawn
 
     def to_dict(self) -> dict[str, Any]:
-        """Numbers and words, for JSON."""
-        raise NotImplementedError
+        """Numbers and words, for JSON; every result says its own."""
+        raise TypeError(f"{type(self).__name__} has no words for JSON")
 
     def to_frame(self) -> Any:
         """A `pandas.DataFrame`; pandas comes with no jbf and must be installed.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @singledispatch
 def summary(result: object) -> str:
     """The result in words, as text for a terminal."""
-    raise NotImplementedError(type(result).__name__)
+    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
 summary.register(Fit, fit_report)
@@ -55,7 +55,7 @@ short_words.register(Diagnosis, short.short_diagnosis)
 @singledispatch
 def small_table(result: object) -> str:
     """The result as a small HTML table."""
-    raise NotImplementedError(type(result).__name__)
+    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
 small_table.register(Fit, small_tables.fit_table)
@@ -69,7 +69,7 @@ small_table.register(LoopRun, small_tables.loop_table)
 @singledispatch
 def columns(result: object) -> frames.Columns:
     """The result as columns of one length."""
-    raise NotImplementedError(type(result).__name__)
+    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
 columns.register(Fit, frames.fit_columns)

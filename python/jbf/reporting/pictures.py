@@ -25,7 +25,7 @@ from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
 @singledispatch
 def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     """The result's picture, on the axes given or a new figure's."""
-    raise NotImplementedError(type(result).__name__)
+    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
 plot.register(Fit, plot_fit)
@@ -39,7 +39,7 @@ plot.register(LoopRun, plot_run_of_loop)
 @singledispatch
 def page(result: object) -> str:
     """The HTML text of the result's page."""
-    raise NotImplementedError(type(result).__name__)
+    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
 page.register(Fit, fit_page.fit_page)

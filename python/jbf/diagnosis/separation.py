@@ -15,6 +15,7 @@ import numpy.typing as npt
 from jbf import _core
 from jbf.diagnosis.candidates import Candidates, Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
+from jbf.estimation.likelihood import unexplained_square
 from jbf.models.chain import core_load_n, core_motion, imposed
 from jbf.models.own_effects import ALWAYS
 from jbf.records.run import Run
@@ -54,15 +55,6 @@ class Rival:
         design = np.concatenate([slopes, self.known])
         target = np.concatenate([gap, np.zeros(len(self.known))])
         return unexplained_square(design, target) / max(self.noise_n, 1e-300) ** 2
-
-
-def unexplained_square(design: Array, target: Array) -> float:
-    """Sum of squares of a target that linear combinations of a design's columns do not explain."""
-    size = np.linalg.norm(design, axis=0)
-    design = design[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)
-    left = target - design @ step
-    return float(left @ left)
 
 
 def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:

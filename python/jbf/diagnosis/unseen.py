@@ -17,8 +17,8 @@ from jbf.diagnosis.separation import (
     Rival,
     filled_limits,
     motions,
-    unexplained_square,
 )
+from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import Problem
 from jbf.models.catalogue import find_effect
 from jbf.records.run import Run

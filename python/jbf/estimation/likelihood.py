@@ -71,8 +71,14 @@ def next_step_gain(solution: Solution) -> float:
 
 
 def _promised(r: Array, j: Array) -> float:
-    size = np.linalg.norm(j, axis=0)
-    unit = j[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(unit, r, rcond=1e-10)
-    left = r - unit @ step
-    return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(float(left @ left), 1e-300)))
+    left = max(unexplained_square(j, r), 1e-300)
+    return len(r) * float(np.log(max(float(r @ r), 1e-300) / left))
+
+
+def unexplained_square(design: Array, target: Array) -> float:
+    """Sum of squares of a target that linear combinations of a design's columns do not explain."""
+    size = np.linalg.norm(design, axis=0)
+    design = design[:, size > 0.0] / size[size > 0.0]
+    step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)
+    left = target - design @ step
+    return float(left @ left)

@@ -38,7 +38,7 @@ def test_the_verdict(effects: int, alternatives: int, remains: bool, said: str) 
 @pytest.mark.parametrize(
     ("now_n", "disagreement", "stand"),
     [
-        # Of an excess of 5^2 - 3^2 = 16 N^2 they explain 25 - now^2; 0.8 of it are 12.8.
+        # Of the structure, 5^2 - 3^2 = 16 N^2, they explain 25 - now^2; 0.8 of it are 12.8.
         (np.sqrt(25.0 - 12.9), None, True),
         (np.sqrt(25.0 - 12.7), None, False),
         # A gain of 1000 is 20 times 50.
@@ -51,7 +51,11 @@ def test_which_names_stand_though_structure_remains(
     now_n: float, disagreement: float | None, stand: bool
 ) -> None:
     explained = Explained(
-        bare_n=5.0, now_n=now_n, noise_n=3.0, gain=1000.0, disagreement=disagreement
+        bare_n=5.0,
+        now_n=now_n,
+        remaining=1.0 - 9.0 / now_n**2,
+        gain=1000.0,
+        disagreement=disagreement,
     )
     assert names_stand(explained, DEFAULT) == stand
 

@@ -7,7 +7,8 @@ import numpy.typing as npt
 import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import approach, search_peaks, settle
+from jbf.estimation.likelihood import likelihood_gain
+from jbf.estimation.minimum import approach, minimum, search_peaks, settle
 from jbf.estimation.peaks import other_peaks
 from jbf.estimation.problem import Problem
 from jbf.models.catalogue import find_effect
@@ -40,5 +41,8 @@ def test_a_drive_that_rings_is_found_from_a_wrong_frequency() -> None:
     found = search_peaks(problem, stuck)
     which = problem.names.index("drive_compliance.J_kg_m2")
     assert problem.square(found.values) < problem.square(stuck.values)
-    assert abs(found.values[which] / right - 1.0) < 0.15
+    # As high as the peak that a search from the truth climbs: within one standard error.
+    true = minimum(problem, [{"drive_compliance.J_kg_m2": right}])
+    assert likelihood_gain(true, found) < 1.0
+    assert abs(found.values[which] / right - 1.0) < 0.2
     assert abs(stuck.values[which] / right - 1.0) > 0.5

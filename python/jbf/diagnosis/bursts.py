@@ -1,4 +1,11 @@
-"""Structure at isolated instants: innovations larger than any noise of that size shows."""
+"""Structure at isolated instants: bursts of innovations that are larger than the rest, and of one
+sign.
+
+Single large innovations are noise with heavy tails, or glitches of the recording: what their
+neighbours are does not depend on them. A burst of friction lasts: the neighbours of its largest
+innovation have its sign. The correlation of large innovations with their neighbours, all clipped so
+that no single one decides, is a normal deviate where there are no bursts.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
+from scipy import stats
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
@@ -16,6 +24,8 @@ Array = npt.NDArray[np.float64]
 
 APART_S = 0.5
 """Large innovations closer than this are one burst."""
+CLIPPED = 3.0
+"""Standard deviations at which innovations are clipped."""
 NAMED = 4
 """Bursts named in the description."""
 
@@ -32,7 +42,9 @@ def find_bursts(
     far = np.abs(every) > policy.burst_sigma * sigma
     square = float(every @ every)
     share = float(np.sum(every[far] ** 2)) / max(square, 1e-300)
-    if int(far.sum()) <= policy.bursts_by_chance or share < policy.burst_share:
+    if share < policy.burst_share:
+        return []
+    if _lasting_chance(innovations, samples, sigma, policy) > policy.burst_chance:
         return []
     bursts: list[tuple[float, float, str]] = []
     for e, counted, p in zip(innovations, samples.counted, prepared, strict=True):
@@ -46,3 +58,19 @@ def find_bursts(
     largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in bursts[:NAMED])
     where = f"{len(bursts)} bursts, the largest {bursts[0][0]:.2g} N: at {largest}"
     return [Remainder("time", where, min(share, 1.0))]
+
+
+def _lasting_chance(
+    innovations: Sequence[Array], samples: Samples, sigma: float, policy: Policy
+) -> float:
+    """Probability that the neighbours of large innovations have their sign so much by chance."""
+    product = square = 0.0
+    clipped = np.clip(samples.flat(innovations) / sigma, -CLIPPED, CLIPPED)
+    usual = float(np.mean(clipped**2))
+    for e, counted in zip(innovations, samples.counted, strict=True):
+        x = np.clip(e / sigma, -CLIPPED, CLIPPED)
+        large = np.abs(e) > policy.burst_sigma * sigma
+        pairs = counted[1:] & counted[:-1] & (large[1:] | large[:-1])
+        product += float(np.sum((x[1:] * x[:-1])[pairs]))
+        square += CLIPPED**2 * usual * int(pairs.sum())
+    return float(stats.norm.sf(product / np.sqrt(square))) if square > 0.0 else 1.0

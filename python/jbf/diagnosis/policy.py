@@ -119,9 +119,13 @@ class Policy:
         "standard deviations from which on an innovation is large",
         "one in two millions of Gaussian noise",
     )
-    bursts_by_chance: int = _number(2, "large innovations that are let pass", "simulated campaigns")
     burst_share: float = _number(
         0.008, "share of the mean square that large innovations must have", "simulated campaigns"
+    )
+    burst_chance: float = _number(
+        1e-4,
+        "probability at which the neighbours of large innovations have their sign by chance",
+        "one campaign in ten thousand, whatever the size and the tails of its noise",
     )
     constancy_chance: float = _number(
         1e-8,

@@ -17,10 +17,12 @@ from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.selection import Names, alternatives, reconsider, try_candidates
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import Explained, names_stand, verdict
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.models.catalogue import find_clock
@@ -30,6 +32,9 @@ from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
+
+MOST_LOOKS = 4
+"""How often what the residuals tell of the recording sends selection to its beginning."""
 
 
 @one_blas_thread
@@ -76,14 +81,23 @@ def diagnose(
     check_callable(progress, "progress")
     if limits is not None:
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
-    campaign = Campaign.prepare(rig, runs)
+    campaign = settled_campaign(Campaign.prepare(rig, runs), law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     bare = finish(candidates.fitted(()).problem, candidates.converge(()))
     before = compare_prepared(bare.model, campaign)
 
     present, steps, refused = _select(candidates, before.noise_n)
+    for _ in range(MOST_LOOKS):
+        again = second_look(candidates.fitted(present).problem, candidates.converge(present))
+        if not again.found:
+            break
+        campaign = again.campaign
+        candidates = Candidates(campaign, law, clock, policy, progress)
+        bare = finish(candidates.fitted(()).problem, candidates.converge(()))
+        before = compare_prepared(bare.model, campaign)
+        present, steps, refused = _select(candidates, before.noise_n)
     remains = (*_remainder(candidates, present), *refused)
-    if remains and present and not _stand(candidates, present, before.noise_n):
+    if remains and present and not _stand(candidates, present, remains):
         present, steps = (), [_withdrawn(steps[0])]
         remains = _remainder(candidates, present) or remains
     equal = alternatives(candidates, present)
@@ -113,6 +127,7 @@ def diagnose(
         not_tried=candidates.not_tried,
         unseen=hidden,
         policy=policy,
+        findings=candidates.campaign.findings,
     )
 
 
@@ -173,7 +188,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)
 
 
-def _stand(candidates: Candidates, present: Names, noise_n: float) -> bool:
+def _stand(candidates: Candidates, present: Names, remains: tuple[Remainder, ...]) -> bool:
     """Whether effects keep their names though structure remains."""
     empty, whole = candidates.converge(()), candidates.converge(present)
     every = candidates.campaign.samples
@@ -182,7 +197,7 @@ def _stand(candidates: Candidates, present: Names, noise_n: float) -> bool:
     explained = Explained(
         bare_n=every.rms(empty.residuals),
         now_n=every.rms(whole.residuals),
-        noise_n=noise_n,
+        remaining=max(r.share for r in remains),
         gain=likelihood_gain(whole, empty) * effective_share(whole),
         disagreement=left.gain - left.degrees if beyond else None,
     )

@@ -36,9 +36,11 @@ def find_remainder(
     innovations = samples.innovations(solution.residuals, solution.noise)
     patterns = find_patterns(problem, solution, innovations, policy)
     found = [Remainder(f.axis, f.where, f.share) for f in patterns]
-    found += find_tones(prepared, samples, innovations, solution.residuals, policy)
+    left = samples.without_deviations(solution.residuals, solution.noise)
+    found += find_tones(prepared, samples, innovations, left, policy)
     found += find_replicates(prepared, solution, policy)
-    found += find_bursts(prepared, samples, innovations, policy)
+    plain = samples.plain_innovations(solution.residuals, solution.noise)
+    found += find_bursts(prepared, samples, plain, policy)
     found += find_disagreement(problem, solution, policy)
     return tuple(sorted(found, key=lambda r: -r.share))
 

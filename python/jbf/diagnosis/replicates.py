@@ -28,9 +28,8 @@ def find_replicates(
     """What of the residual comes again with the motion, over all periodic runs."""
     product, spread, square, names = 0.0, 0.0, 0.0, []
     least = policy.replicate_share
-    for residual, counted, p in zip(
-        solution.residuals, solution.samples.counted, prepared, strict=True
-    ):
+    left = solution.samples.without_deviations(solution.residuals, solution.noise)
+    for residual, counted, p in zip(left, solution.samples.counted, prepared, strict=True):
         shift = period_samples(p.motion.velocity_m_s)
         if shift is None:
             continue

@@ -13,6 +13,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.verdict import Verdict
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
+from jbf.records.findings.finding import Finding
 from jbf.records.run import PathLike
 from jbf.results import Result
 
@@ -49,6 +50,8 @@ class Diagnosis(Result):
         The motion of the next run, where a run would part rivals or show what could hide.
     policy
         The numbers that decided the verdict.
+    findings
+        What the recording did, run by run, and what was done about it.
     """
 
     verdict: Verdict
@@ -66,6 +69,7 @@ class Diagnosis(Result):
     unseen: tuple[str, ...] = ()
     experiment: Experiment | None = None
     policy: Policy = DEFAULT
+    findings: tuple[Finding, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -81,6 +85,7 @@ class Diagnosis(Result):
             "steps": [s.to_dict() for s in self.steps],
             "failures": [f.to_dict() for f in self.failures],
             "unexplained": [r.to_dict() for r in self.unexplained],
+            "findings": [f.to_dict() for f in self.findings],
             "next_experiment": self.next_experiment,
             "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
             "not_tried": dict(self.not_tried),

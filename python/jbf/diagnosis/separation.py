@@ -12,11 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from jbf import _core
 from jbf.diagnosis.candidates import Candidates, Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
 from jbf.estimation.likelihood import unexplained_square
 from jbf.models.chain import core_load_n, core_motion, imposed
+from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
 from jbf.records.run import Run
 
@@ -37,7 +37,7 @@ class Rival:
         self.noise_n = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
         self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
 
-    def at(self, motion: _core.Motion) -> tuple[Array, Array]:
+    def at(self, motion: Driven) -> tuple[Array, Array]:
         """Friction, N, and its derivatives by the search's variables, under a motion."""
         values = self.solution.values
         ((friction, slopes),) = self.problem.chain.jacobian(values, [motion], self.problem.open)
@@ -66,7 +66,7 @@ def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits
 
 def motions(
     candidates: Candidates, limits: Limits, step_s: float
-) -> Iterator[tuple[Excitation, Run, _core.Motion]]:
+) -> Iterator[tuple[Excitation, Run, Driven]]:
     """Every motion that the rig can make, as a run to play."""
     rig = candidates.campaign.rig
     for excitation in excitations(limits, step_s):

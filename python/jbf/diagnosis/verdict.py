@@ -38,8 +38,8 @@ class Explained:
     ----------
     bare_n, now_n
         RMS of the bare law's and of the final model's residual, N.
-    noise_n
-        Noise floor of the records, N.
+    remaining
+        Share of the final residual's mean square that is structure, 0 to 1.
     gain
         Of the effects over the bare law, in twice the log likelihood of independent samples.
     disagreement
@@ -49,7 +49,7 @@ class Explained:
 
     bare_n: float
     now_n: float
-    noise_n: float
+    remaining: float
     gain: float
     disagreement: float | None
 
@@ -57,11 +57,12 @@ class Explained:
 def names_stand(explained: Explained, policy: Policy) -> bool:
     """Do effects keep their names though structure remains?
 
-    They do where they took most of the bare law's excess over the noise, and gained far more than
-    the runs still disagree by: else they may be confounders of what is really there.
+    They do where they took most of the structure that there was, and gained far more than the runs
+    still disagree by: else they may be confounders of what is really there.
     """
     bare, now = explained.bare_n**2, explained.now_n**2
-    if (bare - now) / max(bare - explained.noise_n**2, 1e-300) < policy.least_explained:
+    taken = bare - now
+    if taken / max(taken + explained.remaining * now, 1e-300) < policy.least_explained:
         return False
     if explained.disagreement is None:
         return True

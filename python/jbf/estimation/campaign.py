@@ -6,18 +6,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
-from jbf import _core
 from jbf.errors import InputError
 from jbf.estimation.noise_floor import most_noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.models.catalogue import Effect
+from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
 from jbf.models.requirements import has_angle, has_path
 from jbf.records.arguments import list_of_runs
+from jbf.records.findings.finding import Finding
 from jbf.records.rig import Rig
 from jbf.records.run import Run
+
+Mask = npt.NDArray[np.bool_]
 
 LOADS_DIFFER = 0.05
 """Loads that differ by less than this share are one load."""
@@ -42,6 +46,7 @@ class Campaign:
     prepared: tuple[Prepared, ...]
     samples: Samples
     most_noise_n: float | None = None
+    more_findings: tuple[Finding, ...] = ()
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
@@ -60,7 +65,7 @@ class Campaign:
         return cls(rig, prepared, samples, most_noise(prepared, samples))
 
     @property
-    def motions(self) -> list[_core.Motion]:
+    def motions(self) -> list[Driven]:
         """The core's copies of the motions."""
         return [p.core for p in self.prepared]
 
@@ -98,6 +103,19 @@ class Campaign:
         if "loads" in needs and not self.has_loads:
             return "all runs have one load, under which it changes nothing"
         return None
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the recording did, run by run."""
+        return (*(f for p in self.prepared for f in p.examined.findings), *self.more_findings)
+
+    def with_findings(self, findings: Sequence[Finding]) -> Campaign:
+        """The campaign with findings that took a model to see."""
+        return replace(self, more_findings=(*self.more_findings, *findings))
+
+    def without(self, masks: Sequence[Mask]) -> Campaign:
+        """The campaign with more samples set aside, one mask a run."""
+        return replace(self, samples=self.samples.within([~m for m in masks]))
 
     def only(self, which: Sequence[int]) -> Campaign:
         """The campaign of some of the runs: the instruments, and so the noise, are the same."""

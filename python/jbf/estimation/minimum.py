@@ -28,7 +28,7 @@ TRIAL_EVALUATIONS = 6
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
 """How many of the starting points are given them."""
-MOST_FORGIVEN = 2.0
+MOST_FORGIVEN = 1.02
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
 
 

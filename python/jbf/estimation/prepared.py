@@ -9,9 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jbf import _core
 from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
+from jbf.models.driven import Driven
+from jbf.records.findings.examine import Examined, examine
+from jbf.records.findings.finding import Finding
+from jbf.records.findings.glitches import find_glitches
+from jbf.records.motion.derived_speed import DerivedSpeed
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require
@@ -21,13 +25,15 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready; `step_s` is its usual step. Which of its samples count, `Samples` says."""
+    """One run, ready: its motion, its usual step, and what its recording did. Which of its samples
+    count, `Samples` says."""
 
     rig: Rig
     run: Run
     motion: ImposedMotion
     friction_n: Array
     step_s: float
+    examined: Examined
 
     @classmethod
     def of(cls, rig: Rig, run: Run) -> Prepared:
@@ -41,19 +47,39 @@ class Prepared:
         require(run, "friction_n", "a comparison with the model")
         motion = imposed(rig, run)
         assert run.friction_n is not None
+        examined = examine(run)
+        if examined.native is not None:
+            native = examined.native
+            motion = motion.at(run.time_s, native.time_s)
+            run = run.at(native.time_s, native.values)
+            glitches, off = find_glitches(run)
+            examined = Examined((*examined.findings, *glitches), ~off)
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(
                 file=run.path or run.name,
                 problem="the shaft never moves",
                 mend="leave this run out, or record one with motion",
             )
-        return cls(rig, run, motion, run.friction_n, float(np.median(np.diff(run.time_s))))
+        if motion.derived is not None:
+            made = _made_speed(run, motion.derived)
+            examined = Examined((*examined.findings, made), examined.usable, examined.native)
+        step_s = float(np.median(np.diff(run.time_s)))
+        assert run.friction_n is not None
+        return cls(rig, run, motion, run.friction_n, step_s, examined)
 
     @cached_property
-    def core(self) -> _core.Motion:
+    def core(self) -> Driven:
         """The core's copy of the motion."""
         return core_motion(self.rig, self.run, self.motion)
 
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""
         return {name: value for name, value in vars(self).items() if name != "core"}
+
+
+def _made_speed(run: Run, derived: DerivedSpeed) -> Finding:
+    words = f"the speed is a difference of the path over {derived.span} samples"
+    if derived.late_s > 0.0:
+        words += f", {1e3 * derived.late_s:.3g} ms late"
+    size, done = float(derived.span), "left aside; the path alone tells the motion"
+    return Finding("coarse_speed", "velocity_m_s", run.name, size, "samples", done, words)

@@ -9,12 +9,13 @@ more of them aside (`jumps`). A fit gives each sample its weight; a test looks a
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
 
@@ -37,19 +38,26 @@ class Samples:
         True at the samples that tests, RMS and noise look at, shape (n,).
     weight
         What a fit gives each sample, 0 to 1, shape (n,): 1 where it counts, and less beside a
-        jump whose instant is itself fitted.
+        jump whose instant is itself fitted, or where the noise is larger than usual.
+    between
+        What differs from run to run; None where nothing is known to.
+    level
+        How much smaller than here the noise is where it is least, 0 to 1, shape (n,): a part of
+        `weight`, whose rest is of jumps and of heavy tails. None where the noise is even.
     """
 
     runs: tuple[str, ...]
     steps_s: tuple[float, ...]
     counted: tuple[Mask, ...]
     weight: tuple[Array, ...]
+    between: BetweenRuns | None = None
+    level: tuple[Array, ...] | None = None
 
     @classmethod
     def of(cls, prepared: Iterable[Prepared]) -> Samples:
-        """Those at which the runs tell the sign of the friction."""
+        """Those at which the runs tell the sign of the friction, and a reading that can be used."""
         prepared = tuple(prepared)
-        counted = tuple(p.motion.sign_known for p in prepared)
+        counted = tuple(p.motion.sign_known & p.examined.usable for p in prepared)
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),
@@ -71,21 +79,35 @@ class Samples:
             tuple(self.steps_s[i] for i in which),
             tuple(self.counted[i] for i in which),
             tuple(self.weight[i] for i in which),
+            None if self.between is None else self.between.only(which),
+            None if self.level is None else tuple(self.level[i] for i in which),
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:
         """Those of them that lie within masks, one a run."""
-        return Samples(
-            self.runs,
-            self.steps_s,
-            tuple(c & m for c, m in zip(self.counted, masks, strict=True)),
-            tuple(w * m for w, m in zip(self.weight, masks, strict=True)),
+        return replace(
+            self,
+            counted=tuple(c & m for c, m in zip(self.counted, masks, strict=True)),
+            weight=tuple(w * m for w, m in zip(self.weight, masks, strict=True)),
         )
+
+    def weighed(
+        self,
+        level: Sequence[Array],
+        robust: Sequence[Array],
+        between: BetweenRuns | None,
+    ) -> Samples:
+        """The same with the noise's own level at each sample, a share against heavy tails, and with
+        what differs from run to run."""
+        weight = tuple(w * s * h for w, s, h in zip(self.weight, level, robust, strict=True))
+        before = [np.ones(len(w)) for w in weight] if self.level is None else self.level
+        whole = tuple(a * b for a, b in zip(before, level, strict=True))
+        return replace(self, weight=weight, between=between, level=whole)
 
     def tested(self) -> Samples:
         """The same, those that do not count without weight in a fit."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
-        return Samples(self.runs, self.steps_s, self.counted, weight)
+        return replace(self, weight=weight)
 
     def halves(self) -> tuple[Samples, Samples]:
         """The first and the second half of each run, to take turns in being left out."""
@@ -124,27 +146,58 @@ class Samples:
         for i in range(len(residuals)) if which is None else which:
             w, step = self.weight[i], self.steps_s[i]
             keep = w > 0.0
-            r.append(noise.innovations(residuals[i] * w, step)[keep])
-            j.append(noise.innovations(jacobian[i] * w[:, None], step)[keep])
+            own = [
+                noise.innovations(residuals[i] * w, step)[keep],
+                noise.innovations(jacobian[i] * w[:, None], step)[keep],
+            ]
+            if self.between is not None:
+                own = self.between.whitened(i, own, w, step, noise)
+            r.append(own[0])
+            j.append(own[1])
         return np.concatenate(r), np.concatenate(j)
 
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
         """`n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
+        if self.between is not None:
+            empty = [np.zeros((len(r), 0)) for r in residuals]
+            r, _ = self.stacked(residuals, empty, noise)
+            return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(len(r), 1)))
         weighted = [r * w for r, w in zip(residuals, self.weight, strict=True)]
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])
 
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations of weighted residuals, one array a run; zero where there is no weight."""
+        left = self.without_deviations(residuals, noise)
         return [
             noise.innovations(r * w, step) * (w > 0.0)
-            for r, w, step in zip(residuals, self.weight, self.steps_s, strict=True)
+            for r, w, step in zip(left, self.weight, self.steps_s, strict=True)
+        ]
+
+    def without_deviations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
+        """Residuals less what the deviations of their runs predict, N."""
+        if self.between is None:
+            return list(residuals)
+        return [
+            r - self.between.predicted(i, r, self.weight[i], self.steps_s[i], noise)
+            for i, r in enumerate(residuals)
         ]
 
     def innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations for tests, one array a run; zero where a sample does not count."""
+        """Innovations for tests, one array a run, as large everywhere as where the noise is least;
+        zero where a sample does not count."""
+        left = self.without_deviations(residuals, noise)
         return [
-            noise.innovations(r * c, step) * c
-            for r, c, step in zip(residuals, self.counted, self.steps_s, strict=True)
+            noise.innovations(r * (c * w), step) * c
+            for r, c, w, step in zip(left, self.counted, self.weight, self.steps_s, strict=True)
+        ]
+
+    def plain_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
+        """The same, large ones as large as they are: for tests of those very ones."""
+        left = self.without_deviations(residuals, noise)
+        level = [np.ones(len(r)) for r in left] if self.level is None else self.level
+        return [
+            noise.innovations(r * (c * s), step) * c
+            for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)
         ]
 
 
@@ -152,9 +205,8 @@ def least_weights(a: Samples, b: Samples) -> Samples:
     """The samples of two models of the same runs, each with the smaller of its weights."""
     if a is b:
         return a
-    return Samples(
-        a.runs,
-        a.steps_s,
-        tuple(c & d for c, d in zip(a.counted, b.counted, strict=True)),
-        tuple(np.minimum(v, w) for v, w in zip(a.weight, b.weight, strict=True)),
+    return replace(
+        a,
+        counted=tuple(c & d for c, d in zip(a.counted, b.counted, strict=True)),
+        weight=tuple(np.minimum(v, w) for v, w in zip(a.weight, b.weight, strict=True)),
     )

@@ -18,6 +18,7 @@ from jbf.models.catalogue import (
     find_law,
     in_chain_order,
 )
+from jbf.models.driven import Driven, DrivenChain
 from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
 from jbf.records.arguments import one_run, the_rig
@@ -87,7 +88,7 @@ def core_load_n(rig: Rig) -> float | None:
     return None if rig.load is None else rig.load.normal_n
 
 
-def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain | OwnChain:
+def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain:
     """The core's chain for a rig.
 
     Raises
@@ -110,14 +111,14 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> _core.Chain
             max_step_s=MAX_STEP_S,
         )
     if not own:
-        return core
+        return DrivenChain(core)
     names = core.parameter_names
     instrument = [
         (page.name, [names.index(f"{page.name}.{p.name}") for p in page.parameters])
         for page in pages
         if page.stage == "instrument" and page not in own
     ]
-    return OwnChain(core, instrument, own)
+    return DrivenChain(OwnChain(core, instrument, own))
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
@@ -125,30 +126,62 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
     return impose(one_run(run), None if rig.bearing is None else rig.bearing.radius_m)
 
 
-def core_motion(rig: Rig, run: Run, motion: ImposedMotion) -> _core.Motion:
-    """A run's motion and load, handed to the core; a law in newtons does not ask for the load."""
+def core_motion(
+    rig: Rig, run: Run, motion: ImposedMotion, before: tuple[float, float] | None = None
+) -> Driven:
+    """A run's motion and load, handed to the core; a law in newtons does not ask for the load.
+
+    Parameters
+    ----------
+    before
+        An imagined motion before the run: its constant speed, as a share of the run's largest, in
+        the direction in which the run first moves, and how long it lasts, s.
+    """
     load = run.load_n if run.load_n is not None else np.full(len(run), core_load_n(rig) or 1.0)
-    with core_refusals("correct the run"):
-        made = _core.Motion(
-            np.ascontiguousarray(run.time_s),
-            motion.velocity_m_s,
-            motion.acceleration_m_s2,
-            motion.angle_rad,
-            np.ascontiguousarray(load),
-        )
-    # What effects of one's own see: the record, its motion as the models are driven with it.
-    made.columns = run.columns() | {
+    columns = run.columns() | {
         "velocity_m_s": motion.velocity_m_s,
         "acceleration_m_s2": motion.acceleration_m_s2,
         "angle_rad": motion.angle_rad,
         "load_n": load,
     }
-    return made
+    kept = None
+    if before is not None:
+        count, columns = _with_motion_before(columns, rig, *before)
+        kept = count + np.arange(len(run))
+    with core_refusals("correct the run"):
+        made = _core.Motion(
+            np.ascontiguousarray(columns["time_s"]),
+            np.ascontiguousarray(columns["velocity_m_s"]),
+            np.ascontiguousarray(columns["acceleration_m_s2"]),
+            np.ascontiguousarray(columns["angle_rad"]),
+            np.ascontiguousarray(columns["load_n"]),
+        )
+    # What effects of one's own see: the record, its motion as the models are driven with it.
+    made.columns = columns
+    return Driven(made, kept)
 
 
-def warn_of_fast_film(
-    core: _core.Chain | OwnChain, values: Array, motions: list[_core.Motion]
-) -> None:
+def _with_motion_before(
+    columns: dict[str, Array], rig: Rig, share: float, duration_s: float
+) -> tuple[int, dict[str, Array]]:
+    """How many samples of an imagined motion, and the columns with it before them."""
+    speed, time = columns["velocity_m_s"], columns["time_s"]
+    step_s = float(np.median(np.diff(time)))
+    count = int(duration_s / step_s)
+    moving = np.flatnonzero(speed)
+    way = float(np.sign(speed[moving[0]])) if len(moving) else 1.0
+    velocity = way * share * float(np.max(np.abs(speed), initial=0.0))
+    arm = 1.0 if rig.bearing is None else rig.bearing.radius_m
+    back = -step_s * np.arange(count, 0, -1)
+    before = {name: np.full(count, values[0]) for name, values in columns.items()}
+    before["time_s"] = time[0] + back
+    before["velocity_m_s"] = np.full(count, velocity)
+    before["acceleration_m_s2"] = np.zeros(count)
+    before["angle_rad"] = columns["angle_rad"][0] + velocity / arm * back
+    return count, {name: np.concatenate((before[name], columns[name])) for name in columns}
+
+
+def warn_of_fast_film(core: DrivenChain, values: Array, motions: Sequence[Driven]) -> None:
     """Say it where a prediction does not follow the film."""
     rate = core.film_rate_1_s(values, motions)
     if rate > _core.FASTEST_FILM_1_S:

@@ -162,6 +162,23 @@ class Run:
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
         return cls(name=name, **known, extra=extra, path=path)
 
+    def at(self, time_s: Array, friction_n: Array) -> Run:
+        """The run at other instants within it, with the friction read there, N; every other column
+        in straight lines between its samples."""
+        others = {
+            name: frozen(np.interp(time_s, self.time_s, values))
+            for name, values in self.columns().items()
+            if name not in ("time_s", "friction_n")
+        }
+        extra = {name: others.pop(name) for name in self.extra}
+        return replace(
+            self,
+            time_s=frozen(time_s),
+            friction_n=frozen(friction_n),
+            **others,  # type: ignore[arg-type]
+            extra=extra,
+        )
+
     def write_csv(self, path: PathLike) -> None:
         """Write the run as CSV, whole or not at all; reading it gives the same bits.
 

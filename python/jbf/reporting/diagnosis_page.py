@@ -11,6 +11,7 @@ from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.page import measurement, page, pattern_rows, picture
 from jbf.reporting.tables import (
     correlation_pairs,
+    finding_rows,
     ledger_rows,
     parameter_rows,
     ratio,
@@ -60,6 +61,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         trials=trials,
         effects=[find_effect(name) for name in diagnosis.effects],
         unexplained=pattern_rows(diagnosis.unexplained),
+        findings=finding_rows(diagnosis.findings),
         parameters=parameter_rows(
             diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters
         ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from jbf.diagnosis.result import Diagnosis
     from jbf.estimation.fit import Fit
     from jbf.models.parameter_value import ParameterValue
+    from jbf.records.findings.finding import Finding
 
+MOST_RUNS_NAMED = 3
+"""Runs named of each kind of finding."""
 LEAST_CORRELATION = 0.3
 """Weaker correlations are not worth a line."""
 
@@ -89,3 +92,17 @@ def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
         (r.name, str(r.samples), number(r.rms_n), ratio(r.rms_n, comparison.noise_n))
         for r in comparison.runs
     ]
+
+
+def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
+    """Each kind of finding, and what it did to which runs; the first few runs are named."""
+    kinds: dict[str, list[Finding]] = {}
+    for finding in findings:
+        kinds.setdefault(finding.kind, []).append(finding)
+    rows = []
+    for kind, found in kinds.items():
+        said = [f"{f.words}, in {f.run}" for f in found[:MOST_RUNS_NAMED]]
+        if len(found) > MOST_RUNS_NAMED:
+            said.append(f"and in {len(found) - MOST_RUNS_NAMED} runs more")
+        rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
+    return rows

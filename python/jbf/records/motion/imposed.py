@@ -14,13 +14,19 @@ rests in which the speed is a hum instead of zero. Each is looked for in the rec
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
-from jbf.records.motion.rests import place_rests, resting_samples, still_samples
+from jbf.records.motion.derived_speed import DerivedSpeed, centred_speed, derived_speed
+from jbf.records.motion.rests import (
+    place_rests,
+    rest_edges,
+    resting_samples,
+    still_samples,
+)
 from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of, step_of
 from jbf.records.motion.smoothing import smooth
 from jbf.records.run import Run
@@ -47,6 +53,8 @@ class ImposedMotion:
     sign_known
         False where the sign of the motion, and so of the friction, cannot be known, and where the
         records of path and speed contradict one another.
+    derived
+        How the recorded speed was made of the path; None where it was measured.
     """
 
     velocity_m_s: Array
@@ -55,6 +63,46 @@ class ImposedMotion:
     velocity_error_m_s: Array
     resting: Mask
     sign_known: Mask
+    derived: DerivedSpeed | None = None
+
+    def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
+        """The motion at other instants within it: on cubics through speed and acceleration.
+
+        Parameters
+        ----------
+        time_s
+            The instants of this motion, s.
+        """
+        k = np.clip(np.searchsorted(time_s, instants_s) - 1, 0, len(time_s) - 2)
+        h = time_s[k + 1] - time_s[k]
+        u = np.clip((instants_s - time_s[k]) / h, 0.0, 1.0)
+        v0, v1 = self.velocity_m_s[k], self.velocity_m_s[k + 1]
+        a0, a1 = self.acceleration_m_s2[k], self.acceleration_m_s2[k + 1]
+        rest = self.resting[k] & self.resting[k + 1]
+        # Beside a rest the speed is a line from where the shaft starts.
+        corner = self.resting[k] | self.resting[k + 1]
+        line = v0 + u * (v1 - v0)
+        cubic = (
+            (1.0 + 2.0 * u) * (1.0 - u) ** 2 * v0
+            + u * (1.0 - u) ** 2 * h * a0
+            + u**2 * (3.0 - 2.0 * u) * v1
+            - u**2 * (1.0 - u) * h * a1
+        )
+        velocity = np.where(corner, line, cubic)
+        known = self.sign_known[k] & self.sign_known[k + 1] & (v0 * v1 >= 0.0)
+        between = np.abs(u - 0.5) < 0.5
+        known = np.where(between, known & (rest | ~corner), self.sign_known[k])
+        return replace(
+            self,
+            velocity_m_s=np.where(rest, 0.0, velocity),
+            acceleration_m_s2=np.where(rest, 0.0, a0 + u * (a1 - a0)),
+            angle_rad=np.interp(instants_s, time_s, self.angle_rad),
+            velocity_error_m_s=np.maximum(
+                self.velocity_error_m_s[k], self.velocity_error_m_s[k + 1]
+            ),
+            resting=rest,
+            sign_known=known.astype(bool),
+        )
 
 
 def impose(run: Run, radius_m: float | None) -> ImposedMotion:
@@ -72,10 +120,15 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     time, speed = run.time_s, run.velocity_m_s
     n = len(time)
     path = _recorded_path(run, radius_m)
-    rest = resting_samples(speed)
     step = 0.0 if path is None else step_of(path)
-    if path is not None:
-        rest |= still_samples(path, speed, step)
+    derived = None if path is None else derived_speed(time, path, speed)
+    if path is not None and derived is not None:
+        speed = centred_speed(time, path)
+        rest = still_samples(path, speed, step)
+    else:
+        rest = resting_samples(speed)
+        if path is not None:
+            rest |= still_samples(path, speed, step)
     moving = ~rest
     if path is None:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
@@ -90,10 +143,11 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     sd_speed = noise_of(speed[moving]) if moving.any() else 0.0
     sd_speed = max(sd_speed, 1e-7 * top, 1e-15)
     beyond = disagreement_of(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
-    usual = max(sd_speed, beyond)
+    # A speed made of the path tells nothing besides.
+    usual = max(sd_speed, beyond) if derived is None else 1e3 * max(top, sd_speed)
 
     contradiction = np.zeros(n)
-    if n > 1:
+    if n > 1 and derived is None:
         contradiction = contradiction_of(time, path, speed, sd_path, usual)
 
     velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
@@ -102,9 +156,9 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         part = slice(first, end)
         if end - first < 3:
-            error[part] = usual
+            error[part] = max(sd_speed, beyond)
             continue
-        local = local_noise(speed[part])
+        local = local_noise(speed[part]) if derived is None else usual
         sd: Array | float = usual
         if isinstance(local, np.ndarray):
             sd = np.maximum(local, usual)
@@ -116,14 +170,22 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         )
     place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    sign_known &= contradiction == 0.0
+    sign_known &= (contradiction == 0.0) & ~rest_edges(rest)
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and not sign_known[0]:
         velocity[0] = 0.0
     angle = smooth_path / (radius_m or 1.0)
     if radius_m is None and run.position_m is None and run.angle_rad is not None:
         angle = np.unwrap(run.angle_rad)
-    return ImposedMotion(velocity, acceleration, angle, error, rest, sign_known)
+    return ImposedMotion(
+        velocity,
+        acceleration,
+        angle,
+        error,
+        rest,
+        sign_known,
+        derived,
+    )
 
 
 def _recorded_path(run: Run, radius_m: float | None) -> Array | None:

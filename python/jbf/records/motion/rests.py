@@ -51,6 +51,19 @@ def still_samples(path: Array, velocity_m_s: Array, step: float) -> Mask:
     return resting
 
 
+def rest_edges(rest: Mask) -> Mask:
+    """True at the first and the last sample of each rest that motion precedes or follows.
+
+    The shaft stops and starts between samples: within one sample of it nobody knows which.
+    """
+    moving = ~rest
+    beside = np.zeros(len(rest), dtype=bool)
+    beside[:-1] |= moving[1:]
+    beside[1:] |= moving[:-1]
+    edges: Mask = rest & beside
+    return edges
+
+
 def place_rests(
     rest: Mask, path: Array, velocity: Array, acceleration: Array, half_step: float
 ) -> None:

@@ -1,0 +1,229 @@
+"""A second look at the samples, once a first round of selection has said what the model is.
+
+Where the noise grows with the force or differs by run, where its tails are heavy, and where runs
+deviate from one another in their zero or their oil, the first likelihood was not the data's. What
+the residuals of the first answer tell of that goes into the samples: weights, and deviations of the
+runs with a spread (`estimation.between_runs`). Then selection begins anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+FORCE_BINS = 6
+UNEVEN = 1.25
+"""Ratio of the noise's size, between forces or runs, from which on it is uneven."""
+HUBER = 2.5
+"""Innovations beyond so many of their standard deviations count less (Huber 1964)."""
+HEAVY = 6.0
+"""Times as many innovations beyond four standard deviations as Gaussian noise has: heavy tails."""
+LEAST = 200
+"""Samples of a bin whose size can be told."""
+DEVIATION_CHANCE = 1e-4
+"""Probability at which runs that deviate alike are chance."""
+
+
+@dataclass(frozen=True, eq=False)
+class SecondLook:
+    """What the residuals of a first answer tell of the noise and of the runs."""
+
+    campaign: Campaign
+    found: bool
+
+
+def second_look(problem: Problem, solution: Solution) -> SecondLook:
+    """The campaign as the residuals of a solution ask for it.
+
+    One deviation is found at a look, the clearest: what is missing yet may look like another.
+    """
+    campaign = problem.campaign
+    sizes, uneven = _sizes(problem, solution)
+    robust, heavy = _robust(solution, sizes)
+    known = {f.kind for f in campaign.more_findings}
+    if known & {"noise_with_force", "noise_by_run", "heavy_tails"}:
+        # Weights are given once.
+        sizes, uneven, heavy = [np.ones(len(s)) for s in sizes], [], []
+        robust = sizes
+    shares = [s * w for s, w in zip(sizes, robust, strict=True)]
+    between, deviations = _between(problem, solution, shares)
+    findings = [*uneven, *heavy, *deviations]
+    if not findings:
+        return SecondLook(campaign, False)
+    samples = campaign.samples.weighed(sizes, robust, between)
+    again = replace(campaign, samples=samples).with_findings(findings)
+    return SecondLook(again, True)
+
+
+def _robust_size(values: Array) -> float:
+    return float(np.median(np.abs(values))) / 0.6745
+
+
+def _white(residual: Array) -> Array:
+    """The white noise of a residual, sample by sample, from its third differences."""
+    third = np.diff(residual, 3) / np.sqrt(20.0)
+    found: Array = np.pad(third, (1, len(residual) - len(third) - 1), mode="edge")
+    return found
+
+
+def _sizes(problem: Problem, solution: Solution) -> tuple[list[Array], list[Finding]]:
+    """A weight for the size of the noise at each sample, 0 to 1, and whether it is uneven."""
+    samples = solution.samples
+    # The white part alone: what a model leaves is smooth, and no noise.
+    e = [_white(r) for r in solution.residuals]
+    force = [np.abs(f) for f in problem.predict(solution.values)]
+    flat_e, flat_f = samples.flat(e), samples.flat(force)
+    usual = _robust_size(flat_e)
+    ones = [np.ones(len(f)) for f in force]
+    if usual <= 0.0 or len(flat_e) < LEAST * FORCE_BINS:
+        return ones, []
+    edges = np.quantile(flat_f, np.linspace(0.0, 1.0, FORCE_BINS + 1))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
+    by_force = np.array([_robust_size(flat_e[which == k]) for k in range(FORCE_BINS)])
+    findings = []
+    shares = ones
+    if by_force.min() > 0.0 and by_force.max() > UNEVEN * by_force.min():
+        # A line through the squares: noise of the cell, and noise that goes with the force.
+        slope, level = np.polyfit(middle**2, by_force**2, 1)
+        if slope > 0.0 and level + slope * middle[-1] ** 2 > UNEVEN**2 * by_force.min() ** 2:
+            least = max(level, 0.25 * by_force.min() ** 2)
+            sd = [np.sqrt(least + slope * f**2) for f in force]
+            low = min(float(s.min()) for s in sd)
+            shares = [low / s for s in sd]
+            share = float(np.sqrt(slope))
+            words = f"the noise grows with the force, by {100.0 * share:.2g} % of it"
+            names = ", ".join(samples.runs)
+            findings.append(
+                Finding("noise_with_force", "friction_n", names, share, "1", "weighed", words)
+            )
+    sized = [
+        _robust_size((x * s)[c]) if c.sum() > LEAST else 0.0
+        for x, s, c in zip(e, shares, samples.counted, strict=True)
+    ]
+    known = [s for s in sized if s > 0.0]
+    if len(known) > 1 and max(known) > UNEVEN * min(known):
+        shares = [
+            w * (min(known) / s if s > 0.0 else 1.0) for w, s in zip(shares, sized, strict=True)
+        ]
+        ratio = max(known) / min(known)
+        words = f"the noise differs by run, up to {ratio:.2g} times"
+        names = ", ".join(samples.runs)
+        findings.append(Finding("noise_by_run", "friction_n", names, ratio, "1", "weighed", words))
+    return shares, findings
+
+
+def _robust(solution: Solution, sizes: list[Array]) -> tuple[list[Array], list[Finding]]:
+    """A weight against heavy tails for each sample, 0 to 1, and whether there are any."""
+    samples = solution.samples
+    e = [
+        x * s
+        for x, s in zip(samples.innovations(solution.residuals, solution.noise), sizes, strict=True)
+    ]
+    flat = samples.flat(e)
+    sigma = _robust_size(flat)
+    ones = [np.ones(len(x)) for x in e]
+    if sigma <= 0.0 or not len(flat):
+        return ones, []
+    beyond = float(np.mean(np.abs(flat) > 4.0 * sigma))
+    if beyond < max(HEAVY * 2.0 * stats.norm.sf(4.0), 5.0 / len(flat)):
+        return ones, []
+    # A weight on the residual whose square is Huber's on the square.
+    weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
+    words = f"{100.0 * beyond:.2g} % of the noise is beyond four of its standard deviations"
+    names = ", ".join(samples.runs)
+    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighed", words)
+    return weights, [finding]
+
+
+def _between(
+    problem: Problem, solution: Solution, shares: list[Array]
+) -> tuple[BetweenRuns | None, list[Finding]]:
+    """The deviations of the runs known so far, and the clearest of those beyond chance besides."""
+    known = problem.campaign.samples.between
+    ones = [np.ones(len(s)) for s in shares]
+    samples = solution.samples.weighed(shares, ones, known)
+    if len(samples.runs) < 3:
+        return known, []
+    r, _ = samples.stacked(solution.residuals, solution.jacobian, solution.noise)
+    sigma = _robust_size(r)
+    best: tuple[float, str, str, float, list[Array]] | None = None
+    for name, unit, column in _columns(problem, solution):
+        if known is not None and name in known.names:
+            continue
+        found = _spread(samples, solution, column, sigma)
+        if found is None or found[1] > DEVIATION_CHANCE or found[0] <= 0.0:
+            continue
+        if best is None or found[2] > best[0]:
+            best = (found[2], name, unit, found[0], column)
+    if best is None:
+        return known, []
+    _, name, unit, sd, column = best
+    kind, words = _words(name, sd)
+    runs = ", ".join(samples.runs)
+    finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
+    own = [c[:, None] * sd for c in column]
+    if known is None:
+        return BetweenRuns((name,), tuple(own), sigma), [finding]
+    both = tuple(np.hstack(pair) for pair in zip(known.directions, own, strict=True))
+    return BetweenRuns((*known.names, name), both, sigma), [finding]
+
+
+def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
+    """What a deviation adds to the friction: name, unit, one column a run."""
+    found = [("zero", "N", [np.ones(len(r)) for r in solution.residuals])]
+    by_name = {problem.names[i]: k for k, i in enumerate(problem.open)}
+    for name in ("U_tr_m_s", "gamma"):
+        # A warmer oil: a film that carries later, and less drag.
+        if name in by_name:
+            found.append((name, "1", [j[:, by_name[name]] for j in solution.jacobian]))
+    found.append(("gain", "1", problem.predict(solution.values)))
+    return found
+
+
+def _spread(
+    samples: Samples, solution: Solution, column: list[Array], sigma: float
+) -> tuple[float, float, float] | None:
+    """Standard deviation between runs of a deviation along a column, the probability of so much by
+    chance, and how many times as much as chance it is (DerSimonian & Laird 1986)."""
+    estimates, precisions = [], []
+    columns = [c[:, None] for c in column]
+    for i in range(len(samples.runs)):
+        r, n = samples.stacked(solution.residuals, columns, solution.noise, [i])
+        # What the parameters can do in all runs together is not taken from one run's deviation.
+        size = float(n[:, 0] @ n[:, 0]) / sigma**2
+        if size <= 0.0:
+            continue
+        estimates.append(float(n[:, 0] @ r) / sigma**2 / size)
+        precisions.append(size)
+    if len(estimates) < 3:
+        return None
+    d, w = np.array(estimates), np.array(precisions)
+    mean = float(np.sum(w * d) / np.sum(w))
+    q, free = float(np.sum(w * (d - mean) ** 2)), len(d) - 1
+    # Residuals are never quite as white as their innovations: ask for twice the chi-square.
+    chance = float(stats.chi2.sf(0.5 * q, free))
+    variance = (q - free) / float(np.sum(w) - np.sum(w**2) / np.sum(w))
+    return float(np.sqrt(max(variance, 0.0))), chance, q / free
+
+
+def _words(name: str, sd: float) -> tuple[str, str]:
+    if name == "zero":
+        return "level_by_run", f"the zero differs by run by {sd:.2g} N (1 s.d.)"
+    if name == "gain":
+        return "gain_by_run", f"the gain differs by run by {100.0 * sd:.2g} % (1 s.d.)"
+    what = "transition speed" if name == "U_tr_m_s" else "viscous friction"
+    words = f"the {what} differs by run by {100.0 * sd:.2g} % (1 s.d.): the oil's warmth?"
+    return "oil_by_run", words

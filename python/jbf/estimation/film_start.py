@@ -1,0 +1,112 @@
+"""How long a record remembers the state in which it began.
+
+A film, and a contact that bends, begin a run in a state that no record tells. It is forgotten as
+the shaft moves. How soon, the model says: two runs of it that begin in opposite states differ by
+what is still remembered. Until that has sunk into the noise the samples say nothing of the
+friction's laws, and are set aside.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import approach
+from jbf.estimation.noise_floor import noise_floor
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.models.catalogue import find_law
+from jbf.models.chain import core_motion
+from jbf.models.vocabulary import Clock
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+REMEMBERED = 0.2
+"""Share of the noise below which a difference is forgotten."""
+MOST_OF_A_RUN = 0.5
+"""A run that never forgets its beginning is taken as it is."""
+OFF = 2.0
+"""Times the usual residual from which on a beginning is worth a word."""
+RANKING_EVALUATIONS = 8
+"""Steps of a fit that is good enough to tell how fast the film is."""
+BEFORE_S = 6.0
+"""How long the imagined motions before a run last."""
+SPEEDS = (1e-3, 0.1, 1.0)
+"""Their speeds, as shares of the run's top speed."""
+LONGER = 1.5
+"""The film may be slower than this model's: what follows is set aside for so many times as long."""
+
+
+def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
+    """True where a run still remembers how it began, one mask a run.
+
+    Parameters
+    ----------
+    values
+        Parameters of a model that fits roughly.
+    noise_n
+        Noise on the friction, N.
+    """
+    prepared = problem.campaign.prepared
+    if not find_law(problem.law).has_film:
+        return [np.zeros(len(p.run), dtype=bool) for p in prepared]
+    begun = [problem.predict(values)]
+    for share in SPEEDS:
+        motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
+        begun.append(problem.chain.predict(values, motions))
+    found = []
+    for p, ways in zip(prepared, zip(*begun, strict=True), strict=True):
+        spread = np.ptp(np.array(ways), axis=0)
+        found.append(_remembering(p, spread > REMEMBERED * noise_n))
+    return found
+
+
+def _remembering(p: Prepared, apart: Mask) -> Mask:
+    """The first stretch of motion in which two beginnings are apart, made longer for safety."""
+    index = np.flatnonzero(apart)
+    if not len(index):
+        return np.zeros(len(apart), dtype=bool)
+    time = p.run.time_s
+    until = time[index[0]] + LONGER * (time[index[-1]] - time[index[0]])
+    # What lies before the motion (a rest) does not depend on the start.
+    mask: Mask = (time >= time[index[0]]) & (time <= until)
+    return mask if mask.mean() < MOST_OF_A_RUN else np.zeros(len(apart), dtype=bool)
+
+
+def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
+    """The campaign without the samples that remember how their run began, by the bare law."""
+    if not find_law(law).has_film:
+        return campaign
+    problem = Problem(campaign, law, clock, ())
+    near = approach(problem, [{}], RANKING_EVALUATIONS)
+    masks = unsettled(problem, near.values, noise_floor(campaign.prepared, campaign.samples))
+    if not any(m.any() for m in masks):
+        return campaign
+    kept = campaign.without(masks)
+    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples))
+
+
+def _findings(
+    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples
+) -> list[Finding]:
+    """The runs whose beginning is not what a rested film would have given."""
+    found = []
+    whole = zip(campaign.prepared, residuals, masks, campaign.samples.counted, strict=True)
+    usual = kept.rms(residuals)
+    for p, r, mask, counted in whole:
+        begun = mask & counted
+        if not begun.any():
+            continue
+        size = float(np.sqrt(np.mean(r[begun] ** 2)))
+        if size < OFF * usual:
+            continue
+        span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
+        words = f"the film was not settled when the run began: {span:.2g} s, off by {size:.2g} N"
+        found.append(
+            Finding("unsettled_start", "friction_n", p.run.name, span, "s", "set aside", words)
+        )
+    return found

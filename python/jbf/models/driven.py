@@ -1,0 +1,55 @@
+"""A chain driven along runs: the core may be given more instants than a run has samples (those of
+an imagined motion before it); readings are given at the samples alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf import _core
+from jbf.models.own_chain import OwnChain
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A motion as the core takes it; `kept` are the places of the run's samples in it."""
+
+    motion: _core.Motion
+    kept: npt.NDArray[np.intp] | None = None
+
+    def at_samples(self, values: Array) -> Array:
+        """Values at the instants of the core, at the samples."""
+        return values if self.kept is None else np.ascontiguousarray(values[self.kept])
+
+
+class DrivenChain:
+    """A chain of the core, or one with effects of one's own, along driven motions."""
+
+    def __init__(self, core: _core.Chain | OwnChain) -> None:
+        self.core = core
+
+    @property
+    def parameter_names(self) -> list[str]:
+        """Dotted names of the parameters, in the order of every array here."""
+        return self.core.parameter_names
+
+    def predict(self, parameters: Array, driven: Sequence[Driven]) -> list[Array]:
+        """Friction readings, N, one array a run."""
+        found = self.core.predict(parameters, [d.motion for d in driven])
+        return [d.at_samples(f) for d, f in zip(driven, found, strict=True)]
+
+    def jacobian(
+        self, parameters: Array, driven: Sequence[Driven], which: Sequence[int]
+    ) -> list[tuple[Array, Array]]:
+        """Readings and their derivatives by the parameters `which`."""
+        rows = self.core.jacobian(parameters, [d.motion for d in driven], which)
+        return [(d.at_samples(f), d.at_samples(j)) for d, (f, j) in zip(driven, rows, strict=True)]
+
+    def film_rate_1_s(self, parameters: Array, driven: Sequence[Driven]) -> float:
+        """Fastest rate of the law's film, 1/s."""
+        return self.core.film_rate_1_s(parameters, [d.motion for d in driven])

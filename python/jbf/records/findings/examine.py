@@ -1,0 +1,55 @@
+"""Examine a run: everything that its recording did, and which readings of the force can be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.findings.gaps import find_gaps
+from jbf.records.findings.glitches import find_glitches
+from jbf.records.findings.held_samples import find_held
+from jbf.records.findings.interpolated import Native, find_native
+from jbf.records.findings.steps import find_steps
+from jbf.records.run import Run
+
+Mask = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """What was found in a run.
+
+    Attributes
+    ----------
+    usable
+        False at readings of the force that tell nothing, shape (n,).
+    native
+        The readings behind the samples, where the force was interpolated; None where it was not.
+    """
+
+    findings: tuple[Finding, ...]
+    usable: Mask
+    native: Native | None = None
+
+
+def examine(run: Run) -> Examined:
+    """Look for what loggers do to a record of friction."""
+    if run.friction_n is None:
+        return Examined((), np.ones(len(run), dtype=bool))
+    native = find_native(run.time_s, run.friction_n)
+    if native is not None:
+        return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
+    glitches, off = find_glitches(run)
+    held, still = find_held(run)
+    found = (*glitches, *held, *find_gaps(run), *find_steps(run))
+    return Examined(found, ~(off | still))
+
+
+def _interpolated(run: Run, native: Native) -> Finding:
+    rate = 1.0 / native.period_s
+    words = f"the force was read at {rate:.4g} Hz and drawn as straight lines between"
+    done = "taken back to its readings"
+    return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)

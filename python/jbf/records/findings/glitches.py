@@ -1,0 +1,69 @@
+"""Glitches: single samples far off what the samples on both sides agree on."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+FAR = 8.0
+"""Local standard deviations that a sample must be off both its neighbours, to the same side."""
+WINDOW = 41
+"""Samples over which the local noise is taken."""
+RARE = 0.02
+"""A record in which more samples than this are far off has large noise, not glitches."""
+LEAST_SAMPLES = 100
+SLOW, BESIDE = 0.02, 3
+"""Where the speed turns round or rises from rest (a share of its top), so many samples to either
+side may hold a peak of the friction itself."""
+
+
+def glitches(values: Array) -> Mask:
+    """True at samples that stick out: a jump, up or down, has its neighbours to either side."""
+    n = len(values)
+    found = np.zeros(n, dtype=bool)
+    if n < LEAST_SAMPLES:
+        return found
+    from scipy import ndimage  # most of a second to import
+
+    change = np.diff(values)
+    before, after = change[:-1], -change[1:]
+    off = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
+    bend = np.abs(before + after)
+    # White noise bends by sqrt(6) of its standard deviation.
+    local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
+    usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
+    found[1:-1] = off > FAR * np.maximum(local, 0.5 * usual)
+    if usual == 0.0 or found.sum() > RARE * n:
+        found[:] = False
+    return found
+
+
+def find_glitches(run: Run) -> tuple[list[Finding], Mask]:
+    """Glitches of the force, and where they are."""
+    assert run.friction_n is not None
+    mask = glitches(run.friction_n) & ~_breakaway(run.velocity_m_s)
+    if not mask.any():
+        return [], mask
+    index = np.flatnonzero(mask)
+    middle = 0.5 * (run.friction_n[index - 1] + run.friction_n[index + 1])
+    size = float(np.max(np.abs(run.friction_n[index] - middle)))
+    first = ", ".join(f"{t:.2f} s" for t in run.time_s[index[:3]])
+    words = f"{len(index)} single samples of the force are off by up to {size:.3g} N (at {first})"
+    return [Finding("glitches", "friction_n", run.name, size, "N", "set aside", words)], mask
+
+
+def _breakaway(velocity_m_s: Array) -> Mask:
+    """True at samples beside a reversal or an end of a rest."""
+    top = float(np.max(np.abs(velocity_m_s), initial=0.0))
+    way = np.where(np.abs(velocity_m_s) > SLOW * top, np.sign(velocity_m_s), 0.0)
+    turns = np.flatnonzero(np.diff(way) != 0.0)
+    beside = np.zeros(len(way), dtype=bool)
+    for off in range(1 - BESIDE, BESIDE + 1):
+        beside[np.clip(turns + off, 0, len(way) - 1)] = True
+    return beside

@@ -1,0 +1,195 @@
+"""Interpolated samples: a slow channel drawn as straight lines onto the instants of a faster one.
+
+Between the instants at which the force was read, such a record is a polygon, to the last digit. The
+readings are its corners: their period and phase are searched so that a polygon with corners there
+goes through every sample. Nothing is resampled: the corners are what was read, and the samples in
+between never were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+Array = npt.NDArray[np.float64]
+
+WINDOW = 40
+"""Samples of a first look; shorter periods leave a polygon nothing to be tested by."""
+LOOKS = 3
+"""First looks, along the record."""
+PERIODS = np.exp(np.arange(np.log(1.2), np.log(8.0), 0.01))
+"""Periods looked for, in samples."""
+PHASES = np.arange(0.0, 1.0, 0.1)
+"""Phases looked for, in periods."""
+LEAST_FREE = 6
+"""Samples of a window beyond its corners."""
+LIKELY, EXACT = 0.25, 0.005
+"""What a polygon leaves, as shares of the noise: for a second look, and to be believed."""
+FAR, ROUGH = 13, 0.93
+"""Samples apart, and a ratio of bends, by which a record is as rough as noise."""
+SMOOTH = 0.5
+"""Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
+EVEN = 1e-3
+"""Samples are evenly spaced where they are off an even grid by less than this share of a step."""
+MOST_CORNERS = 0.9
+"""Corners a sample; more would be the samples themselves."""
+
+
+@dataclass(frozen=True)
+class Native:
+    """The readings behind an interpolated record: instants, s, and values, shape (m,)."""
+
+    time_s: Array
+    values: Array
+    period_s: float
+
+
+def find_native(time: Array, values: Array) -> Native | None:
+    """The readings of a slow channel behind its samples; None where the samples are its own."""
+    n = len(time)
+    if n < 2 * WINDOW or _as_rough_as_noise(values) or _smooth(values):
+        return None
+    step = float(np.median(np.diff(time)))
+    for first in np.linspace(0, n - WINDOW, LOOKS).astype(int).tolist():
+        part = slice(first, first + WINDOW)
+        t, y = time[part], values[part]
+        noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
+        if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
+            continue
+        found = _first_look(t, y, step, noise)
+        if found is None:
+            continue
+        period, phase = _sharpened(t, y, *found)
+        if _polygon(t, y, period, phase)[0] < EXACT * noise:
+            return _whole(time, values, first, period, phase, noise)
+    return None
+
+
+def _as_rough_as_noise(values: Array) -> bool:
+    """True where neighbours differ as much as samples far apart: nothing was drawn between them."""
+    near = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
+    far = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
+    return bool(near > ROUGH * far)
+
+
+def _smooth(values: Array) -> bool:
+    """True of a record without noise: a polygon goes through any smooth curve."""
+    second, third = np.abs(np.diff(values, 2)), np.abs(np.diff(values, 3))
+    return bool(np.quantile(third, 0.7) < SMOOTH * np.quantile(second, 0.7))
+
+
+def _whole(
+    time: Array, values: Array, first: int, period: float, phase: float, noise: float
+) -> Native | None:
+    """The corners of the whole record, from what a window tells of them."""
+    n, length = len(time), WINDOW
+    begin = first
+    while length < n:
+        # Four times as long a stretch makes the period four times as sharp.
+        length = min(4 * length, n)
+        origin = time[begin]
+        begin = max(min(first - length // 2, n - length), 0)
+        phase += origin - time[begin]
+        part = slice(begin, begin + length)
+        period, phase = _sharpened(time[part], values[part], period, phase)
+    for times in (4, 3, 2):
+        # Corners at a fraction of the period fit as well, and are not readings.
+        for k in range(times):
+            left, _, _ = _polygon(time, values, times * period, phase + k * period)
+            if left < EXACT * noise:
+                return _whole_of(time, values, times * period, phase + k * period, noise)
+    return _whole_of(time, values, period, phase, noise)
+
+
+def _whole_of(
+    time: Array, values: Array, period: float, phase: float, noise: float
+) -> Native | None:
+    left, knots, corners = _polygon(time, values, period, phase)
+    inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
+    if left > EXACT * noise or inside.sum() > MOST_CORNERS * len(time):
+        return None
+    return Native(knots[inside], corners[inside], period)
+
+
+def _first_look(t: Array, y: Array, step: float, noise: float) -> tuple[float, float] | None:
+    """Period and phase, s, with which a polygon nearly goes through a window's samples."""
+    place = (t - t[0]) / step
+    even = float(np.max(np.abs(place - np.arange(len(t))))) < EVEN
+    looks = _even_looks(len(t)) if even else tuple(_looks(place))
+    best, found = LIKELY * noise, None
+    for period, left_of in looks:
+        left = np.sqrt(np.mean((left_of @ (y - y[0])) ** 2, axis=1))
+        k = int(np.argmin(left))
+        if left[k] < best:
+            best, found = float(left[k]), (period * step, float(PHASES[k]) * period * step)
+    return found
+
+
+def _looks(place: Array) -> Iterator[tuple[float, Array]]:
+    """Of each period, in samples, what takes the best polygons out of samples at given places:
+    one matrix a phase, shape (phases, free, n)."""
+    n = len(place)
+    for period in PERIODS.tolist():
+        count = int(np.ceil((place[-1] - place[0]) / period)) + 2
+        if n - count < LEAST_FREE:
+            continue
+        at = place[None, :] / period - PHASES[:, None] + 1.0
+        low = np.clip(np.floor(at).astype(int), 0, count - 2)
+        share = at - low
+        design = np.zeros((len(PHASES), n, count))
+        one, row = np.arange(len(PHASES))[:, None], np.arange(n)[None, :]
+        design[one, row, low] = 1.0 - share
+        design[one, row, low + 1] = share
+        basis, _ = np.linalg.qr(design, mode="complete")
+        yield period, np.ascontiguousarray(np.swapaxes(basis[:, :, count:], 1, 2))
+
+
+@lru_cache(maxsize=1)
+def _even_looks(n: int) -> tuple[tuple[float, Array], ...]:
+    """The same for evenly spaced samples, kept: nearly every record's are."""
+    return tuple(_looks(np.arange(n, dtype=np.float64)))
+
+
+def _polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
+    """What the best polygon leaves (RMS a degree of freedom), and its corners: instants, values."""
+    place = (time - time[0] - phase) / period
+    first = int(np.floor(place[0]))
+    low = np.floor(place).astype(int) - first
+    share = place - first - low
+    count = int(low[-1]) + 2
+    level = values[0]
+    y = values - level
+    diagonal = np.bincount(low, (1.0 - share) ** 2, count)
+    diagonal += np.bincount(low + 1, share**2, count)
+    beside = np.bincount(low, (1.0 - share) * share, count)
+    right = np.bincount(low, (1.0 - share) * y, count) + np.bincount(low + 1, share * y, count)
+    # A corner that no sample is near (a gap, an end) is not known.
+    band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
+    corners = linalg.solveh_banded(band, right)
+    gap = y - (1.0 - share) * corners[low] - share * corners[low + 1]
+    corners = np.where(diagonal > 1e-3, corners + level, np.nan)
+    knots = time[0] + phase + period * (first + np.arange(count))
+    free = max(len(time) - int(np.sum(diagonal > 1e-6)), 1)
+    return float(np.sqrt(np.sum(gap**2) / free)), knots, corners
+
+
+def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple[float, float]:
+    """Period and phase that fit best near those given, to a fraction of the stretch."""
+    length = float(time[-1] - time[0])
+    reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
+    best = (np.inf, period, phase)
+    for _ in range(9):
+        _, p0, f0 = best
+        for p in p0 + reach_period * np.linspace(-1.0, 1.0, 5):
+            for f in f0 + reach_phase * np.linspace(-1.0, 1.0, 5):
+                left, _, _ = _polygon(time, values, float(p), float(f))
+                if left < best[0]:
+                    best = (left, float(p), float(f))
+        reach_period *= 0.5
+        reach_phase *= 0.5
+    return best[1], best[2]

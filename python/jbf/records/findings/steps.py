@@ -1,0 +1,37 @@
+"""Steps: readings that are whole multiples of a converter's step."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.roughness import noise_of
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+MOST_LEVELS = 0.2
+"""Readings that come in fewer levels than this share of the samples come in steps."""
+MATTERS = 0.5
+"""Steps below this share of the noise are not worth a word."""
+
+
+def step_of(values: Array) -> float:
+    """The step in which readings come; zero where they come in none."""
+    levels = np.unique(values)
+    if len(levels) < 3 or len(levels) > MOST_LEVELS * len(values):
+        return 0.0
+    apart = np.diff(levels)
+    # Levels that nobody visited leave multiples; digits of the file leave crumbs.
+    return float(np.median(apart[apart <= 1.5 * np.median(apart)]))
+
+
+def find_steps(run: Run) -> list[Finding]:
+    """Steps of the force that are as large as its noise."""
+    assert run.friction_n is not None
+    step = step_of(run.friction_n)
+    if step == 0.0 or step < MATTERS * max(noise_of(run.friction_n), 1e-300):
+        return []
+    words = f"the force comes in steps of {step:.3g} N"
+    return [Finding("steps", "friction_n", run.name, step, "N", "counted as noise", words)]

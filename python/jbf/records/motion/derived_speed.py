@@ -1,0 +1,75 @@
+"""A recorded speed that was made of the recorded path: a difference of counts over some samples.
+
+Such a speed tells nothing that the path does not, comes in coarse steps, and is late where the
+difference looks back. It is known by being that difference, to the digit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.motion.roughness import noise_of
+
+Array = npt.NDArray[np.float64]
+
+SPANS = range(1, 13)
+"""Differences over so many samples are looked for."""
+ALIKE = 0.9
+"""Share of the samples in motion at which the speed must be the difference."""
+TO = 0.05
+"""A speed is the difference where it is so near to it, as a share of its own coarse step."""
+COARSE = 3.0
+"""A difference that is smoother than so many times that is as good as a measured speed."""
+DIGITS = 1e-12
+"""Counts differ by more than this share of the path; less is rounding."""
+
+
+@dataclass(frozen=True)
+class DerivedSpeed:
+    """`span` samples from first to last; `late_s` how late the difference is, s."""
+
+    span: int
+    late_s: float
+
+
+def derived_speed(time: Array, path: Array, speed: Array) -> DerivedSpeed | None:
+    """The difference of the path that a speed is; None where it was measured."""
+    if len(time) < 4 * SPANS[-1]:
+        return None
+    step = _count(path)
+    moving = np.abs(speed) > 0.02 * float(np.max(np.abs(speed), initial=0.0))
+    usual = float(np.median(np.diff(time)))
+    for span in SPANS:
+        difference = (path[span:] - path[:-span]) / (time[span:] - time[:-span])
+        tolerance = TO * step / (span * usual)
+        if noise_of(difference) < COARSE * tolerance:
+            continue
+        # Looking back, and (even spans) to both sides.
+        ways = [(slice(span, None), 0.5 * span * usual)]
+        if span % 2 == 0:
+            ways.append((slice(span // 2, -(span // 2)), 0.0))
+        for where, late_s in ways:
+            kept = moving[where]
+            if kept.sum() < 50:
+                continue
+            near = np.abs(speed[where] - difference)[kept] <= tolerance
+            if near.mean() > ALIKE:
+                return DerivedSpeed(span, late_s)
+    return None
+
+
+def _count(path: Array) -> float:
+    """What a path counts in, m: the smallest change of its change; nearly nothing of a path that
+    knows no counts. (The smallest change itself is many counts where the shaft is never slow.)"""
+    bends = np.abs(np.diff(path, 2))
+    bends = bends[bends > DIGITS * float(np.ptp(path))]
+    return float(np.min(bends)) if len(bends) else 0.0
+
+
+def centred_speed(time: Array, path: Array) -> Array:
+    """A speed of the path alone that is not late: what a rest is known by."""
+    found: Array = np.gradient(path, time)
+    return found

@@ -130,7 +130,7 @@ TRIALS = (
     Trial("sensor_offset", 0.525, 812.4, "added", "largest evidence"),
     Trial("sensor_drift", 1.5, 55.0, "ties", "fits as well as sensor_offset"),
     Trial("inertia_leak", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
-    Trial("sensor_lag", 2.5, -26.2, "useless", "gains no more than chance would"),
+    Trial("sensor_lag", 2.5, -26.2, "no gain", "gains no more than chance would"),
 )
 LEFT = (Remainder("frequency", "a 3.00 Hz tone", 0.12), Remainder("time", "2 bursts", 0.04))
 

@@ -91,7 +91,7 @@ def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[s
     trials = (
         Trial("coulomb_drag", after.rms_n, 812.4, "added", "best evidence, and it holds out"),
         Trial("presliding", 0.93 * before.rms_n, 55.0, "rejected", "leaves a pattern in velocity"),
-        Trial("sensor_lag", before.rms_n, -6.1, "useless", "no better than chance"),
+        Trial("sensor_lag", before.rms_n, -6.1, "no gain", "no better than chance"),
     )
     bare = Step((), before.rms_n, 1.04 * before.rms_n, noise, trials)
     full = Step(("coulomb_drag",), after.rms_n, 1.01 * after.rms_n, noise)

@@ -10,9 +10,11 @@ import pytest
 from jbf.diagnosis import recipe
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, price
+from jbf.diagnosis.ledger import Step, Trial
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import left_out_confirms
-from jbf.diagnosis.verdict import Explained, names_stand, verdict
+from jbf.diagnosis.standing import as_it_ended
+from jbf.diagnosis.verdict import name_stands, verdict
 from jbf.estimation.likelihood import independent_share, likelihood_gain
 from made_up import MadeUp, N, sets, solution
 from scipy import signal
@@ -36,28 +38,22 @@ def test_the_verdict(effects: int, alternatives: int, remains: bool, said: str) 
 
 
 @pytest.mark.parametrize(
-    ("now_n", "disagreement", "stand"),
-    [
-        # Of the structure, 5^2 - 3^2 = 16 N^2, they explain 25 - now^2; 0.8 of it are 12.8.
-        (np.sqrt(25.0 - 12.9), None, True),
-        (np.sqrt(25.0 - 12.7), None, False),
-        # A gain of 1000 is 20 times 50.
-        (3.0, 49.0, True),
-        (3.0, 51.0, False),
-        (np.sqrt(25.0 - 12.7), 1.0, False),
-    ],
+    ("disagreement", "stands"),
+    # A gain of 1000 is 20 times 50.
+    [(None, True), (49.0, True), (51.0, False)],
 )
-def test_which_names_stand_though_structure_remains(
-    now_n: float, disagreement: float | None, stand: bool
-) -> None:
-    explained = Explained(
-        bare_n=5.0,
-        now_n=now_n,
-        remaining=1.0 - 9.0 / now_n**2,
-        gain=1000.0,
-        disagreement=disagreement,
-    )
-    assert names_stand(explained, DEFAULT) == stand
+def test_a_name_falls_by_its_own_runs_alone(disagreement: float | None, stands: bool) -> None:
+    assert name_stands(1000.0, disagreement, DEFAULT) == stands
+
+
+def test_the_ledger_says_how_each_addition_ended() -> None:
+    tried = [Trial(name, 1.0, 9.0, "added", "leads") for name in ("a", "b", "c")]
+    steps = [Step((), 2.0, 2.0, 1.0, (tried[0],)), Step(("a",), 1.0, 1.0, 1.0, tuple(tried[1:]))]
+    ended = as_it_ended(steps, ("a", "b"), ("b",))
+    assert [s.effects for s in ended] == [(), ("a",)]
+    outcomes = {t.effect: t.outcome for s in ended for t in s.trials}
+    assert outcomes == {"a": "added", "b": "confounder", "c": "replaced"}
+    assert all(t.reason != "leads" for t in ended[1].trials)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +138,7 @@ def test_rounds_end_where_nothing_gains_more_than_chance() -> None:
     present, steps, _ = recipe._select(cast(Candidates, MadeUp(list(SIX), gains)), 0.5)
     assert present == SIX[:2]
     assert len(steps) == 3
-    assert {t.outcome for t in steps[-1].trials} == {"useless"}
+    assert {t.outcome for t in steps[-1].trials} == {"no gain"}
 
 
 def test_a_stand_in_found_first_goes_when_the_truth_is_whole() -> None:

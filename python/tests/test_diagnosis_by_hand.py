@@ -111,7 +111,7 @@ def test_a_candidate_at_its_null_is_worth_its_price_and_no_less() -> None:
     # A candidate that leaves no trace is not fitted, and has no parameters to pay for.
     known = {round(price(k, n), 2) for k in range(4)}
     for t in d.steps[0].trials:
-        assert t.outcome == "useless"
+        assert t.outcome == "no gain"
         assert t.evidence < -5.0
         if t.rms_n == d.steps[0].rms_n:
             assert round(-t.evidence, 2) in known, t.effect
@@ -177,17 +177,15 @@ def test_an_effect_that_explains_most_is_kept_beside_a_tone() -> None:
     assert "Part of what is missing is sensor_offset" in d.summary()
 
 
-def test_an_effect_that_explains_too_little_beside_a_tone_is_withdrawn() -> None:
+def test_a_true_effect_keeps_its_name_beside_a_larger_tone() -> None:
     d, _ = diagnosed("large tone")
     # 0.25 of 0.356 N^2 above the noise are the offset's.
     assert d.verdict == "unexplained"
-    assert d.effects == ()
-    assert len(d.steps) == 1
-    assert trial(d, "sensor_offset").outcome == "withdrawn"
+    assert d.effects == ("sensor_offset",)
+    assert d.confounders == ()
+    assert trial(d, "sensor_offset").outcome == "added"
     assert "frequency" in [r.axis for r in d.unexplained]
-    assert d.fit.model.effects == ()
-    assert d.after.rms_n == d.before.rms_n
-    assert "Structure remains" in d.summary()
+    assert d.fit.model.effects == ("sensor_offset",)
 
 
 def test_what_these_motions_cannot_show_could_hide() -> None:

@@ -17,7 +17,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import left_out_confirms, try_candidates
-from jbf.diagnosis.verdict import Explained, names_stand
+from jbf.diagnosis.verdict import name_stands
 from jbf.estimation.samples import Samples
 from made_up import MadeUp, N, sets
 from policy_gates import GATES
@@ -38,7 +38,6 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "close": 0.6,
         "promise": 5.0,
         "peaks_share": 0.5,
-        "least_explained": 0.8,
         "clear": 20.0,
         "pattern_share": 0.01,
         "pattern_sigma": 6.0,
@@ -87,8 +86,8 @@ def rounds(policy: Policy) -> object:
     return recipe._select(cast(Candidates, candidates), 1.0)[0]
 
 
-def standing(now_n: float, disagreement: float | None) -> Callable[[Policy], object]:
-    return lambda policy: names_stand(Explained(5.0, now_n, 1.0, 1000.0, disagreement), policy)
+def standing(disagreement: float) -> Callable[[Policy], object]:
+    return lambda policy: name_stands(1000.0, disagreement, policy)
 
 
 def disagreed(gain: float, degrees: int) -> Callable[[Policy], object]:
@@ -154,8 +153,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         0.49,
         0.51,
     ),
-    "least_explained": (standing(float(np.sqrt(5.0)), None), 0.79, 0.81),
-    "clear": (standing(1.0, 50.0), 19.9, 20.1),
+    "clear": (standing(50.0), 19.9, 20.1),
     # Of four degrees of freedom chance decides, of a hundred the ratio.
     "constancy_chance": (disagreed(43.9, 4), 0.5e-8, 2e-8),
     "constancy_ratio": (disagreed(250.0, 100), 2.49, 2.51),

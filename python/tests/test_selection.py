@@ -38,7 +38,7 @@ def test_the_leader_is_added_and_those_close_behind_tie() -> None:
     )
     assert found.leader == "sensor_offset"
     assert [t.effect for t in found.trials] == FOUR
-    assert outcomes(found) == dict(zip(FOUR, ("added", "ties", "rejected", "useless"), strict=True))
+    assert outcomes(found) == dict(zip(FOUR, ("added", "ties", "rejected", "no gain"), strict=True))
     evidence = [t.evidence for t in found.trials]
     assert evidence == pytest.approx([g - PRICE for g in (200, 193, 190, 20)], abs=1e-6)
     assert found.trials[1].reason == "fits as well as sensor_offset"
@@ -48,7 +48,7 @@ def test_the_leader_is_added_and_those_close_behind_tie() -> None:
 def test_nothing_is_added_where_nothing_gains_more_than_chance() -> None:
     found = tried(made(dict.fromkeys(FOUR, 0.99 * PRICE)))
     assert found.leader is None
-    assert set(outcomes(found).values()) == {"useless"}
+    assert set(outcomes(found).values()) == {"no gain"}
     assert tried(made({**dict.fromkeys(FOUR, 0.0), "sensor_lag": 1.01 * PRICE})).leader == (
         "sensor_lag"
     )
@@ -129,7 +129,7 @@ def test_an_effect_whose_score_promises_nothing_is_not_fitted() -> None:
     found = tried(candidates)
     assert "sensor_lag" not in fitted(candidates, "rank")
     assert "sensor_drift" in fitted(candidates, "rank")
-    assert outcomes(found)["sensor_lag"] == "useless"
+    assert outcomes(found)["sensor_lag"] == "no gain"
     # It has gained nothing, and pays for no parameter.
     last = next(t for t in found.trials if t.effect == "sensor_lag")
     assert last.evidence == pytest.approx(-(20.0 + 2.0 * np.log(4)))

@@ -95,17 +95,6 @@ def test_verdict_sentences(make_diagnosis: Callable[[str], Diagnosis]) -> None:
     assert "Next experiment: record a run" in diagnosis_report(make_diagnosis("ambiguous"))
 
 
-def test_an_addition_taken_back_is_called_withdrawn(
-    make_diagnosis: Callable[[str], Diagnosis],
-) -> None:
-    row = next(
-        line
-        for line in diagnosis_report(make_diagnosis("unexplained")).splitlines()
-        if line.lstrip().startswith("coulomb_drag")
-    )
-    assert "withdrawn" in row
-
-
 def test_the_catalogue_lists_every_effect() -> None:
     page = effects_page(effects().values())
     assert all(f"  {name} " in page for name in effects())

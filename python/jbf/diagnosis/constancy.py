@@ -53,12 +53,20 @@ class Disagreement:
         return bool(stats.chi2.sf(self.gain, self.degrees) < policy.constancy_chance)
 
 
-def disagreement(problem: Problem, solution: Solution) -> Disagreement:
-    """How far the runs disagree on the parameters of a solution."""
+def disagreement(problem: Problem, solution: Solution, effect: str | None = None) -> Disagreement:
+    """How far the runs disagree on the parameters of a solution.
+
+    Parameters
+    ----------
+    effect
+        Its parameters alone, what the others could explain in each run taken out; all where not
+        given, but for those of effects with many peaks.
+    """
     # Samples beside a jump whose instant is fitted tell that instant with errors of their own.
     samples = solution.samples.tested()
     many = {name for name in problem.effects if find_effect(name).peaks}
-    rings = np.array([problem.names[i].split(".")[0] in many for i in problem.open])
+    owners = [problem.names[i].split(".")[0] for i in problem.open]
+    rings = np.array([o in many if effect is None else o != effect for o in owners])
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
     parts = [
         _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), rings)

@@ -74,17 +74,11 @@ class Policy:
         "others, too",
         "chosen for speed",
     )
-    # ---- names taken back -------------------------------------------------------------------
-    least_explained: float = _number(
-        0.8,
-        "share of the bare law's excess over the noise that effects must explain to keep their "
-        "names where structure remains",
-        "set before any campaign was seen",
-    )
+    # ---- names of confounders -------------------------------------------------------------------
     clear: float = _number(
         20.0,
-        "times what the runs' disagreement on parameters is worth that effects must have gained "
-        "to keep their names",
+        "times what the runs' disagreement on an effect's own parameters is worth that it must "
+        "have gained to keep its name where structure remains",
         "chosen on simulated campaigns with effects that are in no catalogue",
     )
     # ---- what remains -----------------------------------------------------------------------

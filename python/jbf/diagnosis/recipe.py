@@ -5,11 +5,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 
 from jbf.comparison.comparison import compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.evidence import evidence
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
@@ -19,12 +17,12 @@ from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.selection import Names, alternatives, reconsider, try_candidates
+from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
-from jbf.diagnosis.verdict import Explained, names_stand, verdict
+from jbf.diagnosis.verdict import verdict
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
@@ -97,23 +95,24 @@ def diagnose(
         before = compare_prepared(bare.model, campaign)
         present, steps, refused = _select(candidates, before.noise_n)
     remains = (*_remainder(candidates, present), *refused)
-    if remains and present and not _stand(candidates, present, remains):
-        present, steps = (), [_withdrawn(steps[0])]
-        remains = _remainder(candidates, present) or remains
-    equal = alternatives(candidates, present)
-    fit = finish(candidates.fitted(present).problem, candidates.converge(present))
+    doubted = confounders(candidates, present) if remains else ()
+    named = tuple(name for name in present if name not in doubted)
+    steps = as_it_ended(steps, present, doubted)
+    equal = alternatives(candidates, named)
+    kept = best_predicting(candidates, present, named)
+    fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others}
-    answer = verdict(effects=len(present), alternatives=len(tied), remains=bool(remains))
+    answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))
     hidden = () if remains else unseen(candidates, present)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
         proposal = propose_to_see(candidates, present, hidden, limits)
     if tied:
-        rivals = [_rivals(present, name, others) for name, others in tied.items()]
+        rivals = [_rivals(named, name, others) for name, others in tied.items()]
         proposal = propose(candidates, rivals, limits)
     return Diagnosis(
         verdict=answer,
-        effects=present,
+        effects=named,
         alternatives=equal,
         steps=tuple(steps),
         failures=before.failures,
@@ -128,6 +127,7 @@ def diagnose(
         unseen=hidden,
         policy=policy,
         findings=candidates.campaign.findings,
+        confounders=tuple(name for name in doubted if name in kept),
     )
 
 
@@ -186,29 +186,3 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         f"{name} fits {base.rms_n:.3g} N down to {rms:.3g} N but predicts runs left out no better"
     )
     return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)
-
-
-def _stand(candidates: Candidates, present: Names, remains: tuple[Remainder, ...]) -> bool:
-    """Whether effects keep their names though structure remains."""
-    empty, whole = candidates.converge(()), candidates.converge(present)
-    every = candidates.campaign.samples
-    left = disagreement(candidates.fitted(present).problem, whole)
-    beyond = left.beyond_chance(candidates.policy)
-    explained = Explained(
-        bare_n=every.rms(empty.residuals),
-        now_n=every.rms(whole.residuals),
-        remaining=max(r.share for r in remains),
-        gain=likelihood_gain(whole, empty) * effective_share(whole),
-        disagreement=left.gain - left.degrees if beyond else None,
-    )
-    return names_stand(explained, candidates.policy)
-
-
-def _withdrawn(step: Step) -> Step:
-    """The first step, when what was added in it turned out to be a confounder."""
-    reason = "explains part of the error, but structure remains that it does not touch"
-    trials = tuple(
-        replace(t, outcome="withdrawn", reason=reason) if t.outcome in ("added", "ties") else t
-        for t in step.trials
-    )
-    return replace(step, trials=trials)

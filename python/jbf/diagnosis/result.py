@@ -27,7 +27,7 @@ class Diagnosis(Result):
     verdict
         `adequate`, `missing`, `ambiguous` or `unexplained`.
     effects
-        What was added, in the order found.
+        What was added and rests on its own evidence, in the order found.
     alternatives
         For each added effect, those that would fit as well in its place.
     steps
@@ -52,6 +52,9 @@ class Diagnosis(Result):
         The numbers that decided the verdict.
     findings
         What the recording did, run by run, and what was done about it.
+    confounders
+        Effects that the model has because it predicts runs left out better with them, and that are
+        not named: the runs disagree on their parameters.
     """
 
     verdict: Verdict
@@ -70,6 +73,7 @@ class Diagnosis(Result):
     experiment: Experiment | None = None
     policy: Policy = DEFAULT
     findings: tuple[Finding, ...] = ()
+    confounders: tuple[str, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -86,6 +90,7 @@ class Diagnosis(Result):
             "failures": [f.to_dict() for f in self.failures],
             "unexplained": [r.to_dict() for r in self.unexplained],
             "findings": [f.to_dict() for f in self.findings],
+            "confounders": list(self.confounders),
             "next_experiment": self.next_experiment,
             "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
             "not_tried": dict(self.not_tried),

@@ -64,7 +64,7 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         name, gain = found.effect, found.evidence
         rms = min(found.solution.rms_n, bare)
         outcome: Outcome
-        outcome, reason = "useless", "gains no more than chance would"
+        outcome, reason = "no gain", "gains no more than chance would"
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name))
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)

@@ -12,7 +12,7 @@ from jbf.reporting.words import measured, number, percent, step_name
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
-    from jbf.diagnosis.ledger import Step, Trial
+    from jbf.diagnosis.ledger import Step
     from jbf.diagnosis.result import Diagnosis
     from jbf.estimation.fit import Fit
     from jbf.models.parameter_value import ParameterValue
@@ -74,16 +74,8 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
 def trial_rows(diagnosis: Diagnosis, step: Step) -> list[tuple[str, str, str, str, str]]:
     """Each candidate's effect, RMS (N), evidence, outcome and reason."""
     return [
-        (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", _outcome(diagnosis, t), t.reason)
-        for t in step.trials
+        (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials
     ]
-
-
-def _outcome(diagnosis: Diagnosis, trial: Trial) -> str:
-    # The search questions what it added again; the ledger should not claim what the verdict
-    # took back.
-    kept = trial.outcome != "added" or trial.effect in diagnosis.effects
-    return trial.outcome if kept else "withdrawn"
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:

@@ -1,0 +1,60 @@
+"""Which of the effects that were added keep their names where structure remains, and which model
+predicts best.
+
+A name rests on its own evidence: bursts, tones or a cell that is not straight beside it take
+nothing from it. What a confounder stands in for differs from run to run, and so do the parameters
+that the runs ask of it: that takes its name, not its place in the model where it helps to predict.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.constancy import disagreement
+from jbf.diagnosis.ledger import Step, Trial
+from jbf.diagnosis.verdict import name_stands
+from jbf.estimation.likelihood import effective_share, likelihood_gain
+
+Names = tuple[str, ...]
+
+
+def confounders(candidates: Candidates, present: Names) -> Names:
+    """The effects whose own parameters the runs do not agree on."""
+    whole, problem = candidates.converge(present), candidates.fitted(present).problem
+    share = effective_share(whole)
+    found = []
+    for name in present:
+        rest = tuple(e for e in present if e != name)
+        gain = likelihood_gain(whole, candidates.converge(rest)) * share
+        own = disagreement(problem, whole, name)
+        beyond = own.gain - own.degrees if own.beyond_chance(candidates.policy) else None
+        if not name_stands(gain, beyond, candidates.policy):
+            found.append(name)
+    return tuple(found)
+
+
+def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
+    """With the confounders or without: which predicts runs left out best."""
+    if named == present:
+        return present
+    whole, less = (candidates.left_out_rms(names) for names in (present, named))
+    return present if whole < less else named
+
+
+CONFOUNDER = "the runs disagree on its parameters: it stands in for something else"
+REPLACED = "added, and not needed beside what came later"
+
+
+def as_it_ended(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
+    """The ledger, every round of it, with what became of each addition."""
+
+    def ended(trial: Trial) -> Trial:
+        if trial.outcome == "added" and trial.effect in doubted:
+            return replace(trial, outcome="confounder", reason=CONFOUNDER)
+        if trial.outcome == "added" and trial.effect not in present:
+            return replace(trial, outcome="replaced", reason=REPLACED)
+        return trial
+
+    return [replace(step, trials=tuple(ended(t) for t in step.trials)) for step in steps]

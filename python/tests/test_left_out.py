@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Parameter, Rig, Run, forget_effect, register_effect
-from jbf.diagnosis.left_out import left_out_rms
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import left_out_rms
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem

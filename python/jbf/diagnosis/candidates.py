@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from jbf.diagnosis.left_out import left_out_rms
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import left_out_rms
 from jbf.estimation.likelihood import likelihood_gain, score_gain
 from jbf.estimation.minimum import approach, search_peaks, settle
 from jbf.estimation.problem import Problem

@@ -18,6 +18,7 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.solution import Solution
 from jbf.estimation.uncertainty import parameter_values
+from jbf.estimation.weighting import best_weighting
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
 from jbf.models.model import Model
@@ -139,8 +140,8 @@ def fit(
 
     Least squares over all samples at which the sign of the motion is known, with exact
     derivatives, bounds from the catalogue, starting values from the catalogue or, for a law in
-    newtons, from the data; weighted by the colour of the
-    noise where the residual shows one.
+    newtons, from the data. Weighted by the colour of the noise where the residual shows one and
+    plain least squares agree; with Huber's weights where those predict runs left out better.
 
     Parameters
     ----------
@@ -167,7 +168,7 @@ def fit(
     check_effects(campaign, chosen)
     known = parameters_of(law, chosen)
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, known))
-    solution = minimum(problem, [named_values(start, known)])
+    solution = best_weighting(problem, minimum(problem, [named_values(start, known)]))
     fitted = finish(problem, solution)
     errors = [p.stderr for p in fitted.parameters.values()]
     doubtful = doubtful_errors(problem, solution, errors, fitted.correlations)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -18,24 +19,41 @@ from jbf.estimation.peaks import other_peaks
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import find_effect
+from jbf.models.catalogue import find_effect, find_law
 
 Array = npt.NDArray[np.float64]
+Method = Literal["dogbox", "trf"]
 
 MAX_EVALUATIONS = 60
 """Steps of a search that converges."""
 TRIAL_EVALUATIONS = 6
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
-"""How many of the starting points are given them."""
+"""How many of the starting points are given them where candidates are ranked,"""
+FOLLOWED_IN_A_FIT = 6
+"""and where one model is fitted: to their ends where no film makes that dear, since the squares of a
+law that is wrong have many valleys."""
 MOST_FORGIVEN = 1.02
-"""A fit weighted by the colour of its noise may have so many times the plain fit's RMS."""
+"""A fit weighted by the colour of its noise may have so many times the plain fit's RMS. Of coloured
+noise it has hardly more; the error of a wrong model is as smooth, and would be forgiven."""
 
 
 def search(
-    problem: Problem, samples: Samples, start: Array, noise: Noise, evaluations: int
+    problem: Problem,
+    samples: Samples,
+    start: Array,
+    noise: Noise,
+    evaluations: int,
+    method: Method = "dogbox",
 ) -> tuple[Array, bool, str]:
-    """Least squares on innovations from one start: values, whether converged, what ended it."""
+    """Least squares on innovations from one start: values, whether converged, what ended it.
+
+    Parameters
+    ----------
+    method
+        `dogbox` takes the fewest steps; `trf` stays off the bounds on its way and finds lower
+        valleys where a law is wrong.
+    """
     memory: dict[bytes, tuple[Array, Array]] = {}
 
     def evaluate(x: Array) -> tuple[Array, Array]:
@@ -62,7 +80,7 @@ def search(
         np.clip(x0, low + margin, high - margin),
         jac=jacobian,
         bounds=(low, high),
-        method="dogbox",
+        method=method,
         x_scale="jac",
         # A hundredth of a unit of chi-square is far below what any verdict turns on.
         xtol=1e-7,
@@ -80,6 +98,9 @@ def approach(
     least: float = np.inf,
     *,
     each: bool = False,
+    followed: int = FOLLOWED,
+    steps: int = TRIAL_EVALUATIONS,
+    method: Method = "dogbox",
 ) -> Solution:
     """Search from the best of all starting points, as if the noise were white.
 
@@ -94,6 +115,8 @@ def approach(
         not followed.
     each
         Follow the best of each seed, not the best of all.
+    followed, steps, method
+        How many starting points are given how many steps before the best goes on alone, and how.
     """
     every = problem.campaign.samples
     groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
@@ -102,7 +125,7 @@ def approach(
     starts = sorted(itertools.chain.from_iterable(groups), key=problem.square)
     best = starts[0]
     if len(starts) > 1:
-        short = [search(problem, every, s, WHITE, TRIAL_EVALUATIONS)[0] for s in starts[:FOLLOWED]]
+        short = [search(problem, every, s, WHITE, steps, method)[0] for s in starts[:followed]]
         best = min(short, key=problem.square)
     values, converged, message = best, False, "not followed"
     if len(starts) == 1 or problem.square(best) < least:
@@ -132,8 +155,6 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         return settle(problem, problem.solution(values, left, noise, False, message), left)
     if noise.colour > 0.0:
         again = search(problem, every, values, noise, MAX_EVALUATIONS)
-        # A wrong law leaves a residual that no noise is. Taken for its colour, nearly all of
-        # it is forgiven, and the parameters may go anywhere.
         if problem.square(again[0], every) <= MOST_FORGIVEN**2 * problem.square(values, every):
             values, converged, message = again
             noise = _noise_at(problem, every, values)
@@ -164,7 +185,18 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Approach, settle, and look for a higher peak."""
-    return search_peaks(problem, settle(problem, approach(problem, seeds, MAX_EVALUATIONS)))
+    if find_law(problem.law).has_film:
+        near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
+    else:
+        near = approach(
+            problem,
+            seeds,
+            MAX_EVALUATIONS,
+            followed=FOLLOWED_IN_A_FIT,
+            steps=MAX_EVALUATIONS,
+            method="trf",
+        )
+    return search_peaks(problem, settle(problem, near))
 
 
 def _noise_at(problem: Problem, samples: Samples, values: Array) -> Noise:

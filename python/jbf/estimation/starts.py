@@ -33,7 +33,7 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
     "breakaway": lambda s: (s.breakaway_n,),
     "breakaway_excess": lambda s: (s.breakaway_n - s.kinetic_n,),
     "viscous": lambda s: (s.viscous_n_s_m, 0.0),
-    "stribeck_speed": lambda s: (s.slow_m_s, 0.3 * s.usual_m_s),
+    "stribeck_speed": lambda s: (s.slow_m_s, 0.3 * s.usual_m_s, s.usual_m_s),
     "usual_speed": lambda s: (s.usual_m_s,),
     "stiffness": _stiffness,
     "damping": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),

@@ -1,0 +1,77 @@
+"""Plain least squares, or robust ones: whichever predicts better what it was not fitted to.
+
+Where a fit goes is one question, how sure it is another. Of noise alone all weights lead to the
+same place. Where they lead to another, the model is wrong somewhere, or a few samples are: which of
+the two a weight makes worse the record of other runs tells, not a description of the noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.minimum import MAX_EVALUATIONS, search
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+TUNING = 1.345
+"""Robust standard deviations beyond which a residual pulls no more than at that distance: 95 % as
+efficient as least squares where the noise is Gaussian (Huber 1964)."""
+FREEDOM = 3.0
+"""Degrees of freedom of Student's t."""
+ROUNDS = 4
+"""Rounds of weights and fits."""
+ELSEWHERE = 0.05
+"""Predictions further apart than this share of the residual's RMS are two places."""
+BETTER = 0.97
+"""A left-out error smaller than so many times the other is smaller."""
+
+
+def best_weighting(problem: Problem, plain: Solution) -> Solution:
+    """The solution with the smallest left-out error: this one, or one with robust weights."""
+    best, left_out = plain, None
+    for weights in (huber, student):
+        robust = _robust(problem, plain, weights)
+        apart = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
+        if plain.samples.rms(apart) < ELSEWHERE * plain.rms_n:
+            continue
+        left_out = left_out_rms(problem, best) if left_out is None else left_out
+        less = left_out_rms(problem, robust)
+        if less < BETTER * left_out:
+            best, left_out = robust, less
+    return best
+
+
+def huber(off: Array) -> Array:
+    """Weights on residuals that are so many standard deviations off: linear beyond some."""
+    weight: Array = np.sqrt(np.minimum(1.0, TUNING / np.maximum(off, 1e-300)))
+    return weight
+
+
+def student(off: Array) -> Array:
+    """The same of Student's t: what is far off hardly counts at all (Lange et al. 1989)."""
+    weight: Array = np.sqrt((FREEDOM + 1.0) / (FREEDOM + off**2))
+    return weight
+
+
+def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]) -> Solution:
+    """The M-estimate of these weights, by least squares that follow the residuals."""
+    found, samples = start, start.samples
+    for _ in range(ROUNDS):
+        flat = np.abs(samples.flat(found.residuals))
+        scale = float(np.median(flat)) / 0.6745 if len(flat) else 0.0
+        if scale <= 0.0:
+            return start
+        pull = [weights(np.abs(r) / scale) for r in found.residuals]
+        weight = tuple(w * p for w, p in zip(start.samples.weight, pull, strict=True))
+        samples = replace(start.samples, weight=weight)
+        values, converged, message = search(problem, samples, found.values, WHITE, MAX_EVALUATIONS)
+        found = problem.solution(problem.wrapped(values), samples, WHITE, converged, message)
+    return found

@@ -13,13 +13,12 @@ from collections.abc import Callable
 from importlib.resources import as_file, files
 from pathlib import Path
 
-import numpy as np
-
 from jbf.comparison.comparison import compare
 from jbf.diagnosis import Diagnosis, diagnose
 from jbf.records.rig import read_rig
 from jbf.records.run import PathLike
 from jbf.records.run_files import read_runs
+from jbf.reporting.words import value_and_error
 
 Say = Callable[[str], None]
 Progress = Callable[[str, int, int], None]
@@ -91,8 +90,7 @@ def _truth(diagnosis: Diagnosis, folder: Path) -> str:
             if not match:
                 lines.append(f"{effect}: {symbol} = {value:.4g}; not found")
                 continue
-            error = match[0].stderr if match[0].stderr is not None else np.nan
-            lines.append(
-                f"{effect}: {symbol} = {value:.4g}; found {match[0].value:.4g} +/- {error:.2g}"
-            )
+            shown, error = value_and_error(match[0])
+            said = f"found {shown} +/- {error}" if error else f"{shown}, {match[0].note}"
+            lines.append(f"{effect}: {symbol} = {value:.4g}; {said}")
     return "\n".join(lines)

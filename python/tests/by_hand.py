@@ -89,10 +89,10 @@ def _bare() -> tuple[Fit, Comparison]:
 
 
 def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) -> Fit:
-    """A fit of three parameters of the law, one of them without error, and of the offset."""
+    """A fit of three parameters of the law, one of them held, and of the offset."""
     parameters = {
         "F_c_n": ParameterValue(4.9876, 0.0123),
-        "F_s_n": ParameterValue(6.0, None, "held fixed"),
+        "F_s_n": ParameterValue(6.0, None, "held fixed", held=True),
         "F_v_n_s_m": ParameterValue(20.44, 0.52),
     }
     if "sensor_offset" in effects:

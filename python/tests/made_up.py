@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -61,6 +61,8 @@ class MadeUp:
         Gain once it was fitted from a richer model, too.
     left_out
         RMS over runs left out, N; that of the fit where nothing is said.
+    nulls
+        Sets of which each effect is left at its null.
     asked
         What was called with which set.
     """
@@ -73,6 +75,7 @@ class MadeUp:
     from_richer: Mapping[Set, float] = field(default_factory=dict)
     left_out: Mapping[Set, float] = field(default_factory=dict)
     slopes: Mapping[Set, float] = field(default_factory=dict)
+    nulls: Collection[Set] = ()
     smooth: int = 1
     policy: Policy = DEFAULT
     asked: list[tuple[str, Set]] = field(default_factory=list)
@@ -108,6 +111,9 @@ class MadeUp:
         here = self._note("refit", effects)
         self.gains[here] = self.from_richer.get(here, self._gain(effects))
         return self.converge(effects)
+
+    def idle(self, solution: Solution) -> tuple[str, ...]:
+        return solution.effects if frozenset(solution.effects) in self.nulls else ()
 
     def left_out_rms(self, effects: Sequence[str]) -> float:
         here = frozenset(effects)

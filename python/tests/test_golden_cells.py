@@ -102,7 +102,7 @@ def test_the_parameters_of_the_page(page: Callable[[str], Cells]) -> None:
     head = ("parameter", "value", "standard error", "", "unit", "note")
     assert headed(page("missing"), *head) == [
         ["F_c_n", "4.988", "0.012", "0.25 %", "N", ""],
-        ["F_s_n", "6.0000", "", "", "N", "held fixed"],
+        ["F_s_n", "held at 6.0000", "", "", "N", "held fixed"],
         ["F_v_n_s_m", "20.44", "0.52", "2.5 %", "N s/m", ""],
         ["sensor_offset.b_n", "-0.250", "0.025", "10 %", "N", ""],
     ]
@@ -165,7 +165,7 @@ def test_the_dictionary_of_a_diagnosis() -> None:
         "reason": "largest evidence",
     }
     assert found["parameters"]["F_c_n"] == {"value": 4.9876, "stderr": 0.0123, "note": None}
-    assert found["parameters"]["F_s_n"] == {"value": 6.0, "stderr": None, "note": "held fixed"}
+    assert found["parameters"]["F_s_n"] == {"value": 6.0, "held": True, "note": "held fixed"}
     assert found["failures"] == [
         {"axis": "direction", "where": "record above the model", "share": 0.6}
     ]

@@ -21,7 +21,7 @@ BOOTSTRAP = Bootstrap(FIT, {name: np.arange(20.0) for name in FIT.parameters})
 TRAJECTORY = TrajectoryFit(
     {"f_m": ParameterValue(0.25, 0.0012), "U_tr_m_s": ParameterValue(0.05)}, 4e-4, 100, 7, True, ""
 )
-VALUES = "F_c_n 4.988 +/- 0.012, F_s_n 6.0000, F_v_n_s_m 20.44 +/- 0.52, "
+VALUES = "F_c_n 4.988 +/- 0.012, F_s_n held at 6.0000, F_v_n_s_m 20.44 +/- 0.52, "
 VALUES += "sensor_offset.b_n -0.250 +/- 0.025"
 
 
@@ -67,7 +67,7 @@ class Rows(HTMLParser):
 def test_what_a_notebook_shows() -> None:
     assert Rows(FIT._repr_html_()).rows[1:3] == [
         ["F_c_n", "4.988", "0.012", "0.25 %", "N", ""],
-        ["F_s_n", "6.0000", "", "", "N", "held fixed"],
+        ["F_s_n", "held at 6.0000", "", "", "N", "held fixed"],
     ]
     assert Rows(COMPARISON._repr_html_()).rows == [
         ["run", "samples", "RMS (N)", "RMS / noise"],
@@ -101,6 +101,7 @@ def test_the_columns_of_a_frame() -> None:
     assert found["parameter"] == ["F_c_n", "F_s_n", "F_v_n_s_m", "sensor_offset.b_n"]
     assert found["value"] == [4.9876, 6.0, 20.44, -0.25]
     assert found["unit"] == ["N", "N", "N s/m", "N"]
+    assert found["held"] == [False, True, False, False]
     assert found["note"] == ["", "held fixed", "", ""]
     np.testing.assert_array_equal(found["stderr"], [0.0123, np.nan, 0.52, 0.025])
 

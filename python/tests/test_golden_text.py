@@ -25,10 +25,10 @@ def test_the_report_of_a_fit() -> None:
             noise in the residual  = coloured, share 0.25, memory 0.15 s
             search                 = converged
         [[Parameters]]
-            F_c_n               4.988  +/- 0.012  (0.25 %)  N
-            F_s_n              6.0000                       N      (held fixed)
-            F_v_n_s_m           20.44   +/- 0.52   (2.5 %)  N s/m
-            sensor_offset.b_n  -0.250  +/- 0.025    (10 %)  N
+            F_c_n                       4.988  +/- 0.012  (0.25 %)  N
+            F_s_n              held at 6.0000                       N      (held fixed)
+            F_v_n_s_m                   20.44   +/- 0.52   (2.5 %)  N s/m
+            sensor_offset.b_n          -0.250  +/- 0.025    (10 %)  N
             note: of F_c_n the likelihood is no parabola within these errors, so they may be far too
                   small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.
         [[Correlations]] (those above 0.3)
@@ -39,7 +39,7 @@ def test_the_report_of_a_fit() -> None:
 
 def test_correlations_where_nothing_is_held() -> None:
     held = fit_by_hand(["sensor_offset"])
-    open_ = {n: p for n, p in held.parameters.items() if p.note is None}
+    open_ = {n: p for n, p in held.parameters.items() if not p.held}
     lines = replace(held, parameters=open_).report().splitlines()
     assert [line for line in lines if line.startswith("    C(")] == [
         "    C(F_c_n, F_v_n_s_m)          = -0.900",
@@ -94,10 +94,10 @@ def test_the_summary_of_a_diagnosis() -> None:
             nothing that stands above the noise
 
         Parameters of the final model
-            F_c_n               4.988  +/- 0.012  (0.25 %)  N
-            F_s_n              6.0000                       N      (held fixed)
-            F_v_n_s_m           20.44   +/- 0.52   (2.5 %)  N s/m
-            sensor_offset.b_n  -0.250  +/- 0.025    (10 %)  N
+            F_c_n                       4.988  +/- 0.012  (0.25 %)  N
+            F_s_n              held at 6.0000                       N      (held fixed)
+            F_v_n_s_m                   20.44   +/- 0.52   (2.5 %)  N s/m
+            sensor_offset.b_n          -0.250  +/- 0.025    (10 %)  N
     """)
 
 

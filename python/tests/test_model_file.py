@@ -167,8 +167,10 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
         return rng.choice([rng.choice(odd), rng.random() * 10.0 ** rng.randint(-320, 300)])
 
     def parameter() -> ParameterValue:
-        stderr = rng.choice([None, abs(some())])
-        return ParameterValue(rng.choice([-1, 1]) * some(), stderr, rng.choice([None, *text]))
+        held = rng.random() < 0.3
+        stderr = None if held else rng.choice([None, abs(some())])
+        value = rng.choice([-1, 1]) * some()
+        return ParameterValue(value, stderr, rng.choice([None, *text]), held)
 
     for _ in range(100):
         effects = rng.sample(["coulomb_drag", "sensor_lag", "wear_in"], rng.randint(0, 3))

@@ -98,7 +98,8 @@ def test_the_longest_model_has_a_short_repr(full_fit: Fit) -> None:
     effects = [e.name for e in jbf.effects().values() if "journal" not in e.refused]
     model = jbf.Model(full_fit.model.rig, effects=effects)
     assert len(repr(model)) < 300
-    fit = jbf.Fit(**{**vars(full_fit), "model": model, "parameters": dict(model.parameters)})
+    named = {"parameters": dict(model.parameters), "correlations": np.eye(len(model.parameters))}
+    fit = jbf.Fit(**{**vars(full_fit), "model": model, **named})
     assert len(repr(fit)) < 300
     assert len(repr(jbf.effects()["presliding"])) < 300
 

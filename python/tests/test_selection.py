@@ -75,6 +75,25 @@ def test_a_smooth_error_counts_for_less() -> None:
     assert evidence == pytest.approx(0.6 * 100.0 - PRICE, rel=0.01)
 
 
+def test_an_effect_at_its_null_has_no_evidence() -> None:
+    # What its fit gains, the search gains: the bare law had not come as far.
+    made_up = made({"sensor_lag": 300, "sensor_drift": 100}, nulls=sets({"sensor_lag": 0.0}))
+    found = tried(made_up)
+    assert found.leader == "sensor_drift"
+    lag = next(t for t in found.trials if t.effect == "sensor_lag")
+    assert lag.outcome == "no gain"
+    assert lag.evidence == pytest.approx(-PRICE)
+
+
+def test_an_effect_that_another_leaves_at_its_null_is_taken_out() -> None:
+    both = sets({"sensor_lag inertia_leak": 0.0})
+    gains = {"sensor_lag": 300.0, "inertia_leak": 500.0, "sensor_lag inertia_leak": 600.0}
+    kept = reconsider(cast(Candidates, made(gains)), ("sensor_lag", "inertia_leak"))
+    assert kept == ("sensor_lag", "inertia_leak")
+    left = reconsider(cast(Candidates, made(gains, nulls=both)), ("sensor_lag", "inertia_leak"))
+    assert left == ("inertia_leak",)
+
+
 # ---- runs left out ----------------------------------------------------------------------------
 
 

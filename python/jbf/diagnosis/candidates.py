@@ -16,6 +16,7 @@ import numpy as np
 
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.determined import idle_effects
 from jbf.estimation.left_out import left_out_rms
 from jbf.estimation.likelihood import likelihood_gain, score_gain
 from jbf.estimation.minimum import approach, search_peaks, settle
@@ -207,6 +208,11 @@ class Candidates:
         if likelihood_gain(there, near) > 0.0:
             fitted.improve(there)
         return fitted.found()
+
+    def idle(self, solution: Solution) -> tuple[str, ...]:
+        """The effects that a solution left at their null."""
+        problem = self.fitted(solution.effects).problem
+        return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
     def left_out_rms(self, effects: Sequence[str]) -> float:
         """RMS over runs left out of the fit one at a time, N."""

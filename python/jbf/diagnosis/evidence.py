@@ -29,9 +29,12 @@ def price_of(candidates: Candidates, parameters: int) -> float:
 def evidence(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
     """Evidence for the richer of two models.
 
-    Where even the richer one leaves an error that is smooth, samples count for less.
+    Where even the richer one leaves an error that is smooth, samples count for less. For an effect
+    that the fit left at its null there is none: what is gained beside it is the search's.
     """
     gain = likelihood_gain(richer, simpler) * effective_share(richer)
+    if set(candidates.idle(richer)) - set(simpler.effects):
+        gain = min(gain, 0.0)
     return gain - price_of(candidates, richer.free - simpler.free)
 
 

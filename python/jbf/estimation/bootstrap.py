@@ -20,12 +20,12 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.determined import undetermined
 from jbf.estimation.fit import Fit
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
-from jbf.estimation.uncertainty import HELD
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.arguments import check_callable, of_kind, whole_number
@@ -48,7 +48,7 @@ class Bootstrap(Result):
     ----------
     fit
         The fit with each standard error half as wide as what holds the middle 68 % of the answers,
-        and no smaller than the fit's own.
+        and no smaller than the fit's own; what is larger than its parameter leaves that held.
     values
         Parameter name to the answers, shape (repeats,).
     """
@@ -109,7 +109,7 @@ def bootstrap(
     model = fitted.model
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}
-    held = {n: truth[n] for n, p in fitted.parameters.items() if p.note == HELD}
+    held = {name: truth[name] for name in fitted.fixed}
     problem = Problem(campaign, model.law, model.clock, model.effects, held)
     random = np.random.default_rng(seed)
     predictions = problem.predict(np.array([truth[name] for name in problem.names]))
@@ -128,11 +128,14 @@ def bootstrap(
         answers.append(minimum(other, [named_values(start, problem.parameters)]).values)
     values = dict(zip(problem.names, np.array(answers).T, strict=True))
     parameters = {
-        name: _with_error(p, values[name], problem.parameters[name])
+        name: with_error(p, values[name], problem.parameters[name])
         for name, p in fitted.parameters.items()
     }
     model = replace(model, parameters=parameters, fit={**model.fit, "bootstrap": repeats})
-    fit = replace(fitted, model=model, parameters=parameters, doubtful=())
+    told = [name for name, p in fitted.parameters.items() if not p.held]
+    kept = [k for k, name in enumerate(told) if not parameters[name].held]
+    among = fitted.correlations[kept][:, kept]
+    fit = replace(fitted, model=model, parameters=parameters, correlations=among, doubtful=())
     return Bootstrap(fit, values)
 
 
@@ -185,7 +188,7 @@ def _read_again(
     return read
 
 
-def _with_error(value: ParameterValue, answers: Array, page: Parameter) -> ParameterValue:
+def with_error(value: ParameterValue, answers: Array, page: Parameter) -> ParameterValue:
     """The value with the error that its answers show."""
     if value.stderr is None:
         return value
@@ -196,4 +199,6 @@ def _with_error(value: ParameterValue, answers: Array, page: Parameter) -> Param
     low, high = np.quantile(off, [0.15866, 0.84134])
     # No estimate is surer than the curvature has it (Cramer 1946, ch. 32), and few answers may lie
     # closer together than they should.
-    return replace(value, stderr=max(float(0.5 * (high - low)), value.stderr))
+    error = max(float(0.5 * (high - low)), value.stderr)
+    note = undetermined(page, value.value, error)
+    return replace(value, stderr=None if note else error, note=note, held=note is not None)

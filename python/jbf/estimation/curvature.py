@@ -7,12 +7,17 @@ peak stands beside peak, and the width of one of them is no error.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.determined import bound_note
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from jbf.estimation.spread import spread
 from jbf.models.catalogue import find_effect
+from jbf.models.parameter_value import ParameterValue
 
 Array = npt.NDArray[np.float64]
 
@@ -21,31 +26,25 @@ BENT = 0.3
 
 
 def doubtful_errors(
-    problem: Problem, solution: Solution, stderr: list[float | None], correlations: Array
+    problem: Problem, solution: Solution, parameters: Mapping[str, ParameterValue]
 ) -> tuple[str, ...]:
-    """Names of the parameters whose standard error is no error.
-
-    Parameters
-    ----------
-    stderr
-        One for each parameter of the problem; None where there is none.
-    correlations : array, shape (k, k)
-        Of the parameters that are not held.
-    """
+    """Names of the parameters whose standard error is no error; of held ones nothing is said."""
+    known = spread(problem, solution)
     x = problem.encode(solution.values)
-    sd = np.full(len(x), np.nan)
+    sd = np.where(known.separate, known.sd, np.nan)
     for k, i in enumerate(problem.open):
-        error = stderr[i]
-        if error is not None:
-            sd[k] = error / abs(solution.values[i]) if problem.log[i] else error
+        # What stands at a bound does not move along with another.
+        page = problem.parameters[problem.names[i]]
+        if bound_note(page, float(solution.values[i]), known.error(k)) is not None:
+            sd[k] = np.nan
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
     found = []
     # Catalogued as having many: one standard error away may still be the same peak.
     many = {effect for effect in problem.effects if find_effect(effect).peaks}
     for k, i in enumerate(problem.open):
         # Where the likelihood is highest with this parameter one standard error off.
-        way = correlations[:, k] * sd
-        if not np.isfinite(sd[k]):
+        way = known.correlation[:, k] * sd
+        if parameters[problem.names[i]].held:
             continue
         if problem.names[i].split(".")[0] in many:
             found.append(problem.names[i])

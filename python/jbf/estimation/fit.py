@@ -16,8 +16,10 @@ from jbf.estimation.estimates import Estimates
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem, named_values
+from jbf.estimation.put_back import put_back
 from jbf.estimation.solution import Solution
-from jbf.estimation.uncertainty import parameter_values
+from jbf.estimation.spread import spread
+from jbf.estimation.uncertainty import correlations, parameter_values
 from jbf.estimation.weighting import best_weighting
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
@@ -41,9 +43,10 @@ class Fit(Estimates):
     model
         The fitted model.
     parameters
-        Dotted name to value with standard error, or the reason why there is none.
+        Dotted name to value with standard error; what the runs did not determine is held, and its
+        note says why.
     correlations
-        Shape (k, k), in the order of the `parameters` that were not held fixed.
+        Shape (k, k), in the order of the `parameters` that are not held.
     rms_n
         Root mean square of the residual over the samples that count, N.
     residuals
@@ -51,6 +54,8 @@ class Fit(Estimates):
     doubtful
         Names of the parameters whose standard error is no error, because the likelihood is no
         parabola so far out: :func:`jbf.bootstrap` finds theirs.
+    fixed
+        Names of the parameters that were not fitted.
     """
 
     model: Model
@@ -63,6 +68,13 @@ class Fit(Estimates):
     converged: bool
     message: str
     doubtful: tuple[str, ...] = ()
+    fixed: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        told = sum(not p.held for p in self.parameters.values())
+        if self.correlations.shape != (told, told):
+            shape = self.correlations.shape
+            raise ValueError(f"correlations of shape {shape} for {told} parameters not held")
 
     def report(self) -> str:
         """As `summary`: statistics, parameters with errors, and the strongest correlations."""
@@ -95,10 +107,11 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
             )
 
 
-def finish(problem: Problem, solution: Solution) -> Fit:
-    """A solution with its errors, as a model."""
-    values, correlation = parameter_values(problem, solution)
-    named = dict(zip(problem.names, values, strict=True))
+def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | None = None) -> Fit:
+    """A solution with its errors, as a model; `start` is what the user had it start from."""
+    known = spread(problem, solution)
+    found = put_back(problem, solution, known, start or {})
+    named = parameter_values(problem, found, known)
     campaign, rms, samples = problem.campaign, solution.rms_n, solution.samples.count
     model = Model(
         campaign.rig,
@@ -115,13 +128,14 @@ def finish(problem: Problem, solution: Solution) -> Fit:
     return Fit(
         model=model,
         parameters=named,
-        correlations=correlation,
+        correlations=correlations(problem, named, known),
         rms_n=rms,
         noise=solution.noise,
         samples=samples,
-        residuals=solution.residuals,
+        residuals=found.residuals,
         converged=solution.converged,
         message=solution.message,
+        fixed=tuple(name for name in problem.names if name in problem.fixed),
     )
 
 
@@ -168,8 +182,7 @@ def fit(
     check_effects(campaign, chosen)
     known = parameters_of(law, chosen)
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, known))
-    solution = best_weighting(problem, minimum(problem, [named_values(start, known)]))
-    fitted = finish(problem, solution)
-    errors = [p.stderr for p in fitted.parameters.values()]
-    doubtful = doubtful_errors(problem, solution, errors, fitted.correlations)
-    return replace(fitted, doubtful=doubtful)
+    given = named_values(start, known)
+    solution = best_weighting(problem, minimum(problem, [given]))
+    fitted = finish(problem, solution, given)
+    return replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))

@@ -31,8 +31,8 @@ TRIAL_EVALUATIONS = 6
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked,"""
 FOLLOWED_IN_A_FIT = 6
-"""and where one model is fitted: to their ends where no film makes that dear, since the squares of a
-law that is wrong have many valleys."""
+"""and where one model is fitted: to their ends where no film makes that dear, since the squares of
+a law that is wrong have many valleys."""
 MOST_FORGIVEN = 1.02
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS. Of coloured
 noise it has hardly more; the error of a wrong model is as smooth, and would be forgiven."""

@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.determined import undetermined
 from jbf.estimation.estimates import Estimates
-from jbf.models.catalogue import find_parameter, parameters_of
+from jbf.models.catalogue import Parameter, find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Motion, is_record, motions_of, trajectories
 from jbf.models.vocabulary import Clock
@@ -163,11 +164,12 @@ def fit_trajectories(
         gtol=1e-8,
         max_nfev=200,
     )
-    values = np.exp(found.x)
+    values = np.exp(np.clip(found.x, low, high))
     errors = _errors(found, values)
+    shown = np.linalg.norm(np.asarray(found.jac), axis=0) > 0.0
     parameters = {
-        name: ParameterValue(float(v), float(e)) if np.isfinite(e) else ParameterValue(float(v))
-        for name, v, e in zip(pages, values, errors, strict=True)
+        name: _parameter(page, float(v), float(e), moved=bool(s))
+        for (name, page), v, e, s in zip(pages.items(), values, errors, shown, strict=True)
     }
     return TrajectoryFit(
         parameters=parameters,
@@ -177,6 +179,11 @@ def fit_trajectories(
         converged=bool(found.status > 0),
         message=str(found.message),
     )
+
+
+def _parameter(page: Parameter, value: float, error: float, *, moved: bool) -> ParameterValue:
+    note = undetermined(page, value, error, moved=moved, separate=bool(np.isfinite(error)))
+    return ParameterValue(value, None if note else error, note, note is not None)
 
 
 def _errors(found: OptimizeResult, values: Array) -> Array:

@@ -68,6 +68,15 @@ class Language:
         return self.prefix + group.name.upper()
 
 
+def _held_words(why: str | None) -> str:
+    """What stands beside a held value: firmware needs the number, who reads it must know that it
+    is none. The note may be a user's, so it must neither end a comment nor begin one."""
+    if why is None:
+        return ""
+    said = " ".join(why.split()).replace("*/", "").replace("/*", "")
+    return f": held, {said}" if said else ": held"
+
+
 def constants(numbers: Numbers, language: Language) -> list[str]:
     """The lines with every constant of a model."""
     out = []
@@ -81,8 +90,11 @@ def constants(numbers: Numbers, language: Language) -> list[str]:
     out.append(language.scalar.format(value=language.number(numbers.load_n)))
     for group in numbers.groups:
         name = language.name(group)
-        pages = zip(group.page.parameters, group.values, strict=True)
-        rows = [{"value": language.number(value), "parameter": p.name} for p, value in pages]
+        pages = zip(group.page.parameters, group.values, group.held, strict=True)
+        rows = [
+            {"value": language.number(value), "parameter": p.name + _held_words(why)}
+            for p, value, why in pages
+        ]
         out += language.about(f"Parameters of the {group.room} {group.name}.")
         out += language.array.lines(rows, name=name, count=str(len(rows)))
         out += language.check(group, name)

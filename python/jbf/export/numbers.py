@@ -15,10 +15,14 @@ from jbf.models.own_effects import OwnEffect
 
 @dataclass(frozen=True)
 class Group:
-    """The law, or one effect: its page, and its values in the page's order."""
+    """The law, or one effect: its page, and its values in the page's order.
+
+    `held` has for each value why it is held, None where it was determined.
+    """
 
     page: Law | Effect
     values: tuple[float, ...]
+    held: tuple[str | None, ...]
 
     @property
     def name(self) -> str:
@@ -50,7 +54,6 @@ class Numbers:
         InputError
             An effect of one's own is written in Python, which no target runs.
         """
-        values = {name: p.value for name, p in model.parameters.items()}
         law = find_law(model.law)
         effects = []
         for name in model.effects:
@@ -60,11 +63,11 @@ class Numbers:
                     problem=f"the effect {name} is written in Python, which no target runs",
                     mend="write it in Rust: cargo run --example own_effect shows how",
                 )
-            own = tuple(values[f"{name}.{p.name}"] for p in page.parameters)
-            if not any(map(_vanishes, page.parameters, own)):
-                effects.append(Group(page, own))
+            group = _group(page, model, f"{name}.")
+            if not any(map(_vanishes, page.parameters, group.values)):
+                effects.append(group)
         return cls(
-            law=Group(law, tuple(values[p.name] for p in law.parameters)),
+            law=_group(law, model),
             effects=tuple(effects),
             clock=model.clock,
             bearing=core_bearing(model.rig),
@@ -80,6 +83,12 @@ class Numbers:
         """Law and effects, for people."""
         effects = ", ".join(group.name for group in self.effects)
         return f"law {self.law.name}; effects: {effects or 'none'}"
+
+
+def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:
+    own = [model.parameters[f"{prefix}{p.name}"] for p in page.parameters]
+    held = tuple((p.note or "") if p.held else None for p in own)
+    return Group(page, tuple(p.value for p in own), held)
 
 
 def _vanishes(page: Parameter, value: float) -> bool:

@@ -112,7 +112,10 @@ class Model:
 
     def __repr__(self) -> str:
         sum_ = shorten(" + ".join([self.law, *self.effects]), 100, placeholder=" ...")
-        named = ", ".join(f"{name} = {p.value:.5g}" for name, p in self.parameters.items())
+        named = ", ".join(
+            f"{name} {'held at' if p.held else '='} {p.value:.5g}"
+            for name, p in self.parameters.items()
+        )
         return f"Model({sum_}; {shorten(named, 150, placeholder=' ...')})"
 
     @property

@@ -19,10 +19,11 @@ from jbf.text_files import write_text
 
 FORMAT = 1
 _KEYS = ("format", "law", "clock", "effects", "parameters", "rig", "fit")
-_FIELDS = {"value", "stderr", "note"}
+_FIELDS = {"value", "stderr", "note", "held"}
 _HEADER = """\
 jbf model file. Parameters are in SI units, stderr is one standard error; a bare number will do:
-f_m = 0.26. Each effect in the list has its parameters in [parameters.EFFECT]."""
+f_m = 0.26. What is held was not determined: its value predicts, and is no answer. Each effect in
+the list has its parameters in [parameters.EFFECT]."""
 
 
 def _text(content: Mapping[str, Any], key: str, default: str | None = None) -> str:
@@ -96,7 +97,7 @@ def read_model_file(path: PathLike, vocabulary: Vocabulary | None = None) -> Mod
 def _inline(parameter: ParameterValue) -> tomlkit.items.InlineTable:
     entry = tomlkit.inline_table()
     # tomlkit writes the repr of a float, which reads back to the same bits.
-    entry.update({k: v for k, v in asdict(parameter).items() if v is not None})
+    entry.update({k: v for k, v in asdict(parameter).items() if v is not None and v is not False})
     return entry
 
 

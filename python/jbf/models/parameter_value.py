@@ -16,12 +16,14 @@ class ParameterValue:
 
     `value` is in the unit that the parameter's name tells, and may be infinite but not nan;
     `stderr` is one standard error in that unit, None when not known (nan becomes None); `note` is
-    a remark, such as "at its lower bound".
+    a remark, such as "at its lower bound". `held` is true where no fit determined it: the value is
+    what a model predicts with, no answer, so it has no error; the note says why.
     """
 
     value: float
     stderr: float | None = None
     note: str | None = None
+    held: bool = False
 
     def __post_init__(self) -> None:
         value = number(self.value, "value")
@@ -35,7 +37,14 @@ class ParameterValue:
             object.__setattr__(self, "stderr", None if math.isnan(stderr) else stderr)
         if self.note is not None and not isinstance(self.note, str):
             raise InputError(key="note", problem="is not text", mend="put it in quotes")
+        if not isinstance(self.held, bool):
+            raise InputError(key="held", problem="is not true or false", mend="write held = true")
+        if self.held and self.stderr is not None:
+            problem = "stands beside held = true, and what is held has no error"
+            raise InputError(key="stderr", problem=problem, mend="drop one of the two")
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """For JSON: of a held parameter there is no error to ask for."""
+        if self.held:
+            return {"value": self.value, "held": True, "note": self.note}
         return {"value": self.value, "stderr": self.stderr, "note": self.note}

@@ -15,7 +15,7 @@ from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, axes_or_new, dress, noise_band, plain
-from jbf.reporting.words import measured
+from jbf.reporting.words import value_and_error
 
 Array = npt.NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def parameter_intervals(
 
 
 def _value_words(p: ParameterValue) -> str:
-    value, error = measured(p.value, p.stderr)
+    value, error = value_and_error(p)
     return f"{value} ± {error}" if error else value
 
 

@@ -20,13 +20,14 @@ Columns = dict[str, Any]
 def parameter_columns(
     law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
 ) -> Columns:
-    """A row a parameter: name, value, stderr, unit, note."""
+    """A row a parameter: name, value, stderr, unit, whether it is held, note."""
     pages = parameters_of(law, effects)
     return {
         "parameter": list(parameters),
         "value": [p.value for p in parameters.values()],
         "stderr": [np.nan if p.stderr is None else p.stderr for p in parameters.values()],
         "unit": [pages[name].unit if name in pages else "" for name in parameters],
+        "held": [p.held for p in parameters.values()],
         "note": [p.note or "" for p in parameters.values()],
     }
 

@@ -11,7 +11,7 @@ from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
-from jbf.reporting.words import measured, number, times
+from jbf.reporting.words import number, times, value_and_error
 
 LONGEST = 120
 """Of a list that would grow with a model; a line has two of them at most."""
@@ -29,7 +29,7 @@ def first_of(items: Iterable[str], join: str = ", ") -> str:
 
 def _values(parameters: Mapping[str, ParameterValue]) -> str:
     def one(name: str, p: ParameterValue) -> str:
-        value, error = measured(p.value, p.stderr)
+        value, error = value_and_error(p)
         return f"{name} {value} +/- {error}" if error else f"{name} {value}"
 
     return first_of(one(name, p) for name, p in parameters.items())

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jbf.models.catalogue import parameters_of
-from jbf.reporting.words import measured, number, percent, step_name
+from jbf.reporting.words import number, percent, step_name, value_and_error
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
@@ -31,7 +31,7 @@ def parameter_rows(
     pages = parameters_of(law, effects)
     rows = []
     for name, p in parameters.items():
-        value, error = measured(p.value, p.stderr)
+        value, error = value_and_error(p)
         note = p.note or ("" if error else "no error known")
         unit = pages[name].unit if name in pages else ""
         rows.append((name, value, error, percent(p), "" if unit == "-" else unit, note))
@@ -40,9 +40,7 @@ def parameter_rows(
 
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
     """Pairs of parameters correlated above 0.3, strongest first."""
-    names = list(fit.parameters)
-    if len(fit.correlations) < len(names):  # parameters held fixed have no row
-        names = [n for n, p in fit.parameters.items() if p.note != "held fixed"]
+    names = [name for name, p in fit.parameters.items() if not p.held]
     found = [
         (names[i], names[j], float(fit.correlations[i, j]))
         for i in range(len(names))

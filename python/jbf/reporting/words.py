@@ -61,6 +61,13 @@ def measured(value: float, stderr: float | None) -> tuple[str, str]:
     return f"{round(value, decimals):.{places}f}", f"{round(stderr, decimals):.{places}f}"
 
 
+def value_and_error(p: ParameterValue) -> tuple[str, str]:
+    """A parameter's value and error as text; a held one's says so, and has no error."""
+    if p.held:
+        return f"held at {number(p.value, 5)}", ""
+    return measured(p.value, p.stderr)
+
+
 def percent(value: ParameterValue) -> str:
     """The error as a share of the value, `0.46 %`; empty where it means nothing."""
     if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):

@@ -74,6 +74,32 @@ class Policy:
         "others, too",
         "chosen for speed",
     )
+    # ---- what the recording did -------------------------------------------------------------
+    most_looks: int = _number(
+        6,
+        "times that what the residuals tell of the recording sends selection to its beginning",
+        "one for each of the things that are looked for",
+    )
+    most_shifts: int = _number(
+        3, "times that the runs' lateness is estimated", "a second look sees it sharper"
+    )
+    deviation_chance: float = _number(
+        1e-4,
+        "probability at which runs that deviate from one another alike are chance",
+        "one campaign in ten thousand",
+    )
+    uneven_noise: float = _number(
+        1.25,
+        "ratio of the noise's size, between forces or between runs, from which on samples are "
+        "weighed by it",
+        "below it the weights gain less than 5 % of the variance of a parameter",
+    )
+    heavy_tails: float = _number(
+        6.0,
+        "times as many innovations beyond four standard deviations as Gaussian noise has, from "
+        "which on large ones count less",
+        "least squares lose a twentieth of their precision there",
+    )
     # ---- names of confounders -------------------------------------------------------------------
     clear: float = _number(
         20.0,

@@ -11,6 +11,7 @@ from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.evidence import evidence
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
+from jbf.diagnosis.late_channels import on_time
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
@@ -30,9 +31,6 @@ from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
-
-MOST_LOOKS = 4
-"""How often what the residuals tell of the recording sends selection to its beginning."""
 
 
 @one_blas_thread
@@ -85,11 +83,11 @@ def diagnose(
     before = compare_prepared(bare.model, campaign)
 
     present, steps, refused = _select(candidates, before.noise_n)
-    for _ in range(MOST_LOOKS):
-        again = second_look(candidates.fitted(present).problem, candidates.converge(present))
-        if not again.found:
+    for _ in range(policy.most_looks):
+        again = _seen_again(candidates, present)
+        if again is None:
             break
-        campaign = again.campaign
+        campaign = again
         candidates = Candidates(campaign, law, clock, policy, progress)
         bare = finish(candidates.fitted(()).problem, candidates.converge(()))
         before = compare_prepared(bare.model, campaign)
@@ -129,6 +127,16 @@ def diagnose(
         findings=candidates.campaign.findings,
         confounders=tuple(name for name in doubted if name in kept),
     )
+
+
+def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign as the residuals of a model ask for it; None where they ask for nothing more."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    shifted = on_time(problem, solution, candidates.policy)
+    if shifted is not None:
+        return shifted
+    again = second_look(problem, solution, candidates.policy)
+    return again.campaign if again.found else None
 
 
 def _select(

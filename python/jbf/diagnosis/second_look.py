@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import stats
 
+from jbf.diagnosis.policy import Policy
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
@@ -24,16 +25,10 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 
 FORCE_BINS = 6
-UNEVEN = 1.25
-"""Ratio of the noise's size, between forces or runs, from which on it is uneven."""
 HUBER = 2.5
 """Innovations beyond so many of their standard deviations count less (Huber 1964)."""
-HEAVY = 6.0
-"""Times as many innovations beyond four standard deviations as Gaussian noise has: heavy tails."""
 LEAST = 200
 """Samples of a bin whose size can be told."""
-DEVIATION_CHANCE = 1e-4
-"""Probability at which runs that deviate alike are chance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,21 +39,21 @@ class SecondLook:
     found: bool
 
 
-def second_look(problem: Problem, solution: Solution) -> SecondLook:
+def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondLook:
     """The campaign as the residuals of a solution ask for it.
 
     One deviation is found at a look, the clearest: what is missing yet may look like another.
     """
     campaign = problem.campaign
-    sizes, uneven = _sizes(problem, solution)
-    robust, heavy = _robust(solution, sizes)
+    sizes, uneven = _sizes(problem, solution, policy.uneven_noise)
+    robust, heavy = _robust(solution, sizes, policy.heavy_tails)
     known = {f.kind for f in campaign.more_findings}
     if known & {"noise_with_force", "noise_by_run", "heavy_tails"}:
         # Weights are given once.
         sizes, uneven, heavy = [np.ones(len(s)) for s in sizes], [], []
         robust = sizes
     shares = [s * w for s, w in zip(sizes, robust, strict=True)]
-    between, deviations = _between(problem, solution, shares)
+    between, deviations = _between(problem, solution, shares, policy.deviation_chance)
     findings = [*uneven, *heavy, *deviations]
     if not findings:
         return SecondLook(campaign, False)
@@ -78,7 +73,9 @@ def _white(residual: Array) -> Array:
     return found
 
 
-def _sizes(problem: Problem, solution: Solution) -> tuple[list[Array], list[Finding]]:
+def _sizes(
+    problem: Problem, solution: Solution, uneven: float
+) -> tuple[list[Array], list[Finding]]:
     """A weight for the size of the noise at each sample, 0 to 1, and whether it is uneven."""
     samples = solution.samples
     # The white part alone: what a model leaves is smooth, and no noise.
@@ -95,10 +92,10 @@ def _sizes(problem: Problem, solution: Solution) -> tuple[list[Array], list[Find
     by_force = np.array([_robust_size(flat_e[which == k]) for k in range(FORCE_BINS)])
     findings = []
     shares = ones
-    if by_force.min() > 0.0 and by_force.max() > UNEVEN * by_force.min():
+    if by_force.min() > 0.0 and by_force.max() > uneven * by_force.min():
         # A line through the squares: noise of the cell, and noise that goes with the force.
         slope, level = np.polyfit(middle**2, by_force**2, 1)
-        if slope > 0.0 and level + slope * middle[-1] ** 2 > UNEVEN**2 * by_force.min() ** 2:
+        if slope > 0.0 and level + slope * middle[-1] ** 2 > uneven**2 * by_force.min() ** 2:
             least = max(level, 0.25 * by_force.min() ** 2)
             sd = [np.sqrt(least + slope * f**2) for f in force]
             low = min(float(s.min()) for s in sd)
@@ -114,7 +111,7 @@ def _sizes(problem: Problem, solution: Solution) -> tuple[list[Array], list[Find
         for x, s, c in zip(e, shares, samples.counted, strict=True)
     ]
     known = [s for s in sized if s > 0.0]
-    if len(known) > 1 and max(known) > UNEVEN * min(known):
+    if len(known) > 1 and max(known) > uneven * min(known):
         shares = [
             w * (min(known) / s if s > 0.0 else 1.0) for w, s in zip(shares, sized, strict=True)
         ]
@@ -125,7 +122,9 @@ def _sizes(problem: Problem, solution: Solution) -> tuple[list[Array], list[Find
     return shares, findings
 
 
-def _robust(solution: Solution, sizes: list[Array]) -> tuple[list[Array], list[Finding]]:
+def _robust(
+    solution: Solution, sizes: list[Array], heavy: float
+) -> tuple[list[Array], list[Finding]]:
     """A weight against heavy tails for each sample, 0 to 1, and whether there are any."""
     samples = solution.samples
     e = [
@@ -138,7 +137,7 @@ def _robust(solution: Solution, sizes: list[Array]) -> tuple[list[Array], list[F
     if sigma <= 0.0 or not len(flat):
         return ones, []
     beyond = float(np.mean(np.abs(flat) > 4.0 * sigma))
-    if beyond < max(HEAVY * 2.0 * stats.norm.sf(4.0), 5.0 / len(flat)):
+    if beyond < max(heavy * 2.0 * stats.norm.sf(4.0), 5.0 / len(flat)):
         return ones, []
     # A weight on the residual whose square is Huber's on the square.
     weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
@@ -149,7 +148,7 @@ def _robust(solution: Solution, sizes: list[Array]) -> tuple[list[Array], list[F
 
 
 def _between(
-    problem: Problem, solution: Solution, shares: list[Array]
+    problem: Problem, solution: Solution, shares: list[Array], chance: float
 ) -> tuple[BetweenRuns | None, list[Finding]]:
     """The deviations of the runs known so far, and the clearest of those beyond chance besides."""
     known = problem.campaign.samples.between
@@ -164,7 +163,7 @@ def _between(
         if known is not None and name in known.names:
             continue
         found = _spread(samples, solution, column, sigma)
-        if found is None or found[1] > DEVIATION_CHANCE or found[0] <= 0.0:
+        if found is None or found[1] > chance or found[0] <= 0.0:
             continue
         if best is None or found[2] > best[0]:
             best = (found[2], name, unit, found[0], column)

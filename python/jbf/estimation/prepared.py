@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -34,6 +34,9 @@ class Prepared:
     friction_n: Array
     step_s: float
     examined: Examined
+    recorded: tuple[Array, ImposedMotion] | None = None
+    """The instants at which the motion was recorded, s, and the motion there, where the force was
+    read at others."""
 
     @classmethod
     def of(cls, rig: Rig, run: Run) -> Prepared:
@@ -48,8 +51,10 @@ class Prepared:
         motion = imposed(rig, run)
         assert run.friction_n is not None
         examined = examine(run)
+        recorded = None
         if examined.native is not None:
             native = examined.native
+            recorded = (run.time_s, motion)
             motion = motion.at(run.time_s, native.time_s)
             run = run.at(native.time_s, native.values)
             glitches, off = find_glitches(run)
@@ -65,7 +70,35 @@ class Prepared:
             examined = Examined((*examined.findings, made), examined.usable, examined.native)
         step_s = float(np.median(np.diff(run.time_s)))
         assert run.friction_n is not None
-        return cls(rig, run, motion, run.friction_n, step_s, examined)
+        return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
+
+    def shifted(self, late_s: float, drift: float) -> Prepared:
+        """The run with its force compared with the motion so long before.
+
+        Parameters
+        ----------
+        late_s
+            How late the force is in the middle of the run, s.
+        drift
+            By how much later it gets in a second.
+        """
+        instants, motion = self.recorded or (self.run.time_s, self.motion)
+        time = self.run.time_s
+        middle = 0.5 * (time[0] + time[-1])
+        read = time - late_s - drift * (time - middle)
+        # What was read before the motion begins, or after it ends, cannot be compared.
+        kept = (read >= instants[0]) & (read <= instants[-1])
+        run = self.run.select(kept).at(read[kept], self.friction_n[kept])
+        usable = self.examined.usable[kept]
+        assert run.friction_n is not None
+        return replace(
+            self,
+            run=run,
+            motion=motion.at(instants, run.time_s),
+            friction_n=run.friction_n,
+            examined=replace(self.examined, usable=usable),
+            recorded=(instants, motion),
+        )
 
     @cached_property
     def core(self) -> Driven:

@@ -12,6 +12,7 @@ from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
 from jbf.records.findings.held_samples import find_held
 from jbf.records.findings.interpolated import Native, find_native
+from jbf.records.findings.repeated import find_repeated
 from jbf.records.findings.steps import find_steps
 from jbf.records.run import Run
 
@@ -39,9 +40,13 @@ def examine(run: Run) -> Examined:
     """Look for what loggers do to a record of friction."""
     if run.friction_n is None:
         return Examined((), np.ones(len(run), dtype=bool))
+    usable = np.ones(len(run), dtype=bool)
+    native = find_repeated(run.time_s, run.friction_n)
+    if native is not None:
+        return Examined((_repeated(run, native),), usable, native)
     native = find_native(run.time_s, run.friction_n)
     if native is not None:
-        return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
+        return Examined((_interpolated(run, native),), usable, native)
     glitches, off = find_glitches(run)
     held, still = find_held(run)
     found = (*glitches, *held, *find_gaps(run), *find_steps(run))
@@ -53,3 +58,10 @@ def _interpolated(run: Run, native: Native) -> Finding:
     words = f"the force was read at {rate:.4g} Hz and drawn as straight lines between"
     done = "taken back to its readings"
     return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)
+
+
+def _repeated(run: Run, native: Native) -> Finding:
+    rate = 1.0 / native.period_s
+    words = f"the force was read at {rate:.4g} Hz and its last value written until the next"
+    done = "taken back to its readings"
+    return Finding("held_samples", "friction_n", run.name, rate, "Hz", done, words)

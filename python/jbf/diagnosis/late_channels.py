@@ -1,0 +1,83 @@
+"""Runs whose force is late, each by its own time or by a clock of its own: compared with the motion
+at the instants at which it was read."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_start import settled_campaign
+from jbf.estimation.lateness import lateness
+from jbf.estimation.minimum import search
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
+
+DELAY = "time_delay"
+EVALUATIONS = 12
+"""Steps of a fit to runs that were shifted."""
+
+
+def on_time(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
+    """The campaign with each run's force where it belongs; None where it is there already.
+
+    What other looks found is left to be found again: it was seen through the lateness.
+    """
+    campaign = problem.campaign
+    if any(f.kind in ("late_channel", "drifting_clock") for f in campaign.more_findings):
+        return None
+    old = campaign
+    prepared, late_s, drift = campaign.prepared, np.zeros(len(campaign.prepared)), 0.0
+    for look in range(policy.most_shifts):
+        found = lateness(problem, solution, look, policy.deviation_chance)
+        if found is None:
+            break
+        # Where runs differ in it, a delay that they share is the recording's as well.
+        known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+        late_s = late_s + np.array(found.late_s) + known.get(f"{DELAY}.tau_s", 0.0)
+        drift += found.drift
+        shifted = [
+            p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
+        ]
+        campaign = _settled(problem, shifted)
+        problem, solution = _refitted(problem, campaign, known, solution)
+    if campaign is old:
+        return None
+    findings = [
+        _finding(p.run.name, late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
+    ]
+    return campaign.with_findings(findings)
+
+
+def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
+    old = problem.campaign
+    whole = Campaign(old.rig, tuple(prepared), Samples.of(prepared), old.most_noise_n)
+    return settled_campaign(whole, problem.law, problem.clock)
+
+
+def _refitted(
+    problem: Problem, campaign: Campaign, known: dict[str, float], near: Solution
+) -> tuple[Problem, Solution]:
+    """The model without a delay of its own, a few steps on, on runs that were shifted."""
+    effects = [name for name in problem.effects if name != DELAY]
+    again = Problem(campaign, problem.law, problem.clock, effects)
+    start = np.array([known[name] for name in again.names])
+    samples = again.samples_at(start)
+    values, converged, message = search(again, samples, start, near.noise, EVALUATIONS)
+    return again, again.solution(values, samples, near.noise, converged, message)
+
+
+def _finding(run: str, late_s: float, drift: float) -> Finding:
+    if drift == 0.0:
+        way = "late" if late_s > 0.0 else "early"
+        words = f"the force is {1e3 * abs(late_s):.2g} ms {way} against the motion"
+        return Finding("late_channel", "friction_n", run, late_s, "s", "shifted", words)
+    way = "slower" if drift > 0.0 else "faster"
+    words = (
+        f"the force's clock runs {way} than the motion's by {1e6 * abs(drift):.0f} parts in a "
+        f"million: {1e3 * late_s:+.2g} ms in the middle of the run"
+    )
+    return Finding("drifting_clock", "friction_n", run, drift, "1", "shifted", words)

@@ -1,0 +1,197 @@
+"""How late the force channel of each run is against its motion, by a model of it.
+
+A channel that is late by another time in each run, or by a clock that runs faster, is a fault of
+the recording and no effect: the force is then compared with the motion at the instant at which it
+was read. The lateness of a run is where the squares of its residuals are least when the model's
+force is shifted along time; the parts of a run tell whether it grows.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage, stats
+
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.models.chain import core_motion
+from jbf.models.driven import Driven
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+FINE_S = 2.5e-3
+"""The model's force is computed at instants no further apart, s."""
+CLIPPED = 3.5
+"""Residuals count no more than at so many standard deviations."""
+PARTS = 3
+"""Parts of a run that tell whether its lateness grows."""
+LEAST_SAMPLES = 60
+"""Samples of a part that can tell it."""
+RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
+"""Lateness looked for and steps of it, s: at first, and once runs were shifted."""
+
+
+@dataclass(frozen=True)
+class Lateness:
+    """How late the force is.
+
+    Attributes
+    ----------
+    late_s
+        In the middle of each run, s.
+    drift
+        By how much later it gets in a second.
+    spread_s
+        Standard deviation of the lateness between runs, s; zero where they do not differ.
+    """
+
+    late_s: tuple[float, ...]
+    drift: float
+    spread_s: float
+
+
+@dataclass(frozen=True)
+class _Place:
+    """An estimate and its variance; infinite where there is none."""
+
+    value: float
+    variance: float
+
+
+def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> Lateness | None:
+    """How the lateness of the runs differs; None where it does not beyond chance.
+
+    A lateness that all runs have in common may be the instrument's: that is an effect's to tell.
+
+    Parameters
+    ----------
+    look
+        0 at first; 1 where the runs were shifted before.
+    chance
+        Probability at which runs that differ, or grow later alike, are chance.
+    """
+    reach, step = RANGES[min(look, len(RANGES) - 1)]
+    grid = np.arange(-reach, reach + 0.5 * step, step)
+    whole, drifts = [], []
+    for squares, time in _scans(problem, solution, grid, reach):
+        whole.append(_place(grid, squares.sum(axis=1), squares.shape[1]))
+        drifts.append(_drift(grid, squares, time))
+    by_run, drift = _spread(whole), _common(drifts)
+    differ = by_run is not None and by_run[1] < chance
+    grows = drift is not None and drift[1] < chance
+    if not differ and not grows:
+        return None
+    share = drift[0] if drift is not None and grows else 0.0
+    if by_run is None or not differ:
+        # One clock, started with each run.
+        runs = problem.campaign.prepared
+        return Lateness(tuple(0.5 * share * p.run.duration_s for p in runs), share, 0.0)
+    known = [w for w in whole if np.isfinite(w.variance)]
+    usual = float(np.average([w.value for w in known], weights=[1.0 / w.variance for w in known]))
+    late = tuple(w.value if np.isfinite(w.variance) else usual for w in whole)
+    return Lateness(late, share, by_run[0])
+
+
+def _scans(
+    problem: Problem, solution: Solution, grid: Array, reach: float
+) -> list[tuple[Array, Array]]:
+    """Of each run its samples' squared innovations by lateness, (len(grid), n), and their times."""
+    samples, noise = solution.samples, solution.noise
+    fine = [_fine(p) for p in problem.campaign.prepared]
+    forces = problem.chain.predict(solution.values, [driven for _, driven in fine])
+    found = []
+    for i, (p, (instants, _), force) in enumerate(
+        zip(problem.campaign.prepared, fine, forces, strict=True)
+    ):
+        # The same samples at every lateness: those no reversal comes near.
+        width = int(np.ceil(reach / p.step_s))
+        unsure = ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
+        kept = samples.counted[i] & ~unsure
+        rows = []
+        for late in grid:
+            shifted = np.interp(p.run.time_s - late, instants, force)
+            left = (p.friction_n - shifted) * samples.weight[i]
+            rows.append(noise.innovations(np.where(kept, left, 0.0), p.step_s)[kept])
+        e = np.array(rows)
+        size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
+        squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
+        found.append((squares, p.run.time_s[kept] - p.run.time_s[0]))
+    return found
+
+
+def _fine(p: Prepared) -> tuple[Array, Driven]:
+    """Instants of a run close enough for a shift, and its motion there."""
+    times = max(int(np.ceil(p.step_s / FINE_S)), 1)
+    samples = np.arange(len(p.run), dtype=np.float64)
+    place = np.linspace(0.0, len(p.run) - 1.0, times * (len(p.run) - 1) + 1)
+    instants = np.interp(place, samples, p.run.time_s)
+    run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction_n))
+    return instants, core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
+
+
+def _place(grid: Array, costs: Array, count: int) -> _Place:
+    """Where the squares of some samples are least, and how surely."""
+    k = int(np.argmin(costs))
+    if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
+        return _Place(0.0, np.inf)
+    step = float(grid[1] - grid[0])
+    below, here, above = (float(c) for c in costs[k - 1 : k + 2])
+    bend = below - 2.0 * here + above
+    if bend <= 0.0:
+        return _Place(0.0, np.inf)
+    off = 0.5 * (below - above) / bend
+    # A mean square above one is a residual that is not noise alone.
+    return _Place(float(grid[k]) + off * step, 2.0 * step**2 / bend * max(here / count, 1.0))
+
+
+def _drift(grid: Array, squares: Array, time: Array) -> _Place:
+    """The slope of the lateness over the parts of a run."""
+    edges = np.linspace(0.0, float(time[-1]) if len(time) else 0.0, PARTS + 1)
+    middles, values, weights = [], [], []
+    for low, high in itertools.pairwise(edges):
+        here = (time >= low) & (time < high)
+        place = _place(grid, squares[:, here].sum(axis=1), int(here.sum()))
+        if np.isfinite(place.variance):
+            middles.append(0.5 * (low + high))
+            values.append(place.value)
+            weights.append(1.0 / place.variance)
+    if len(values) < 2:
+        return _Place(0.0, np.inf)
+    t, w = np.array(middles), np.array(weights)
+    t = t - np.sum(w * t) / np.sum(w)
+    size = float(np.sum(w * t**2))
+    return _Place(float(np.sum(w * t * np.array(values))) / size, 1.0 / size)
+
+
+def _spread(places: list[_Place]) -> tuple[float, float] | None:
+    """Standard deviation between runs, and the probability of so much by chance."""
+    known = [p for p in places if np.isfinite(p.variance)]
+    if len(known) < 3:
+        return None
+    d = np.array([p.value for p in known])
+    w = 1.0 / np.array([p.variance for p in known])
+    mean = float(np.sum(w * d) / np.sum(w))
+    q, free = float(np.sum(w * (d - mean) ** 2)), len(d) - 1
+    variance = (q - free) / float(np.sum(w) - np.sum(w**2) / np.sum(w))
+    if variance <= 0.0:
+        return None
+    # Residuals are never quite as white as their innovations: ask for twice the chi-square.
+    return float(np.sqrt(variance)), float(stats.chi2.sf(0.5 * q, free))
+
+
+def _common(drifts: list[_Place]) -> tuple[float, float] | None:
+    """The drift that all runs share, and the probability of so much by chance."""
+    known = [p for p in drifts if np.isfinite(p.variance)]
+    if not known:
+        return None
+    d = np.array([p.value for p in known])
+    w = 1.0 / np.array([p.variance for p in known])
+    mean = float(np.sum(w * d) / np.sum(w))
+    spread = float(np.sum(w * (d - mean) ** 2)) / max(len(d) - 1, 1)
+    square = mean**2 * float(np.sum(w)) / max(spread, 1.0)
+    return mean, float(stats.chi2.sf(0.5 * square, 1))

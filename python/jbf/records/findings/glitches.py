@@ -62,7 +62,8 @@ def _breakaway(velocity_m_s: Array) -> Mask:
     """True at samples beside a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity_m_s), initial=0.0))
     way = np.where(np.abs(velocity_m_s) > SLOW * top, np.sign(velocity_m_s), 0.0)
-    turns = np.flatnonzero(np.diff(way) != 0.0)
+    # In a slow reversal the sign turns far from both ends of what is slow.
+    turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity_m_s[1:] * velocity_m_s[:-1] < 0.0))
     beside = np.zeros(len(way), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):
         beside[np.clip(turns + off, 0, len(way) - 1)] = True

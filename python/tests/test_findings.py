@@ -1,4 +1,4 @@
-"""What is found in a record of a force before any physics: what was done to it, and nothing else."""
+"""What is found in a record of a force before any physics: what was done to it, no more."""
 
 from __future__ import annotations
 

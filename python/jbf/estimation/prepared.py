@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,9 +13,8 @@ from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.records.findings.examine import Examined, examine
-from jbf.records.findings.finding import Finding
 from jbf.records.findings.glitches import find_glitches
-from jbf.records.motion.derived_speed import DerivedSpeed
+from jbf.records.findings.noisy_load import find_noisy_load
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require
@@ -60,9 +59,10 @@ class Prepared:
                 problem="the shaft never moves",
                 mend="leave this run out, or record one with motion",
             )
-        if motion.derived is not None:
-            made = _made_speed(run, motion.derived)
-            examined = Examined((*examined.findings, made), examined.usable, examined.native)
+        examined = replace(
+            examined,
+            findings=(*examined.findings, *motion.findings, *find_noisy_load(run.name, run.load_n)),
+        )
         step_s = float(np.median(np.diff(run.time_s)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined)
@@ -75,11 +75,3 @@ class Prepared:
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""
         return {name: value for name, value in vars(self).items() if name != "core"}
-
-
-def _made_speed(run: Run, derived: DerivedSpeed) -> Finding:
-    words = f"the speed is a difference of the path over {derived.span} samples"
-    if derived.late_s > 0.0:
-        words += f", {1e3 * derived.late_s:.3g} ms late"
-    size, done = float(derived.span), "left aside; the path alone tells the motion"
-    return Finding("coarse_speed", "velocity_m_s", run.name, size, "samples", done, words)

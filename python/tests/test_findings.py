@@ -116,8 +116,9 @@ def test_a_force_that_stands_still_is_held(held: int) -> None:
     assert found.findings[0].size == pytest.approx(0.02 * (held - 1))
 
 
-def test_a_converter_of_few_steps_repeats_itself_and_holds_nothing() -> None:
-    step = 1.5 * NOISE_N
+@pytest.mark.parametrize("over_noise", [1.5, 3.5, 6.0])
+def test_a_converter_of_few_steps_repeats_itself_and_holds_nothing(over_noise: float) -> None:
+    step = over_noise * NOISE_N
     force = step * np.round((friction(speed()) + white(5)) / step)
     assert np.mean(np.diff(force) == 0.0) > 0.2
     assert kinds(examined(force)) == ["steps"]
@@ -159,3 +160,35 @@ def test_the_step_of_a_converter_is_found(over_noise: float) -> None:
 def test_steps_below_the_noise_are_not_worth_a_word() -> None:
     step = 0.1 * NOISE_N
     assert kinds(examined(step * np.round((friction(speed()) + white(9)) / step))) == []
+
+
+# ---- saturation ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("of_peak", [0.8, 0.87, 0.95])
+@pytest.mark.parametrize("step_n", [0.0, 0.1])
+def test_a_force_at_the_end_of_its_range_is_set_aside(of_peak: float, step_n: float) -> None:
+    whole = friction(speed()) + white(11)
+    limit = of_peak * float(np.quantile(np.abs(whole), 0.995))
+    force = np.clip(whole, -limit, limit)
+    if step_n:
+        force = np.round(force / step_n) * step_n
+    found = examined(force)
+    assert kinds(found) == ["saturation"]
+    assert found.findings[0].size == pytest.approx(limit, abs=0.06)
+    assert not found.usable[np.abs(whole) > limit + step_n].any()
+    # What is left is as it was: no end has cut its noise on one side.
+    kept = found.usable & (np.abs(speed()) > 0.01)
+    left = (force - friction(speed()))[kept] * np.sign(speed()[kept])
+    assert abs(np.mean(left)) < NOISE_N * (0.1 + 3.0 / np.sqrt(len(left)))
+    assert np.mean(found.usable) > 0.8 * np.mean(np.abs(whole) < limit - 4.0 * NOISE_N)
+
+
+def test_plateaus_are_no_saturation() -> None:
+    # One level of a coarse converter, and a law that says one number.
+    level = 20.0 * np.sign(speed())
+    step = 3.0 * NOISE_N
+    assert "saturation" not in kinds(examined(step * np.round((level + white(12)) / step)))
+    assert "saturation" not in kinds(examined(level))
+    fine = 0.05
+    assert kinds(examined(fine * np.round((level + white(13)) / fine))) == []

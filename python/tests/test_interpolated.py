@@ -8,6 +8,7 @@ import pytest
 from jbf import Run
 from jbf.estimation.prepared import Prepared
 from jbf.records.findings.interpolated import find_native
+from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.rig import Rig
 from scipy.signal import lfilter
 
@@ -35,6 +36,28 @@ def test_readings_are_recovered(rate_hz: float, seed: int) -> None:
     # The first and the last may lie outside the record, where nothing tells of them.
     np.testing.assert_allclose(native.values[1:-1], read[which][1:-1], atol=0.02)
     assert len(native.time_s) > 0.98 * rate_hz * TIME[-1]
+
+
+@pytest.mark.parametrize("rate_hz", [9.3, 17.0, 31.7, 46.0])
+def test_readings_that_were_repeated_are_recovered(rate_hz: float) -> None:
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = force(ticks, 6)
+    last = np.searchsorted(ticks, TIME, side="right") - 1
+    native = find_repeated(TIME, read[last])
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-4)
+    place = (native.time_s - ticks[0]) * rate_hz
+    which = np.round(place).astype(int)
+    np.testing.assert_array_equal(native.values, read[which])
+    np.testing.assert_allclose(native.time_s, ticks[which], atol=0.25 * 0.02)
+
+
+@pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
+@pytest.mark.parametrize("omega", [0.02, 0.3, 3.0])
+def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omega: float) -> None:
+    noise = 0.3 * np.random.default_rng(7).standard_normal(len(TIME))
+    for y in (20.0 * np.tanh(5.0 * np.sin(omega * TIME)) + noise, 0.3 * TIME + noise):
+        assert find_repeated(TIME, np.round(y / step_n) * step_n if step_n else y) is None
 
 
 def test_a_run_is_compared_at_its_readings() -> None:

@@ -12,8 +12,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
-from jbf.records.findings.examine import Examined, examine
-from jbf.records.findings.glitches import find_glitches
+from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.noisy_load import find_noisy_load
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
@@ -51,8 +50,8 @@ class Prepared:
             native = examined.native
             motion = motion.at(run.time_s, native.time_s)
             run = run.at(native.time_s, native.values)
-            glitches, off = find_glitches(run)
-            examined = Examined((*examined.findings, *glitches), ~off)
+            of_readings = examine_readings(run)
+            examined = Examined((*examined.findings, *of_readings.findings), of_readings.usable)
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(
                 file=run.path or run.name,

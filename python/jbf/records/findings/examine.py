@@ -12,6 +12,8 @@ from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
 from jbf.records.findings.held_samples import find_held
 from jbf.records.findings.interpolated import Native, find_native
+from jbf.records.findings.saturation import find_saturation
+from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
 from jbf.records.run import Run
 
@@ -42,10 +44,21 @@ def examine(run: Run) -> Examined:
     native = find_native(run.time_s, run.friction_n)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
+    native = find_repeated(run.time_s, run.friction_n)
+    if native is not None:
+        return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
+    of_readings = examine_readings(run)
+    held, still = find_held(run, ~of_readings.usable)
+    usable = of_readings.usable & ~still
+    found = (*of_readings.findings, *held, *find_gaps(run), *find_steps(run, usable))
+    return Examined(found, usable)
+
+
+def examine_readings(run: Run) -> Examined:
+    """What is wrong with single readings of the force."""
     glitches, off = find_glitches(run)
-    held, still = find_held(run)
-    found = (*glitches, *held, *find_gaps(run), *find_steps(run))
-    return Examined(found, ~(off | still))
+    saturation, ends = find_saturation(run)
+    return Examined((*glitches, *saturation), ~(off | ends))
 
 
 def _interpolated(run: Run, native: Native) -> Finding:
@@ -53,3 +66,10 @@ def _interpolated(run: Run, native: Native) -> Finding:
     words = f"the force was read at {rate:.4g} Hz and drawn as straight lines between"
     done = "taken back to its readings"
     return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)
+
+
+def _repeated(run: Run, native: Native) -> Finding:
+    rate = 1.0 / native.period_s
+    words = f"the force was read at {rate:.4g} Hz and repeated until the next reading"
+    done = "taken back to its readings"
+    return Finding("held_samples", "friction_n", run.name, rate, "Hz", done, words)

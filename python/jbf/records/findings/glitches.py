@@ -15,6 +15,8 @@ FAR = 8.0
 """Local standard deviations that a sample must be off both its neighbours, to the same side."""
 WINDOW = 41
 """Samples over which the local noise is taken."""
+LOUD = 0.8
+"""Least local noise, as a share of the usual: beside readings that stand still there is none."""
 RARE = 0.02
 """A record in which more samples than this are far off has large noise, not glitches."""
 LEAST_SAMPLES = 100
@@ -38,7 +40,7 @@ def glitches(values: Array) -> Mask:
     # White noise bends by sqrt(6) of its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
-    found[1:-1] = off > FAR * np.maximum(local, 0.5 * usual)
+    found[1:-1] = off > FAR * np.maximum(local, LOUD * usual)
     if usual == 0.0 or found.sum() > RARE * n:
         found[:] = False
     return found

@@ -10,6 +10,7 @@ from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 MOST_LEVELS = 0.2
 """Readings that come in fewer levels than this share of the samples come in steps."""
@@ -27,11 +28,12 @@ def step_of(values: Array) -> float:
     return float(np.median(apart[apart <= 1.5 * np.median(apart)]))
 
 
-def find_steps(run: Run) -> list[Finding]:
-    """Steps of the force that are as large as its noise."""
+def find_steps(run: Run, usable: Mask) -> list[Finding]:
+    """Steps of the force that are as large as its noise, where its readings can be used."""
     assert run.friction_n is not None
-    step = step_of(run.friction_n)
-    if step == 0.0 or step < MATTERS * max(noise_of(run.friction_n), 1e-300):
+    force = run.friction_n[usable]
+    step = step_of(force)
+    if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
         return []
     words = f"the force comes in steps of {step:.3g} N"
     return [Finding("steps", "friction_n", run.name, step, "N", "counted as noise", words)]

@@ -24,6 +24,7 @@ from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock
+from jbf.records.findings.finding import Finding
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
@@ -50,6 +51,8 @@ class Fit(Estimates):
     doubtful
         Names of the parameters whose standard error is no error, because the likelihood is no
         parabola so far out: :func:`jbf.bootstrap` finds theirs.
+    findings
+        What the recording did to the runs, and what was done about it.
     """
 
     model: Model
@@ -62,6 +65,7 @@ class Fit(Estimates):
     converged: bool
     message: str
     doubtful: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     def report(self) -> str:
         """As `summary`: statistics, parameters with errors, and the strongest correlations."""
@@ -77,6 +81,7 @@ class Fit(Estimates):
             "converged": self.converged,
             "message": self.message,
             "doubtful": list(self.doubtful),
+            "findings": [f.to_dict() for f in self.findings],
         }
 
 
@@ -121,6 +126,7 @@ def finish(problem: Problem, solution: Solution) -> Fit:
         residuals=solution.residuals,
         converged=solution.converged,
         message=solution.message,
+        findings=campaign.findings,
     )
 
 

@@ -45,12 +45,12 @@ class Prepared:
         require(run, "friction_n", "a comparison with the model")
         motion = imposed(rig, run)
         assert run.friction_n is not None
-        examined = examine(run)
+        examined = examine(run, motion.velocity_m_s)
         if examined.native is not None:
             native = examined.native
             motion = motion.at(run.time_s, native.time_s)
             run = run.at(native.time_s, native.values)
-            of_readings = examine_readings(run)
+            of_readings = examine_readings(run, motion.velocity_m_s)
             examined = Examined((*examined.findings, *of_readings.findings), of_readings.usable)
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(

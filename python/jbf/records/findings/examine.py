@@ -17,6 +17,7 @@ from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
 from jbf.records.run import Run
 
+Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 
@@ -37,8 +38,15 @@ class Examined:
     native: Native | None = None
 
 
-def examine(run: Run) -> Examined:
-    """Look for what loggers do to a record of friction."""
+def examine(run: Run, velocity_m_s: Array | None = None) -> Examined:
+    """Look for what loggers do to a record of friction.
+
+    Parameters
+    ----------
+    velocity_m_s
+        The speed that was imposed, where more is known of it than the record says.
+    """
+    velocity = run.velocity_m_s if velocity_m_s is None else velocity_m_s
     if run.friction_n is None:
         return Examined((), np.ones(len(run), dtype=bool))
     native = find_native(run.time_s, run.friction_n)
@@ -47,16 +55,16 @@ def examine(run: Run) -> Examined:
     native = find_repeated(run.time_s, run.friction_n)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
-    of_readings = examine_readings(run)
+    of_readings = examine_readings(run, velocity)
     held, still = find_held(run, ~of_readings.usable)
     usable = of_readings.usable & ~still
     found = (*of_readings.findings, *held, *find_gaps(run), *find_steps(run, usable))
     return Examined(found, usable)
 
 
-def examine_readings(run: Run) -> Examined:
+def examine_readings(run: Run, velocity_m_s: Array) -> Examined:
     """What is wrong with single readings of the force."""
-    glitches, off = find_glitches(run)
+    glitches, off = find_glitches(run, velocity_m_s)
     saturation, ends = find_saturation(run)
     return Examined((*glitches, *saturation), ~(off | ends))
 

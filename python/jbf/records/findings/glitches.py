@@ -46,10 +46,10 @@ def glitches(values: Array) -> Mask:
     return found
 
 
-def find_glitches(run: Run) -> tuple[list[Finding], Mask]:
-    """Glitches of the force, and where they are."""
+def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
+    """Glitches of the force, and where they are; a peak at a reversal or a start is none."""
     assert run.friction_n is not None
-    mask = glitches(run.friction_n) & ~_breakaway(run.velocity_m_s)
+    mask = glitches(run.friction_n) & ~_breakaway(velocity_m_s)
     if not mask.any():
         return [], mask
     index = np.flatnonzero(mask)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.derived_speed import centred_speed, derived_speed
 from jbf.records.motion.glitches import mend_position, mend_speed
@@ -56,10 +57,19 @@ def believed(run: Run, radius_m: float | None) -> Believed:
     stamps = uneven_stamps(name, time)
     position = recorded_position(run, radius_m)
     if position is None:
+        if not run.speed_recorded:
+            raise InputError(
+                file=run.path or name,
+                column="velocity_m_s",
+                problem="is missing, and an angle tells no speed without the journal's radius",
+                mend="add the column, or give the rig its [bearing]",
+            )
         speed, odd = mend_speed(name, time, speed, None)
         return Believed(None, 0.0, speed, True, _there(odd, stamps))
     step = step_of(position.path_m)
     position, astray = mend_position(name, time, position)
+    if not run.speed_recorded:
+        return _path_alone(name, time, position.path_m, step, _there(astray, stamps))
     unit = wrong_unit(name, time, position, speed)
     if unit is not None and unit.channel != "velocity_m_s":
         speed, odd = mend_speed(name, time, speed, None)
@@ -76,6 +86,17 @@ def believed(run: Run, radius_m: float | None) -> Believed:
     shaken = stamps or shaken_path(name, time, path, speed)
     findings = _there(astray, aside, odd, held, shaken)
     return Believed(path, step, speed, aside is None, findings)
+
+
+def _path_alone(
+    name: str, time: Array, path: Array, step: float, found: tuple[Finding, ...]
+) -> Believed:
+    """The records of a motion whose speed was not recorded."""
+    speed = centred_speed(time, path)
+    words = "no speed was recorded"
+    made = Finding("no_speed", "velocity_m_s", name, 0.0, "m/s", "the path alone tells it", words)
+    shaken = () if found else _there(shaken_path(name, time, path, speed))
+    return Believed(path, step, speed, False, (made, *found, *shaken))
 
 
 def _there(*findings: Finding | None) -> tuple[Finding, ...]:

@@ -14,6 +14,7 @@ from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.noisy_load import find_noisy_load
+from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require
@@ -58,10 +59,12 @@ class Prepared:
                 problem="the shaft never moves",
                 mend="leave this run out, or record one with motion",
             )
-        examined = replace(
-            examined,
-            findings=(*examined.findings, *motion.findings, *find_noisy_load(run.name, run.load_n)),
+        more = (
+            *motion.findings,
+            *find_pushing(run, motion, examined.usable),
+            *find_noisy_load(run.name, run.load_n),
         )
+        examined = replace(examined, findings=(*examined.findings, *more))
         step_s = float(np.median(np.diff(run.time_s)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined)

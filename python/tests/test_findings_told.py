@@ -11,6 +11,9 @@ import pytest
 from conftest import LAW, make_runs
 from jbf import Model, Rig, Run
 from jbf.cli import main
+from jbf.estimation.bootstrap import recorded_again
+from jbf.estimation.noise import WHITE
+from jbf.estimation.prepared import Prepared
 
 WORDS = "single samples of the position off"
 
@@ -73,3 +76,28 @@ def test_a_glitch_does_not_move_the_answer(spoilt: list[Run]) -> None:
         assert value.stderr is not None
         assert b[name].value == pytest.approx(value.value, abs=0.2 * value.stderr)
     assert np.isfinite([p.value for p in b.values()]).all()
+
+
+@pytest.mark.parametrize("spoil", ["late speed", "degrees", "mm/s", "turned"])
+def test_a_record_drawn_again_is_spoilt_again(spoil: str) -> None:
+    """Else a bootstrap would believe what the fit did not."""
+    run = make_runs(kinds=("sine_w0.5",))[0]
+    assert run.angle_rad is not None
+    assert run.friction_n is not None
+    speed, angle = run.velocity_m_s, run.angle_rad
+    if spoil == "late speed":
+        speed = np.interp(run.time_s - 0.05, run.time_s, speed)
+    elif spoil == "mm/s":
+        speed = 1e3 * speed
+    else:
+        angle = {"degrees": np.degrees(angle / 10.0), "turned": -angle}[spoil]
+        speed = speed / 10.0 if spoil == "degrees" else speed
+    own = Run.from_arrays(run.time_s, speed, run.friction_n, angle_rad=angle, name="a")
+    prepared = Prepared.of(Rig.thesis(), own)
+    (found,) = prepared.examined.findings
+    assert found.channel in prepared.motion.aside
+    random = np.random.default_rng(1)
+    again = recorded_again(prepared, run.friction_n, WHITE, 0.3, random)
+    (same,) = Prepared.of(Rig.thesis(), again).examined.findings
+    assert (same.kind, same.channel) == (found.kind, found.channel)
+    assert same.size == pytest.approx(found.size, rel=0.1)

@@ -21,6 +21,9 @@ from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 
+LEFT_ASIDE = ("units", "sign", "coarse_speed", "filtered_speed", "no_speed")
+"""Kinds of finding of a motion that leave their column aside as a whole."""
+
 
 @dataclass(frozen=True, eq=False)
 class Believed:

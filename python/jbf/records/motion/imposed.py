@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
-from jbf.records.motion.believed import believed
+from jbf.records.motion.believed import LEFT_ASIDE, believed
 from jbf.records.motion.rests import (
     place_rests,
     rest_edges,
@@ -65,6 +65,11 @@ class ImposedMotion:
     resting: Mask
     sign_known: Mask
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def aside(self) -> set[str]:
+        """Columns that were left aside as a whole."""
+        return {finding.channel for finding in self.findings if finding.kind in LEFT_ASIDE}
 
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
         """The motion at other instants within it: on cubics through speed and acceleration.

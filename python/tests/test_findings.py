@@ -192,3 +192,16 @@ def test_plateaus_are_no_saturation() -> None:
     assert "saturation" not in kinds(examined(level))
     fine = 0.05
     assert kinds(examined(fine * np.round((level + white(13)) / fine))) == []
+
+
+@pytest.mark.parametrize("kind", ["triangle", "stick and slip", "ramp"])
+def test_laws_without_noise_have_corners_and_plateaus(kind: str) -> None:
+    phase = np.mod(TIME, 5.0) / 5.0
+    v = {
+        "triangle": 0.1 * (2.0 * np.abs(2.0 * phase - 1.0) - 1.0),
+        "stick and slip": np.where(phase < 0.15, np.sin(np.pi * phase / 0.15) ** 2, 0.0),
+        "ramp": 0.1 * TIME / TIME[-1],
+    }[kind]
+    top = np.max(v)
+    found = examined(10.0 * np.tanh(v / (0.01 * top)) + 2.0 * v / top, v)
+    assert {"glitches", "saturation", "interpolated", "steps"}.isdisjoint(kinds(found))

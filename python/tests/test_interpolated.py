@@ -60,6 +60,15 @@ def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omeg
         assert find_repeated(TIME, np.round(y / step_n) * step_n if step_n else y) is None
 
 
+@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35])
+def test_readings_are_not_those_of_a_multiple_of_their_rate(samples: float) -> None:
+    step_s = 0.02 * samples
+    ticks = np.arange(-0.3 * step_s, TIME[-1] + 2.0 * step_s, step_s)
+    native = find_native(TIME, np.interp(TIME, ticks, force(ticks, 8)))
+    assert native is not None
+    assert native.period_s == pytest.approx(step_s, rel=1e-4)
+
+
 def test_a_run_is_compared_at_its_readings() -> None:
     ticks = np.arange(0.0, TIME[-1] + 0.04, 0.04)
     v = 0.1 * np.sin(0.3 * TIME)

@@ -13,6 +13,8 @@ Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
 """Local standard deviations that a sample must be off both its neighbours, to the same side."""
+CHANGES = 3.0
+"""Times the usual change between neighbours that it must be off: no corner of a smooth force is."""
 WINDOW = 41
 """Samples over which the local noise is taken."""
 LOUD = 0.8
@@ -40,7 +42,9 @@ def glitches(values: Array) -> Mask:
     # White noise bends by sqrt(6) of its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
-    found[1:-1] = off > FAR * np.maximum(local, LOUD * usual)
+    step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
+    corner = CHANGES * np.maximum(step[:-1], step[1:])
+    found[1:-1] = off > np.maximum(FAR * np.maximum(local, LOUD * usual), corner)
     if usual == 0.0 or found.sum() > RARE * n:
         found[:] = False
     return found

@@ -20,6 +20,10 @@ NEXT = 3
 """Levels next to the extreme that are looked at."""
 COARSE = 0.6
 """Noise, in steps of the converter, below which a plateau is one level without saturation."""
+ALIKE = 0.2
+"""Lower quartile of a noise's third differences over their median; it is 0.47 of white noise."""
+ROUGH = 1.2
+"""Third over second differences of a noise: 1.8 where it is white; a curve has less than one."""
 REACH = 15
 """Samples round one at an end that are set aside with it: of those there only the low ones are
 left. (Not by their own size, which would leave the low ones.)"""
@@ -49,8 +53,11 @@ def _noise(values: Array) -> float:
     inside = np.flatnonzero(inner[:-3] & inner[1:-2] & inner[2:-1] & inner[3:])
     if len(inside) < 30:
         return 0.0
-    third = np.diff(values, 3)[inside]
-    return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0))
+    low, middle = np.quantile(np.abs(np.diff(values, 3)[inside]), [0.25, 0.5])
+    bend = float(np.median(np.abs(np.diff(values, 2)[inside])))
+    # The bends of a law that has no noise are of any size, most next to none, or smooth.
+    noisy = low > ALIKE * middle and middle > ROUGH * bend
+    return float(middle / 0.6745 / np.sqrt(20.0)) if noisy else 0.0
 
 
 def find_saturation(run: Run) -> tuple[list[Finding], Mask]:

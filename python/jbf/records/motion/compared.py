@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.motion.roughness import step_of
+
 Array = npt.NDArray[np.float64]
 
 HALF_WIDTHS = (2, 4, 8)
@@ -24,11 +26,13 @@ LEAST = 60
 
 @dataclass(frozen=True)
 class Compared:
-    """Mean speeds over windows, m/s: by path, by speed; and the path's own acceleration, m/s^2."""
+    """Mean speeds over windows, m/s: by path, by speed; the path's own acceleration, m/s^2; what a
+    count of the path makes of a speed, m/s."""
 
     by_path: Array
     by_speed: Array
     acceleration: Array
+    count: float
 
 
 def compared(time: Array, path: Array, speed: Array) -> Iterator[Compared]:
@@ -46,4 +50,5 @@ def compared(time: Array, path: Array, speed: Array) -> Iterator[Compared]:
         kept = time[4 * half :] - time[: -4 * half] < WHOLE * 4 * half * usual
         inner = slice(half, -half)
         if kept.sum() >= LEAST:
-            yield Compared(by_path[inner][kept], by_speed[inner][kept], acceleration[kept])
+            count = step_of(path) / float(np.median(lasts))
+            yield Compared(by_path[inner][kept], by_speed[inner][kept], acceleration[kept], count)

@@ -19,6 +19,8 @@ COUNTS = 3.0
 """and counts of the encoder, whose rounding is less than one and a half off a cubic,"""
 BESIDE = 0.55
 """and so much of it, the other way, the samples beside: of a corner, or a step, it is half."""
+JUMP = 0.4
+"""and so much of the change of the speed from before to after, times a step."""
 CHANGES = 3.0
 """Of a speed: times the change that is usual between neighbours, which a corner never is,"""
 ALIKE = 0.5
@@ -89,6 +91,8 @@ def _off(time: Array, path: Array, least: float) -> Mask:
     # Seen from a glitch's neighbours, they are two thirds as far off, the other way.
     for beside in (np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:]):
         far &= (-beside * off > BESIDE * size**2) & (np.abs(beside) < size)
+    # Where the speed itself jumps, the steps on both sides differ by three times that.
+    far &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     found[2:-2] = far
     return found
 

@@ -17,6 +17,8 @@ COUNTS = 5.0
 """Counts of the encoder that the shaft must move on by while the path stands still."""
 CATCHES_UP = 0.3
 """Share of what was missed by which the next reading may be off."""
+STEADY = 0.3
+"""Least way of the shaft from one held reading to the next, over the mean."""
 MOST = 0.3
 """Share of a record that may be held; more is the way of the channel."""
 
@@ -35,6 +37,10 @@ def mend_held(
         if end - first < LEAST or end + 1 >= len(path):
             continue
         if abs(moved[end] - moved[first]) < least:
+            continue
+        # The shaft moved on all the time; at the ends of a rest, it did not.
+        each = np.abs(np.diff(moved[first : end + 1]))
+        if np.min(each) < STEADY * np.mean(each):
             continue
         missed = moved[end + 1] - moved[first]
         if abs(path[end + 1] - path[first] - missed) > CATCHES_UP * abs(missed):

@@ -22,6 +22,8 @@ WHITE = -0.45
 """Correlation of neighbouring differences below which they are of noise: -5/6 if it is white."""
 BEYOND = 3.0
 """Noise of the path at speed over what it is where the shaft is slow, and over the encoder's."""
+COUNTS = 1.2
+"""and over a count: rounding that alternates makes a good one of it."""
 AGREE = 1.6
 """Jitter is one at all speeds, to this factor."""
 
@@ -53,7 +55,8 @@ def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | 
     spoilt = np.convolve(~whole, np.ones(ORDER), "valid") > 0.0
     inner = np.abs(speed[ORDER // 2 : ORDER // 2 + len(rough)])
     top = float(np.quantile(inner, 0.98))
-    floor = step_of(path) / np.sqrt(12.0)
+    step = step_of(path)
+    floor = step / np.sqrt(12.0)
     sizes, slow = [], floor
     for low, high in ((0.0, 0.15), (0.3, 0.6), (0.6, 1.1)):
         which = (inner >= low * top) & (inner < high * top) & ~spoilt
@@ -66,7 +69,9 @@ def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | 
             slow = max(noise, floor)
             continue
         pairs = which[1:] & which[:-1]
-        if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < BEYOND * slow:
+        if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < max(
+            BEYOND * slow, COUNTS * step
+        ):
             return None
         mean = float(np.sqrt(np.mean(inner[which] ** 2)))
         sizes.append(float(np.sqrt(noise**2 - slow**2)) / mean)

@@ -18,6 +18,8 @@ SURE = 6.0
 """Standard errors by which a speed must be late,"""
 A_SAMPLE = 0.1
 """and share of a sample: less does not show."""
+ALIKE = 0.9
+"""Correlation of speed and acceleration above which (a speed that dies out) late is but smaller."""
 STRETCHES = 12
 """Parts of the record that are left out in turn, for the error."""
 
@@ -42,6 +44,9 @@ def _lateness(c: Compared) -> tuple[float, float]:
     path, stretches of the record left out in turn."""
     part = np.arange(len(c.by_path)) * STRETCHES // len(c.by_path)
     x = np.stack([c.by_path, c.acceleration], axis=1)
+    alike = abs(float(x[:, 0] @ x[:, 1])) / max(float(np.prod(np.linalg.norm(x, axis=0))), 1e-300)
+    if alike > ALIKE:
+        return 0.0, np.inf
     normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])
     right = np.stack([x[part == k].T @ c.by_speed[part == k] for k in range(STRETCHES)])
 

@@ -63,7 +63,9 @@ def _middle(c: Compared) -> tuple[float, float]:
     if fast.sum() < 20:
         return 1.0, np.inf
     low, middle, high = np.quantile(c.by_path[fast] / c.by_speed[fast], [0.25, 0.5, 0.75])
-    return float(middle), float(0.5 * (high - low))
+    # A steady speed spreads by nothing, however coarse the counts are.
+    coarse = c.count / float(np.median(np.abs(c.by_speed[fast])))
+    return float(middle), float(0.5 * (high - low)) + coarse
 
 
 def _units(position: Position) -> Iterator[tuple[str, str, float]]:

@@ -10,8 +10,8 @@ FAIR = {"skew": {"time_delay"}}
 """Names that are true of an artefact: a late force is late, whoever made it so."""
 
 FOUND_AS: dict[str, set[str]] = {
-    "backward_velocity": {"coarse_speed", "late_channel"},
-    "coarse_velocity": {"coarse_speed"},
+    "backward_velocity": {"coarse_speed", "filtered_speed", "late_channel"},
+    "coarse_velocity": {"coarse_speed", "filtered_speed"},
     "drifting_clock": {"drifting_clock", "late_channel"},
     "dropout": {"held_samples"},
     "filtered_velocity": {"filtered_speed", "late_channel"},

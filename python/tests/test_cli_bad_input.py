@@ -79,7 +79,7 @@ BAD_RUNS = [
         id="misspelt",
     ),
     pytest.param(
-        swap("velocity_m_s", "comment"),
+        swap("angle_rad,velocity_m_s", "winding,comment"),
         "row 1, column velocity_m_s: is missing",
         id="missing",
     ),

@@ -18,6 +18,7 @@ from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.chain import chain, warn_of_fast_film
 from jbf.models.model import Model, the_model
 from jbf.records.arguments import list_of_runs
+from jbf.records.findings.finding import Finding
 from jbf.records.run import PathLike, Run
 from jbf.results import Result
 
@@ -61,6 +62,11 @@ class Comparison(Result):
     predictions: list[Array]
     residuals: list[Array]
 
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the recording did to the runs, and what was done about it."""
+        return self.campaign.findings
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
@@ -68,6 +74,7 @@ class Comparison(Result):
             "noise_n": self.noise_n,
             "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],
             "failures": [f.to_dict() for f in self.failures],
+            "findings": [f.to_dict() for f in self.findings],
         }
 
     def report(self, path: PathLike) -> None:

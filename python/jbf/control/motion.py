@@ -50,6 +50,8 @@ def follow(
     """
     radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
     values = recorded.velocity_m_s / radius_m
+    if not recorded.speed_recorded and recorded.angle_rad is not None:
+        values = np.gradient(np.unwrap(recorded.angle_rad), recorded.time_s)
     if control == "position":
         where = recorded.angle_rad if rig.bearing is not None else recorded.position_m
         if where is None:

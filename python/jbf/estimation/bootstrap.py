@@ -152,7 +152,10 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
 def recorded_again(
     prepared: Prepared, friction_n: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
-    """The run as its instruments would show it once more, were the prediction right."""
+    """The run as its instruments would show it once more, were the prediction right.
+
+    A column that is not believed tells nothing, and stays as it was: to be left aside again.
+    """
     run, motion = prepared.run, prepared.motion
     n = len(run)
     error = noise.coloured(random.normal(0.0, sigma_n, n), prepared.step_s)
@@ -161,10 +164,12 @@ def recorded_again(
     off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
     velocity = np.where(moving, motion.velocity_m_s + off, run.velocity_m_s)
+    if "velocity_m_s" in motion.aside:
+        velocity = run.velocity_m_s
     angle, position = run.angle_rad, run.position_m
-    if angle is not None:
+    if angle is not None and "angle_rad" not in motion.aside:
         angle = _read_again(np.unwrap(angle), motion.angle_rad, moving, random)
-    if position is not None:
+    if position is not None and "position_m" not in motion.aside:
         arm = prepared.rig.bearing.radius_m if prepared.rig.bearing is not None else 1.0
         position = _read_again(position, motion.angle_rad * arm, moving, random)
     return replace(

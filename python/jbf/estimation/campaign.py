@@ -18,13 +18,18 @@ from jbf.models.own_effects import ALWAYS
 from jbf.models.requirements import has_angle, has_path
 from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
+from jbf.records.findings.noisy_load import steady_load
+from jbf.records.motion.roughness import noise_of
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
+Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LOADS_DIFFER = 0.05
 """Loads that differ by less than this share are one load."""
+NOISE_SPAN = 3.29
+"""Standard deviations between the quantiles of white noise at 5 % and at 95 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +87,7 @@ class Campaign:
             usual if p.run.load_n is None else float(np.median(p.run.load_n)) for p in self.prepared
         ]
         known = [m for m in means if m is not None]
-        spans = [
-            np.ptp(np.quantile(p.run.load_n, [0.05, 0.95]))
-            for p in self.prepared
-            if p.run.load_n is not None
-        ]
+        spans = [_span(p.run.load_n) for p in self.prepared if p.run.load_n is not None]
         span = max([*spans, max(known) - min(known)]) if known else 0.0
         return bool(known) and span > LOADS_DIFFER * max(known)
 
@@ -124,3 +125,10 @@ class Campaign:
             prepared=tuple(self.prepared[i] for i in which),
             samples=self.samples.only(which),
         )
+
+
+def _span(load: Array) -> float:
+    """How far a load goes within a run, N, beyond what its own noise does."""
+    low, high = np.quantile(steady_load(load), [0.05, 0.95])
+    noise = NOISE_SPAN * noise_of(load)
+    return float(np.sqrt(max(float(high - low) ** 2 - noise**2, 0.0)))

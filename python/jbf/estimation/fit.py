@@ -27,6 +27,7 @@ from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock
+from jbf.records.findings.finding import Finding
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
@@ -56,6 +57,8 @@ class Fit(Estimates):
         parabola so far out: :func:`jbf.bootstrap` finds theirs.
     fixed
         Names of the parameters that were not fitted.
+    findings
+        What the recording did to the runs, and what was done about it.
     """
 
     model: Model
@@ -69,6 +72,7 @@ class Fit(Estimates):
     message: str
     doubtful: tuple[str, ...] = ()
     fixed: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         told = sum(not p.held for p in self.parameters.values())
@@ -90,6 +94,7 @@ class Fit(Estimates):
             "converged": self.converged,
             "message": self.message,
             "doubtful": list(self.doubtful),
+            "findings": [f.to_dict() for f in self.findings],
         }
 
 
@@ -136,6 +141,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         converged=solution.converged,
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),
+        findings=campaign.findings,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -31,7 +32,7 @@ def left_out_rms(problem: Problem, solution: Solution) -> float:
     total, counted = 0.0, 0
     for i in range(count):
         rest = [k for k in range(count) if k != i]
-        part = Problem(campaign.only(rest), problem.law, problem.clock, problem.effects)
+        part = _of(problem, campaign.only(rest))
         kept = samples.only(rest)
         start = _without_leak(problem, solution, i)
         if np.array_equal(start, solution.values):
@@ -39,11 +40,16 @@ def left_out_rms(problem: Problem, solution: Solution) -> float:
             step = _one_step(problem, solution, rest)
             start = min((step, start), key=lambda v: part.square(v, kept))
         values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
-        own = Problem(campaign.only([i]), problem.law, problem.clock, problem.effects)
+        own = _of(problem, campaign.only([i]))
         residual = own.residuals(values)[0]
         total += float(np.sum(residual[samples.counted[i]] ** 2))
         counted += int(samples.counted[i].sum())
     return float(np.sqrt(total / max(counted, 1)))
+
+
+def _of(problem: Problem, campaign: Campaign) -> Problem:
+    """The same problem on other runs."""
+    return Problem(campaign, problem.law, problem.clock, problem.effects, problem.fixed)
 
 
 def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
@@ -56,8 +62,10 @@ def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
         ]
     )
     whole = known.sum(axis=0)
-    for i, page in enumerate(problem.parameters.values()):
-        if whole[i] - known[left_out, i] < INSENSITIVE * whole[i]:
+    pages = list(problem.parameters.values())
+    for k, i in enumerate(problem.open):
+        page = pages[i]
+        if whole[k] - known[left_out, k] < INSENSITIVE * whole[k]:
             null = page.null if page.null is not None and np.isfinite(page.null) else None
             values[i] = page.starts[0] if null is None else null
     return values

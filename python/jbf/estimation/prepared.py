@@ -12,10 +12,9 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
-from jbf.records.findings.examine import Examined, examine
-from jbf.records.findings.finding import Finding
-from jbf.records.findings.glitches import find_glitches
-from jbf.records.motion.derived_speed import DerivedSpeed
+from jbf.records.findings.examine import Examined, examine, examine_readings
+from jbf.records.findings.noisy_load import find_noisy_load
+from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require
@@ -50,24 +49,27 @@ class Prepared:
         require(run, "friction_n", "a comparison with the model")
         motion = imposed(rig, run)
         assert run.friction_n is not None
-        examined = examine(run)
         recorded = None
+        examined = examine(run, motion.velocity_m_s)
         if examined.native is not None:
             native = examined.native
             recorded = (run.time_s, motion)
             motion = motion.at(run.time_s, native.time_s)
             run = run.at(native.time_s, native.values)
-            glitches, off = find_glitches(run)
-            examined = Examined((*examined.findings, *glitches), ~off)
+            of_readings = examine_readings(run, motion.velocity_m_s)
+            examined = Examined((*examined.findings, *of_readings.findings), of_readings.usable)
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(
                 file=run.path or run.name,
                 problem="the shaft never moves",
                 mend="leave this run out, or record one with motion",
             )
-        if motion.derived is not None:
-            made = _made_speed(run, motion.derived)
-            examined = Examined((*examined.findings, made), examined.usable, examined.native)
+        more = (
+            *motion.findings,
+            *find_pushing(run, motion, examined.usable),
+            *find_noisy_load(run.name, run.load_n),
+        )
+        examined = replace(examined, findings=(*examined.findings, *more))
         step_s = float(np.median(np.diff(run.time_s)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
@@ -108,11 +110,3 @@ class Prepared:
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""
         return {name: value for name, value in vars(self).items() if name != "core"}
-
-
-def _made_speed(run: Run, derived: DerivedSpeed) -> Finding:
-    words = f"the speed is a difference of the path over {derived.span} samples"
-    if derived.late_s > 0.0:
-        words += f", {1e3 * derived.late_s:.3g} ms late"
-    size, done = float(derived.span), "left aside; the path alone tells the motion"
-    return Finding("coarse_speed", "velocity_m_s", run.name, size, "samples", done, words)

@@ -22,6 +22,7 @@ from jbf.models.driven import Driven, DrivenChain
 from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
 from jbf.records.arguments import one_run, the_rig
+from jbf.records.findings.noisy_load import steady_load
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -137,7 +138,10 @@ def core_motion(
         An imagined motion before the run: its constant speed, as a share of the run's largest, in
         the direction in which the run first moves, and how long it lasts, s.
     """
-    load = run.load_n if run.load_n is not None else np.full(len(run), core_load_n(rig) or 1.0)
+    if run.load_n is not None:
+        load = steady_load(run.load_n)
+    else:
+        load = np.full(len(run), core_load_n(rig) or 1.0)
     columns = run.columns() | {
         "velocity_m_s": motion.velocity_m_s,
         "acceleration_m_s2": motion.acceleration_m_s2,

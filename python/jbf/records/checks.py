@@ -24,6 +24,8 @@ COLUMNS = (
     "temperature_c",
 )
 """Columns with a meaning, in the order in which `Run.write_csv` writes them."""
+MOTION = ("velocity_m_s", "position_m", "angle_rad")
+"""Columns any one of which tells the motion."""
 
 
 def listed(names: Iterable[str]) -> str:

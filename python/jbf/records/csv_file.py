@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
-from jbf.records.checks import COLUMNS, check_columns, frozen, listed
+from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
 from jbf.records.run import PathLike, Run
 from jbf.text_files import path_of, read_text
 
@@ -146,8 +146,9 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
 def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
     """Read one run from CSV.
 
-    The header names the columns; ``time_s``, ``velocity_m_s`` and ``friction_n`` must be there,
-    the other `COLUMNS` may be. Any further column whose cells are all finite numbers is kept in
+    The header names the columns; ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
+    ``position_m``, or ``angle_rad`` and a rig with a bearing) must be there, the other `COLUMNS`
+    may be. Any further column whose cells are all finite numbers is kept in
     `Run.extra`, any other is ignored. Comma, semicolon or tab part the cells; blank lines, and
     lines before the header that start with ``#``, are skipped.
 
@@ -165,7 +166,11 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
     """
     path = path_of(path)
     header, header_row, rows, numbers = _read_table(path)
-    required = ["time_s", "velocity_m_s"] + (["friction_n"] if need_friction else [])
+    # The first that tells the motion will do; where there is none, the speed is missing.
+    motion = next((column for column in MOTION if column in header), MOTION[0])
+    if any(_near_miss(name, MOTION[:1]) for name in header):
+        motion = MOTION[0]
+    required = ["time_s", motion] + (["friction_n"] if need_friction else [])
     _checked_header(path, header_row, header, required)
     if not rows:
         raise InputError(file=path, problem="has a header but no samples", mend="add the samples")

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.records.checks import COLUMNS, as_array, check_columns, frozen, listed
+from jbf.records.checks import COLUMNS, MOTION, as_array, check_columns, frozen, listed
 from jbf.text_files import write_text
 
 Array = npt.NDArray[np.float64]
@@ -34,7 +34,7 @@ class Run:
     time_s : ndarray
         Time, strictly increasing, s.
     velocity_m_s : ndarray
-        Signed surface speed, m/s.
+        Signed surface speed, m/s; nan where it was not recorded and an angle stands for it.
     friction_n : ndarray or None
         Tangential friction force of one bearing, N.
     angle_rad, position_m : ndarray or None
@@ -47,6 +47,8 @@ class Run:
         The other numeric columns, units as their names say.
     path : Path or None
         The file it came from.
+    speed_recorded : bool
+        False where the speed is but a difference of the position, or left to the angle.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Run:
     temperature_c: Array | None = None
     extra: dict[str, Array] = field(default_factory=dict)
     path: Path | None = None
+    speed_recorded: bool = True
 
     def __repr__(self) -> str:
         there = ", ".join(self.columns())
@@ -75,7 +78,13 @@ class Run:
     def columns(self) -> dict[str, Array]:
         """The arrays that are there, by column name: known ones first, then `extra`."""
         known = {name: getattr(self, name) for name in COLUMNS}
+        if not self.speed_recorded:
+            del known["velocity_m_s"]
         return {name: a for name, a in known.items() if a is not None} | self.extra
+
+    def _arrays(self) -> dict[str, Array]:
+        """The same, and the speed in any case."""
+        return {"velocity_m_s": self.velocity_m_s} | self.columns()
 
     def select(self, which: slice | npt.ArrayLike) -> Run:
         """The samples that a slice or a boolean mask of shape (N,) keeps, as a run.
@@ -103,7 +112,7 @@ class Run:
                     problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
                     mend=f"give a slice or a boolean mask of shape ({len(self)},)",
                 )
-        kept = {name: frozen(a[index]) for name, a in self.columns().items()}
+        kept = {name: frozen(a[index]) for name, a in self._arrays().items()}
         extra = {name: kept.pop(name) for name in self.extra}
         return replace(self, **kept, extra=extra)  # type: ignore[arg-type]
 
@@ -111,7 +120,7 @@ class Run:
     def from_arrays(
         cls,
         time_s: npt.ArrayLike,
-        velocity_m_s: npt.ArrayLike,
+        velocity_m_s: npt.ArrayLike | None = None,
         friction_n: npt.ArrayLike | None = None,
         *,
         angle_rad: npt.ArrayLike | None = None,
@@ -123,6 +132,8 @@ class Run:
         path: PathLike | None = None,
     ) -> Run:
         """A run from lists, arrays or pandas series of one length N, copied and checked.
+
+        Without a speed, a position or an angle must tell the motion.
 
         Raises
         ------
@@ -152,22 +163,32 @@ class Run:
             for column, values in (given | dict(extra or {})).items()
             if values is not None
         }
+        if not any(column in columns for column in MOTION):
+            raise InputError(
+                file=name,
+                column="velocity_m_s",
+                problem="is missing, and no position tells the motion",
+                mend=f"give one of {', '.join(MOTION)}",
+            )
         check_columns(name, columns, None, None)
         return cls.of_columns(name, columns, None if path is None else Path(path))
 
     @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
         """A run of columns that have been checked."""
+        recorded = "velocity_m_s" in columns
+        if not recorded:
+            columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
         known = {column: values for column, values in columns.items() if column in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
-        return cls(name=name, **known, extra=extra, path=path)
+        return cls(name=name, **known, extra=extra, path=path, speed_recorded=recorded)
 
     def at(self, time_s: Array, friction_n: Array) -> Run:
         """The run at other instants within it, with the friction read there, N; every other column
         in straight lines between its samples."""
         others = {
             name: frozen(np.interp(time_s, self.time_s, values))
-            for name, values in self.columns().items()
+            for name, values in self._arrays().items()
             if name not in ("time_s", "friction_n")
         }
         extra = {name: others.pop(name) for name in self.extra}
@@ -198,6 +219,13 @@ class Run:
         # repr of a float is the shortest text that reads back to the same bits.
         writer.writerows(zip(*(map(repr, a.tolist()) for a in columns.values()), strict=True))
         return text.getvalue()
+
+
+def _made_speed(columns: Mapping[str, Array]) -> Array:
+    """A speed of the position, m/s; nan where only an angle is known, whose radius a rig tells."""
+    if "position_m" in columns:
+        return frozen(np.gradient(columns["position_m"], columns["time_s"]))
+    return frozen(np.full(len(columns["time_s"]), np.nan))
 
 
 def require(run: Run, columns: str | Iterable[str], why: str) -> None:

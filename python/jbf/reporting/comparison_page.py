@@ -5,7 +5,7 @@ from __future__ import annotations
 from jbf.comparison.comparison import Comparison
 from jbf.reporting.comparison_plots import plot_comparison, plot_run
 from jbf.reporting.page import measurement, page, pattern_rows, picture
-from jbf.reporting.tables import parameter_rows, run_rows
+from jbf.reporting.tables import finding_rows, parameter_rows, run_rows
 from jbf.reporting.words import comparison_sentence, law_and_effects, listed
 
 
@@ -23,5 +23,6 @@ def comparison_page(comparison: Comparison) -> str:
         picture=picture(plot_comparison(comparison)),
         run_picture=picture(plot_run(comparison)),
         runs=run_rows(comparison),
+        findings=finding_rows(comparison.findings),
         parameters=parameter_rows(model.law, model.effects, model.parameters),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from jbf.comparison.comparison import Comparison
 from jbf.reporting.paragraphs import columns
 from jbf.reporting.tables import run_rows
-from jbf.reporting.text_parts import where_lines
+from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import comparison_sentence
 
 
@@ -25,4 +25,5 @@ def comparison_report(comparison: Comparison) -> str:
         ]
     else:
         lines[0] += "; no pattern along any axis"
-    return "\n".join([*lines, "", "Runs", *_run_lines(comparison)])
+    lines += ["", "Runs", *_run_lines(comparison)]
+    return "\n".join([*lines, *finding_lines(comparison.findings)])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from jbf.diagnosis.result import Diagnosis
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import finding_rows, ledger_rows, trial_rows
-from jbf.reporting.text_parts import parameter_lines, where_lines
+from jbf.reporting.tables import ledger_rows, trial_rows
+from jbf.reporting.text_parts import finding_lines, parameter_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
 
 
@@ -58,19 +58,9 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines += ["", "The error falling (N)"]
     head = ("step", "fit", "held out", "noise", "held out / noise")
     lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)
-    lines += finding_lines(diagnosis)
+    lines += finding_lines(diagnosis.findings)
     lines += ["", "What remains"]
     lines += where_lines(diagnosis.unexplained) or ["    nothing that stands above the noise"]
     lines += ["", "Parameters of the final model"]
     lines += parameter_lines(model.law, model.effects, diagnosis.fit.parameters)
     return "\n".join(lines)
-
-
-def finding_lines(diagnosis: Diagnosis) -> list[str]:
-    """What the recording did, and what was done about it; nothing where it did nothing."""
-    if not diagnosis.findings:
-        return []
-    lines = ["", "What the recording did"]
-    for head, words in finding_rows(diagnosis.findings):
-        lines += hanging(f"{head}: ", words, 4)
-    return lines

@@ -8,7 +8,7 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs
-from jbf.reporting.text_parts import parameter_lines
+from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import law_words, number
 
 MOST_CORRELATIONS = 10
@@ -50,7 +50,7 @@ def fit_report(fit: Fit) -> str:
         lines += columns(shown, "<<", 4)
         if len(pairs) > MOST_CORRELATIONS:
             lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} weaker ones")
-    return "\n".join(lines)
+    return "\n".join([*lines, *finding_lines(fit.findings)])
 
 
 def bootstrap_report(found: Bootstrap) -> str:

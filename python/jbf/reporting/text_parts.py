@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping
 from jbf.comparison.patterns import Failure
 from jbf.diagnosis.ledger import Remainder
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.findings.finding import Finding
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import parameter_rows
+from jbf.reporting.tables import finding_rows, parameter_rows
 
 
 def parameter_lines(
@@ -36,4 +37,13 @@ def where_lines(patterns: Iterable[Failure | Remainder]) -> list[str]:
     lines = []
     for p in patterns:
         lines += hanging(f"{p.axis:<{widest}}  {100 * p.share:3.0f} %  ", p.where, 4)
+    return lines
+
+
+def finding_lines(findings: Iterable[Finding]) -> list[str]:
+    """What the recording did, and what was done about it; nothing where it did nothing."""
+    rows = finding_rows(findings)
+    lines = ["", "What the recording did"] if rows else []
+    for head, words in rows:
+        lines += hanging(f"{head}: ", words, 4)
     return lines

@@ -12,10 +12,12 @@ from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
 from jbf.records.findings.held_samples import find_held
 from jbf.records.findings.interpolated import Native, find_native
-from jbf.records.findings.repeated import find_repeated
+from jbf.records.findings.saturation import find_saturation
+from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
 from jbf.records.run import Run
 
+Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 
@@ -36,21 +38,35 @@ class Examined:
     native: Native | None = None
 
 
-def examine(run: Run) -> Examined:
-    """Look for what loggers do to a record of friction."""
+def examine(run: Run, velocity_m_s: Array | None = None) -> Examined:
+    """Look for what loggers do to a record of friction.
+
+    Parameters
+    ----------
+    velocity_m_s
+        The speed that was imposed, where more is known of it than the record says.
+    """
+    velocity = run.velocity_m_s if velocity_m_s is None else velocity_m_s
     if run.friction_n is None:
         return Examined((), np.ones(len(run), dtype=bool))
-    usable = np.ones(len(run), dtype=bool)
-    native = find_repeated(run.time_s, run.friction_n)
-    if native is not None:
-        return Examined((_repeated(run, native),), usable, native)
     native = find_native(run.time_s, run.friction_n)
     if native is not None:
-        return Examined((_interpolated(run, native),), usable, native)
-    glitches, off = find_glitches(run)
-    held, still = find_held(run)
-    found = (*glitches, *held, *find_gaps(run), *find_steps(run))
-    return Examined(found, ~(off | still))
+        return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
+    native = find_repeated(run.time_s, run.friction_n)
+    if native is not None:
+        return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
+    of_readings = examine_readings(run, velocity)
+    held, still = find_held(run, ~of_readings.usable)
+    usable = of_readings.usable & ~still
+    found = (*of_readings.findings, *held, *find_gaps(run), *find_steps(run, usable))
+    return Examined(found, usable)
+
+
+def examine_readings(run: Run, velocity_m_s: Array) -> Examined:
+    """What is wrong with single readings of the force."""
+    glitches, off = find_glitches(run, velocity_m_s)
+    saturation, ends = find_saturation(run)
+    return Examined((*glitches, *saturation), ~(off | ends))
 
 
 def _interpolated(run: Run, native: Native) -> Finding:
@@ -62,6 +78,6 @@ def _interpolated(run: Run, native: Native) -> Finding:
 
 def _repeated(run: Run, native: Native) -> Finding:
     rate = 1.0 / native.period_s
-    words = f"the force was read at {rate:.4g} Hz and its last value written until the next"
+    words = f"the force was read at {rate:.4g} Hz and repeated until the next reading"
     done = "taken back to its readings"
     return Finding("held_samples", "friction_n", run.name, rate, "Hz", done, words)

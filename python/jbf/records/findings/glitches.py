@@ -13,8 +13,12 @@ Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
 """Local standard deviations that a sample must be off both its neighbours, to the same side."""
+CHANGES = 3.0
+"""Times the usual change between neighbours that it must be off: no corner of a smooth force is."""
 WINDOW = 41
 """Samples over which the local noise is taken."""
+LOUD = 0.8
+"""Least local noise, as a share of the usual: beside readings that stand still there is none."""
 RARE = 0.02
 """A record in which more samples than this are far off has large noise, not glitches."""
 LEAST_SAMPLES = 100
@@ -38,16 +42,18 @@ def glitches(values: Array) -> Mask:
     # White noise bends by sqrt(6) of its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
-    found[1:-1] = off > FAR * np.maximum(local, 0.5 * usual)
+    step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
+    corner = CHANGES * np.maximum(step[:-1], step[1:])
+    found[1:-1] = off > np.maximum(FAR * np.maximum(local, LOUD * usual), corner)
     if usual == 0.0 or found.sum() > RARE * n:
         found[:] = False
     return found
 
 
-def find_glitches(run: Run) -> tuple[list[Finding], Mask]:
-    """Glitches of the force, and where they are."""
+def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
+    """Glitches of the force, and where they are; a peak at a reversal or a start is none."""
     assert run.friction_n is not None
-    mask = glitches(run.friction_n) & ~_breakaway(run.velocity_m_s)
+    mask = glitches(run.friction_n) & ~_breakaway(velocity_m_s)
     if not mask.any():
         return [], mask
     index = np.flatnonzero(mask)
@@ -62,7 +68,8 @@ def _breakaway(velocity_m_s: Array) -> Mask:
     """True at samples beside a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity_m_s), initial=0.0))
     way = np.where(np.abs(velocity_m_s) > SLOW * top, np.sign(velocity_m_s), 0.0)
-    turns = np.flatnonzero(np.diff(way) != 0.0)
+    # In a slow reversal the sign turns far from both ends of what is slow.
+    turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity_m_s[1:] * velocity_m_s[:-1] < 0.0))
     beside = np.zeros(len(way), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):
         beside[np.clip(turns + off, 0, len(way) - 1)] = True

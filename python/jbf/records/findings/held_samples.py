@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
+from jbf.records.findings.steps import step_of
+from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -21,7 +25,7 @@ def held(values: Array) -> Mask:
     """True at readings that repeat the one before, in rows too long for chance."""
     n = len(values)
     same = np.concatenate(([False], np.diff(values) == 0.0))
-    share = min(max(float(np.mean(same)), 1e-4), 0.99)
+    share = min(max(float(np.mean(same)), _by_steps(values), 1e-4), 0.9999)
     # A converter's own rows of equal readings: p^k of k in a row, at n places.
     least = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
@@ -32,10 +36,26 @@ def held(values: Array) -> Mask:
     return found
 
 
-def find_held(run: Run) -> tuple[list[Finding], Mask]:
-    """Stretches in which the force stands still, and where they are."""
+def _by_steps(values: Array) -> float:
+    """Probability that noise leaves a reading in the middle of a converter's step where it is."""
+    step, noise = step_of(values), noise_of(values)
+    if step == 0.0:
+        return 0.0
+    # Rounding adds a twelfth of the square of the step.
+    own = math.sqrt(max(noise**2 - step**2 / 12.0, 1e-4 * step**2))
+    return math.erf(0.5 * step / own / math.sqrt(2.0))
+
+
+def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
+    """Stretches in which the force stands still, and where they are.
+
+    Parameters
+    ----------
+    explained
+        True at readings of which something else is known to be wrong.
+    """
     assert run.friction_n is not None
-    mask = held(run.friction_n)
+    mask = held(run.friction_n) & ~explained
     if not mask.any():
         return [], mask
     edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))

@@ -32,6 +32,8 @@ LIKELY, EXACT = 0.25, 0.005
 """What a polygon leaves, as shares of the noise: for a second look, and to be believed."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
+ROUNDING = 1e-7
+"""Share of the whole range below which noise is none: that of digits, and of the search."""
 SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
 EVEN = 1e-3
@@ -59,7 +61,7 @@ def find_native(time: Array, values: Array) -> Native | None:
         part = slice(first, first + WINDOW)
         t, y = time[part], values[part]
         noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
-        if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
+        if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * WINDOW * step:
             continue
         found = _first_look(t, y, step, noise)
         if found is None:
@@ -97,13 +99,21 @@ def _whole(
         phase += origin - time[begin]
         part = slice(begin, begin + length)
         period, phase = _sharpened(time[part], values[part], period, phase)
-    for times in (4, 3, 2):
-        # Corners at a fraction of the period fit as well, and are not readings.
+    period, phase = _longest(time, values, period, phase, noise)
+    return _whole_of(time, values, period, phase, noise)
+
+
+def _longest(
+    time: Array, values: Array, period: float, phase: float, noise: float
+) -> tuple[float, float]:
+    """The longest multiple of a period whose polygon fits: corners at a fraction of the true one
+    fit as well, and are not readings."""
+    for times in (7, 5, 3, 2):
         for k in range(times):
             left, _, _ = _polygon(time, values, times * period, phase + k * period)
             if left < EXACT * noise:
-                return _whole_of(time, values, times * period, phase + k * period, noise)
-    return _whole_of(time, values, period, phase, noise)
+                return _longest(time, values, times * period, phase + k * period, noise)
+    return period, phase
 
 
 def _whole_of(
@@ -113,7 +123,11 @@ def _whole_of(
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
     if left > EXACT * noise or inside.sum() > MOST_CORNERS * len(time):
         return None
-    return Native(knots[inside], corners[inside], period)
+    read = corners[inside]
+    # Corners on a curve, or on a plateau, are of a record without noise.
+    if _smooth(read) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read):
+        return None
+    return Native(knots[inside], read, period)
 
 
 def _first_look(t: Array, y: Array, step: float, noise: float) -> tuple[float, float] | None:

@@ -10,9 +10,15 @@ from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 MOST_LEVELS = 0.2
 """Readings that come in fewer levels than this share of the samples come in steps."""
+FEWEST_LEVELS = 4
+"""Readings of fewer levels are those of a law without noise: forth, back and rest."""
+CRUMBS, ALL = 0.03, 0.9
+"""Share by which levels may be off a whole number of steps apart (or of five), and share of those
+that are not: the levels of a law without noise are any distance apart."""
 MATTERS = 0.5
 """Steps below this share of the noise are not worth a word."""
 
@@ -20,18 +26,22 @@ MATTERS = 0.5
 def step_of(values: Array) -> float:
     """The step in which readings come; zero where they come in none."""
     levels = np.unique(values)
-    if len(levels) < 3 or len(levels) > MOST_LEVELS * len(values):
+    if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0
     apart = np.diff(levels)
     # Levels that nobody visited leave multiples; digits of the file leave crumbs.
-    return float(np.median(apart[apart <= 1.5 * np.median(apart)]))
+    step = float(np.median(apart[apart <= 1.5 * np.median(apart)]))
+    times = apart / step
+    whole = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)
+    return step if whole.mean() > ALL else 0.0
 
 
-def find_steps(run: Run) -> list[Finding]:
-    """Steps of the force that are as large as its noise."""
+def find_steps(run: Run, usable: Mask) -> list[Finding]:
+    """Steps of the force that are as large as its noise, where its readings can be used."""
     assert run.friction_n is not None
-    step = step_of(run.friction_n)
-    if step == 0.0 or step < MATTERS * max(noise_of(run.friction_n), 1e-300):
+    force = run.friction_n[usable]
+    step = step_of(force)
+    if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
         return []
     words = f"the force comes in steps of {step:.3g} N"
     return [Finding("steps", "friction_n", run.name, step, "N", "counted as noise", words)]

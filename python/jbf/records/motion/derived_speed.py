@@ -6,11 +6,10 @@ difference looks back. It is known by being that difference, to the digit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.findings.finding import Finding
 from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
@@ -27,16 +26,8 @@ DIGITS = 1e-12
 """Counts differ by more than this share of the path; less is rounding."""
 
 
-@dataclass(frozen=True)
-class DerivedSpeed:
-    """`span` samples from first to last; `late_s` how late the difference is, s."""
-
-    span: int
-    late_s: float
-
-
-def derived_speed(time: Array, path: Array, speed: Array) -> DerivedSpeed | None:
-    """The difference of the path that a speed is; None where it was measured."""
+def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
+    """A finding where a speed is a difference of the path; None where it was measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
     step = _count(path)
@@ -47,18 +38,24 @@ def derived_speed(time: Array, path: Array, speed: Array) -> DerivedSpeed | None
         tolerance = TO * step / (span * usual)
         if noise_of(difference) < COARSE * tolerance:
             continue
-        # Looking back, and (even spans) to both sides.
-        ways = [(slice(span, None), 0.5 * span * usual)]
-        if span % 2 == 0:
-            ways.append((slice(span // 2, -(span // 2)), 0.0))
-        for where, late_s in ways:
+        # Looking back, and to both sides.
+        for after in sorted({0, span // 2}):
+            where = slice(span - after, len(time) - after)
             kept = moving[where]
             if kept.sum() < 50:
                 continue
             near = np.abs(speed[where] - difference)[kept] <= tolerance
             if near.mean() > ALIKE:
-                return DerivedSpeed(span, late_s)
+                return _finding(name, span, (0.5 * span - after) * usual)
     return None
+
+
+def _finding(name: str, span: int, late_s: float) -> Finding:
+    words = f"the speed is a difference of the path over {span} samples"
+    if late_s > 0.0:
+        words += f", {1e3 * late_s:.3g} ms late"
+    done = "left aside; the path alone tells the motion"
+    return Finding("coarse_speed", "velocity_m_s", name, float(span), "samples", done, words)
 
 
 def _count(path: Array) -> float:

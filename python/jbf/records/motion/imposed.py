@@ -19,15 +19,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
-from jbf.records.motion.derived_speed import DerivedSpeed, centred_speed, derived_speed
+from jbf.records.motion.believed import LEFT_ASIDE, believed
 from jbf.records.motion.rests import (
     place_rests,
     rest_edges,
     resting_samples,
     still_samples,
 )
-from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of, step_of
+from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of
 from jbf.records.motion.smoothing import smooth
 from jbf.records.run import Run
 
@@ -53,8 +54,8 @@ class ImposedMotion:
     sign_known
         False where the sign of the motion, and so of the friction, cannot be known, and where the
         records of path and speed contradict one another.
-    derived
-        How the recorded speed was made of the path; None where it was measured.
+    findings
+        What the recording did to path and speed, and what was done about it.
     """
 
     velocity_m_s: Array
@@ -63,7 +64,12 @@ class ImposedMotion:
     velocity_error_m_s: Array
     resting: Mask
     sign_known: Mask
-    derived: DerivedSpeed | None = None
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def aside(self) -> set[str]:
+        """Columns that were left aside as a whole."""
+        return {finding.channel for finding in self.findings if finding.kind in LEFT_ASIDE}
 
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
         """The motion at other instants within it: on cubics through speed and acceleration.
@@ -117,18 +123,12 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
         nothing of the speed.
     """
-    time, speed = run.time_s, run.velocity_m_s
+    records = believed(run, radius_m)
+    time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
-    path = _recorded_path(run, radius_m)
-    step = 0.0 if path is None else step_of(path)
-    derived = None if path is None else derived_speed(time, path, speed)
-    if path is not None and derived is not None:
-        speed = centred_speed(time, path)
-        rest = still_samples(path, speed, step)
-    else:
-        rest = resting_samples(speed)
-        if path is not None:
-            rest |= still_samples(path, speed, step)
+    rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
+    if path is not None:
+        rest |= still_samples(path, speed, step)
     moving = ~rest
     if path is None:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
@@ -144,10 +144,10 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     sd_speed = max(sd_speed, 1e-7 * top, 1e-15)
     beyond = disagreement_of(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
     # A speed made of the path tells nothing besides.
-    usual = max(sd_speed, beyond) if derived is None else 1e3 * max(top, sd_speed)
+    usual = max(sd_speed, beyond) if records.speed_measured else 1e3 * max(top, sd_speed)
 
     contradiction = np.zeros(n)
-    if n > 1 and derived is None:
+    if n > 1 and records.speed_measured:
         contradiction = contradiction_of(time, path, speed, sd_path, usual)
 
     velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
@@ -158,7 +158,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         if end - first < 3:
             error[part] = max(sd_speed, beyond)
             continue
-        local = local_noise(speed[part]) if derived is None else usual
+        local = local_noise(speed[part]) if records.speed_measured else usual
         sd: Array | float = usual
         if isinstance(local, np.ndarray):
             sd = np.maximum(local, usual)
@@ -184,13 +184,5 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         error,
         rest,
         sign_known,
-        derived,
+        records.findings,
     )
-
-
-def _recorded_path(run: Run, radius_m: float | None) -> Array | None:
-    """The path on record, m; None where only the speed tells of it."""
-    if run.angle_rad is not None and radius_m is not None:
-        path: Array = np.unwrap(run.angle_rad) * radius_m
-        return path
-    return run.position_m

@@ -1,0 +1,46 @@
+"""A noisy load: a column that is nothing but white noise about a load that does not change."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+LEAST_SAMPLES = 100
+CHANCE = 1e-4
+"""Probability with which white noise is taken for a load that changes."""
+EVEN = 1e-9
+"""A column that varies by less than this share does not."""
+
+
+def only_noise(load: Array) -> bool:
+    """True of a column whose changes are white noise: no line of its periodogram sticks out
+    (Fisher 1929), and its power rises evenly from slow to fast (Bartlett 1954)."""
+    n = len(load)
+    if n < LEAST_SAMPLES or np.ptp(load) <= EVEN * float(np.mean(load)):
+        return False
+    power = np.abs(np.fft.rfft(load - np.mean(load))[1 : (n + 1) // 2]) ** 2
+    share = power / np.sum(power)
+    m = len(power)
+    line = m * (1.0 - float(np.max(share))) ** (m - 1)
+    rise = np.max(np.abs(np.cumsum(share) - np.arange(1, m + 1) / m))
+    even = 2.0 * np.exp(-2.0 * m * float(rise) ** 2)
+    return line > CHANCE and even > CHANCE
+
+
+def steady_load(load: Array) -> Array:
+    """The load less its noise, where it is nothing else: its mean, at every sample."""
+    return np.full(len(load), float(np.mean(load))) if only_noise(load) else load
+
+
+def find_noisy_load(name: str, load: Array | None) -> list[Finding]:
+    """A load that is only noise about its mean."""
+    if load is None or not only_noise(load):
+        return []
+    size = float(np.std(load))
+    share = 100.0 * size / float(np.mean(load))
+    words = f"the load is white noise of {size:.3g} N ({share:.2g} %) about {np.mean(load):.4g} N"
+    return [Finding("noisy_load", "load_n", name, size, "N", "its mean is taken", words)]

@@ -1,0 +1,106 @@
+"""What of the recorded path and speed can be believed, before a motion is estimated from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.derived_speed import centred_speed, derived_speed
+from jbf.records.motion.glitches import mend_position, mend_speed
+from jbf.records.motion.held_path import mend_held
+from jbf.records.motion.jitter import shaken_path, uneven_stamps
+from jbf.records.motion.lateness import late_speed
+from jbf.records.motion.position import recorded_position
+from jbf.records.motion.roughness import step_of
+from jbf.records.motion.units import wrong_unit
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+LEFT_ASIDE = ("units", "sign", "coarse_speed", "filtered_speed", "no_speed")
+"""Kinds of finding of a motion that leave their column aside as a whole."""
+
+
+@dataclass(frozen=True, eq=False)
+class Believed:
+    """The records of a motion, less what contradicts itself.
+
+    Attributes
+    ----------
+    path
+        The path, m; None where only the speed tells of it.
+    step
+        The encoder's, m.
+    speed
+        The speed, m/s.
+    speed_measured
+        False where the speed is but a difference of the path, and tells nothing besides.
+    findings
+        What was found, and what was done about it.
+    """
+
+    path: Array | None
+    step: float
+    speed: Array
+    speed_measured: bool
+    findings: tuple[Finding, ...]
+
+
+def believed(run: Run, radius_m: float | None) -> Believed:
+    """Examine the records of a run's motion.
+
+    Glitches go first, for they hide the rest; what a channel is worth as a whole is asked before
+    its single samples.
+    """
+    name, time, speed = run.name, run.time_s, run.velocity_m_s
+    stamps = uneven_stamps(name, time)
+    position = recorded_position(run, radius_m)
+    if position is None:
+        if not run.speed_recorded:
+            raise InputError(
+                file=run.path or name,
+                column="velocity_m_s",
+                problem="is missing, and an angle tells no speed without the journal's radius",
+                mend="add the column, or give the rig its [bearing]",
+            )
+        speed, odd = mend_speed(name, time, speed, None)
+        return Believed(None, 0.0, speed, True, _there(odd, stamps))
+    step = step_of(position.path_m)
+    position, astray = mend_position(name, time, position)
+    if not run.speed_recorded:
+        return _path_alone(name, time, position.path_m, step, _there(astray, stamps))
+    unit = wrong_unit(name, time, position, speed)
+    if unit is not None and unit.channel != "velocity_m_s":
+        speed, odd = mend_speed(name, time, speed, None)
+        return Believed(None, 0.0, speed, True, _there(astray, unit, odd, stamps))
+    path = position.path_m
+    aside = unit or derived_speed(name, time, path, speed) or late_speed(name, time, path, speed)
+    odd = held = None
+    if aside is None:
+        speed, odd = mend_speed(name, time, speed, path)
+        position, held = mend_held(name, time, position, speed)
+        path = position.path_m
+    else:
+        speed = centred_speed(time, path)
+    shaken = stamps or shaken_path(name, time, path, speed)
+    findings = _there(astray, aside, odd, held, shaken)
+    return Believed(path, step, speed, aside is None, findings)
+
+
+def _path_alone(
+    name: str, time: Array, path: Array, step: float, found: tuple[Finding, ...]
+) -> Believed:
+    """The records of a motion whose speed was not recorded."""
+    speed = centred_speed(time, path)
+    words = "no speed was recorded"
+    made = Finding("no_speed", "velocity_m_s", name, 0.0, "m/s", "the path alone tells it", words)
+    shaken = () if found else _there(shaken_path(name, time, path, speed))
+    return Believed(path, step, speed, False, (made, *found, *shaken))
+
+
+def _there(*findings: Finding | None) -> tuple[Finding, ...]:
+    return tuple(finding for finding in findings if finding is not None)

@@ -1,0 +1,54 @@
+"""Path and speed over the same short windows, so that one can be asked about the other.
+
+The change of the path over a window is the mean of the true speed there; the recorded speed is
+averaged over the same window. Neither is smoothed more than the other, whatever the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.motion.roughness import step_of
+
+Array = npt.NDArray[np.float64]
+
+HALF_WIDTHS = (2, 4, 8)
+"""Half widths of the windows, in samples: the path is coarse, or not."""
+WHOLE = 1.2
+"""A window that is longer than so many times the usual has a gap in it."""
+LEAST = 60
+"""Windows that tell something together."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Mean speeds over windows, m/s: by path, by speed; the path's own acceleration, m/s^2; what a
+    count of the path makes of a speed, m/s."""
+
+    by_path: Array
+    by_speed: Array
+    acceleration: Array
+    count: float
+
+
+def compared(time: Array, path: Array, speed: Array) -> Iterator[Compared]:
+    """Path and speed over windows of several widths, wide ones last."""
+    whole = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
+    usual = float(np.median(np.diff(time)))
+    for half in HALF_WIDTHS:
+        if len(time) < 4 * half + LEAST:
+            return
+        lasts = time[2 * half :] - time[: -2 * half]
+        by_path = (path[2 * half :] - path[: -2 * half]) / lasts
+        by_speed = (whole[2 * half :] - whole[: -2 * half]) / lasts
+        apart = time[3 * half : -half] - time[half : -3 * half]
+        acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / apart
+        kept = time[4 * half :] - time[: -4 * half] < WHOLE * 4 * half * usual
+        inner = slice(half, -half)
+        if kept.sum() >= LEAST:
+            count = step_of(path) / float(np.median(lasts))
+            yield Compared(by_path[inner][kept], by_speed[inner][kept], acceleration[kept], count)

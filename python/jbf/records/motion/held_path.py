@@ -1,0 +1,57 @@
+"""Held readings of a path: it stands still while the shaft moves on, and catches up at once."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.position import Position
+from jbf.records.motion.roughness import step_of
+
+Array = npt.NDArray[np.float64]
+
+LEAST = 3
+"""So many repeated readings in a row are held: an uneven clock reads twice at about one instant."""
+COUNTS = 5.0
+"""Counts of the encoder that the shaft must move on by while the path stands still."""
+CATCHES_UP = 0.3
+"""Share of what was missed by which the next reading may be off."""
+STEADY = 0.3
+"""Least way of the shaft from one held reading to the next, over the mean."""
+MOST = 0.3
+"""Share of a record that may be held; more is the way of the channel."""
+
+
+def mend_held(
+    name: str, time: Array, position: Position, speed: Array
+) -> tuple[Position, Finding | None]:
+    """The path with its held readings put where the speed says that the shaft was."""
+    path = position.path_m
+    moved = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
+    least = max(COUNTS * step_of(path), 1e-9 * float(np.ptp(path)))
+    edges = np.diff(np.concatenate(([0], (np.diff(path) == 0.0).astype(np.int8), [0])))
+    mended, lasted, count = path.copy(), 0.0, 0
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        # Readings first + 1 to end repeat the one at first; end + 1 is a new one.
+        if end - first < LEAST or end + 1 >= len(path):
+            continue
+        if abs(moved[end] - moved[first]) < least:
+            continue
+        # The shaft moved on all the time; at the ends of a rest, it did not.
+        each = np.abs(np.diff(moved[first : end + 1]))
+        if np.min(each) < STEADY * np.mean(each):
+            continue
+        missed = moved[end + 1] - moved[first]
+        if abs(path[end + 1] - path[first] - missed) > CATCHES_UP * abs(missed):
+            continue
+        held = slice(first + 1, end + 1)
+        share = (path[end + 1] - path[first]) / missed
+        mended[held] = path[first] + share * (moved[held] - moved[first])
+        lasted, count = max(lasted, float(time[end] - time[first])), count + end - first
+    if not 0 < count <= MOST * len(path):
+        return position, None
+    words = f"{count} readings of the position repeat the one before while the shaft moves on"
+    done = "put where the speed says"
+    found = Finding("held_samples", position.column, name, lasted, "s", done, words)
+    return position.along(mended), found

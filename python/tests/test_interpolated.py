@@ -1,0 +1,122 @@
+"""A slow channel drawn as straight lines onto fast samples is taken back to its readings."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from jbf import Run
+from jbf.estimation.prepared import Prepared
+from jbf.records.findings.interpolated import find_native
+from jbf.records.findings.slow_channel import find_repeated
+from jbf.records.rig import Rig
+from scipy.signal import lfilter
+
+Array = npt.NDArray[np.float64]
+TIME = 0.02 * np.arange(3000)
+
+
+def force(time: Array, seed: int, sd: float = 0.3) -> Array:
+    """Friction to and fro with noise of its own at each instant, N."""
+    noise = sd * np.random.default_rng(seed).standard_normal(len(time))
+    return 20.0 * np.tanh(50.0 * np.sin(0.3 * time)) + noise
+
+
+@pytest.mark.parametrize("rate_hz", [20.0, 25.0, 31.7, 40.0])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_readings_are_recovered(rate_hz: float, seed: int) -> None:
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = force(ticks, seed)
+    native = find_native(TIME, np.interp(TIME, ticks, read))
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-5)
+    place = (native.time_s - ticks[0]) * rate_hz
+    which = np.round(place).astype(int)
+    np.testing.assert_allclose(place, which, atol=1e-3)
+    # The first and the last may lie outside the record, where nothing tells of them.
+    np.testing.assert_allclose(native.values[1:-1], read[which][1:-1], atol=0.02)
+    assert len(native.time_s) > 0.98 * rate_hz * TIME[-1]
+
+
+@pytest.mark.parametrize("rate_hz", [9.3, 17.0, 31.7, 46.0])
+def test_readings_that_were_repeated_are_recovered(rate_hz: float) -> None:
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = force(ticks, 6)
+    last = np.searchsorted(ticks, TIME, side="right") - 1
+    native = find_repeated(TIME, read[last])
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-4)
+    place = (native.time_s - ticks[0]) * rate_hz
+    which = np.round(place).astype(int)
+    np.testing.assert_array_equal(native.values, read[which])
+    np.testing.assert_allclose(native.time_s, ticks[which], atol=0.25 * 0.02)
+
+
+@pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
+@pytest.mark.parametrize("omega", [0.02, 0.3, 3.0])
+def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omega: float) -> None:
+    noise = 0.3 * np.random.default_rng(7).standard_normal(len(TIME))
+    for y in (20.0 * np.tanh(5.0 * np.sin(omega * TIME)) + noise, 0.3 * TIME + noise):
+        assert find_repeated(TIME, np.round(y / step_n) * step_n if step_n else y) is None
+
+
+@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35])
+def test_readings_are_not_those_of_a_multiple_of_their_rate(samples: float) -> None:
+    step_s = 0.02 * samples
+    ticks = np.arange(-0.3 * step_s, TIME[-1] + 2.0 * step_s, step_s)
+    native = find_native(TIME, np.interp(TIME, ticks, force(ticks, 8)))
+    assert native is not None
+    assert native.period_s == pytest.approx(step_s, rel=1e-4)
+
+
+def test_a_run_is_compared_at_its_readings() -> None:
+    ticks = np.arange(0.0, TIME[-1] + 0.04, 0.04)
+    v = 0.1 * np.sin(0.3 * TIME)
+    run = Run.from_arrays(TIME, v, np.interp(TIME, ticks, force(ticks, 3)), name="slow")
+    prepared = Prepared.of(Rig(), run)
+    assert [f.kind for f in prepared.examined.findings] == ["interpolated"]
+    assert prepared.step_s == pytest.approx(0.04, rel=1e-4)
+    assert len(prepared.friction_n) == len(prepared.motion.velocity_m_s) == len(prepared.run)
+    at = prepared.run.time_s
+    np.testing.assert_allclose(prepared.motion.velocity_m_s, 0.1 * np.sin(0.3 * at), atol=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("keep", [0.0, 0.95, 1.0])
+def test_noise_of_any_memory_is_no_polygon(seed: int, keep: float) -> None:
+    kicks = 0.1 * np.random.default_rng(seed).standard_normal(len(TIME))
+    noise = lfilter([1.0], [1.0, -keep], kicks)
+    assert find_native(TIME, noise) is None
+    assert find_native(TIME, 20.0 * np.tanh(50.0 * np.sin(0.3 * TIME)) + noise) is None
+
+
+@pytest.mark.parametrize("omega", [0.02, 0.3, 3.0])
+def test_smooth_and_rounded_records_are_no_polygons(omega: float) -> None:
+    smooth = 20.0 * np.tanh(5.0 * np.sin(omega * TIME))
+    assert find_native(TIME, smooth) is None
+    noise = 0.3 * np.random.default_rng(4).standard_normal(len(TIME))
+    for step in (0.05, 0.5, 2.0):
+        assert find_native(TIME, step * np.round((smooth + noise) / step)) is None
+        assert find_native(TIME, step * np.round(smooth / step)) is None
+
+
+def test_a_motion_and_a_run_at_other_instants() -> None:
+    from jbf.records.motion.imposed import impose
+
+    v = 0.1 * np.sin(0.3 * TIME) * (TIME > 5.0)
+    load = 100.0 + TIME
+    run = Run.from_arrays(TIME, v, force(TIME, 5), load_n=load, extra={"x": 2.0 * TIME})
+    at = np.array([1.003, 4.0, 20.007, 33.33, 59.9])
+    moved = run.at(at, np.arange(5.0))
+    np.testing.assert_allclose(moved.load_n, 100.0 + at)
+    np.testing.assert_allclose(moved.extra["x"], 2.0 * at)
+    np.testing.assert_array_equal(moved.friction_n, np.arange(5.0))
+    motion = impose(run, None)
+    there = motion.at(TIME, at)
+    np.testing.assert_array_equal(there.resting, [True, True, False, False, False])
+    np.testing.assert_allclose(there.velocity_m_s[:2], 0.0)
+    np.testing.assert_allclose(there.velocity_m_s[2:], 0.1 * np.sin(0.3 * at[2:]), atol=1e-6)
+    np.testing.assert_allclose(there.acceleration_m_s2[2:], 0.03 * np.cos(0.3 * at[2:]), atol=1e-4)
+    # Half way between two samples on either side of a reversal nobody knows the sign.
+    turn = np.pi * 3 / 0.3
+    assert not motion.at(TIME, np.array([turn])).sign_known[0]

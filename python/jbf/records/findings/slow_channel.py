@@ -34,11 +34,10 @@ def find_repeated(time: Array, values: Array) -> Native | None:
     begins, count = time[first], np.arange(rows)
     period = float(np.polyfit(count, begins, 1)[0])
     # A finer look: rows at both ends hold the clock to a fraction of a step.
-    best = min(
+    spread, period = min(
         (float(np.ptp(begins - p * count)), float(p))
         for p in period + np.linspace(-2.0, 2.0, 81) * step / rows
     )
-    spread, period = best
     if spread > WITHIN * step:
         return None
     early = begins - period * count

@@ -59,6 +59,9 @@ def swap_cost(
     if first >= candidates.policy.contender:
         return first
     solution = candidates.converge(effects, near)
+    if solution.rms_n > candidates.policy.leader_rms * whole.rms_n:
+        # Where the model is wrong, what is whitest is not what leaves least.
+        return float("inf")
     # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples that
     # it leaves.
     return cost(solution if evidence(candidates, solution, near) > 0.0 else near)

@@ -42,6 +42,12 @@ class Policy:
         "evidence is weak",
         "chosen on simulated campaigns",
     )
+    leader_rms: float = _number(
+        1.25,
+        "times the smallest RMS of all candidates with evidence that the leader's may be",
+        "where the model is wrong its smooth error passes for coloured noise, and evidence for "
+        "what takes the error away is small",
+    )
     weak: float = _number(
         60.0,
         "evidence up to which left-out runs must confirm so much of the gain, and from which a "

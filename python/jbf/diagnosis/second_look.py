@@ -17,6 +17,7 @@ from scipy import stats
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
@@ -27,6 +28,10 @@ Array = npt.NDArray[np.float64]
 FORCE_BINS = 6
 HUBER = 2.5
 """Innovations beyond so many of their standard deviations count less (Huber 1964)."""
+EVALUATIONS = 8
+"""Steps of a fit that shows where weights lead."""
+MOST_FORGIVEN = 1.03
+"""Times the RMS, all samples alike, that weights may cost."""
 LEAST = 200
 """Samples of a bin whose size can be told."""
 
@@ -45,21 +50,41 @@ def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondL
     One deviation is found at a look, the clearest: what is missing yet may look like another.
     """
     campaign = problem.campaign
-    sizes, uneven = _sizes(problem, solution, policy.uneven_noise)
-    robust, heavy = _robust(solution, sizes, policy.heavy_tails)
     known = {f.kind for f in campaign.more_findings}
-    if known & {"noise_with_force", "noise_by_run", "heavy_tails"}:
-        # Weights are given once.
-        sizes, uneven, heavy = [np.ones(len(s)) for s in sizes], [], []
-        robust = sizes
-    shares = [s * w for s, w in zip(sizes, robust, strict=True)]
-    between, deviations = _between(problem, solution, shares, policy.deviation_chance)
-    findings = [*uneven, *heavy, *deviations]
+    ones = [np.ones(len(r)) for r in solution.residuals]
+    sizes, robust, found = ones, ones, []
+    # Weights are given once.
+    if not known & {"noise_with_force", "noise_by_run"}:
+        shares, uneven = _sizes(problem, solution, policy.uneven_noise)
+        if uneven and _keeps(problem, solution, campaign.samples.weighed(shares, ones, None)):
+            sizes, found = shares, uneven
+    if "heavy_tails" not in known:
+        shares, heavy = _robust(solution, sizes, policy.heavy_tails)
+        if heavy and _keeps(problem, solution, campaign.samples.weighed(sizes, shares, None)):
+            robust, found = shares, [*found, *heavy]
+    both = [s * w for s, w in zip(sizes, robust, strict=True)]
+    between, deviations = _between(problem, solution, both, policy.deviation_chance)
+    samples = campaign.samples.weighed(sizes, robust, between)
+    if deviations and not _keeps(problem, solution, samples):
+        between, deviations = campaign.samples.between, []
+        samples = campaign.samples.weighed(sizes, robust, between)
+    findings = [*found, *deviations]
     if not findings:
         return SecondLook(campaign, False)
-    samples = campaign.samples.weighed(sizes, robust, between)
     again = replace(campaign, samples=samples).with_findings(findings)
     return SecondLook(again, True)
+
+
+def _keeps(problem: Problem, solution: Solution, samples: Samples) -> bool:
+    """Whether a fit on these samples still predicts as well as before where all count alike.
+
+    Of noise alone it does, whatever the weights. Where a model is wrong its error passes for noise,
+    and weights would give up what they call so.
+    """
+    moved = samples.within(solution.samples.counted)
+    values, _, _ = search(problem, moved, solution.values, solution.noise, EVALUATIONS)
+    before = solution.samples.rms(solution.residuals)
+    return solution.samples.rms(problem.residuals(values)) <= MOST_FORGIVEN * before
 
 
 def _robust_size(values: Array) -> float:

@@ -60,7 +60,8 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
     leader, best, trials = None, 0.0, []
     bare = base.rms_n
     before = candidates.left_out_rms(present) if ranked and ranked[0].evidence > 0 else np.nan
-    for found in ranked:
+    least = min((r.solution.rms_n for r in ranked if r.evidence > 0), default=bare)
+    for found in sorted(ranked, key=lambda r: _leaves_more(r, least, policy)):
         name, gain = found.effect, found.evidence
         rms = min(found.solution.rms_n, bare)
         outcome: Outcome
@@ -74,13 +75,20 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
             else:
                 outcome = "rejected"
                 reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+        elif gain > 0 and _leaves_more(found, least, policy):
+            outcome, reason = "rejected", f"leaves {rms:.3g} N where {leader} does not"
         elif gain > 0 and gain > best - policy.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
         elif gain > 0:
             outcome = "rejected"
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
-    return Round(tuple(trials), leader)
+    return Round(tuple(sorted(trials, key=lambda t: -t.evidence)), leader)
+
+
+def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:
+    """Whether a candidate leaves much more than another that has evidence, too."""
+    return found.solution.rms_n > policy.leader_rms * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked]:

@@ -88,8 +88,10 @@ class Candidates:
         clock: Clock,
         policy: Policy = DEFAULT,
         progress: Progress | None = None,
+        before: Candidates | None = None,
     ) -> None:
         self.campaign, self.law, self.clock = campaign, law, clock
+        self.before = before
         self.policy, self.progress = policy, progress
         self._fitted: dict[frozenset[str], Fitted] = {}
 
@@ -115,6 +117,13 @@ class Candidates:
             problem = Problem(self.campaign, self.law, self.clock, tuple(key))
             self._fitted[key] = Fitted(problem)
         return self._fitted[key]
+
+    def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
+        """Parameter name to value of a set of effects; None where it was not fitted."""
+        fitted = self._fitted.get(frozenset(effects))
+        if fitted is None or fitted.solution is None:
+            return None
+        return fitted.named_values()
 
     def one_more(self, effects: Iterable[str]) -> dict[str, Fitted]:
         """Every fitted set that has one effect more, by that effect."""
@@ -164,6 +173,10 @@ class Candidates:
                 anew = many_peaks(near.effects)
                 kept = {} if anew else {n: v for n, v in law.items() if "." in n}
                 seeds = [law, kept]
+            known = None if self.before is None else self.before.values_of(effects)
+            if known is not None:
+                # From where it was before the samples were seen in another light.
+                seeds = [known]
             each = near is not None and many_peaks(near.effects)
             least = self._least_square(near)
             fitted.solution = approach(fitted.problem, seeds, RANKING_EVALUATIONS, least, each=each)

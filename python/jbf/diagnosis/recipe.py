@@ -88,7 +88,8 @@ def diagnose(
         if again is None:
             break
         campaign = again
-        candidates = Candidates(campaign, law, clock, policy, progress)
+        candidates.before = None
+        candidates = Candidates(campaign, law, clock, policy, progress, candidates)
         bare = finish(candidates.fitted(()).problem, candidates.converge(()))
         before = compare_prepared(bare.model, campaign)
         present, steps, refused = _select(candidates, before.noise_n)

@@ -50,7 +50,8 @@ def filtered(noise: Noise, values: Array, weight: Array) -> Array:
 def test_whitened_is_as_by_the_covariance(noise: Noise, run: int) -> None:
     # Of innovations over their standard deviation the covariance is I + Z Z': Laird & Ware (1982).
     between, weight = deviations(), weights()
-    values = np.random.default_rng(2).standard_normal((N, 4)) + [1.0, 0.0, 0.0, 0.0]
+    values = np.random.default_rng(2).standard_normal((N, 4))
+    values[:, 0] += 1.0
     e = filtered(noise, values, weight)
     z = filtered(noise, between.directions[run], weight) / SIGMA_N
     root = np.linalg.cholesky(np.eye(len(e)) + z @ z.T)

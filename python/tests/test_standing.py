@@ -10,8 +10,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from by_hand import Array, coulomb
-from jbf import Rig, Run
-from jbf.diagnosis import standing
+from jbf import Rig, Run, diagnose
+from jbf.diagnosis import recipe, standing
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement, disagreement
 from jbf.diagnosis.standing import best_predicting, confounders
@@ -109,6 +109,25 @@ def test_of_smooth_residuals_a_gain_is_worth_less(monkeypatch: pytest.MonkeyPatc
     assert confounders(cast(Candidates, rough), (OFFSET,)) == ()
     # Three in a row have one sign: a sample is worth six tenths of one.
     assert confounders(cast(Candidates, smooth), (OFFSET,)) == (OFFSET,)
+
+
+@pytest.mark.parametrize(("spread", "named"), [(0.0, (OFFSET,)), (1.0, ())])
+def test_a_diagnosis_takes_the_name_of_a_confounder(
+    spread: float, named: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A recording that is not asked what it did, and a tone so that structure remains.
+    monkeypatch.setattr(recipe, "_seen_again", lambda candidates, present: None)
+    monkeypatch.setattr(recipe, "_select", lambda candidates, noise_n: ((OFFSET,), [], ()))
+    zeros = 2.0 + spread * np.array([1.0, -1.0, 0.8, -0.8])
+    made = candidates(lambda i, t: zeros[i] + tone(t))
+    runs = [p.run for p in made.campaign.prepared]
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert found.verdict == "unexplained"
+    assert "frequency" in [r.axis for r in found.unexplained]
+    assert found.effects == named
+    # It stays in the model, where it says what is common to the runs.
+    assert found.confounders == (() if named else (OFFSET,))
+    assert found.fit.model.effects == (OFFSET,)
 
 
 # ---- which predicts best -----------------------------------------------------------------------

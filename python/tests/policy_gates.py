@@ -14,6 +14,7 @@ from jbf import Rig
 from jbf.diagnosis import Policy
 from jbf.diagnosis.remainder import find_patterns
 from jbf.diagnosis.replicates import find_replicates
+from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.tones import find_tones
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
@@ -91,6 +92,27 @@ def repeated(duration_s: float) -> Callable[[Policy, float], bool]:
     return finds
 
 
+def looked_at(problem: Problem, residuals: list[Array], policy: Policy) -> set[str]:
+    """Kinds of finding that a second look makes of residuals."""
+    near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
+    seen = second_look(problem, replace(near, residuals=residuals), policy)
+    return {f.kind for f in seen.campaign.more_findings}
+
+
+def of_runs(kind: str) -> Callable[[Policy, float], bool]:
+    """Noise that is larger in every other run, or runs that have a zero of their own."""
+
+    def finds(policy: Policy, size: float) -> bool:
+        e = [noise(i, 501) for i in range(4)]
+        if kind == "noise_by_run":
+            e = [x * (1.0 + size * (i % 2)) for i, x in enumerate(e)]
+        else:
+            e = [x + size * (i % 2) for i, x in enumerate(e)]
+        return kind in looked_at(linear(), e, policy)
+
+    return finds
+
+
 GATES: dict[str, Gate] = {
     # Four bins of many samples: the share decides. Two dozen: their chance does.
     "pattern_share": Gate(along("run"), 0.009, 0.011),
@@ -99,4 +121,6 @@ GATES: dict[str, Gate] = {
     "tone_share": Gate(tone(6.0), 0.0075, 0.0085),
     "replicate_sigma": Gate(repeated(20.0), 4.5, 5.5),
     "replicate_share": Gate(repeated(800.0), 0.029, 0.031),
+    "uneven_noise": Gate(of_runs("noise_by_run"), 1.24, 1.26),
+    "deviation_chance": Gate(of_runs("level_by_run"), 2e-4, 5e-5),
 }

@@ -9,18 +9,23 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from by_hand import Array, coulomb, four_runs
+from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Limits, Rig, diagnose
-from jbf.diagnosis import Policy, recipe
+from jbf.diagnosis import Policy, late_channels, recipe
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import left_out_confirms, try_candidates
 from jbf.diagnosis.verdict import name_stands
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.lateness import Lateness
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from made_up import MadeUp, N, sets
-from policy_gates import GATES
+from policy_gates import GATES, linear, looked_at
+from scipy import stats
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "drive_compliance"]
 PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
@@ -38,6 +43,11 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "close": 0.6,
         "promise": 5.0,
         "peaks_share": 0.5,
+        "most_looks": 6,
+        "most_shifts": 3,
+        "deviation_chance": 1e-4,
+        "uneven_noise": 1.25,
+        "heavy_tails": 6.0,
         "clear": 20.0,
         "pattern_share": 0.01,
         "pattern_sigma": 6.0,
@@ -110,6 +120,18 @@ def bursts(count: int, size: float, rest: Array) -> Callable[[Policy], object]:
     return decide
 
 
+def tails(policy: Policy) -> object:
+    """Ten of the innovations of a long run are at five standard deviations: six times as many
+    beyond four as Gaussian noise has."""
+    count = round(10 / (6.0 * 2.0 * stats.norm.sf(4.0)))
+    run = one_way("long", coulomb, duration_s=0.02 * (count - 1))
+    assert len(run) == count
+    e = 0.6745 * np.where(np.arange(count) % 2, 1.0, -1.0)
+    e[1000:11000:1000] = 5.0
+    problem = Problem(Campaign.prepare(Rig(), [run]), "coulomb", "journal", ())
+    return looked_at(problem, [e], policy)
+
+
 PLACES = np.arange(20_000)
 EVEN = 0.6745 * np.where(PLACES % 2, 1.0, -1.0)[:501]
 # One in eight is 2 in place of 0.67.
@@ -153,6 +175,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         0.49,
         0.51,
     ),
+    "heavy_tails": (tails, 5.9, 6.1),
     "clear": (standing(50.0), 19.9, 20.1),
     # Of four degrees of freedom chance decides, of a hundred the ratio.
     "constancy_chance": (disagreed(43.9, 4), 0.5e-8, 2e-8),
@@ -188,6 +211,51 @@ def test_a_number_is_what_a_test_of_the_remainder_waits_for(name: str) -> None:
     assert not gate.finds(with_number(name, gate.strict), loud)
 
 
+# ---- how often the recording is looked at ------------------------------------------------------
+
+
+@pytest.mark.parametrize("most", [2, DEFAULT.most_looks])
+def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks, rounds_of = [], []
+
+    def seen(candidates: Candidates, present: tuple[str, ...]) -> Campaign:
+        looks.append(candidates.campaign)
+        return candidates.campaign
+
+    def selected(candidates: Candidates, noise_n: float) -> object:
+        rounds_of.append(candidates)
+        return (), [], ()
+
+    monkeypatch.setattr(recipe, "_seen_again", seen)
+    monkeypatch.setattr(recipe, "_select", selected)
+    monkeypatch.setattr(recipe, "unseen", lambda candidates, present: ())
+    runs = four_runs(coulomb, noise_n=0.1)
+    diagnose(Rig(), runs, law="coulomb", policy=with_number("most_looks", most))
+    assert len(looks) == most
+    assert len(rounds_of) == most + 1
+    # A round of selection has nothing that another fitted.
+    assert len({id(c) for c in rounds_of}) == most + 1
+
+
+@pytest.mark.parametrize("most", [1, DEFAULT.most_shifts])
+def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[int] = []
+
+    def always(problem: Problem, solution: object, look: int, chance: float) -> Lateness:
+        looks.append(look)
+        assert chance == DEFAULT.deviation_chance
+        return Lateness((1e-3, 2e-3, 3e-3, 4e-3), 0.0, 1e-3)
+
+    monkeypatch.setattr(late_channels, "lateness", always)
+    problem = linear()
+    near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
+    found = late_channels.on_time(problem, near, with_number("most_shifts", most))
+    assert looks == list(range(most))
+    assert found is not None
+    late = [f.size for f in found.more_findings]
+    np.testing.assert_allclose(late, most * 1e-3 * np.arange(1, 5))
+
+
 # ---- the whole way ----------------------------------------------------------------------------
 
 
@@ -209,4 +277,5 @@ def test_a_run_is_proposed_that_parts_rivals_far_enough() -> None:
 
 def test_no_number_is_left_out_here() -> None:
     known = {f.name for f in fields(Policy)}
-    assert {*TURNS, *GATES, "least_separation"} == known
+    elsewhere = {"most_looks", "most_shifts", "least_separation"}
+    assert {*TURNS, *GATES, *elsewhere} == known

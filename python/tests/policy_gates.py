@@ -54,7 +54,9 @@ def along(axis: str) -> Callable[[Policy, float], bool]:
             residuals.append(noise(i, len(speeds)) + size * np.where(kind % 2, 1.0, -1.0))
         values = problem.starts({})[0]
         near = problem.solution(values, problem.campaign.samples, WHITE)
-        found = find_patterns(problem, replace(near, residuals=residuals), residuals, policy)
+        found = find_patterns(
+            problem, replace(near, residuals=residuals), residuals, residuals, policy
+        )
         return axis in [f.axis for f in found]
 
     return finds

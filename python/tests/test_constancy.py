@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from by_hand import Array, Friction, coulomb, four_runs
 from campaigns import campaign
 from jbf import Rig, Run, diagnose
 from jbf.diagnosis.constancy import disagreement, find_disagreement
@@ -49,6 +51,35 @@ def test_the_run_of_another_rig_is_named() -> None:
     assert d.verdict == "adequate"
     assert d.effects == ()
     assert "gain_by_run" in {f.kind for f in d.findings}
+
+
+def test_what_a_run_asks_for_is_said_with_its_size() -> None:
+    """Dry friction of 5 N in three runs and of 6 N in the fourth, or 8 N s/m more."""
+
+    def more(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + np.sign(v)
+
+    def said(other: Friction) -> str:
+        runs = four_runs(coulomb, noise_n=0.05)
+        runs[3] = four_runs(other, noise_n=0.05)[3]
+        problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ())
+        (found,) = find_disagreement(problem, minimum(problem, [{}]), DEFAULT)
+        return found.where
+
+    found = re.search(r"run d asks for F_c_n (\d+\.?\d*) % higher \((\d+) times", said(more))
+    assert found is not None
+    # A quarter of the 1 N went into the common 5.25 N.
+    assert float(found[1]) == pytest.approx(100.0 * 0.75 / 5.25, rel=0.15)
+    assert int(found[2]) > 100
+
+    def thicker(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + 8.0 * v
+
+    words = said(thicker)
+    assert "check its load, zero and temperature" in words
+    found = re.search(r"run d asks for F_v_n_s_m (\S+) N s/m higher", words)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(6.0, rel=0.25)
 
 
 def test_one_run_cannot_disagree() -> None:

@@ -12,6 +12,7 @@ import pytest
 from by_hand import Array, Friction, coulomb, four_runs, wandering
 from jbf import Diagnosis, Rig, Run, diagnose, effects
 from jbf.diagnosis import Trial
+from jbf.reporting.words import verdict_sentence
 
 NOISE_N = 0.1
 CANDIDATES = sum(
@@ -174,7 +175,12 @@ def test_an_effect_that_explains_most_is_kept_beside_a_tone() -> None:
     assert [r.axis for r in d.unexplained] == ["frequency"]
     assert d.unexplained[0].where.startswith("a 3.00 Hz tone, amplitude 0.2")
     assert trial(d, "sensor_offset").outcome == "added"
-    assert "Part of what is missing is sensor_offset" in d.summary()
+    said = verdict_sentence(d)
+    assert said.startswith("Missing: sensor_offset. With it, the held-out error falls from ")
+    assert said.endswith(
+        f"Besides, something remains that no effect in the catalogue explains: "
+        f"{d.unexplained[0].where}."
+    )
 
 
 def test_a_true_effect_keeps_its_name_beside_a_larger_tone() -> None:

@@ -5,8 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from textwrap import dedent
 
+import numpy as np
 import pytest
 from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
+from jbf import Run
+from jbf.diagnosis import Remainder
+from jbf.records.counts import count_of
+from jbf.records.findings.gaps import find_gaps
+from jbf.reporting.diagnosis_page import diagnosis_page
+from jbf.reporting.words import verdict_sentence
 
 
 def said(text: str) -> str:
@@ -116,8 +123,8 @@ HEADS = {
     """,
     "unexplained": """
         Verdict: unexplained
-          Structure remains along frequency and time that no effect in the catalogue explains: the
-          held-out error is 2.75 N, 5.50 times the noise of 0.500 N.
+          Something remains that no effect in the catalogue explains: a 3.00 Hz tone (and 1 more
+          below). The held-out error is 2.75 N, 5.50 times the noise of 0.500 N.
     """,
 }
 
@@ -126,6 +133,39 @@ HEADS = {
 def test_what_each_verdict_says(verdict: str) -> None:
     head = diagnosis_by_hand(verdict).summary().partition("\n\n")[0]
     assert head == said(HEADS[verdict])
+
+
+def test_what_is_missing_is_said_beside_what_remains() -> None:
+    d = diagnosis_by_hand("missing")
+    left = (Remainder("time", "2 bursts", 0.04), Remainder("frequency", "a 3.00 Hz tone", 0.12))
+    for remains, words in ((left[:1], "2 bursts."), (left, "a 3.00 Hz tone (and 1 more below).")):
+        told = replace(d, verdict="unexplained", unexplained=remains)
+        assert verdict_sentence(told) == (
+            "Missing: sensor_offset. With it, the held-out error falls from 2.75 N to 0.550 N, "
+            "1.10 times the noise of 0.500 N. Besides, something remains that no effect in the "
+            f"catalogue explains: {words}"
+        )
+
+
+def test_an_effect_that_helps_and_is_not_named_is_said() -> None:
+    d = diagnosis_by_hand("unexplained")
+    one, two = (replace(d, confounders=names) for names in (("wear_in",), ("wear_in", "backlash")))
+    assert verdict_sentence(one) == verdict_sentence(d) + (
+        " The model also has wear_in, with which it predicts runs left out better, but which is "
+        "not named: the runs disagree on its parameters."
+    )
+    assert "wear_in and backlash" in verdict_sentence(two)
+    assert "which are not named: the runs disagree on their parameters" in verdict_sentence(two)
+    assert "The model also has wear_in" in " ".join(one.summary().split())
+    assert "The model also has wear_in" in diagnosis_page(one)
+
+
+def test_one_of_a_thing_is_one_thing() -> None:
+    assert [count_of(n, "run") for n in (0, 1, 2)] == ["0 runs", "1 run", "2 runs"]
+    assert [count_of(n, "row is", "rows are") for n in (1, 2)] == ["1 row is", "2 rows are"]
+    t = np.delete(np.arange(0.0, 10.0, 0.02), 100)
+    (gap,) = find_gaps(Run.from_arrays(t, 0.1 + 0.0 * t, 5.0 + np.sin(t), name="a"))
+    assert gap.words.startswith("1 row is missing")
 
 
 def test_what_could_hide_is_said() -> None:

@@ -115,7 +115,7 @@ def bursts(count: int, size: float, rest: Array) -> Callable[[Policy], object]:
         innovations = rest.copy()
         for k in range(100, 100 + 100 * count, 100):
             innovations[k : k + 3] = size
-        return bool(find_bursts(cast(Any, prepared), samples, [innovations], policy))
+        return bool(find_bursts(cast(Any, prepared), samples, [innovations], [innovations], policy))
 
     return decide
 

@@ -98,21 +98,60 @@ def test_bursts_are_told_with_their_times_and_two_outliers_are_not() -> None:
     problem, solution = _with(_white, 4)
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = [r.copy() for r in solution.residuals]
-    assert find_bursts(prepared, samples, innovations, DEFAULT) == []
+    assert find_bursts(prepared, samples, innovations, innovations, DEFAULT) == []
 
     time = problem.campaign.prepared[0].run.time_s
     at = [int(np.searchsorted(time, t)) for t in (11.0, 23.0, 37.0, 44.0)]
     for k in at[:2]:
         innovations[0][k] += 12.0 * SIGMA_N
-    assert find_bursts(prepared, samples, innovations, DEFAULT) == []
+    assert find_bursts(prepared, samples, innovations, innovations, DEFAULT) == []
 
     for k in at:
         innovations[0][k : k + 3] += 9.0 * SIGMA_N
-    (found,) = find_bursts(prepared, samples, innovations, DEFAULT)
+    (found,) = find_bursts(prepared, samples, innovations, innovations, DEFAULT)
     assert found.axis == "time"
     assert found.where.startswith("4 bursts")
     assert "11.0 s in two_way_0.25" in found.where
     assert found in find_remainder(problem, replace(solution, residuals=innovations))
+
+
+def test_what_remains_is_told_in_newtons_of_the_residual() -> None:
+    """Of 2 N against the motion the innovations of a noise with memory hold but a tenth: they find
+    it, and the words say 2 N."""
+    noise = Noise(0.2, 0.9)
+
+    def misfit(random: np.random.Generator, run: int) -> Array:
+        prepared = _solved()[0].campaign.prepared[run]
+        slow = noise.coloured(0.3 * _white(random, run), prepared.step_s)
+        return slow + 2.0 * np.sign(prepared.motion.velocity_m_s)
+
+    problem, solution = _with(misfit, 6, noise)
+    samples = solution.samples
+    left = samples.flat(samples.innovations(solution.residuals, noise))
+    assert np.sqrt(np.mean(left**2)) < 0.5
+    told = {r.axis: r.where for r in find_remainder(problem, solution)}
+    words = "record above the model by 2 N in the direction of motion; most "
+    assert words in told["direction"]
+    # The first +2 N, the second -2 N, or the other way round.
+    sizes = [
+        abs(float(part.split(" N at ")[0]))
+        for part in told["direction"].split("most ")[1].split("; ")
+    ]
+    assert sizes == pytest.approx([2.0, 2.0], abs=0.15)
+
+
+def test_a_burst_is_as_large_as_its_residual() -> None:
+    problem, solution = _with(_white, 4)
+    innovations = [r.copy() for r in solution.residuals]
+    time = problem.campaign.prepared[0].run.time_s
+    k = int(np.searchsorted(time, 23.0))
+    innovations[0][k : k + 8] += 9.0 * SIGMA_N
+    residuals = [e.copy() for e in innovations]
+    residuals[0][k + 5] = -40.0
+    (found,) = find_bursts(
+        problem.campaign.prepared, solution.samples, innovations, residuals, DEFAULT
+    )
+    assert found.where == f"1 burst, of 40 N: at {time[k + 5]:.1f} s in two_way_0.25"
 
 
 @pytest.mark.slow

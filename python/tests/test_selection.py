@@ -54,6 +54,18 @@ def test_nothing_is_added_where_nothing_gains_more_than_chance() -> None:
     )
 
 
+def test_a_fit_that_is_much_better_is_not_called_chance() -> None:
+    """2 N down to 1.8 N in twenty samples at a time: a gain of 200 is worth but a few."""
+    for gain, words in (
+        (2.0 * N * np.log(2.0 / 1.8), "fits better, but"),
+        (50.0, "no more than chance"),
+    ):
+        (trial,) = tried(made({"sensor_lag": gain}, names=["sensor_lag"], smooth=20)).trials
+        assert trial.outcome == "no gain"
+        assert trial.evidence < 0.0
+        assert words in trial.reason
+
+
 def test_the_price_rises_with_candidates_and_parameters() -> None:
     gains = {"sensor_lag": 100.0}
     few, many = made(gains), made(gains, names=[*FOUR, "wear_in", "backlash", "time_delay"])

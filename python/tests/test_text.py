@@ -91,7 +91,8 @@ def test_verdict_sentences(make_diagnosis: Callable[[str], Diagnosis]) -> None:
     assert said["missing"].startswith("Missing: coulomb_drag. With it, the held-out error falls")
     assert "cannot tell which: coulomb_drag or presliding" in said["ambiguous"]
     assert "no effect in the catalogue explains" in said["unexplained"]
-    assert "distance since a reversal" in said["unexplained"]
+    assert "after a reversal, v > 0" in said["unexplained"]
+    assert "(and 1 more below)" in said["unexplained"]
     assert "Next experiment: record a run" in diagnosis_report(make_diagnosis("ambiguous"))
 
 

@@ -91,6 +91,7 @@ def pattern_along(
     noise_n: float,
     least_share: float = LEAST_SHARE,
     significance: float = SIGNIFICANCE,
+    told_of: Sequence[Array] | None = None,
 ) -> Failure | None:
     """The pattern of residuals (record minus prediction, N) along an axis, where it stands out.
 
@@ -102,6 +103,9 @@ def pattern_along(
         Share of the mean square that the means of the bins must explain beyond chance.
     significance
         Standard deviations that this must stand above chance.
+    told_of
+        Record minus prediction, N, whose means the words and the sizes are of, where the test is of
+        something else.
     """
     r = samples.flat(residuals)
     total = float(r @ r)
@@ -114,12 +118,14 @@ def pattern_along(
     share = (explained - chance) / total if total > 0 else 0.0
     if share < least_share or explained < chance + significance * spread:
         return None
-    return Failure(axis.axis, pattern_words(axis, means, counts), share, axis.bins, means, counts)
+    told = means if told_of is None else bin_means(axis, samples, told_of)[0]
+    words = pattern_words(axis, told, counts, found=means)
+    return Failure(axis.axis, words, share, axis.bins, told, counts)
 
 
-def pattern_words(axis: Binned, means: Array, counts: Counts) -> str:
-    """The pattern of the means in words."""
-    weight = counts * means**2
+def pattern_words(axis: Binned, means: Array, counts: Counts, found: Array | None = None) -> str:
+    """The pattern of the means in words; those in which it was `found` say in which bins."""
+    weight = counts * (means if found is None else found) ** 2
     # Of very many bins the strongest has little, too.
     strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
     ways = np.array([b.direction for b in axis.bins])
@@ -135,7 +141,7 @@ def pattern_words(axis: Binned, means: Array, counts: Counts) -> str:
         lead = f"one sign throughout: record minus model {size:+.2g} N"
     else:
         lead = ""
-    worst = np.argsort(-weight)[:2]
+    worst = np.argsort(-np.where(strong, counts * means**2, -1.0), kind="stable")[:2]
     spots = "; ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
     if not lead:
         return f"most {spots}"

@@ -19,6 +19,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
+from jbf.records.counts import count_of
 
 Array = npt.NDArray[np.float64]
 
@@ -31,9 +32,14 @@ NAMED = 4
 
 
 def find_bursts(
-    prepared: Sequence[Prepared], samples: Samples, innovations: Sequence[Array], policy: Policy
+    prepared: Sequence[Prepared],
+    samples: Samples,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    policy: Policy,
 ) -> list[Remainder]:
-    """Isolated bursts in the innovations (record minus prediction), if there are any."""
+    """Isolated bursts in the innovations, with their size in the residuals (record minus
+    prediction), if there are any."""
     every = samples.flat(innovations)
     if not len(every):
         return []
@@ -47,16 +53,17 @@ def find_bursts(
     if _lasting_chance(innovations, samples, sigma, policy) > policy.burst_chance:
         return []
     bursts: list[tuple[float, float, str]] = []
-    for e, counted, p in zip(innovations, samples.counted, prepared, strict=True):
+    for e, r, counted, p in zip(innovations, residuals, samples.counted, prepared, strict=True):
         index = np.flatnonzero((np.abs(e) > policy.burst_sigma * sigma) & counted)
         time = p.run.time_s[index]
         for group in np.split(index, np.flatnonzero(np.diff(time) > APART_S) + 1):
             if len(group):
-                top = int(group[np.argmax(np.abs(e[group]))])
-                bursts.append((abs(float(e[top])), float(p.run.time_s[top]), p.run.name))
+                top = int(group[np.argmax(np.abs(r[group]))])
+                bursts.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
     bursts.sort(reverse=True)
     largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in bursts[:NAMED])
-    where = f"{len(bursts)} bursts, the largest {bursts[0][0]:.2g} N: at {largest}"
+    size = "of" if len(bursts) == 1 else "the largest"
+    where = f"{count_of(len(bursts), 'burst')}, {size} {bursts[0][0]:.2g} N: at {largest}"
     return [Remainder("time", where, min(share, 1.0))]
 
 

@@ -8,6 +8,7 @@ as the runs have parameters to themselves less those that they share. It costs n
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,7 @@ from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 SENSITIVE = 1e-3
 """A direction in which a run moves with the parameters less than this share of its best is none."""
@@ -64,9 +66,7 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     """
     # Samples beside a jump whose instant is fitted tell that instant with errors of their own.
     samples = solution.samples.tested()
-    many = {name for name in problem.effects if find_effect(name).peaks}
-    owners = [problem.names[i].split(".")[0] for i in problem.open]
-    rings = np.array([o in many if effect is None else o != effect for o in owners])
+    rings = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
     parts = [
         _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), rings)
@@ -98,6 +98,16 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     return Disagreement(max(gain - common, 0.0), max(degrees - shared, 1), ranked)
 
 
+def _of(problem: Problem, effects: Collection[str]) -> Mask:
+    """True at search variables of these effects."""
+    return np.array([problem.names[i].split(".")[0] in effects for i in problem.open], dtype=bool)
+
+
+def _of_many_peaks(problem: Problem) -> Mask:
+    """True at search variables of effects whose likelihood has peak beside peak."""
+    return _of(problem, {name for name in problem.effects if find_effect(name).peaks})
+
+
 def _directions(j: Array) -> Array:
     """Directions of the record, orthonormal columns, that the parameters move it in."""
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
@@ -105,7 +115,7 @@ def _directions(j: Array) -> Array:
     return found
 
 
-def _set_aside(r: Array, j: Array, aside: npt.NDArray[np.bool_]) -> tuple[Array, Array]:
+def _set_aside(r: Array, j: Array, aside: Mask) -> tuple[Array, Array]:
     """Residuals and derivatives with what the parameters set aside could explain taken out: of an
     effect whose likelihood has peak beside peak each run may have the one that its errors of
     motion choose."""
@@ -121,10 +131,36 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
     found = disagreement(problem, solution)
     if not found.beyond_chance(policy):
         return []
-    runs = ", ".join(list(found.by_run)[:NAMED])
+    ranked = list(found.by_run)[:NAMED]
+    first, others = ranked[0], [n for n in ranked[1:] if found.by_run[n] > policy.constancy_ratio]
     where = (
-        f"the runs ask for parameters that differ ({found.gain / found.degrees:.0f} times as much "
-        f"as by chance), most of all {runs}"
+        f"the runs ask for parameters that differ: run {first} asks for "
+        f"{own_step(problem, solution, first)} ({found.by_run[first]:.0f} times as much as by "
+        "chance); check its load, zero and temperature"
     )
+    if others:
+        where += f" (next: {', '.join(others)})"
     share = min((found.gain - found.degrees) / solution.samples.count, 1.0)
     return [Remainder("parameters", where, share)]
+
+
+def own_step(problem: Problem, solution: Solution, run: str) -> str:
+    """The parameter that gains a run most where it alone is the run's own, and how it differs there
+    by one Gauss-Newton step, in words."""
+    samples = solution.samples.tested()
+    i = samples.runs.index(run)
+    r, j = samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+    size = np.linalg.norm(j, axis=0)
+    asked = (size > 0.0) & ~_of_many_peaks(problem)
+    size = np.where(asked, size, np.inf)
+    gain = np.abs(j.T @ r) / size
+    best = int(np.argmax(gain))
+    step = float(j[:, best] @ r) / float(size[best]) ** 2
+    place = problem.open[best]
+    name, page = problem.names[place], problem.parameters[problem.names[place]]
+    more = "higher" if step > 0.0 else "lower"
+    if problem.log[place]:
+        part = float(np.expm1(min(step, 700.0)))
+        return f"{name} {100.0 * abs(part):.3g} % {more}"
+    unit = "" if page.unit == "-" else f" {page.unit}"
+    return f"{name} {abs(step):.2g}{unit} {more}"

@@ -99,6 +99,8 @@ def diagnose(
     steps = as_it_ended(steps, present, doubted)
     equal = alternatives(candidates, named)
     kept = best_predicting(candidates, present, named)
+    if kept != present:
+        steps.append(_step(candidates, kept, before.noise_n, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others}
     answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))

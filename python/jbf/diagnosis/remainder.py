@@ -3,7 +3,7 @@ comes again with the motion, and runs that disagree on the parameters.
 
 Everything is tested on innovations (the residual less what the noise's own memory foretells),
 so that coloured noise is no structure. A pattern must be both beyond chance and large enough to
-matter.
+matter. What is said of it, in newtons, is of the residual: record minus model.
 """
 
 from __future__ import annotations
@@ -34,21 +34,26 @@ def find_remainder(
     """What remains in the residuals of a solution, strongest first."""
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
-    patterns = find_patterns(problem, solution, innovations, policy)
-    found = [Remainder(f.axis, f.where, f.share) for f in patterns]
     left = samples.without_deviations(solution.residuals, solution.noise)
+    patterns = find_patterns(problem, solution, innovations, left, policy)
+    found = [Remainder(f.axis, f.where, f.share) for f in patterns]
     found += find_tones(prepared, samples, innovations, left, policy)
     found += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
-    found += find_bursts(prepared, samples, plain, policy)
+    found += find_bursts(prepared, samples, plain, left, policy)
     found += find_disagreement(problem, solution, policy)
     return tuple(sorted(found, key=lambda r: -r.share))
 
 
 def find_patterns(
-    problem: Problem, solution: Solution, innovations: Sequence[Array], policy: Policy
+    problem: Problem,
+    solution: Solution,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    policy: Policy,
 ) -> list[Failure]:
-    """Axes along which the means of the innovations differ by more than chance and a share."""
+    """Axes along which the means of the innovations differ by more than chance and a share, with
+    those of the residuals."""
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
@@ -56,7 +61,7 @@ def find_patterns(
     force = force_axis(problem.predict(solution.values))
     share, sigma = policy.pattern_share, policy.pattern_sigma
     found = (
-        pattern_along(axis, solution.samples, innovations, size, share, sigma)
+        pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
         for axis in (*all_axes(problem.campaign, u_tr), force)
     )
     return [failure for failure in found if failure is not None]

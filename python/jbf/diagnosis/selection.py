@@ -21,6 +21,10 @@ from jbf.estimation.solution import Solution
 
 Names = tuple[str, ...]
 
+LESS = 0.95
+"""Share of an RMS below which another is less for anybody who reads the ledger."""
+SMOOTH = "fits better, but a residual this smooth has too few independent samples to tell"
+
 
 @dataclass(frozen=True)
 class Ranked:
@@ -65,7 +69,8 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         name, gain = found.effect, found.evidence
         rms = min(found.solution.rms_n, bare)
         outcome: Outcome
-        outcome, reason = "no gain", "gains no more than chance would"
+        outcome = "no gain"
+        reason = SMOOTH if rms < LESS * bare else "gains no more than chance would"
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name))
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)

@@ -19,6 +19,7 @@ from jbf.models.requirements import has_angle, has_path
 from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
+from jbf.records.findings.repeated_run import copies, repeated
 from jbf.records.motion.roughness import noise_of
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -55,7 +56,7 @@ class Campaign:
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
-        """Estimate each run's motion once.
+        """Estimate each run's motion once; a run that was given twice is one run.
 
         Raises
         ------
@@ -65,7 +66,12 @@ class Campaign:
         runs = list_of_runs(runs)
         if not runs:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
-        prepared = tuple(Prepared.of(rig, run) for run in runs)
+        again = copies(runs)
+        prepared = tuple(
+            Prepared.of(rig, run).finding([repeated(run, runs[k]) for k in again if again[k] == i])
+            for i, run in enumerate(runs)
+            if i not in again
+        )
         samples = Samples.of(prepared)
         return cls(rig, prepared, samples, most_noise(prepared, samples))
 

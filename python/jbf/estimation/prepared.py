@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,6 +14,7 @@ from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.records.findings.examine import Examined, examine, examine_readings
+from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import find_noisy_load
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
@@ -73,6 +75,11 @@ class Prepared:
         step_s = float(np.median(np.diff(run.time_s)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
+
+    def finding(self, more: Sequence[Finding]) -> Prepared:
+        """The run with more findings."""
+        whole = (*self.examined.findings, *more)
+        return replace(self, examined=replace(self.examined, findings=whole))
 
     def shifted(self, late_s: float, drift: float) -> Prepared:
         """The run with its force compared with the motion so long before.

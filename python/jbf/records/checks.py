@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.records.counts import count_of
 
 Array = npt.NDArray[np.float64]
 
@@ -86,7 +87,7 @@ def check_columns(
     if samples < MIN_SAMPLES:
         raise InputError(
             file=file,
-            problem=f"has {samples} samples",
+            problem=f"has {count_of(samples, 'sample')}",
             mend=f"a run needs at least {MIN_SAMPLES}",
         )
     for column, values in columns.items():
@@ -94,7 +95,7 @@ def check_columns(
             raise InputError(
                 file=file,
                 column=column,
-                problem=f"has {len(values)} samples where time_s has {samples}",
+                problem=f"has {count_of(len(values), 'sample')} where time_s has {samples}",
                 mend="give every column one value a sample",
             )
         bad = np.flatnonzero(~np.isfinite(values))

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
 from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
+from jbf.records.counts import count_of
 from jbf.records.run import PathLike, Run
 from jbf.text_files import path_of, read_text
 
@@ -179,7 +180,7 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
         raise InputError(
             file=path,
             row=numbers[at],
-            problem=f"has {len(rows[at])} cells where the header has {len(header)}",
+            problem=f"has {count_of(len(rows[at]), 'cell')} where the header has {len(header)}",
             mend="give every row one cell a column, numbers with a decimal point",
         )
     columns: dict[str, Array] = {}

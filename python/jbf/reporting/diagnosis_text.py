@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from jbf.diagnosis.result import Diagnosis
+from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, parameter_lines, where_lines
@@ -45,7 +46,8 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines += [
         "",
         "Measurement",
-        f"    {len(campaign.prepared)} runs of {duration:.0f} s in all, {samples} samples "
+        f"    {count_of(len(campaign.prepared), 'run')} of {duration:.0f} s in all, "
+        f"{count_of(samples, 'sample')} "
         f"where the sign of the motion is known",
         f"    noise floor {number(bare.noise_n)} N, estimated from the records alone",
         "",

@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jbf import _core
+from jbf.records.counts import count_of
 from jbf.reporting.words import number
 
 if TYPE_CHECKING:
@@ -71,6 +72,7 @@ def measurement(comparison: Comparison, noise_n: float) -> str:
     runs = comparison.campaign.prepared
     duration = sum(p.run.duration_s for p in runs)
     return (
-        f"{len(runs)} runs of {duration:.0f} s in all, {comparison.samples.count} samples "
+        f"{count_of(len(runs), 'run')} of {duration:.0f} s in all, "
+        f"{count_of(comparison.samples.count, 'sample')} "
         f"where the sign of the motion is known, noise floor {number(noise_n)} N"
     )

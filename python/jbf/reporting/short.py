@@ -11,6 +11,7 @@ from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.counts import count_of
 from jbf.reporting.words import number, times, value_and_error
 
 LONGEST = 120
@@ -43,7 +44,8 @@ def short_fit(fit: Fit) -> str:
     """Model, runs, RMS; below it the parameters."""
     search = "" if fit.converged else ", not converged"
     return (
-        f"Fit({_law(fit.model)}; {len(fit.residuals)} runs, {fit.samples} samples, "
+        f"Fit({_law(fit.model)}; {count_of(len(fit.residuals), 'run')}, "
+        f"{count_of(fit.samples, 'sample')}, "
         f"RMS {number(fit.rms_n)} N{search};\n    {_values(fit.parameters)})"
     )
 
@@ -51,13 +53,15 @@ def short_fit(fit: Fit) -> str:
 def short_bootstrap(found: Bootstrap) -> str:
     """How many answers, and the parameters with the errors that they show."""
     repeats = len(next(iter(found.values.values())))
-    return f"Bootstrap({repeats} fits again;\n    {_values(found.fit.parameters)})"
+    return f"Bootstrap({count_of(repeats, 'fit')} again;\n    {_values(found.fit.parameters)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
     """The parameters, and how many samples they are from."""
     search = "" if fit.converged else ", not converged"
-    return f"TrajectoryFit({fit.samples} samples{search};\n    {_values(fit.parameters)})"
+    return (
+        f"TrajectoryFit({count_of(fit.samples, 'sample')}{search};\n    {_values(fit.parameters)})"
+    )
 
 
 def short_comparison(comparison: Comparison) -> str:
@@ -65,8 +69,8 @@ def short_comparison(comparison: Comparison) -> str:
     where = first_of(f.axis for f in comparison.failures)
     rms, noise = comparison.rms_n, comparison.noise_n
     return (
-        f"Comparison({_law(comparison.model)}; {len(comparison.runs)} runs, RMS {number(rms)} N, "
-        f"{times(rms, noise)} the noise of {number(noise)} N;\n    "
+        f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
+        f"RMS {number(rms)} N, {times(rms, noise)} the noise of {number(noise)} N;\n    "
         + (f"fails along {where})" if where else "no pattern along any axis)")
     )
 

@@ -72,6 +72,6 @@ def comparison_table(comparison: Comparison) -> str:
 
 def diagnosis_table(diagnosis: Diagnosis) -> str:
     """The ledger below the verdict."""
-    title = f"Verdict: {diagnosis.verdict}. {verdict_sentence(diagnosis)}"
+    title = f"Verdict: {diagnosis.verdict}. {verdict_sentence(diagnosis, place='')}"
     head = ("step", "fit (N)", "held out (N)", "noise (N)", "held out / noise")
     return table(title, head, ledger_rows(diagnosis))

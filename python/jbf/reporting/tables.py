@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jbf.models.catalogue import parameters_of
+from jbf.records.counts import count_of
 from jbf.reporting.words import number, percent, step_name, value_and_error
 
 if TYPE_CHECKING:
@@ -93,6 +94,6 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
     for kind, found in kinds.items():
         said = [f"{f.words}, in {f.run}" for f in found[:MOST_RUNS_NAMED]]
         if len(found) > MOST_RUNS_NAMED:
-            said.append(f"and in {len(found) - MOST_RUNS_NAMED} runs more")
+            said.append(f"and in {count_of(len(found) - MOST_RUNS_NAMED, 'run')} more")
         rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
     return rows

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
+    from jbf.diagnosis.ledger import Remainder
     from jbf.diagnosis.result import Diagnosis
     from jbf.models.model import Model
     from jbf.models.parameter_value import ParameterValue
@@ -89,8 +90,18 @@ def comparison_sentence(comparison: Comparison) -> str:
     )
 
 
-def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """What the diagnosis found, in one plain sentence or two."""
+def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
+    """What the diagnosis found, in a few plain sentences.
+
+    Parameters
+    ----------
+    place
+        Where the rest of what remains stands.
+    """
+    return _found(diagnosis, place) + _confounders_sentence(diagnosis.confounders)
+
+
+def _found(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     reached = (
         f"{number(last.holdout_rms_n)} N, {times(last.holdout_rms_n, last.noise_n)} "
@@ -115,16 +126,34 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
             f"Something is missing, and these runs cannot tell which: {ties}. "
             f"With {added}, {fall}; the alternatives do as well."
         )
-    along = listed(r.axis for r in diagnosis.unexplained)
-    where = f" along {along}" if along else ""
+    remains = (
+        f"remains that no effect in the catalogue explains{_worst(diagnosis.unexplained, place)}"
+    )
     if diagnosis.effects:
         return (
-            f"Part of what is missing is {added}: with {_it(diagnosis.effects)}, {fall}. But "
-            f"structure remains{where} that no effect in the catalogue explains."
+            f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. "
+            f"Besides, something {remains}."
         )
+    return f"Something {remains}. The held-out error is {reached}."
+
+
+def _worst(remains: Sequence[Remainder], place: str) -> str:
+    """The largest of what remains in its own words, and how much more there is."""
+    if not remains:
+        return ""
+    more = f" (and {len(remains) - 1} more{place})" if len(remains) > 1 else ""
+    return f": {max(remains, key=lambda r: r.share).where}{more}"
+
+
+def _confounders_sentence(names: tuple[str, ...]) -> str:
+    """Effects that the model has and the verdict does not name, and why; empty of none."""
+    if not names:
+        return ""
+    one = len(names) == 1
     return (
-        f"Structure remains{where} that no effect in the catalogue explains: the held-out error "
-        f"is {reached}."
+        f" The model also has {listed(names)}, with which it predicts runs left out better, but "
+        f"which {'is' if one else 'are'} not named: the runs disagree on "
+        f"{'its' if one else 'their'} parameters."
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
@@ -25,5 +26,5 @@ def find_gaps(run: Run) -> list[Finding]:
     if count == 0:
         return []
     longest = float(steps.max())
-    words = f"{count} rows are missing, {longest:.2g} s at the longest"
+    words = f"{count_of(count, 'row is', 'rows are')} missing, {longest:.2g} s at the longest"
     return [Finding("gaps", "time_s", run.name, longest, "s", "stepped over", words)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
@@ -60,7 +61,10 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     middle = 0.5 * (run.friction_n[index - 1] + run.friction_n[index + 1])
     size = float(np.max(np.abs(run.friction_n[index] - middle)))
     first = ", ".join(f"{t:.2f} s" for t in run.time_s[index[:3]])
-    words = f"{len(index)} single samples of the force are off by up to {size:.3g} N (at {first})"
+    singles = count_of(
+        len(index), "single sample of the force is", "single samples of the force are"
+    )
+    words = f"{singles} off by up to {size:.3g} N (at {first})"
     return [Finding("glitches", "friction_n", run.name, size, "N", "set aside", words)], mask
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.steps import step_of
 from jbf.records.motion.roughness import noise_of
@@ -63,7 +64,7 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     spans = run.time_s[ends - 1] - run.time_s[np.maximum(starts - 1, 0)]
     longest = float(np.max(spans))
     words = (
-        f"the force stands still {len(starts)} times, for up to {longest:.2g} s "
+        f"the force stands still {count_of(len(starts), 'time')}, for up to {longest:.2g} s "
         f"(first at {run.time_s[starts[0]]:.2f} s)"
     )
     return [Finding("held_samples", "friction_n", run.name, longest, "s", "set aside", words)], mask

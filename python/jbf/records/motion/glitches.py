@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.position import Position
 from jbf.records.motion.roughness import step_of
@@ -164,5 +165,5 @@ def _between(time: Array, values: Array, mask: Mask) -> Array:
 def _words(what: str, time: Array, mask: Mask, size: str) -> str:
     index = np.flatnonzero(mask)
     first = ", ".join(f"{t:.2f} s" for t in time[index[:3]])
-    many = "sample" if len(index) == 1 else "samples"
-    return f"{len(index)} single {many} of the {what} off by up to {size} (at {first})"
+    singles = count_of(len(index), "single sample")
+    return f"{singles} of the {what} off by up to {size} (at {first})"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.position import Position
 from jbf.records.motion.roughness import step_of
@@ -51,7 +52,8 @@ def mend_held(
         lasted, count = max(lasted, float(time[end] - time[first])), count + end - first
     if not 0 < count <= MOST * len(path):
         return position, None
-    words = f"{count} readings of the position repeat the one before while the shaft moves on"
+    readings = count_of(count, "reading of the position repeats", "readings of the position repeat")
+    words = f"{readings} the one before while the shaft moves on"
     done = "put where the speed says"
     found = Finding("held_samples", position.column, name, lasted, "s", done, words)
     return position.along(mended), found

@@ -1,0 +1,52 @@
+"""Runs that were given twice: the same recording under another name, perhaps on another clock or
+from another turn of the shaft. It tells nothing more, and would count twice as much."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+SHIFTED = ("time_s", "angle_rad", "position_m")
+"""Columns that may begin anywhere."""
+ALIKE = 1e-6
+"""Of its span, how far such a column may be off: what a shift rounds."""
+
+
+def copies(runs: Sequence[Run]) -> dict[int, int]:
+    """Places of runs that are another run again, each to the place of the first."""
+    found: dict[int, int] = {}
+    for i, run in enumerate(runs):
+        for first in range(i):
+            if first not in found and same_recording(runs[first], run):
+                found[i] = first
+                break
+    return found
+
+
+def same_recording(a: Run, b: Run) -> bool:
+    """Are two runs one recording, to the sample?"""
+    one, other = a.columns(), b.columns()
+    if a.friction_n is None or len(a) != len(b) or set(one) != set(other):
+        return False
+    return all(_same(name, one[name], other[name]) for name in one)
+
+
+def _same(name: str, a: Array, b: Array) -> bool:
+    if name not in SHIFTED:
+        return bool(np.array_equal(a, b, equal_nan=True))
+    a, b = a - a[0], b - b[0]
+    return bool(np.allclose(a, b, rtol=0.0, atol=ALIKE * float(np.ptp(a))))
+
+
+def repeated(first: Run, again: Run) -> Finding:
+    """What is said of a run that was given twice."""
+    words = f"it is run {first.name} again, sample by sample"
+    size = float(len(again))
+    return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

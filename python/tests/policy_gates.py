@@ -123,6 +123,5 @@ GATES: dict[str, Gate] = {
     "tone_share": Gate(tone(6.0), 0.0075, 0.0085),
     "replicate_sigma": Gate(repeated(20.0), 4.5, 5.5),
     "replicate_share": Gate(repeated(800.0), 0.029, 0.031),
-    "uneven_noise": Gate(of_runs("noise_by_run"), 1.24, 1.26),
     "deviation_chance": Gate(of_runs("level_by_run"), 2e-4, 5e-5),
 }

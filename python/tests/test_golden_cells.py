@@ -184,6 +184,7 @@ def test_the_dictionary_of_a_comparison() -> None:
             {"run": "back", "rms_n": 1.5, "samples": 500},
         ],
         "failures": [{"axis": "direction", "where": "record above the model", "share": 0.6}],
+        "findings": [],
     }
 
 

@@ -16,7 +16,8 @@ from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.selection import left_out_confirms, try_candidates
+from jbf.diagnosis.selection import Ranked, _leaves_more, left_out_confirms, try_candidates
+from jbf.diagnosis.uneven_noise import _uneven
 from jbf.diagnosis.verdict import name_stands
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.lateness import Lateness
@@ -37,6 +38,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "tie": 8.0,
         "most_effects": 5,
         "least_left_out_gain": 0.5,
+        "leader_rms": 1.25,
         "weak": 60.0,
         "least_score": 10.0,
         "contender": 60.0,
@@ -98,6 +100,16 @@ def rounds(policy: Policy) -> object:
 
 def standing(disagreement: float) -> Callable[[Policy], object]:
     return lambda policy: name_stands(1000.0, disagreement, policy)
+
+
+def leaves_more(rms_n: float) -> Callable[[Policy], object]:
+    ranked = Ranked(99.0, "sensor_lag", cast(Any, SimpleNamespace(rms_n=rms_n)))
+    return lambda policy: _leaves_more(ranked, 1.0, policy)
+
+
+def uneven(ratio: float) -> Callable[[Policy], object]:
+    sizes, counts = np.array([1.0, ratio]), np.array([10**6, 10**6])
+    return lambda policy: _uneven(sizes, counts, policy)
 
 
 def disagreed(gain: float, degrees: int) -> Callable[[Policy], object]:
@@ -176,6 +188,8 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         0.51,
     ),
     "heavy_tails": (tails, 5.9, 6.1),
+    "leader_rms": (leaves_more(1.25), 1.24, 1.26),
+    "uneven_noise": (uneven(1.25), 1.24, 1.26),
     "clear": (standing(50.0), 19.9, 20.1),
     # Of four degrees of freedom chance decides, of a hundred the ratio.
     "constancy_chance": (disagreed(43.9, 4), 0.5e-8, 2e-8),

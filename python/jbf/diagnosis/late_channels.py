@@ -37,7 +37,8 @@ def on_time(problem: Problem, solution: Solution, policy: Policy) -> Campaign | 
             break
         # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
-        late_s = late_s + np.array(found.late_s) + known.get(f"{DELAY}.tau_s", 0.0)
+        shared = known.get(f"{DELAY}.tau_s", 0.0) if found.spread_s > 0.0 else 0.0
+        late_s = late_s + np.array(found.late_s) + shared
         drift += found.drift
         shifted = [
             p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)

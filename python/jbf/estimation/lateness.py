@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage, stats
 
+from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -100,10 +101,14 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
 def _scans(
     problem: Problem, solution: Solution, grid: Array, reach: float
 ) -> list[tuple[Array, Array]]:
-    """Of each run its samples' squared innovations by lateness, (len(grid), n), and their times."""
-    samples, noise = solution.samples, solution.noise
+    """Of each run its samples' squared residuals by lateness, (len(grid), n), and their times.
+
+    Not whitened: a filter that takes a late force for colour moves it, too.
+    """
+    samples = solution.samples
     fine = [_fine(p) for p in problem.campaign.prepared]
     forces = problem.chain.predict(solution.values, [driven for _, driven in fine])
+    share = min(independent_share(solution.residuals, samples.steps_s), 1.0)
     found = []
     for i, (p, (instants, _), force) in enumerate(
         zip(problem.campaign.prepared, fine, forces, strict=True)
@@ -116,10 +121,12 @@ def _scans(
         for late in grid:
             shifted = np.interp(p.run.time_s - late, instants, force)
             left = (p.friction_n - shifted) * samples.weight[i]
-            rows.append(noise.innovations(np.where(kept, left, 0.0), p.step_s)[kept])
+            rows.append(left[kept])
         e = np.array(rows)
         size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
         squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
+        # Of coloured residuals a sample tells less.
+        squares *= share
         found.append((squares, p.run.time_s[kept] - p.run.time_s[0]))
     return found
 

@@ -19,7 +19,13 @@ INSENSITIVE = 1e-4
 
 
 def left_out_rms(problem: Problem, solution: Solution) -> float:
-    """RMS over the samples that count of runs left out of the fit one at a time, N.
+    """RMS of `left_out_residuals`, N."""
+    left = left_out_residuals(problem, solution)
+    return float(np.sqrt(np.sum(left**2) / max(len(left), 1)))
+
+
+def left_out_residuals(problem: Problem, solution: Solution) -> Array:
+    """Residuals, N, at the samples that count of runs left out of the fit one at a time.
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
     value): what only the left-out run could know must not leak into its prediction. With one run
@@ -28,8 +34,8 @@ def left_out_rms(problem: Problem, solution: Solution) -> float:
     campaign, samples = problem.campaign, solution.samples
     count = len(campaign.prepared)
     if count == 1:
-        return _halves_rms(problem, solution)
-    total, counted = 0.0, 0
+        return _halves(problem, solution)
+    left = []
     for i in range(count):
         rest = [k for k in range(count) if k != i]
         part = _of(problem, campaign.only(rest))
@@ -41,10 +47,8 @@ def left_out_rms(problem: Problem, solution: Solution) -> float:
             start = min((step, start), key=lambda v: part.square(v, kept))
         values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
         own = _of(problem, campaign.only([i]))
-        residual = own.residuals(values)[0]
-        total += float(np.sum(residual[samples.counted[i]] ** 2))
-        counted += int(samples.counted[i].sum())
-    return float(np.sqrt(total / max(counted, 1)))
+        left.append(own.residuals(values)[0][samples.counted[i]])
+    return np.concatenate(left)
 
 
 def _of(problem: Problem, campaign: Campaign) -> Problem:
@@ -78,13 +82,11 @@ def _one_step(problem: Problem, solution: Solution, rest: list[int]) -> Array:
     return problem.decode(problem.encode(solution.values) + step, solution.values)
 
 
-def _halves_rms(problem: Problem, solution: Solution) -> float:
+def _halves(problem: Problem, solution: Solution) -> Array:
     """Each half of a single run predicted from a fit to the other."""
-    total, counted = 0.0, 0
+    residuals = []
     first, second = solution.samples.halves()
     for kept, left in ((first, second), (second, first)):
         values, _, _ = search(problem, kept, solution.values, solution.noise, EVALUATIONS)
-        seen = left.counted[0]
-        total += float(np.sum(problem.residuals(values)[0][seen] ** 2))
-        counted += int(seen.sum())
-    return float(np.sqrt(total / max(counted, 1)))
+        residuals.append(problem.residuals(values)[0][left.counted[0]])
+    return np.concatenate(residuals)

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.left_out import left_out_residuals
 from jbf.estimation.minimum import MAX_EVALUATIONS, search
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -31,22 +31,33 @@ ROUNDS = 4
 ELSEWHERE = 0.05
 """Predictions further apart than this share of the residual's RMS are two places."""
 BETTER = 0.97
-"""A left-out error smaller than so many times the other is smaller."""
+"""A left-out RMS smaller than so many times the other is smaller;"""
+NO_WORSE, SHARPER = 1.02, 0.8
+"""or one that is no worse, by its first, where the median is smaller, by its second."""
 
 
 def best_weighting(problem: Problem, plain: Solution) -> Solution:
-    """The solution with the smallest left-out error: this one, or one with robust weights."""
-    best, left_out = plain, None
+    """The solution that predicts runs left out best: this one, or one with robust weights."""
+    best: Solution = plain
+    left: Array | None = None
     for weights in (huber, student):
         robust = _robust(problem, plain, weights)
         apart = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
         if plain.samples.rms(apart) < ELSEWHERE * plain.rms_n:
             continue
-        left_out = left_out_rms(problem, best) if left_out is None else left_out
-        less = left_out_rms(problem, robust)
-        if less < BETTER * left_out:
-            best, left_out = robust, less
+        left = left_out_residuals(problem, best) if left is None else left
+        other = left_out_residuals(problem, robust)
+        if _better(other, left):
+            best, left = robust, other
     return best
+
+
+def _better(other: Array, left: Array) -> bool:
+    """Whether left-out residuals are smaller: in their squares or, where a few wild samples make up
+    most of those, in their middle."""
+    square = float(np.sqrt(np.mean(other**2) / max(float(np.mean(left**2)), 1e-300)))
+    middle = float(np.median(np.abs(other)) / max(float(np.median(np.abs(left))), 1e-300))
+    return square < BETTER or (square < NO_WORSE and middle < SHARPER)
 
 
 def huber(off: Array) -> Array:

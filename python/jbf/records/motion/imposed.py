@@ -97,7 +97,8 @@ class ImposedMotion:
         velocity = np.where(corner, line, cubic)
         known = self.sign_known[k] & self.sign_known[k + 1] & (v0 * v1 >= 0.0)
         between = np.abs(u - 0.5) < 0.5
-        known = np.where(between, known & (rest | ~corner), self.sign_known[k])
+        at_sample = np.where(u < 0.5, self.sign_known[k], self.sign_known[k + 1])
+        known = np.where(between, known & (rest | ~corner), at_sample)
         return replace(
             self,
             velocity_m_s=np.where(rest, 0.0, velocity),

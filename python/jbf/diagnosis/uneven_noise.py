@@ -1,0 +1,127 @@
+"""How large the noise is, sample by sample: with the force, by run, and how heavy its tails are."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+FORCE_BINS = 6
+HUBER = 2.5
+"""Innovations beyond so many of their standard deviations count less (Huber 1964)."""
+LEAST = 200
+"""Samples of a bin whose size can be told."""
+ERROR = 1.9
+"""Relative standard error of a size from the median of third differences, times the square root of
+the samples: 1.17 of a median of independent ones (Rousseeuw & Croux 1993); these share readings.
+"""
+
+
+def robust_size(values: Array) -> float:
+    return float(np.median(np.abs(values))) / 0.6745
+
+
+def _white(residual: Array) -> Array:
+    """The white noise of a residual, sample by sample, from its third differences."""
+    third = np.diff(residual, 3) / np.sqrt(20.0)
+    found: Array = np.pad(third, (1, len(residual) - len(third) - 1), mode="edge")
+    return found
+
+
+def noise_sizes(
+    problem: Problem, solution: Solution, policy: Policy
+) -> tuple[list[Array], list[Finding]]:
+    """A weight for the size of the noise at each sample, 0 to 1, and whether it is uneven."""
+    samples = solution.samples
+    # The white part alone: what a model leaves is smooth, and no noise.
+    e = [_white(r) for r in solution.residuals]
+    force = [np.abs(f) for f in problem.predict(solution.values)]
+    flat_e, flat_f = samples.flat(e), samples.flat(force)
+    usual = robust_size(flat_e)
+    ones = [np.ones(len(f)) for f in force]
+    if usual <= 0.0 or len(flat_e) < LEAST * FORCE_BINS:
+        return ones, []
+    edges = np.quantile(flat_f, np.linspace(0.0, 1.0, FORCE_BINS + 1))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
+    by_force = np.array([robust_size(flat_e[which == k]) for k in range(FORCE_BINS)])
+    findings = []
+    shares = ones
+    counts = np.bincount(which, minlength=FORCE_BINS)
+    if _uneven(by_force, counts, policy):
+        # A line through the squares: noise of the cell, and noise that goes with the force.
+        slope, level = np.polyfit(middle**2, by_force**2, 1)
+        if (
+            slope > 0.0
+            and level + slope * middle[-1] ** 2 > policy.uneven_noise**2 * by_force.min() ** 2
+        ):
+            least = max(level, 0.25 * by_force.min() ** 2)
+            sd = [np.sqrt(least + slope * f**2) for f in force]
+            low = min(float(s.min()) for s in sd)
+            shares = [low / s for s in sd]
+            share = float(np.sqrt(slope))
+            words = f"the noise grows with the force, by {100.0 * share:.2g} % of it"
+            names = ", ".join(samples.runs)
+            findings.append(
+                Finding("noise_with_force", "friction_n", names, share, "1", "weighed", words)
+            )
+    sized = [
+        robust_size((x * s)[c]) if c.sum() > LEAST else 0.0
+        for x, s, c in zip(e, shares, samples.counted, strict=True)
+    ]
+    known = [s for s in sized if s > 0.0]
+    sampled = np.array(
+        [int(c.sum()) for c, s in zip(samples.counted, sized, strict=True) if s > 0.0]
+    )
+    if len(known) > 1 and _uneven(np.array(known), sampled, policy):
+        shares = [
+            w * (min(known) / s if s > 0.0 else 1.0) for w, s in zip(shares, sized, strict=True)
+        ]
+        ratio = max(known) / min(known)
+        words = f"the noise differs by run, up to {ratio:.2g} times"
+        names = ", ".join(samples.runs)
+        findings.append(Finding("noise_by_run", "friction_n", names, ratio, "1", "weighed", words))
+    return shares, findings
+
+
+def robust_weights(
+    solution: Solution, sizes: list[Array], heavy: float
+) -> tuple[list[Array], list[Finding]]:
+    """A weight against heavy tails for each sample, 0 to 1, and whether there are any."""
+    samples = solution.samples
+    e = [
+        x * s
+        for x, s in zip(samples.innovations(solution.residuals, solution.noise), sizes, strict=True)
+    ]
+    flat = samples.flat(e)
+    sigma = robust_size(flat)
+    ones = [np.ones(len(x)) for x in e]
+    if sigma <= 0.0 or not len(flat):
+        return ones, []
+    beyond = float(np.mean(np.abs(flat) > 4.0 * sigma))
+    if beyond < max(heavy * 2.0 * stats.norm.sf(4.0), 5.0 / len(flat)):
+        return ones, []
+    # A weight on the residual whose square is Huber's on the square.
+    weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
+    words = f"{100.0 * beyond:.2g} % of the noise is beyond four of its standard deviations"
+    names = ", ".join(samples.runs)
+    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighed", words)
+    return weights, [finding]
+
+
+def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
+    """Whether sizes of noise differ by a ratio that matters, and by more than chance."""
+    if float(sizes.min()) <= 0.0 or sizes.max() <= policy.uneven_noise * sizes.min():
+        return False
+    error = ERROR / np.sqrt(counts)
+    logs = np.log(sizes)
+    middle = float(np.sum(logs / error**2) / np.sum(1.0 / error**2))
+    square = float(np.sum(((logs - middle) / error) ** 2))
+    return bool(stats.chi2.sf(square, len(sizes) - 1) < policy.deviation_chance)

@@ -14,17 +14,26 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 
+Names = tuple[str, ...]
 DELAY = "time_delay"
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 
 
-def on_time(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
+def on_time(
+    problem: Problem, solution: Solution, policy: Policy, rms_n: float = np.inf
+) -> Campaign | None:
     """The campaign with each run's force where it belongs; None where it is there already.
 
     What other looks found is left to be found again: it was seen through the lateness.
+
+    Parameters
+    ----------
+    rms_n
+        What the model may leave on runs that were shifted, N.
     """
     campaign = problem.campaign
     if any(f.kind in ("late_channel", "drifting_clock") for f in campaign.more_findings):
@@ -45,7 +54,7 @@ def on_time(problem: Problem, solution: Solution, policy: Policy) -> Campaign | 
         ]
         campaign = _settled(problem, shifted)
         problem, solution = _refitted(problem, campaign, known, solution)
-    if campaign is old:
+    if campaign is old or solution.rms_n > rms_n:
         return None
     findings = [
         _finding(p.run.name, late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
@@ -82,3 +91,10 @@ def _finding(run: str, late_s: float, drift: float) -> Finding:
         f"million: {1e3 * late_s:+.2g} ms in the middle of the run"
     )
     return Finding("drifting_clock", "friction_n", run, drift, "1", "shifted", words)
+
+
+def bought_by_lateness(effects: Names) -> Names:
+    """The effects that lateness by run may have bought: the instrument's, and those that move the
+    instants of jumps."""
+    pages = {name: find_effect(name) for name in effects}
+    return tuple(n for n, e in pages.items() if e.stage == "instrument" or e.moves_jumps)

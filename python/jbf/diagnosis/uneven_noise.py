@@ -72,19 +72,21 @@ def noise_sizes(
             findings.append(
                 Finding("noise_with_force", "friction_n", names, share, "1", "weighed", words)
             )
-    sized = [
-        robust_size((x * s)[c]) if c.sum() > LEAST else 0.0
-        for x, s, c in zip(e, shares, samples.counted, strict=True)
-    ]
-    known = [s for s in sized if s > 0.0]
-    sampled = np.array(
-        [int(c.sum()) for c, s in zip(samples.counted, sized, strict=True) if s > 0.0]
+    told = samples.innovations(solution.residuals, solution.noise)
+    white, whole = (
+        np.array(
+            [robust_size((x * s)[c]) for x, s, c in zip(v, shares, samples.counted, strict=True)]
+        )
+        for v in (e, told)
     )
-    if len(known) > 1 and _uneven(np.array(known), sampled, policy):
-        shares = [
-            w * (min(known) / s if s > 0.0 else 1.0) for w, s in zip(shares, sized, strict=True)
-        ]
-        ratio = max(known) / min(known)
+    sampled = np.array([int(c.sum()) for c in samples.counted])
+    some = (sampled > LEAST) & (white > 0.0) & (whole > 0.0)
+    # A smooth channel has no white noise, a wrong model more than noise: both must say so.
+    if some.sum() > 1 and all(_uneven(x[some], sampled[some], policy) for x in (white, whole)):
+        by_run = np.ones(len(some))
+        by_run[some] = np.maximum(*(x[some].min() / x[some] for x in (white, whole)))
+        shares = [w * share for w, share in zip(shares, by_run.tolist(), strict=True)]
+        ratio = float(by_run.max() / by_run.min())
         words = f"the noise differs by run, up to {ratio:.2g} times"
         names = ", ".join(samples.runs)
         findings.append(Finding("noise_by_run", "friction_n", names, ratio, "1", "weighed", words))

@@ -22,10 +22,12 @@ WINDOW = 40
 """Samples of a first look; shorter periods leave a polygon nothing to be tested by."""
 LOOKS = 3
 """First looks, along the record."""
-PERIODS = np.exp(np.arange(np.log(1.2), np.log(8.0), 0.01))
+PERIODS = np.exp(np.arange(np.log(1.2), np.log(8.0), 0.005))
 """Periods looked for, in samples."""
 PHASES = np.arange(0.0, 1.0, 0.1)
 """Phases looked for, in periods."""
+FOLLOWED = 8
+"""Of them followed."""
 LEAST_FREE = 6
 """Samples of a window beyond its corners."""
 LIKELY, EXACT = 0.25, 0.005
@@ -63,12 +65,10 @@ def find_native(time: Array, values: Array) -> Native | None:
         noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
         if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * WINDOW * step:
             continue
-        found = _first_look(t, y, step, noise)
-        if found is None:
-            continue
-        period, phase = _sharpened(t, y, *found)
-        if _polygon(t, y, period, phase)[0] < EXACT * noise:
-            return _whole(time, values, first, period, phase, noise)
+        for found in _first_look(t, y, step, noise):
+            period, phase = _sharpened(t, y, *found)
+            if _polygon(t, y, period, phase)[0] < EXACT * noise:
+                return _whole(time, values, first, period, phase, noise)
     return None
 
 
@@ -130,18 +130,19 @@ def _whole_of(
     return Native(knots[inside], read, period)
 
 
-def _first_look(t: Array, y: Array, step: float, noise: float) -> tuple[float, float] | None:
-    """Period and phase, s, with which a polygon nearly goes through a window's samples."""
+def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
+    """Periods and phases, s, with which a polygon nearly goes through a window's samples, best
+    first: with corners nearly as many as samples a wrong one may come nearer on this grid."""
     place = (t - t[0]) / step
     even = float(np.max(np.abs(place - np.arange(len(t))))) < EVEN
     looks = _even_looks(len(t)) if even else tuple(_looks(place))
-    best, found = LIKELY * noise, None
+    found = []
     for period, left_of in looks:
         left = np.sqrt(np.mean((left_of @ (y - y[0])) ** 2, axis=1))
         k = int(np.argmin(left))
-        if left[k] < best:
-            best, found = float(left[k]), (period * step, float(PHASES[k]) * period * step)
-    return found
+        if left[k] < LIKELY * noise:
+            found.append((float(left[k]), period * step, float(PHASES[k]) * period * step))
+    return [(period, phase) for _, period, phase in sorted(found)[:FOLLOWED]]
 
 
 def _looks(place: Array) -> Iterator[tuple[float, Array]]:

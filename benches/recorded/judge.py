@@ -17,7 +17,7 @@ FOUND_AS: dict[str, set[str]] = {
     "filtered_velocity": {"filtered_speed", "late_channel"},
     "gain_by_run": {"gain_by_run"},
     "gaps": {"gaps"},
-    "heavy_tails": {"heavy_tails"},
+    "heavy_tails": {"heavy_tails", "glitches"},
     "jitter": {"jitter"},
     "long_memory": {"long_memory", "level_by_run"},
     "noise_by_run": {"noise_by_run"},

@@ -19,6 +19,9 @@ from jbf.records.findings.finding import Finding
 
 Names = tuple[str, ...]
 DELAY = "time_delay"
+LEAST_APART = 0.08
+"""Share of a sample by which half of the runs must be off the middle one, where a model without a
+delay of its own says that they differ."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 
@@ -55,6 +58,10 @@ def on_time(
         campaign = _settled(problem, shifted)
         problem, solution = _refitted(problem, campaign, known, solution)
     if campaign is old or solution.rms_n > rms_n:
+        return None
+    apart = np.abs(late_s - np.median(late_s))
+    if np.isfinite(rms_n) and float(np.median(apart)) < LEAST_APART * prepared[0].step_s:
+        # On their way they seemed to differ; where they end, most do not: a delay of all.
         return None
     findings = [
         _finding(p.run.name, late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)

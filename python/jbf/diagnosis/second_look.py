@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
 
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_size, robust_weights
@@ -20,6 +19,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effect import spread_between
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
@@ -145,13 +145,7 @@ def _spread(
         precisions.append(size)
     if len(estimates) < 3:
         return None
-    d, w = np.array(estimates), np.array(precisions)
-    mean = float(np.sum(w * d) / np.sum(w))
-    q, free = float(np.sum(w * (d - mean) ** 2)), len(d) - 1
-    # Residuals are never quite as white as their innovations: ask for twice the chi-square.
-    chance = float(stats.chi2.sf(0.5 * q, free))
-    variance = (q - free) / float(np.sum(w) - np.sum(w**2) / np.sum(w))
-    return float(np.sqrt(max(variance, 0.0))), chance, q / free
+    return spread_between(np.array(estimates), np.array(precisions))
 
 
 def _words(name: str, sd: float) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from scipy import ndimage, stats
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effect import spread_between
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
@@ -180,15 +181,10 @@ def _spread(places: list[_Place]) -> tuple[float, float] | None:
     known = [p for p in places if np.isfinite(p.variance)]
     if len(known) < 3:
         return None
-    d = np.array([p.value for p in known])
-    w = 1.0 / np.array([p.variance for p in known])
-    mean = float(np.sum(w * d) / np.sum(w))
-    q, free = float(np.sum(w * (d - mean) ** 2)), len(d) - 1
-    variance = (q - free) / float(np.sum(w) - np.sum(w**2) / np.sum(w))
-    if variance <= 0.0:
-        return None
-    # Residuals are never quite as white as their innovations: ask for twice the chi-square.
-    return float(np.sqrt(variance)), float(stats.chi2.sf(0.5 * q, free))
+    values = np.array([p.value for p in known])
+    precisions = 1.0 / np.array([p.variance for p in known])
+    sd, chance, _ = spread_between(values, precisions)
+    return (sd, chance) if sd > 0.0 else None
 
 
 def _common(drifts: list[_Place]) -> tuple[float, float] | None:

@@ -185,7 +185,10 @@ mod tests {
     fn pole(law: &BaseLaw<f64>, drive: &Drive) -> [f64; 2] {
         let [k1, k2] = law.gains();
         let half = 0.5 * (drive.damping_1_s + drive.input_rad_s2_v * k2);
-        [-half, libm::sqrt(drive.input_rad_s2_v * k1 - half * half)]
+        [
+            -half,
+            crate::root::sqrt(drive.input_rad_s2_v * k1 - half * half),
+        ]
     }
 
     #[test]

@@ -172,7 +172,7 @@ impl<const N: usize> Real for Dual<N> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let root = libm::sqrt(self.value);
+        let root = crate::root::sqrt(self.value);
         // A square root at zero has no finite slope; zero keeps an optimiser alive there.
         let factor = if root > 0.0 { 0.5 / root } else { 0.0 };
         self.chain(root, factor)

@@ -1,6 +1,7 @@
 //! Transition eccentricity eps_tr: where the asperities first touch, equation (3.20).
 
 use crate::real::Real;
+use crate::root::sqrt;
 use core::f64::consts::PI;
 
 /// Solve `4 Fb^2 = eps^2 [ pi^2 / (4 d^3) + 4 eps^2 / d^4 ]`, `d = 1 - eps^2`, for eps.
@@ -15,7 +16,7 @@ pub fn transition_eccentricity<T: Real>(load_number: T) -> T {
     let g = 4.0 * fb * fb;
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
     // The root of 4 = g d^4 is the limit of heavy load, and a fair start everywhere.
-    let mut d = libm::sqrt(libm::sqrt(4.0 / (g + 4.0)));
+    let mut d = sqrt(sqrt(4.0 / (g + 4.0)));
     let mut slope = -1.0;
     for _ in 0..80 {
         let d3 = d * d * d;

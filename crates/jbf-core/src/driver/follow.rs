@@ -6,6 +6,7 @@ use super::{checked, Cost, Excitation, Film, Sample, Start};
 use crate::error::Error;
 use crate::law::journal::Loaded;
 use crate::real::Real;
+use crate::root::sqrt;
 use crate::stepper::{Linear, StiffSystem};
 
 /// Follow `film` along `excitation` from `start`, and hand the film at each of `times_s`
@@ -44,7 +45,7 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
         way.touching = way.closes_in();
     }
     let top = libm::fabs(excitation.velocity_m_s(start.time_s));
-    way.step_s = crate::law::Law::longest_step_s(journal, top) * libm::sqrt(libm::sqrt(tolerance));
+    way.step_s = crate::law::Law::longest_step_s(journal, top) * sqrt(sqrt(tolerance));
     way.emit_start();
     while way.next < times_s.len() {
         way.stretch();
@@ -54,7 +55,7 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
 
 /// Eccentricity ratio of a state.
 pub(super) fn radius<T: Real, const N: usize>(state: &[T; N]) -> f64 {
-    libm::sqrt((state[0] * state[0] + state[1] * state[1]).value())
+    sqrt((state[0] * state[0] + state[1] * state[1]).value())
 }
 
 /// A film on its way along an excitation.

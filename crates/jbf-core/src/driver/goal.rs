@@ -3,6 +3,7 @@
 use super::Film;
 use crate::law::journal::Loaded;
 use crate::real::Real;
+use crate::root::sqrt;
 
 /// Share of the tolerance that one step may err by: errors mostly die before the next. With
 /// inertia they die later.
@@ -20,7 +21,7 @@ const ROUNDING: f64 = 2e-14;
 /// with the fourth power of the step, not the fifth of the smooth theory.
 #[inline]
 pub(super) fn inverse_root(share: f64) -> f64 {
-    1.0 / libm::sqrt(libm::sqrt(share))
+    1.0 / sqrt(sqrt(share))
 }
 
 /// The error that a step may make.
@@ -52,15 +53,15 @@ impl Goal {
                     STEP_SHARE
                 },
             steepness,
-            least: FREE_WEIGHT * 2.0 * f_m * libm::sqrt(k0 / fb),
-            band: libm::sqrt(0.01 * tolerance * fb / (k0 * f_m)),
+            least: FREE_WEIGHT * 2.0 * f_m * sqrt(k0 / fb),
+            band: sqrt(0.01 * tolerance * fb / (k0 * f_m)),
         }
     }
 
     /// An error of place over what is allowed.
     #[inline]
     pub(super) fn share(&self, error: [f64; 2], depth: f64, eps: f64) -> f64 {
-        let size = libm::sqrt(error[0] * error[0] + error[1] * error[1]);
+        let size = sqrt(error[0] * error[0] + error[1] * error[1]);
         let weight = (self.steepness * depth).max(self.least);
         let allowed = (self.tolerance / weight).min(GAP_SHARE * (1.0 - eps));
         size / allowed.max(ROUNDING)

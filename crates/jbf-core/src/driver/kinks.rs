@@ -14,7 +14,7 @@ pub(super) fn eps_along<T: Real>(along: &[[T; 5]; 2], s: f64) -> f64 {
         polynomial(&along[0], T::of(s)).value(),
         polynomial(&along[1], T::of(s)).value(),
     );
-    libm::sqrt(x * x + y * y)
+    crate::root::sqrt(x * x + y * y)
 }
 
 /// A root between `low` and `high`, where `f` changes its sign: false position

@@ -81,7 +81,7 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
             stiffness_n_m_rad: parameters[0],
             damping_n_m_s_rad: parameters[1],
             inertia_kg_m2: parameters[2],
-            inner_step_s: 0.3 * libm::sqrt(j / k),
+            inner_step_s: 0.3 * crate::root::sqrt(j / k),
         })
     }
 

@@ -241,9 +241,9 @@ impl<T: Real> Law<T> for Journal<T> {
         let ub = libm::fabs(top_speed_m_s * self.inverse_u_tr.value());
         let e = loaded.eps_tr.value();
         let d = (1.0 - e) * (1.0 + e);
-        let d32 = d * libm::sqrt(d);
+        let d32 = d * crate::root::sqrt(d);
         let squeezing = FRAC_2_PI * fb * d32;
-        let stiffness = 2.0 * libm::sqrt(fb * self.k0.value());
+        let stiffness = 2.0 * crate::root::sqrt(fb * self.k0.value());
         let pushing = stiffness * d32 * d / (FRAC_PI_2 + PI_LESS_8_OVER_PI);
         // Runge-Kutta is stable to 2.8 times the inverse of a rate, exact well below it.
         1.0 / (rate * (4.0 * ub + squeezing + pushing))

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.estimation.minimum import search
 from jbf.estimation.solution import Solution
 
 
@@ -36,6 +37,21 @@ def evidence(candidates: Candidates, richer: Solution, simpler: Solution) -> flo
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
     return gain - price_of(candidates, richer.free - simpler.free)
+
+
+def evidence_alone(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
+    """Evidence for the richer of two models, the other fitted to the same samples.
+
+    An effect that moves jumps sets the samples beside them aside, and with them what may have led
+    the model without it astray: that gain is not the effect's.
+    """
+    gain = evidence(candidates, richer, simpler)
+    if richer.samples is simpler.samples or gain <= 0.0:
+        return gain
+    problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
+    values, *_ = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS)
+    there = problem.solution(values, samples, simpler.noise)
+    return min(gain, evidence(candidates, richer, there))
 
 
 def swap_cost(

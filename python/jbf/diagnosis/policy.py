@@ -94,6 +94,12 @@ class Policy:
         "probability at which runs that deviate from one another alike are chance",
         "one campaign in ten thousand",
     )
+    no_worse: float = _number(
+        1.03,
+        "times the error that weights, shifts in time and deviations of the runs may leave more "
+        "than the model before them",
+        "what a fit of the same model differs by from one half of a recording to the other",
+    )
     uneven_noise: float = _number(
         1.25,
         "ratio of the noise's size, between forces or between runs, from which on samples are "

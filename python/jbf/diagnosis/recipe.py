@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 from jbf.comparison.comparison import compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.evidence import evidence
+from jbf.diagnosis.deviations import allowing_for, deviation
+from jbf.diagnosis.evidence import evidence_alone, price_of
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
@@ -17,7 +18,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.second_look import second_look
-from jbf.diagnosis.selection import Names, alternatives, reconsider, try_candidates
+from jbf.diagnosis.selection import Names, Round, alternatives, reconsider, try_candidates
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
@@ -31,9 +32,6 @@ from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
-
-NO_WORSE = 1.02
-"""Times the RMS of a model with effects that runs shifted in time may leave without them."""
 
 
 @one_blas_thread
@@ -85,9 +83,9 @@ def diagnose(
     bare = finish(candidates.fitted(()).problem, candidates.converge(()))
     before = compare_prepared(bare.model, campaign)
 
-    present, steps, refused = _select(candidates, before.noise_n)
+    present, steps, refused, again = _select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
-        again = _seen_again(candidates, present)
+        again = again or _seen_again(candidates, present)
         if again is None:
             break
         campaign = again
@@ -95,7 +93,7 @@ def diagnose(
         candidates = Candidates(campaign, law, clock, policy, progress, candidates)
         bare = finish(candidates.fitted(()).problem, candidates.converge(()))
         before = compare_prepared(bare.model, campaign)
-        present, steps, refused = _select(candidates, before.noise_n)
+        present, steps, refused, again = _select(candidates, before.noise_n)
     remains = (*_remainder(candidates, present), *refused)
     doubted = confounders(candidates, present) if remains else ()
     named = tuple(name for name in present if name not in doubted)
@@ -144,7 +142,7 @@ def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
         # What several effects together make of runs that are late, the lateness says alone.
         rest = tuple(name for name in present if name not in bought)
         simpler, near = candidates.fitted(rest).problem, candidates.converge(rest)
-        most = NO_WORSE * solution.rms_n
+        most = candidates.policy.no_worse * solution.rms_n
         shifted = on_time(simpler, near, candidates.policy, most)
     if shifted is not None:
         return shifted
@@ -154,8 +152,10 @@ def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
 
 def _select(
     candidates: Candidates, noise_n: float
-) -> tuple[Names, list[Step], tuple[Remainder, ...]]:
-    """Rounds until no candidate leads: the effects added, the ledger, and what was refused."""
+) -> tuple[Names, list[Step], tuple[Remainder, ...], Campaign | None]:
+    """Rounds until no candidate leads: the effects added, the ledger, and what was refused; and the
+    campaign with a deviation of its runs allowed for, where the data ask for that more than for
+    any effect."""
     present: Names = ()
     steps: list[Step] = []
     visited = {frozenset[str]()}
@@ -163,15 +163,27 @@ def _select(
         found = try_candidates(candidates, present)
         steps.append(_step(candidates, present, noise_n, found.trials))
         if found.leader is None:
-            return present, steps, _refused(candidates, present)
+            return present, steps, _refused(candidates, present), None
+        differ = _differ_more(candidates, present, found)
+        if differ is not None:
+            return present, steps, (), differ
         if len(present) >= candidates.policy.most_effects:
-            return present, steps, ()
+            return present, steps, (), None
         candidates.search_peaks((*present, found.leader))
         grown = reconsider(candidates, (*present, found.leader))
         if frozenset(grown) in visited:
-            return present, steps, ()
+            return present, steps, (), None
         visited.add(frozenset(grown))
         present = grown
+
+
+def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campaign | None:
+    """The campaign with a deviation of its runs that has more evidence than the leading effect."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    campaign, policy = candidates.campaign, candidates.policy
+    least = price_of(candidates, 1) + max(t.evidence for t in found.trials)
+    differ = deviation(problem, solution, campaign.samples, policy, least)
+    return None if differ is None else allowing_for(campaign, differ)
 
 
 def _step(
@@ -198,7 +210,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     found = [
         (fitted.found().rms_n, name)
         for name, fitted in candidates.one_more(present).items()
-        if evidence(candidates, fitted.found(), base) > candidates.policy.weak
+        if evidence_alone(candidates, fitted.found(), base) > candidates.policy.weak
     ]
     if not found:
         return ()

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
-from jbf.diagnosis.evidence import evidence, price_of, swap_cost
+from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.likelihood import effective_share, next_step_gain
+from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
 
 Names = tuple[str, ...]
@@ -74,7 +74,12 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name))
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
-            if left_out_confirms(gain, gained, policy):
+            alone = evidence_alone(candidates, found.solution, base)
+            if alone <= 0.0:
+                gain, reason = alone, "gains by the samples that it sets aside, not by itself"
+            elif left_out_confirms(gain, gained, policy):
+                if _found_its_way(candidates, present, name, base):
+                    return try_candidates(candidates, present)
                 leader, best = name, gain
                 outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
             else:
@@ -89,6 +94,13 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
     return Round(tuple(sorted(trials, key=lambda t: -t.evidence)), leader)
+
+
+def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solution) -> bool:
+    """Whether the model without an effect fits better from where the fit with it ended: then the
+    gain was that of a way past a valley, and not the effect's."""
+    better = candidates.refit_from(present, (*present, name))
+    return likelihood_gain(better, base) > candidates.policy.contender
 
 
 def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:

@@ -57,6 +57,17 @@ class BetweenRuns:
 
         return [white(values) for values in stacked]
 
+    def log_determinant(
+        self, weight: Sequence[Array], steps_s: Sequence[float], noise: Noise
+    ) -> float:
+        """Of the runs' correlation: what their freedom to deviate costs in twice the log
+        likelihood."""
+        sizes = [
+            self._basis(i, w, step, noise)[1]
+            for i, (w, step) in enumerate(zip(weight, steps_s, strict=True))
+        ]
+        return float(np.sum(np.log1p(np.concatenate(sizes) ** 2)))
+
     def predicted(
         self, run: int, residual: Array, weight: Array, step_s: float, noise: Noise
     ) -> Array:

@@ -25,6 +25,11 @@ def left_out_rms(problem: Problem, solution: Solution) -> float:
 
 
 def left_out_residuals(problem: Problem, solution: Solution) -> Array:
+    """`left_out_by_run`, all runs in a row."""
+    return np.concatenate(left_out_by_run(problem, solution))
+
+
+def left_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
     """Residuals, N, at the samples that count of runs left out of the fit one at a time.
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
@@ -48,7 +53,7 @@ def left_out_residuals(problem: Problem, solution: Solution) -> Array:
         values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
         own = _of(problem, campaign.only([i]))
         left.append(own.residuals(values)[0][samples.counted[i]])
-    return np.concatenate(left)
+    return left
 
 
 def _of(problem: Problem, campaign: Campaign) -> Problem:
@@ -82,11 +87,11 @@ def _one_step(problem: Problem, solution: Solution, rest: list[int]) -> Array:
     return problem.decode(problem.encode(solution.values) + step, solution.values)
 
 
-def _halves(problem: Problem, solution: Solution) -> Array:
+def _halves(problem: Problem, solution: Solution) -> list[Array]:
     """Each half of a single run predicted from a fit to the other."""
     residuals = []
     first, second = solution.samples.halves()
     for kept, left in ((first, second), (second, first)):
         values, _, _ = search(problem, kept, solution.values, solution.noise, EVALUATIONS)
         residuals.append(problem.residuals(values)[0][left.counted[0]])
-    return np.concatenate(residuals)
+    return [np.concatenate(residuals)]

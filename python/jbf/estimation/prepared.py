@@ -13,9 +13,10 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.models.chain import core_motion, imposed
 from jbf.models.driven import Driven
+from jbf.records.checks import frozen
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.finding import Finding
-from jbf.records.findings.noisy_load import find_noisy_load
+from jbf.records.findings.noisy_load import find_noisy_load, steady_load
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
@@ -73,6 +74,9 @@ class Prepared:
         )
         examined = replace(examined, findings=(*examined.findings, *more))
         step_s = float(np.median(np.diff(run.time_s)))
+        if run.load_n is not None:
+            # Before anything resamples it: lines drawn through noise are not white any more.
+            run = replace(run, load_n=frozen(steady_load(run.load_n)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
 

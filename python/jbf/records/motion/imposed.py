@@ -27,6 +27,7 @@ from jbf.records.motion.rests import (
     rest_edges,
     resting_samples,
     still_samples,
+    unsure_beside_rest,
 )
 from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of
 from jbf.records.motion.smoothing import smooth
@@ -37,6 +38,8 @@ Mask = npt.NDArray[np.bool_]
 
 SIGN_SIGMA = 4.0
 """A speed closer to zero than this many standard errors has no sign to rely on."""
+GONE = 3.0
+"""A path that has gone so many standard errors from a rest tells which way: one count has."""
 
 
 @dataclass(frozen=True)
@@ -172,6 +175,8 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest)
+    if records.path is not None and not records.speed_measured:
+        sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and not sign_known[0]:
         velocity[0] = 0.0

@@ -64,6 +64,24 @@ def rest_edges(rest: Mask) -> Mask:
     return edges
 
 
+def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
+    """True from a rest to where the path has gone the way of the speed by more than `least`, m.
+
+    A polynomial swings where a motion sets in: by itself it does not tell the first way.
+    """
+    unsure = np.zeros(len(rest), dtype=bool)
+    edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        way = np.sign(velocity_m_s[first:end])
+        if first > 0:
+            gone = (path[first:end] - path[first - 1]) * way > least
+            unsure[first:end] |= ~np.logical_or.accumulate(gone)
+        if end < len(rest):
+            gone = ((path[end] - path[first:end]) * way > least)[::-1]
+            unsure[first:end] |= ~np.logical_or.accumulate(gone)[::-1]
+    return unsure
+
+
 def place_rests(
     rest: Mask, path: Array, velocity: Array, acceleration: Array, half_step: float
 ) -> None:

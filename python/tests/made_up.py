@@ -115,7 +115,7 @@ class MadeUp:
     def idle(self, solution: Solution) -> tuple[str, ...]:
         return solution.effects if frozenset(solution.effects) in self.nulls else ()
 
-    def left_out_rms(self, effects: Sequence[str]) -> float:
+    def left_out_rms(self, effects: Sequence[str], *, apart: bool = False) -> float:
         here = frozenset(effects)
         return self.left_out.get(here, self.converge(effects).rms_n)
 

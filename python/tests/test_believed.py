@@ -8,7 +8,7 @@ import pytest
 from jbf import Run
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.imposed import ImposedMotion, impose
-from jbf.records.motion.rests import rest_edges
+from jbf.records.motion.rests import rest_edges, still_samples, unsure_beside_rest
 from scipy.signal import butter, sosfilt
 
 Array = npt.NDArray[np.float64]
@@ -272,6 +272,34 @@ def test_held_readings_of_the_path_are_put_where_the_speed_says(held: int) -> No
 
 def test_the_edges_of_a_rest_are_its_samples_beside_motion() -> None:
     rest = np.array([1, 1, 1, 0, 0, 1, 1, 1, 0, 1], dtype=bool)
-    np.testing.assert_array_equal(np.flatnonzero(rest_edges(rest)), [2, 5, 7, 9])
-    assert not rest_edges(np.ones(5, dtype=bool)).any()
-    assert not rest_edges(np.zeros(5, dtype=bool)).any()
+
+    def edges(rest: npt.NDArray[np.bool_], speed: float = 0.0, rate: float = 0.0) -> list[int]:
+        n = len(rest)
+        v, a = np.where(rest, 0.0, speed), np.where(rest, 0.0, rate)
+        return np.flatnonzero(rest_edges(rest, 0.1 * np.arange(n), v, a)).tolist()
+
+    assert edges(rest) == [2, 5, 7, 9]
+    # 0.18 s ago by the motion after the rest; the motion before it came from elsewhere.
+    assert edges(rest, 0.9, 5.0) == [1, 2, 5, 6, 7, 9]
+    assert edges(rest, 0.9, -5.0) == [2, 5, 6, 7, 9]
+    assert edges(np.ones(5, dtype=bool)) == []
+    assert edges(np.zeros(5, dtype=bool)) == []
+
+
+def test_a_slow_reversal_is_no_rest() -> None:
+    time = np.arange(400) * 5e-3
+    rate, step = 0.008, 7e-6
+    v = rate * (time - 1.0)
+    path = step * np.round(0.5 * rate * (time - 1.0) ** 2 / step)
+    assert not still_samples(time, path, np.append(v, 1.0)[:-1] + 1e-9, step)[195:206].any()
+    # As long a rest between the same speeds is one.
+    still = np.where(np.abs(time - 1.0) < 0.4, 0.0, v)
+    path = step * np.round(np.cumsum(still) * 5e-3 / step)
+    assert still_samples(time, path, still, step)[140:260].all()
+
+
+def test_the_first_way_from_a_rest_is_the_paths() -> None:
+    path = np.array([0.0, 0.0, 0.0, 0.0, -1.0, -2.0, -3.0, -3.0, -3.0])
+    speed = np.array([0.0, 0.0, 0.0, 0.4, -0.8, -1.0, -1.0, 0.0, 0.0])
+    rest = np.array([1, 1, 1, 0, 0, 0, 0, 1, 1], dtype=bool)
+    assert np.flatnonzero(unsure_beside_rest(rest, path, speed, 0.9)).tolist() == [3, 6]

@@ -65,7 +65,7 @@ def fits(monkeypatch: pytest.MonkeyPatch) -> Fits:
     found = Fits()
     for name in ("approach", "settle", "search_peaks"):
         monkeypatch.setattr(module, name, getattr(found, name))
-    monkeypatch.setattr(module, "left_out_rms", lambda problem, near: near.rms_n)
+    monkeypatch.setattr(module, "left_out_rms", lambda problem, near, apart: near.rms_n)
     return found
 
 

@@ -7,11 +7,11 @@ from typing import cast
 
 import numpy as np
 import pytest
-from jbf.diagnosis import recipe
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, price
 from jbf.diagnosis.ledger import Step, Trial
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.rounds import select
 from jbf.diagnosis.selection import left_out_confirms
 from jbf.diagnosis.standing import as_it_ended
 from jbf.diagnosis.verdict import name_stands, verdict
@@ -124,7 +124,8 @@ def additive(gain: float = 200.0) -> dict[frozenset[str], float]:
 
 def test_rounds_add_one_effect_after_another_up_to_five() -> None:
     candidates = cast(Candidates, MadeUp(list(SIX), additive()))
-    present, steps, refused = recipe._select(candidates, 0.5)
+    found = select(candidates, 0.5)
+    present, steps, refused = found.present, found.steps, found.refused
     assert present == SIX[:5]
     assert [s.effects for s in steps] == [SIX[:k] for k in range(6)]
     assert refused == ()
@@ -135,7 +136,8 @@ def test_rounds_add_one_effect_after_another_up_to_five() -> None:
 
 def test_rounds_end_where_nothing_gains_more_than_chance() -> None:
     gains = {s: g for s, g in additive().items() if len(s) <= 2}
-    present, steps, _ = recipe._select(cast(Candidates, MadeUp(list(SIX), gains)), 0.5)
+    found = select(cast(Candidates, MadeUp(list(SIX), gains)), 0.5)
+    present, steps = found.present, found.steps
     assert present == SIX[:2]
     assert len(steps) == 3
     assert {t.outcome for t in steps[-1].trials} == {"no gain"}
@@ -153,8 +155,7 @@ def test_a_stand_in_found_first_goes_when_the_truth_is_whole() -> None:
         "sensor_lag sensor_offset sensor_drift": 500.0,
     }
     found = MadeUp(list(SIX[:3]), sets(gains), from_richer={frozenset(SIX[:2]): 495.0})
-    present, _, _ = recipe._select(cast(Candidates, found), 0.5)
-    assert set(present) == {"sensor_offset", "sensor_drift"}
+    assert set(select(cast(Candidates, found), 0.5).present) == {"sensor_offset", "sensor_drift"}
 
 
 @pytest.mark.parametrize(("strength", "told"), [(61.0, True), (59.0, False)])
@@ -162,9 +163,10 @@ def test_what_fits_and_does_not_predict_is_structure(strength: float, told: bool
     gains = {"": 0.0, "sensor_lag": price(1, N, 2, DEFAULT) + strength}
     left_out = {frozenset[str](): 2.0, frozenset(["sensor_lag"]): 2.1}
     found = MadeUp(["sensor_lag", "sensor_drift"], sets(gains), left_out=left_out)
-    present, steps, refused = recipe._select(cast(Candidates, found), 0.5)
-    assert present == ()
-    assert steps[0].trials[0].outcome == "rejected"
+    selected = select(cast(Candidates, found), 0.5)
+    refused = selected.refused
+    assert selected.present == ()
+    assert selected.steps[0].trials[0].outcome == "rejected"
     assert [r.axis for r in refused] == (["run"] if told else [])
     if told:
         assert "sensor_lag fits 2 N down to 1.9" in refused[0].where

@@ -16,6 +16,7 @@ from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.rounds import Selected, select, step
 from jbf.diagnosis.selection import Ranked, _leaves_more, left_out_confirms, try_candidates
 from jbf.diagnosis.uneven_noise import _uneven
 from jbf.diagnosis.verdict import name_stands
@@ -48,6 +49,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "most_looks": 6,
         "most_shifts": 3,
         "deviation_chance": 1e-4,
+        "no_worse": 1.03,
         "uneven_noise": 1.25,
         "heavy_tails": 6.0,
         "clear": 20.0,
@@ -95,7 +97,7 @@ def rounds(policy: Policy) -> object:
     names = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak", "wear_in", "backlash"]
     gains = {frozenset(names[:k]): 200.0 * k for k in range(len(names) + 1)}
     candidates = MadeUp(names, gains, policy=policy)
-    return recipe._select(cast(Candidates, candidates), 1.0)[0]
+    return select(cast(Candidates, candidates), 1.0).present
 
 
 def standing(disagreement: float) -> Callable[[Policy], object]:
@@ -236,12 +238,13 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
         looks.append(candidates.campaign)
         return candidates.campaign
 
-    def selected(candidates: Candidates, noise_n: float) -> object:
+    def selected(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
         rounds_of.append(candidates)
-        return (), [], ()
+        assert start is None
+        return Selected((), [step(candidates, (), noise_n, ())])
 
     monkeypatch.setattr(recipe, "_seen_again", seen)
-    monkeypatch.setattr(recipe, "_select", selected)
+    monkeypatch.setattr(recipe, "select", selected)
     monkeypatch.setattr(recipe, "unseen", lambda candidates, present: ())
     runs = four_runs(coulomb, noise_n=0.1)
     diagnose(Rig(), runs, law="coulomb", policy=with_number("most_looks", most))
@@ -291,5 +294,5 @@ def test_a_run_is_proposed_that_parts_rivals_far_enough() -> None:
 
 def test_no_number_is_left_out_here() -> None:
     known = {f.name for f in fields(Policy)}
-    elsewhere = {"most_looks", "most_shifts", "least_separation"}
+    elsewhere = {"most_looks", "most_shifts", "least_separation", "no_worse"}
     assert {*TURNS, *GATES, *elsewhere} == known

@@ -14,6 +14,7 @@ from jbf import Rig, Run, diagnose
 from jbf.diagnosis import recipe, standing
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement, disagreement
+from jbf.diagnosis.rounds import Selected, step
 from jbf.diagnosis.standing import best_predicting, confounders
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
@@ -117,7 +118,9 @@ def test_a_diagnosis_takes_the_name_of_a_confounder(
 ) -> None:
     # A recording that is not asked what it did, and a tone so that structure remains.
     monkeypatch.setattr(recipe, "_seen_again", lambda candidates, present: None)
-    monkeypatch.setattr(recipe, "_select", lambda candidates, noise_n: ((OFFSET,), [], ()))
+    monkeypatch.setattr(
+        recipe, "select", lambda c, n, s=None: Selected((OFFSET,), [step(c, (OFFSET,), n, ())])
+    )
     zeros = 2.0 + spread * np.array([1.0, -1.0, 0.8, -0.8])
     made = candidates(lambda i, t: zeros[i] + tone(t))
     runs = [p.run for p in made.campaign.prepared]

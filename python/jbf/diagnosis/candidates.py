@@ -8,7 +8,7 @@ once, and everything that asks for it later shares the answer.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -51,8 +51,9 @@ class Fitted:
         likelihood; infinite where the null is out of a step's reach.
     peaks_searched
         True once its other peaks were looked for.
-    left_out_rms_n
-        RMS over runs left out of the fit one at a time, N.
+    left_out_n
+        RMS over runs left out of the fit one at a time, N; True for the RMS apart from what the
+        runs are known to deviate by.
     """
 
     problem: Problem
@@ -60,7 +61,7 @@ class Fitted:
     solution: Solution | None = None
     score: float | None = None
     peaks_searched: bool = False
-    left_out_rms_n: float | None = None
+    left_out_n: dict[bool, float] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The solution so far."""
@@ -71,7 +72,7 @@ class Fitted:
         """Take a better solution of the same problem; what followed from the other is void."""
         if better is not self.solution:
             self.solution = better
-            self.left_out_rms_n = None
+            self.left_out_n = {}
 
     def named_values(self) -> dict[str, float]:
         """Parameter name to value."""
@@ -227,12 +228,14 @@ class Candidates:
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
-    def left_out_rms(self, effects: Sequence[str]) -> float:
-        """RMS over runs left out of the fit one at a time, N."""
+    def left_out_rms(self, effects: Sequence[str], *, apart: bool = False) -> float:
+        """RMS over runs left out of the fit one at a time, N; or `apart` from what the runs are
+        known to deviate by."""
         solution, fitted = self.converge(effects), self.fitted(effects)
-        if fitted.left_out_rms_n is None:
-            fitted.left_out_rms_n = left_out_rms(fitted.problem, solution)
-        return fitted.left_out_rms_n
+        which = apart and solution.samples.between is not None
+        if which not in fitted.left_out_n:
+            fitted.left_out_n[which] = left_out_rms(fitted.problem, solution, apart=which)
+        return fitted.left_out_n[which]
 
     def _values_of(self, near: Solution) -> dict[str, float]:
         names = self.fitted(near.effects).problem.names

@@ -3,7 +3,8 @@ asks for its own.
 
 The score test of parameter constancy (Nyblom 1989, with runs for groups): at the fit to all runs,
 what one Gauss-Newton step would gain for each run alone is chi-square, as many degrees of freedom
-as the runs have parameters to themselves less those that they share. It costs no fit.
+as the runs have parameters to themselves less those that they share. Scores are in units of each
+run's own long-run variance. It costs no fit.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from scipy import stats
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.estimation.long_run import score_square
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
@@ -76,13 +78,13 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     scale = np.where(size > 0.0, size, 1.0)
     gain, degrees, by_run = 0.0, 0, {}
     together: list[tuple[Array, Array]] = []
-    for (r, j), name in zip(parts, samples.runs, strict=True):
+    for (r, j), name, step_s in zip(parts, samples.runs, samples.steps_s, strict=True):
         directions = _directions(j / scale)
         count = directions.shape[1]
         if len(r) <= count:
             continue
         sigma = max(float(np.sqrt(np.mean(r**2))), 1e-150)
-        own = float(np.sum((directions.T @ (r / sigma)) ** 2))
+        own = score_square(directions, r / sigma, step_s)
         gain += own
         degrees += count
         by_run[name] = own / max(count, 1)

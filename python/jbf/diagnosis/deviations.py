@@ -19,7 +19,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.minimum import search
+from jbf.estimation.minimum import noise_at, search
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
 from jbf.estimation.samples import Samples
@@ -77,9 +77,10 @@ def deviation(
     between, finding = found
     allowed = replace(counted, between=between)
     values, *_ = search(problem, allowed, solution.values, solution.noise, EVALUATIONS)
-    after = problem.solution(values, allowed, solution.noise)
+    # What the runs deviated by had passed for colour.
+    after = problem.solution(values, allowed, noise_at(problem, allowed, values))
     gain = counted.cost(solution.residuals, solution.noise) - after.cost
-    volume = _volume(allowed, solution) - _volume(counted, solution)
+    volume = _volume(allowed, after) - _volume(counted, solution)
     gain = effective_share(after) * gain - volume
     if gain <= least_gain:
         return None
@@ -146,6 +147,8 @@ def _clearest(
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
     """What a deviation adds to the friction: name, unit, one column a run."""
     found = [("zero", "N", [np.ones(len(r)) for r in solution.residuals])]
+    times = [p.run.time_s for p in problem.campaign.prepared]
+    found.append(("drift", "N/s", [t - 0.5 * (t[0] + t[-1]) for t in times]))
     by_name = {problem.names[i]: k for k, i in enumerate(problem.open)}
     for name in ("U_tr_m_s", "gamma"):
         # A warmer oil: a film that carries later, and less drag.
@@ -178,6 +181,8 @@ def _spread(
 def _words(name: str, sd: float) -> tuple[str, str]:
     if name == "zero":
         return "level_by_run", f"the zero differs by run by {sd:.2g} N (1 s.d.)"
+    if name == "drift":
+        return "drift_by_run", f"the zero drifts, by another {sd:.2g} N/s (1 s.d.) in each run"
     if name == "gain":
         return "gain_by_run", f"the gain differs by run by {100.0 * sd:.2g} % (1 s.d.)"
     what = "transition speed" if name == "U_tr_m_s" else "viscous friction"

@@ -10,7 +10,7 @@ import numpy as np
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.estimation.likelihood import likelihood_gain, share_of_gain
 from jbf.estimation.minimum import search
 from jbf.estimation.solution import Solution
 
@@ -33,7 +33,9 @@ def evidence(candidates: Candidates, richer: Solution, simpler: Solution) -> flo
     Where even the richer one leaves an error that is smooth, samples count for less. For an effect
     that the fit left at its null there is none: what is gained beside it is the search's.
     """
-    gain = likelihood_gain(richer, simpler) * effective_share(richer)
+    gain = likelihood_gain(richer, simpler)
+    if gain > 0.0:
+        gain *= share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
     return gain - price_of(candidates, richer.free - simpler.free)

@@ -3,9 +3,12 @@ at the instants at which it was read."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.uneven_noise import noise_sizes
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.lateness import lateness
@@ -45,7 +48,7 @@ def on_time(
     prepared, late_s, drift = campaign.prepared, np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.most_shifts):
         found = lateness(problem, solution, look, policy.deviation_chance)
-        if found is None:
+        if found is None or (look == 0 and not _by_any_weights(problem, solution, policy)):
             break
         # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
@@ -67,6 +70,17 @@ def on_time(
         _finding(p.run.name, late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
     ]
     return campaign.with_findings(findings)
+
+
+def _by_any_weights(problem: Problem, solution: Solution, policy: Policy) -> bool:
+    """Whether the runs differ in lateness, too, where noise that is larger in places counts less:
+    else it is the noise that chose where each run's squares are least."""
+    sizes, uneven = noise_sizes(problem, solution, policy)
+    if not uneven:
+        return True
+    ones = [np.ones(len(s)) for s in sizes]
+    even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
+    return lateness(problem, even, 0, policy.deviation_chance) is not None
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:

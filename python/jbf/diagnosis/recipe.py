@@ -8,17 +8,16 @@ from collections.abc import Sequence
 
 from jbf.comparison.comparison import compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.deviations import allowing_for, deviation
-from jbf.diagnosis.evidence import evidence_alone, price_of
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
-from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.rounds import select, step
 from jbf.diagnosis.second_look import second_look
-from jbf.diagnosis.selection import Names, Round, alternatives, reconsider, try_candidates
+from jbf.diagnosis.selection import Names, alternatives
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
@@ -83,9 +82,9 @@ def diagnose(
     bare = finish(candidates.fitted(()).problem, candidates.converge(()))
     before = compare_prepared(bare.model, campaign)
 
-    present, steps, refused, again = _select(candidates, before.noise_n)
+    selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
-        again = again or _seen_again(candidates, present)
+        again = selected.differ or _seen_again(candidates, selected.present)
         if again is None:
             break
         campaign = again
@@ -93,15 +92,21 @@ def diagnose(
         candidates = Candidates(campaign, law, clock, policy, progress, candidates)
         bare = finish(candidates.fitted(()).problem, candidates.converge(()))
         before = compare_prepared(bare.model, campaign)
-        present, steps, refused, again = _select(candidates, before.noise_n)
+        # What differs from run to run was seen beside the effects: they stay if they are needed.
+        start = selected if selected.differ is not None else None
+        selected = select(candidates, before.noise_n, start)
+    present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
     doubted = confounders(candidates, present) if remains else ()
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
+    if doubted and not _remainder(candidates, named):
+        # What some runs asked for and others did not, nothing asks for once it is gone.
+        present, remains = named, refused
     equal = alternatives(candidates, named)
     kept = best_predicting(candidates, present, named)
-    if kept != present:
-        steps.append(_step(candidates, kept, before.noise_n, ()))
+    if kept != steps[-1].effects:
+        steps.append(step(candidates, kept, before.noise_n, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others}
     answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))
@@ -150,49 +155,6 @@ def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
     return again.campaign if again.found else None
 
 
-def _select(
-    candidates: Candidates, noise_n: float
-) -> tuple[Names, list[Step], tuple[Remainder, ...], Campaign | None]:
-    """Rounds until no candidate leads: the effects added, the ledger, and what was refused; and the
-    campaign with a deviation of its runs allowed for, where the data ask for that more than for
-    any effect."""
-    present: Names = ()
-    steps: list[Step] = []
-    visited = {frozenset[str]()}
-    while True:
-        found = try_candidates(candidates, present)
-        steps.append(_step(candidates, present, noise_n, found.trials))
-        if found.leader is None:
-            return present, steps, _refused(candidates, present), None
-        differ = _differ_more(candidates, present, found)
-        if differ is not None:
-            return present, steps, (), differ
-        if len(present) >= candidates.policy.most_effects:
-            return present, steps, (), None
-        candidates.search_peaks((*present, found.leader))
-        grown = reconsider(candidates, (*present, found.leader))
-        if frozenset(grown) in visited:
-            return present, steps, (), None
-        visited.add(frozenset(grown))
-        present = grown
-
-
-def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campaign | None:
-    """The campaign with a deviation of its runs that has more evidence than the leading effect."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    campaign, policy = candidates.campaign, candidates.policy
-    least = price_of(candidates, 1) + max(t.evidence for t in found.trials)
-    differ = deviation(problem, solution, campaign.samples, policy, least)
-    return None if differ is None else allowing_for(campaign, differ)
-
-
-def _step(
-    candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]
-) -> Step:
-    rms, left_out = candidates.converge(effects).rms_n, candidates.left_out_rms(effects)
-    return Step(effects, rms, left_out, noise_n, trials)
-
-
 def _rivals(present: Names, name: str, others: Names) -> list[Names]:
     """The models that fit equally well: with this effect, or another in its place."""
     rest = tuple(e for e in present if e != name)
@@ -202,20 +164,3 @@ def _rivals(present: Names, name: str, others: Names) -> list[Names]:
 def _remainder(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     return find_remainder(problem, solution, candidates.policy)
-
-
-def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """What a candidate saw that helps where it was fitted and not in runs left out."""
-    base = candidates.converge(present)
-    found = [
-        (fitted.found().rms_n, name)
-        for name, fitted in candidates.one_more(present).items()
-        if evidence_alone(candidates, fitted.found(), base) > candidates.policy.weak
-    ]
-    if not found:
-        return ()
-    rms, name = min(found)
-    where = (
-        f"{name} fits {base.rms_n:.3g} N down to {rms:.3g} N but predicts runs left out no better"
-    )
-    return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)

@@ -10,16 +10,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.noise import Noise
+from jbf.estimation.long_run import long_run_variance
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.replicates import period_samples
 from jbf.estimation.solution import Solution
 
 MIN_PAIRS = 100
 """Pairs of replicates that a run must have to say something."""
+BETWEEN = (0.5, 0.6, 0.7, 0.8, 0.9)
+"""Shares of a period at which nothing comes again but what the noise remembers."""
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 
 def find_replicates(
@@ -38,10 +44,13 @@ def find_replicates(
         if len(first) < MIN_PAIRS:
             continue
         level = float(first @ first + second @ second) / (2.0 * len(first))
-        own = float(first @ second)
+        # A noise with a long memory remembers a period, and half of one better still.
+        own = float(first @ second) - len(first) * _remembered(residual, counted, shift)
         product += own
         square += level * len(first)
-        spread += level**2 * len(first) * _fewer(solution.noise, p.step_s)
+        products = first * second
+        strayed = long_run_variance((products - np.mean(products))[:, None], p.step_s)
+        spread += max(level**2 * len(first), float(strayed[0, 0]))
         if own > least * level * len(first):
             names.append(p.run.name)
     if spread == 0.0:
@@ -57,10 +66,13 @@ def find_replicates(
     return [Remainder("period", where, min(share, 1.0))]
 
 
-def _fewer(noise: Noise, step_s: float) -> float:
-    """How many times fewer independent samples a coloured noise has, for products of two (Bartlett
-    1946): `1 + 2 sum of squared autocorrelations`."""
-    if noise.colour <= 0.0:
-        return 1.0
-    keep = float(np.exp(-2.0 * step_s / noise.memory_s))
-    return 1.0 + 2.0 * noise.colour**2 * keep / (1.0 - keep)
+def _remembered(residual: Array, counted: Mask, shift: int) -> float:
+    """What of the mean product one period apart is the noise's memory, N^2: the least between half
+    a period and a whole one, where an error that comes again rises and falls."""
+    products = []
+    for share in BETWEEN:
+        lag = max(int(share * shift), 1)
+        both = counted[lag:] & counted[:-lag]
+        if both.any():
+            products.append(float(np.mean(residual[:-lag][both] * residual[lag:][both])))
+    return max(min(products, default=0.0), 0.0)

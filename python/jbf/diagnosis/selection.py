@@ -23,7 +23,7 @@ Names = tuple[str, ...]
 
 LESS = 0.95
 """Share of an RMS below which another is less for anybody who reads the ledger."""
-SMOOTH = "fits better, but a residual this smooth has too few independent samples to tell"
+SMOOTH = "fits better, but by no more than so smooth a residual strays: too few independent samples"
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,11 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
     ranked = _rank(candidates, present, base)
     leader, best, trials = None, 0.0, []
     bare = base.rms_n
-    before = candidates.left_out_rms(present) if ranked and ranked[0].evidence > 0 else np.nan
+    before = (
+        candidates.left_out_rms(present, apart=True)
+        if ranked and ranked[0].evidence > 0
+        else np.nan
+    )
     least = min((r.solution.rms_n for r in ranked if r.evidence > 0), default=bare)
     for found in sorted(ranked, key=lambda r: _leaves_more(r, least, policy)):
         name, gain = found.effect, found.evidence
@@ -72,7 +76,7 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         outcome = "no gain"
         reason = SMOOTH if rms < LESS * bare else "gains no more than chance would"
         if gain > 0 and leader is None:
-            after = candidates.left_out_rms((*present, name))
+            after = candidates.left_out_rms((*present, name), apart=True)
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
             alone = evidence_alone(candidates, found.solution, base)
             if alone <= 0.0:
@@ -147,6 +151,17 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     return sorted(found, key=lambda r: -r.evidence)
+
+
+def still_needed(candidates: Candidates, present: Names) -> Names:
+    """The effects that have evidence yet, now that the samples are seen in another light."""
+    current = present
+    for name in present:
+        rest = tuple(e for e in current if e != name)
+        simpler = candidates.refit_from(rest, current)
+        if evidence(candidates, candidates.converge(current), simpler) < 0:
+            current = rest
+    return current
 
 
 def reconsider(candidates: Candidates, present: Names) -> Names:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_gaps import behind_gaps
 from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
@@ -83,10 +84,12 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
         return campaign
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
-    masks = unsettled(problem, near.values, noise_floor(campaign.prepared, campaign.samples))
-    if not any(m.any() for m in masks):
+    noise_n = noise_floor(campaign.prepared, campaign.samples)
+    masks = unsettled(problem, near.values, noise_n)
+    behind = behind_gaps(problem, near.values, REMEMBERED * noise_n)
+    if not any(m.any() for m in (*masks, *behind)):
         return campaign
-    kept = campaign.without(masks)
+    kept = campaign.without(masks).without(behind)
     return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples))
 
 

@@ -109,7 +109,11 @@ def _scans(
     samples = solution.samples
     fine = [_fine(p) for p in problem.campaign.prepared]
     forces = problem.chain.predict(solution.values, [driven for _, driven in fine])
-    share = min(independent_share(solution.residuals, samples.steps_s), 1.0)
+    slopes = [
+        np.interp(p.run.time_s, instants, np.gradient(force, instants))
+        for p, (instants, _), force in zip(problem.campaign.prepared, fine, forces, strict=True)
+    ]
+    share = min(independent_share(_on_time(problem, solution, slopes), samples.steps_s), 1.0)
     found = []
     for i, (p, (instants, _), force) in enumerate(
         zip(problem.campaign.prepared, fine, forces, strict=True)
@@ -130,6 +134,20 @@ def _scans(
         squares *= share
         found.append((squares, p.run.time_s[kept] - p.run.time_s[0]))
     return found
+
+
+def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[Array]:
+    """Residuals less what lateness makes of them, one array a run: to first order in a lateness and
+    its growth, which would else make the noise seem coloured."""
+    left = []
+    for p, residual, slope, counted in zip(
+        problem.campaign.prepared, solution.residuals, slopes, solution.samples.counted, strict=True
+    ):
+        time = p.run.time_s - np.mean(p.run.time_s)
+        x = np.stack([slope, slope * time], axis=1) * counted[:, None]
+        r = residual * counted
+        left.append(r - x @ np.linalg.lstsq(x, r, rcond=1e-10)[0])
+    return left
 
 
 def _fine(p: Prepared) -> tuple[Array, Driven]:

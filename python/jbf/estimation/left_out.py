@@ -18,9 +18,9 @@ INSENSITIVE = 1e-4
 """Runs say nothing of a parameter where they hold less than this share of what is known of it."""
 
 
-def left_out_rms(problem: Problem, solution: Solution) -> float:
-    """RMS of `left_out_residuals`, N."""
-    left = left_out_residuals(problem, solution)
+def left_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
+    """RMS of `left_out_by_run`, N."""
+    left = np.concatenate(left_out_by_run(problem, solution, apart=apart))
     return float(np.sqrt(np.sum(left**2) / max(len(left), 1)))
 
 
@@ -29,8 +29,14 @@ def left_out_residuals(problem: Problem, solution: Solution) -> Array:
     return np.concatenate(left_out_by_run(problem, solution))
 
 
-def left_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
+def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
     """Residuals, N, at the samples that count of runs left out of the fit one at a time.
+
+    Parameters
+    ----------
+    apart
+        Less what a run's own deviations from the others explain, where runs are known to have them:
+        for models to be compared, since no model predicts those.
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
     value): what only the left-out run could know must not leak into its prediction. With one run
@@ -52,7 +58,10 @@ def left_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
             start = min((step, start), key=lambda v: part.square(v, kept))
         values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
         own = _of(problem, campaign.only([i]))
-        left.append(own.residuals(values)[0][samples.counted[i]])
+        residuals = own.residuals(values)
+        if apart:
+            residuals = samples.only([i]).without_deviations(residuals, solution.noise)
+        left.append(residuals[0][samples.counted[i]])
     return left
 
 

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.noise import LONGEST_MEMORY_S
+from jbf.estimation.long_run import score_inflation
+from jbf.estimation.noise import LONGEST_MEMORY_S, Noise
 from jbf.estimation.problem import Problem
-from jbf.estimation.samples import least_weights
+from jbf.estimation.samples import Samples, least_weights
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -33,6 +34,25 @@ def effective_share(solution: Solution) -> float:
     samples = solution.samples
     left = samples.weighted_innovations(solution.residuals, solution.noise)
     return independent_share(left, samples.steps_s)
+
+
+def share_of_gain(richer: Solution, simpler: Solution) -> float:
+    """How much a gain counts for that one solution has over another: less than one where what is
+    left is no white noise, by all its autocorrelations, or by the long-run variance of the score in
+    the direction in which the two differ, whichever is less."""
+    share = effective_share(richer)
+    samples = least_weights(richer.samples, simpler.samples)
+    left, ways = [], []
+    for i in range(len(samples.runs)):
+        own, before = (_whitened(samples, s.residuals, richer.noise, i) for s in (richer, simpler))
+        left.append(own)
+        ways.append(before - own)
+    return min(share, 1.0 / score_inflation(ways, left, samples.steps_s))
+
+
+def _whitened(samples: Samples, residuals: list[Array], noise: Noise, run: int) -> Array:
+    """Innovations of a run, free of the correlation that its deviations make."""
+    return samples.stacked(residuals, [np.zeros((len(r), 0)) for r in residuals], noise, [run])[0]
 
 
 def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:

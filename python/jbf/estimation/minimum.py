@@ -131,7 +131,7 @@ def approach(
     if len(starts) == 1 or problem.square(best) < least:
         values, converged, message = search(problem, every, best, WHITE, evaluations)
     samples = problem.samples_at(values)
-    noise = _noise_at(problem, samples, values)
+    noise = noise_at(problem, samples, values)
     return problem.solution(problem.wrapped(values), samples, noise, converged, message)
 
 
@@ -148,7 +148,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
     converged, message = near.converged, near.message
     if not near.converged:
         values, converged, message = search(problem, every, values, WHITE, MAX_EVALUATIONS)
-        noise = _noise_at(problem, every, values)
+        noise = noise_at(problem, every, values)
     if near.samples is not every:
         # With jumps at full weight the search found its way; with little it finds the place.
         left = problem.samples_at(values)
@@ -157,7 +157,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         again = search(problem, every, values, noise, MAX_EVALUATIONS)
         if problem.square(again[0], every) <= MOST_FORGIVEN**2 * problem.square(values, every):
             values, converged, message = again
-            noise = _noise_at(problem, every, values)
+            noise = noise_at(problem, every, values)
     return problem.solution(problem.wrapped(values), every, noise, converged, message)
 
 
@@ -199,8 +199,8 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     return search_peaks(problem, settle(problem, near))
 
 
-def _noise_at(problem: Problem, samples: Samples, values: Array) -> Noise:
-    """The noise description that fits the residuals at some values."""
-    residuals = problem.residuals(values)
+def noise_at(problem: Problem, samples: Samples, values: Array) -> Noise:
+    """The noise description that fits the residuals at some values, the runs' deviations apart."""
+    residuals = samples.without_deviations(problem.residuals(values), WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
     return estimate_noise(masked, samples.steps_s, samples.counted, problem.campaign.most_noise_n)

@@ -25,6 +25,10 @@ from jbf.records.run import Run, require
 Array = npt.NDArray[np.float64]
 
 
+FINER = 1.5
+"""A motion read so many times as often as the force tells more than at the force's instants."""
+
+
 @dataclass(frozen=True)
 class Prepared:
     """One run, ready: its motion, its usual step, and what its recording did. Which of its samples
@@ -115,8 +119,22 @@ class Prepared:
 
     @cached_property
     def core(self) -> Driven:
-        """The core's copy of the motion."""
-        return core_motion(self.rig, self.run, self.motion)
+        """The core's copy of the motion.
+
+        Where the force was read more seldom than the motion, the motion between is the core's, too:
+        where it sets in, and turns round, matters.
+        """
+        time = self.run.time_s
+        if self.recorded is None:
+            return core_motion(self.rig, self.run, self.motion)
+        instants, motion = self.recorded
+        if self.step_s < FINER * float(np.median(np.diff(instants))):
+            return core_motion(self.rig, self.run, self.motion)
+        inside = (instants > time[0]) & (instants < time[-1])
+        whole = np.union1d(instants[inside], time)
+        run = self.run.at(whole, np.interp(whole, time, self.friction_n))
+        driven = core_motion(self.rig, run, motion.at(instants, whole))
+        return Driven(driven.motion, np.searchsorted(whole, time))
 
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""

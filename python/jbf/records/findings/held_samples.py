@@ -26,10 +26,12 @@ def held(values: Array) -> Mask:
     """True at readings that repeat the one before, in rows too long for chance."""
     n = len(values)
     same = np.concatenate(([False], np.diff(values) == 0.0))
-    share = min(max(float(np.mean(same)), _by_steps(values), 1e-4), 0.9999)
+    edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
+    # A long row is one that began: it does not make long rows likely.
+    begun = float(np.sum(edges == 1)) / max(n - int(same.sum()), 1)
+    share = min(max(begun, _by_steps(values), 1e-4), 0.9999)
     # A converter's own rows of equal readings: p^k of k in a row, at n places.
     least = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
-    edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
     found = np.zeros(n, dtype=bool)
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         if end - first >= least - 1:

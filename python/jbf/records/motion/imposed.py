@@ -132,7 +132,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     n = len(time)
     rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
     if path is not None:
-        rest |= still_samples(path, speed, step)
+        rest |= still_samples(time, path, speed, step)
     moving = ~rest
     if path is None:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
@@ -174,7 +174,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         )
     place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
-    sign_known &= (contradiction == 0.0) & ~rest_edges(rest)
+    sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
     if records.path is not None and not records.speed_measured:
         sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
     # A contact that bends begins bent where the run begins in motion: noise is none.

@@ -12,8 +12,12 @@ REST_SAMPLES = 3
 """So many zero speeds in a row are a rest, not a crossing."""
 STILL_SAMPLES = 20
 """So many samples without a step of the encoder, at speeds of a hum, are a rest, too."""
+STILL_STEPS = 1.5
+"""How far an encoder may seem to go meanwhile, in its steps,"""
 STILL_SHARE = 5e-3
-"""Largest hum of a rest, as a share of the top speed."""
+"""and the largest hum of a rest, as a share of the top speed."""
+LONGER = 2.0
+"""A rest is so many times as long as a reversal seems to stand still."""
 
 
 def resting_samples(velocity_m_s: Array) -> Mask:
@@ -27,9 +31,11 @@ def resting_samples(velocity_m_s: Array) -> Mask:
     return rest
 
 
-def still_samples(path: Array, velocity_m_s: Array, step: float) -> Mask:
+def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) -> Mask:
     """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
     and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
+
+    Not in a slow reversal, which an encoder does not resolve either.
 
     Parameters
     ----------
@@ -44,24 +50,50 @@ def still_samples(path: Array, velocity_m_s: Array, step: float) -> Mask:
         return np.zeros(n, dtype=bool)
     windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
     calm = np.lib.stride_tricks.sliding_window_view(slow, STILL_SAMPLES)
-    begins = (np.ptp(windows, axis=1) <= 1.5 * step) & calm.all(axis=1)
+    begins = (np.ptp(windows, axis=1) <= STILL_STEPS * step) & calm.all(axis=1)
     ends = np.concatenate((np.zeros(STILL_SAMPLES), begins.astype(float)))
     covered = np.cumsum(np.concatenate((begins, np.zeros(STILL_SAMPLES)))) - np.cumsum(ends)
     resting: Mask = covered[:n] > 0.5
+    edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        if _reverses(time_s, velocity_m_s, int(first), int(end), step):
+            resting[first:end] = False
     return resting
 
 
-def rest_edges(rest: Mask) -> Mask:
-    """True at the first and the last sample of each rest that motion precedes or follows.
+def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
+    """Whether a reversal at the acceleration from before to after would stay within the encoder's
+    step for about as long."""
+    way = end - first
+    before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
+    v0, v1 = velocity_m_s[before], velocity_m_s[after]
+    if v0 * v1 >= 0.0:
+        return False
+    rate = abs(v1 - v0) / (time_s[after] - time_s[before])
+    still_s = 2.0 * np.sqrt(2.0 * STILL_STEPS * step / rate)
+    return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
 
-    The shaft stops and starts between samples: within one sample of it nobody knows which.
+
+def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array) -> Mask:
+    """True at the first and the last samples of each rest that motion precedes or follows.
+
+    The shaft stops and starts between samples: within one sample of it nobody knows which. A slow
+    start begins before its speed is one: by the motion beside the rest, so many samples before.
     """
-    moving = ~rest
     beside = np.zeros(len(rest), dtype=bool)
-    beside[:-1] |= moving[1:]
-    beside[1:] |= moving[:-1]
-    edges: Mask = rest & beside
-    return edges
+    edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        most = min(int(end - first), STILL_SAMPLES)
+        for moving, inward in ((first - 1, 1), (end, -1)):
+            if not 0 <= moving < len(rest):
+                continue
+            v, a = velocity_m_s[moving], -inward * acceleration_m_s2[moving]
+            step_s = abs(time_s[moving + inward] - time_s[moving])
+            ago = v / (a * step_s) if v * a > 0.0 else 0.0
+            count = min(max(int(np.ceil(min(ago, most))), 1), most)
+            inside = moving + inward * np.arange(1, count + 1)
+            beside[inside] = True
+    return beside
 
 
 def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:

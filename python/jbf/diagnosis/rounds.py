@@ -1,0 +1,89 @@
+"""Rounds of selection, one effect after another, until no candidate leads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.deviations import allowing_for, deviation
+from jbf.diagnosis.evidence import evidence_alone, price_of
+from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
+from jbf.estimation.campaign import Campaign
+
+
+@dataclass(frozen=True)
+class Selected:
+    """What rounds of selection led to.
+
+    Attributes
+    ----------
+    present, steps, refused
+        The effects added, the ledger, and what was refused.
+    differ
+        The campaign with a deviation of its runs allowed for, where the data ask for that more than
+        for any effect.
+    """
+
+    present: Names
+    steps: list[Step]
+    refused: tuple[Remainder, ...] = ()
+    differ: Campaign | None = None
+
+
+def select(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
+    """Rounds until no candidate leads, from the law alone or from effects that were there."""
+    present: Names = ()
+    steps: list[Step] = []
+    if start is not None and start.present:
+        present = still_needed(candidates, start.present)
+        steps = start.steps[:-1]
+    visited = {frozenset(present)}
+    while True:
+        found = try_candidates(candidates, present)
+        steps.append(step(candidates, present, noise_n, found.trials))
+        differ = _differ_more(candidates, present, found)
+        if differ is not None:
+            return Selected(present, steps, differ=differ)
+        if found.leader is None:
+            return Selected(present, steps, _refused(candidates, present))
+        if len(present) >= candidates.policy.most_effects:
+            return Selected(present, steps)
+        candidates.search_peaks((*present, found.leader))
+        grown = reconsider(candidates, (*present, found.leader))
+        if frozenset(grown) in visited:
+            return Selected(present, steps)
+        visited.add(frozenset(grown))
+        present = grown
+
+
+def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campaign | None:
+    """The campaign with a deviation of its runs that has more evidence than the leading effect."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    campaign, policy = candidates.campaign, candidates.policy
+    most = max((t.evidence for t in found.trials if t.outcome == "added"), default=0.0)
+    least = price_of(candidates, 1) + most
+    differ = deviation(problem, solution, campaign.samples, policy, least)
+    return None if differ is None else allowing_for(campaign, differ)
+
+
+def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:
+    rms, left_out = candidates.converge(effects).rms_n, candidates.left_out_rms(effects)
+    return Step(effects, rms, left_out, noise_n, trials)
+
+
+def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+    """What a candidate saw that helps where it was fitted and not in runs left out."""
+    base = candidates.converge(present)
+    found = [
+        (fitted.found().rms_n, name)
+        for name, fitted in candidates.one_more(present).items()
+        if evidence_alone(candidates, fitted.found(), base) > candidates.policy.weak
+    ]
+    if not found:
+        return ()
+    rms, name = min(found)
+    where = (
+        f"{name} fits {base.rms_n:.3g} N down to {rms:.3g} N but predicts runs left out no better"
+    )
+    return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)

@@ -1,0 +1,76 @@
+"""The long-run variance of scores: how far a sum over residuals that remember strays by chance.
+
+Innovations of a noise that is described well are white, and a score's variance is its length. Those
+of a noise with a longer memory, with heavier tails, or larger where the score is, are not. The
+variance is then estimated from the record's own score, summed over windows longer than the memory
+(Bartlett's kernel; Newey & West 1987).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+WINDOW_S = 3.0
+"""Length of the windows, s: five times the longest memory that a noise may be described by,"""
+LEAST_WINDOWS = 8
+"""but so many fit into a record."""
+
+
+def score_square(directions: Array, innovations: Array, step_s: float) -> float:
+    """The square of a score over its long-run variance: chi-square, one degree a direction.
+
+    No direction's variance is taken for less than that of white noise.
+
+    Parameters
+    ----------
+    directions
+        Orthonormal columns, shape (n, q).
+    innovations
+        Of unit variance, shape (n,).
+    step_s
+        The usual step, s.
+    """
+    score = directions.T @ innovations
+    # What the score itself explains is the signal, and no noise.
+    rest = directions * (innovations - directions @ score)[:, None]
+    size, axes = np.linalg.eigh(long_run_variance(rest, step_s))
+    return float(np.sum((axes.T @ score) ** 2 / np.maximum(size, 1.0)))
+
+
+def score_inflation(
+    directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
+) -> float:
+    """How many times as large as in white noise the variance of a score is, at least one.
+
+    Parameters
+    ----------
+    directions, innovations
+        One array a run, shape (n,); of any length.
+    """
+    square = sum(float(np.sum(d**2)) for d in directions)
+    white = sum(float(np.sum(e**2)) for e in innovations)
+    white /= max(sum(int(np.count_nonzero(e)) for e in innovations), 1)
+    if square <= 0.0 or white <= 0.0:
+        return 1.0
+    # What the score itself explains is no noise here either.
+    along = sum(float(d @ e) for d, e in zip(directions, innovations, strict=True)) / square
+    found = sum(
+        float(long_run_variance((d * (e - along * d))[:, None], step)[0, 0])
+        for d, e, step in zip(directions, innovations, steps_s, strict=True)
+    )
+    return max(found / (square * white), 1.0)
+
+
+def long_run_variance(scores: Array, step_s: float) -> Array:
+    """Long-run variance, shape (q, q), of the sum of scores, shape (n, q)."""
+    n = len(scores)
+    length = int(np.clip(WINDOW_S / step_s, 1, max(n // LEAST_WINDOWS, 1)))
+    sums = np.cumsum(np.vstack([np.zeros((1, scores.shape[1])), scores]), axis=0)
+    windows = sums[length:] - sums[:-length]
+    variance: Array = windows.T @ windows * (n / (len(windows) * length))
+    return variance

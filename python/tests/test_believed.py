@@ -8,7 +8,7 @@ import pytest
 from jbf import Run
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.imposed import ImposedMotion, impose
-from jbf.records.motion.rests import rest_edges, still_samples, unsure_beside_rest
+from jbf.records.motion.rests import rest_edges, still_samples, unsure_beside_rest, without_swings
 from scipy.signal import butter, sosfilt
 
 Array = npt.NDArray[np.float64]
@@ -296,6 +296,15 @@ def test_a_slow_reversal_is_no_rest() -> None:
     still = np.where(np.abs(time - 1.0) < 0.4, 0.0, v)
     path = step * np.round(np.cumsum(still) * 5e-3 / step)
     assert still_samples(time, path, still, step)[140:260].all()
+
+
+def test_a_shaft_does_not_go_back_before_it_sets_out() -> None:
+    v = np.array([-0.1, 0.0, -0.1, 0.1, 0.5, -0.5, 0.1, -0.2, 0.0, 0.3])
+    rest = np.array([0, 1, 0, 0, 0, 0, 0, 0, 1, 0], dtype=bool)
+    known = np.array([0, 0, 0, 0, 1, 1, 0, 0, 0, 1], dtype=bool)
+    without_swings(rest, v, known)
+    # Beside the rests alone, and only what is not sure; no sure sample, no way.
+    assert v.tolist() == [-0.1, 0.0, 0.0, 0.1, 0.5, -0.5, 0.0, -0.2, 0.0, 0.3]
 
 
 def test_the_first_way_from_a_rest_is_the_paths() -> None:

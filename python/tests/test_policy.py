@@ -17,7 +17,13 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import Selected, select, step
-from jbf.diagnosis.selection import Ranked, _leaves_more, left_out_confirms, try_candidates
+from jbf.diagnosis.selection import (
+    Ranked,
+    _leaves_more,
+    alternatives,
+    left_out_confirms,
+    try_candidates,
+)
 from jbf.diagnosis.uneven_noise import _uneven
 from jbf.diagnosis.verdict import name_stands
 from jbf.estimation.campaign import Campaign
@@ -42,6 +48,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "leader_rms": 1.25,
         "weak": 60.0,
         "least_score": 10.0,
+        "least_swap": 0.05,
         "contender": 60.0,
         "close": 0.6,
         "promise": 5.0,
@@ -98,6 +105,14 @@ def rounds(policy: Policy) -> object:
     gains = {frozenset(names[:k]): 200.0 * k for k in range(len(names) + 1)}
     candidates = MadeUp(names, gains, policy=policy)
     return select(cast(Candidates, candidates), 1.0).present
+
+
+def swapped(policy: Policy) -> object:
+    """An effect that would fit as well in another's place, and promises a twentieth of it."""
+    gains = sets({"": 0.0, "sensor_lag": 1000.0, "sensor_drift": 1000.0})
+    scores = {frozenset(["sensor_drift"]): 50.0}
+    candidates = MadeUp(["sensor_lag", "sensor_drift"], gains, scores=scores, policy=policy)
+    return alternatives(cast(Candidates, candidates), ("sensor_lag",))
 
 
 def standing(disagreement: float) -> Callable[[Policy], object]:
@@ -168,6 +183,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         9.9,
         10.1,
     ),
+    "least_swap": (swapped, 0.049, 0.051),
     "contender": (
         selected({"sensor_lag": PRICE + 280.0, "sensor_drift": PRICE + LINE}),
         59.0,
@@ -243,7 +259,7 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
         assert start is None
         return Selected((), [step(candidates, (), noise_n, ())])
 
-    monkeypatch.setattr(recipe, "_seen_again", seen)
+    monkeypatch.setattr(recipe, "_weighed", seen)
     monkeypatch.setattr(recipe, "select", selected)
     monkeypatch.setattr(recipe, "unseen", lambda candidates, present: ())
     runs = four_runs(coulomb, noise_n=0.1)

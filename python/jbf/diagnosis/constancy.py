@@ -68,10 +68,14 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     """
     # Samples beside a jump whose instant is fitted tell that instant with errors of their own.
     samples = solution.samples.tested()
-    rings = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
+    aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
+    if samples.between is not None:
+        # In what they are known to differ runs do not agree, by more than to first order.
+        known = samples.between.names
+        aside = aside | np.array([problem.names[i] in known for i in problem.open])
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
     parts = [
-        _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), rings)
+        _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), aside)
         for i in range(len(residuals))
     ]
     size = np.sqrt(np.sum([np.sum(j**2, axis=0) for _, j in parts], axis=0))

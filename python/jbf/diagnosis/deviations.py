@@ -19,6 +19,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
+from jbf.estimation.long_run import score_inflation
 from jbf.estimation.minimum import noise_at, search
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
@@ -81,13 +82,20 @@ def deviation(
     after = problem.solution(values, allowed, noise_at(problem, allowed, values))
     gain = counted.cost(solution.residuals, solution.noise) - after.cost
     volume = _volume(allowed, after) - _volume(counted, solution)
-    gain = effective_share(after) * gain - volume
+    gain = _share(after, replace(solution, samples=counted)) * gain - volume
     if gain <= least_gain:
         return None
     before = replace(solution, samples=counted)
     if _predicts_worse(problem, after, before, policy.no_worse):
         return None
     return Deviation(replace(samples, between=between), finding, gain)
+
+
+def _share(after: Solution, before: Solution) -> float:
+    """How much the gain counts, by the same measure as an effect's (`share_of_gain`)."""
+    left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
+    ways = [b - e for b, e in zip(was, left, strict=True)]
+    return min(effective_share(after), 1.0 / score_inflation(ways, left, after.samples.steps_s))
 
 
 def _predicts_worse(problem: Problem, after: Solution, before: Solution, most: float) -> bool:

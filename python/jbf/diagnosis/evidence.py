@@ -10,7 +10,7 @@ import numpy as np
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.likelihood import likelihood_gain, share_of_gain
+from jbf.estimation.likelihood import likelihood_gain, next_step_gain, share_of_gain
 from jbf.estimation.minimum import search
 from jbf.estimation.solution import Solution
 
@@ -71,13 +71,17 @@ def swap_cost(
         lost = likelihood_gain(whole, solution)
         return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
 
-    if candidates.score_test(effects, near) <= candidates.policy.least_score:
+    policy = candidates.policy
+    score = candidates.score_test(effects, near)
+    # Where the law has a step of its own to make yet, that is no promise of the effect's.
+    least = policy.least_swap * likelihood_gain(whole, near)
+    if score <= policy.least_score or score - next_step_gain(near) <= least:
         return cost(near)
     first = cost(candidates.rank(effects, near))
-    if first >= candidates.policy.contender:
+    if first >= policy.contender:
         return first
     solution = candidates.converge(effects, near)
-    if solution.rms_n > candidates.policy.leader_rms * whole.rms_n:
+    if solution.rms_n > policy.leader_rms * whole.rms_n:
         # Where the model is wrong, what is whitest is not what leaves least.
         return float("inf")
     # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples that

@@ -60,6 +60,12 @@ class Policy:
         "gain that a score test must promise before an effect is fitted at all",
         "half of what the cheapest effect must bring in the end",
     )
+    least_swap: float = _number(
+        0.05,
+        "share of what an effect gains that the score test of another must promise before it is "
+        "fitted in its place",
+        "what would fit as well promises far more from its null",
+    )
     contender: float = _number(
         60.0,
         "how far behind the leader's share a ranked candidate may be and still converge, and how "

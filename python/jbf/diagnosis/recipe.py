@@ -84,7 +84,8 @@ def diagnose(
 
     selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
-        again = selected.differ or _seen_again(candidates, selected.present)
+        late = _on_time(candidates, selected.present)
+        again = late or selected.differ or _weighed(candidates, selected.present)
         if again is None:
             break
         campaign = again
@@ -93,7 +94,7 @@ def diagnose(
         bare = finish(candidates.fitted(()).problem, candidates.converge(()))
         before = compare_prepared(bare.model, campaign)
         # What differs from run to run was seen beside the effects: they stay if they are needed.
-        start = selected if selected.differ is not None else None
+        start = selected if late is None and selected.differ is not None else None
         selected = select(candidates, before.noise_n, start)
     present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
@@ -138,8 +139,8 @@ def diagnose(
     )
 
 
-def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign as the residuals of a model ask for it; None where they ask for nothing more."""
+def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign with each run's force where it belongs; None where it is there already."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     shifted = on_time(problem, solution, candidates.policy)
     bought = bought_by_lateness(present)
@@ -149,8 +150,12 @@ def _seen_again(candidates: Candidates, present: Names) -> Campaign | None:
         simpler, near = candidates.fitted(rest).problem, candidates.converge(rest)
         most = candidates.policy.no_worse * solution.rms_n
         shifted = on_time(simpler, near, candidates.policy, most)
-    if shifted is not None:
-        return shifted
+    return shifted
+
+
+def _weighed(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign as the residuals of a model ask for it; None where they ask for nothing more."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     again = second_look(problem, solution, candidates.policy)
     return again.campaign if again.found else None
 

@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.models.chain import core_motion, imposed
+from jbf.models.chain import imposed
 from jbf.models.driven import Driven
+from jbf.models.driven_motion import driven_motion
 from jbf.records.checks import frozen
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.finding import Finding
@@ -126,15 +127,16 @@ class Prepared:
         """
         time = self.run.time_s
         if self.recorded is None:
-            return core_motion(self.rig, self.run, self.motion)
+            return driven_motion(self.rig, self.run, self.motion)
         instants, motion = self.recorded
         if self.step_s < FINER * float(np.median(np.diff(instants))):
-            return core_motion(self.rig, self.run, self.motion)
+            return driven_motion(self.rig, self.run, self.motion)
         inside = (instants > time[0]) & (instants < time[-1])
         whole = np.union1d(instants[inside], time)
         run = self.run.at(whole, np.interp(whole, time, self.friction_n))
-        driven = core_motion(self.rig, run, motion.at(instants, whole))
-        return Driven(driven.motion, np.searchsorted(whole, time))
+        driven = driven_motion(self.rig, run, motion.at(instants, whole))
+        kept = np.searchsorted(whole, time)
+        return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
 
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""

@@ -26,11 +26,11 @@ from jbf.models.chain import (
     chain,
     core_bearing,
     core_load_n,
-    core_motion,
     core_refusals,
     imposed,
     warn_of_fast_film,
 )
+from jbf.models.driven_motion import driven_motion
 from jbf.models.model_file import model_file_text, read_model_file, write_model_file
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
@@ -136,7 +136,11 @@ class Model:
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
-        motions = [core_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
+        delay = self.parameters.get("time_delay.tau_s")
+        delay_s = 0.0 if delay is None else delay.value
+        motions = [
+            driven_motion(self.rig, run, imposed(self.rig, run), delay_s=delay_s) for run in runs
+        ]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
         with core_refusals():

@@ -28,6 +28,7 @@ from jbf.records.motion.rests import (
     resting_samples,
     still_samples,
     unsure_beside_rest,
+    without_swings,
 )
 from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of
 from jbf.records.motion.smoothing import smooth
@@ -177,6 +178,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
     if records.path is not None and not records.speed_measured:
         sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
+    without_swings(rest, velocity, sign_known)
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and not sign_known[0]:
         velocity[0] = 0.0

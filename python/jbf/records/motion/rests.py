@@ -16,6 +16,8 @@ STILL_STEPS = 1.5
 """How far an encoder may seem to go meanwhile, in its steps,"""
 STILL_SHARE = 5e-3
 """and the largest hum of a rest, as a share of the top speed."""
+STANDS_OUT = 9.0
+"""Times the usual speed of a rest (six standard deviations of its hum) that are none."""
 LONGER = 2.0
 """A rest is so many times as long as a reversal seems to stand still."""
 
@@ -58,6 +60,12 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         if _reverses(time_s, velocity_m_s, int(first), int(end), step):
             resting[first:end] = False
+            continue
+        # A speed that stands out of the rest's own hum where it ends is the motion's.
+        speed = np.abs(velocity_m_s[first:end])
+        hum = np.flatnonzero(speed <= STANDS_OUT * np.median(speed))
+        resting[first : first + hum[0]] = False
+        resting[first + hum[-1] + 1 : end] = False
     return resting
 
 
@@ -112,6 +120,23 @@ def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: floa
             gone = ((path[end] - path[first:end]) * way > least)[::-1]
             unsure[first:end] |= ~np.logical_or.accumulate(gone)[::-1]
     return unsure
+
+
+def without_swings(rest: Mask, velocity_m_s: Array, sign_known: Mask) -> None:
+    """Take speeds beside a rest that go the other way, by no more than chance, as none, in
+    `velocity_m_s`: a shaft does not go back before it sets out."""
+    edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        sure = np.flatnonzero(sign_known[first:end])
+        if not len(sure):
+            continue
+        v = velocity_m_s[first:end]
+        if first > 0:
+            start = v[: sure[0]]
+            start[start * v[sure[0]] < 0.0] = 0.0
+        if end < len(rest):
+            stop = v[sure[-1] + 1 :]
+            stop[stop * v[sure[-1]] < 0.0] = 0.0
 
 
 def place_rests(

@@ -250,7 +250,7 @@ def test_a_number_is_what_a_test_of_the_remainder_waits_for(name: str) -> None:
 def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     looks, rounds_of = [], []
 
-    def seen(candidates: Candidates, present: tuple[str, ...]) -> Campaign:
+    def seen(candidates: Candidates, selected: Selected) -> Campaign:
         looks.append(candidates.campaign)
         return candidates.campaign
 

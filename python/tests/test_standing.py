@@ -117,7 +117,7 @@ def test_a_diagnosis_takes_the_name_of_a_confounder(
     spread: float, named: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A recording that is not asked what it did, and a tone so that structure remains.
-    monkeypatch.setattr(recipe, "_weighed", lambda candidates, present: None)
+    monkeypatch.setattr(recipe, "_weighed", lambda candidates, selected: None)
     monkeypatch.setattr(
         recipe, "select", lambda c, n, s=None: Selected((OFFSET,), [step(c, (OFFSET,), n, ())])
     )

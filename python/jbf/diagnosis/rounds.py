@@ -61,10 +61,16 @@ def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campai
     """The campaign with a deviation of its runs that has more evidence than the leading effect."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     campaign, policy = candidates.campaign, candidates.policy
-    most = max((t.evidence for t in found.trials if t.outcome == "added"), default=0.0)
-    least = price_of(candidates, 1) + most
+    least = least_gain(candidates, found.trials)
     differ = deviation(problem, solution, campaign.samples, policy, least)
     return None if differ is None else allowing_for(campaign, differ)
+
+
+def least_gain(candidates: Candidates, trials: tuple[Trial, ...]) -> float:
+    """What a deviation of the runs must gain: more than chance, and than any effect would."""
+    return price_of(candidates, 1) + max(
+        (t.evidence for t in trials if t.evidence > 0.0), default=0.0
+    )
 
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:

@@ -37,8 +37,16 @@ class SecondLook:
     found: bool
 
 
-def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondLook:
-    """The campaign as the residuals of a solution ask for it."""
+def second_look(
+    problem: Problem, solution: Solution, policy: Policy, least_gain: float = 0.0
+) -> SecondLook:
+    """The campaign as the residuals of a solution ask for it.
+
+    Parameters
+    ----------
+    least_gain
+        What a deviation of the runs must gain, in twice the log likelihood.
+    """
     campaign = problem.campaign
     known = {f.kind for f in campaign.more_findings}
     ones = [np.ones(len(r)) for r in solution.residuals]
@@ -62,7 +70,7 @@ def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondL
         ):
             robust, found = shares, [*found, *heavy]
     samples = campaign.samples.weighed(sizes, robust, campaign.samples.between)
-    differ = deviation(problem, solution, samples, policy)
+    differ = deviation(problem, solution, samples, policy, least_gain)
     if differ is not None:
         samples, found = differ.samples, [*found, differ.finding]
     if not found:

@@ -51,10 +51,13 @@ def noise_sizes(
     edges = np.quantile(flat_f, np.linspace(0.0, 1.0, FORCE_BINS + 1))
     middle = 0.5 * (edges[1:] + edges[:-1])
     which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
-    by_force = np.array([robust_size(flat_e[which == k]) for k in range(FORCE_BINS)])
+    counts = np.bincount(which, minlength=FORCE_BINS)
+    # Many forces may be the same, where a shaft rests.
+    full = np.flatnonzero(counts)
+    counts, middle = counts[full], middle[full]
+    by_force = np.array([robust_size(flat_e[which == k]) for k in full])
     findings = []
     shares = ones
-    counts = np.bincount(which, minlength=FORCE_BINS)
     if _uneven(by_force, counts, policy):
         # A line through the squares: noise of the cell, and noise that goes with the force.
         slope, level = np.polyfit(middle**2, by_force**2, 1)

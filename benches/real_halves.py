@@ -1,0 +1,118 @@
+"""What a diagnosis of one half of a real recording predicts of the other half:
+`python benches/real_halves.py FOLDER [--law stribeck]`.
+
+FOLDER holds `leadscrew/drive1.csv` and `drive2.csv` (time_ms, speed_rpm, torque_pct; the torque of
+a drive in % stands for the force), `seal/NAP310_1bar.csv` and so on, and `emps/run.csv` (time_s,
+position_m, velocity_m_s, friction_n). Drives are cut into their sweeps, each of which is halved; of
+the seal every other pair of strokes is fitted; EMPS is halved. The recordings are not ours to ship:
+without them this says so and does nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import jbf
+import numpy as np
+import numpy.typing as npt
+from jbf.estimation.campaign import Campaign
+
+Array = npt.NDArray[np.float64]
+Halves = tuple[list[jbf.Run], list[jbf.Run]]
+SLOW = 0.05
+"""Share of the top speed below which a stroke's direction is not told."""
+
+
+def columns(path: Path) -> dict[str, Array]:
+    """The columns of a CSV file by name."""
+    names = path.read_text(encoding="utf-8").split("\n", 1)[0].strip().split(",")
+    values = np.loadtxt(path, delimiter=",", skiprows=1)
+    return dict(zip(names, values.T, strict=True))
+
+
+def drive(path: Path) -> Halves:
+    """The first and the second halves of a drive's sweeps."""
+    c = columns(path)
+    t, v, f = c["time_ms"] / 1e3, c["speed_rpm"] * 2.0 * np.pi / 60.0, c["torque_pct"]
+    fitted, left = [], []
+    for i, at in enumerate(np.split(np.arange(len(t)), np.flatnonzero(np.diff(t) < 0.0) + 1)):
+        for half, into in ((at[: len(at) // 2], fitted), (at[len(at) // 2 :], left)):
+            into.append(jbf.Run.from_arrays(t[half], v[half], f[half], name=f"sweep {i}"))
+    return fitted, left
+
+
+def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
+    """Some samples of a recording."""
+    t, v, f = (c[k][at] for k in ("time_s", "velocity_m_s", "friction_n"))
+    position = c["position_m"][at] if "position_m" in c else None
+    return jbf.Run.from_arrays(t, v, f, position_m=position, name=name)
+
+
+def strokes(path: Path) -> Halves:
+    """Every other pair of strokes, and the others."""
+    c = columns(path)
+    v = c["velocity_m_s"]
+    sign = np.sign(np.where(np.abs(v) > SLOW * np.max(np.abs(v)), v, 0.0))
+    known = np.flatnonzero(sign)
+    turns = np.flatnonzero(sign[known[1:]] != sign[known[:-1]])
+    cuts = set(((known[turns] + known[turns + 1]) // 2).tolist())
+    cuts |= set((np.flatnonzero(np.diff(c["time_s"]) > 1.0) + 1).tolist())
+    parts = [p for p in np.split(np.arange(len(v)), sorted(cuts)) if len(p) > 50]
+    pairs = [np.concatenate(parts[i : i + 2]) for i in range(0, len(parts) - 1, 2)]
+    runs = [part(c, p, f"pair {i}") for i, p in enumerate(pairs)]
+    return runs[0::2], runs[1::2]
+
+
+def halved(path: Path) -> Halves:
+    """The first half, and the second."""
+    c = columns(path)
+    at = np.arange(len(c["time_s"]))
+    return [part(c, at[: len(at) // 2], "first")], [part(c, at[len(at) // 2 :], "second")]
+
+
+def row(title: str, halves: Halves, law: str) -> None:
+    """Print what is found in one half, and the RMS in the other."""
+    fitted, left = halves
+    begun = time.process_time()
+    found = jbf.diagnose(jbf.Rig(), fitted, law=law)
+    took = time.process_time() - begun
+    campaign = Campaign.prepare(jbf.Rig(), left)
+    errors = [p.friction_n - found.model.predict(p.run) for p in campaign.prepared]
+    names = ", ".join(found.effects) or "-"
+    kinds = ", ".join(sorted({f.kind for f in found.findings})) or "-"
+    rms = campaign.samples.rms(errors)
+    print(f"| {title} | {law} | {rms:.3g} | {found.verdict} | {names} | {kinds} | {took:.0f} |")
+    sys.stdout.flush()
+
+
+def main() -> int:
+    """Do it for every recording that is there."""
+    parser = argparse.ArgumentParser(prog="real_halves", description=__doc__.split("\n", 1)[0])
+    parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("--law", default="stribeck", help="base law; stribeck")
+    parser.add_argument("--only", default="", help="recordings whose path holds this")
+    asked = parser.parse_args()
+    if asked.folder is None:
+        print("skipped: name the folder of the recordings: python benches/real_halves.py FOLDER")
+        return 0
+    plan = [(f"leadscrew/drive{k}.csv", drive) for k in (1, 2)]
+    plan += [(f"seal/NAP310_{bar}bar.csv", strokes) for bar in (1, 3, 5, 7)]
+    plan += [("emps/run.csv", halved)]
+    print("| recording | law | left-out RMS, N (drives: %) | verdict | named | findings | CPU s |")
+    print("|---|---|---|---|---|---|---|")
+    for name, cut in plan:
+        path = asked.folder / name
+        if asked.only not in name:
+            continue
+        if not path.is_file():
+            print(f"skipped: there is no {path}")
+            continue
+        row(name, cut(path), asked.law)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

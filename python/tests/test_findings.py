@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pytest
 from jbf import Run
 from jbf.records.findings.examine import Examined, examine
+from jbf.records.findings.held_samples import held
 from scipy.signal import lfilter
 
 Array = npt.NDArray[np.float64]
@@ -205,3 +206,15 @@ def test_laws_without_noise_have_corners_and_plateaus(kind: str) -> None:
     top = np.max(v)
     found = examined(10.0 * np.tanh(v / (0.01 * top)) + 2.0 * v / top, v)
     assert {"glitches", "saturation", "interpolated", "steps"}.isdisjoint(kinds(found))
+
+
+def test_long_rows_do_not_make_long_rows_likely() -> None:
+    """A tenth of a record in long rows, and one short one that is held as well."""
+    random = np.random.default_rng(8)
+    values = random.standard_normal(1500)
+    for first in (100, 400, 700, 1000):
+        values[first : first + 40] = values[first]
+    values[1300:1305] = values[1300]
+    found = held(values)
+    assert found[1301:1305].all()
+    assert found.sum() == 4 * 39 + 4

@@ -120,3 +120,21 @@ def test_a_motion_and_a_run_at_other_instants() -> None:
     # Half way between two samples on either side of a reversal nobody knows the sign.
     turn = np.pi * 3 / 0.3
     assert not motion.at(TIME, np.array([turn])).sign_known[0]
+
+
+def test_a_slow_force_is_compared_with_all_of_a_fast_motion() -> None:
+    """Between two readings the shaft sets out: the core is told when."""
+    t = np.arange(0.0, 20.0, 0.005)
+    v = np.where(t < 3.013, 0.0, 0.05 * np.sin(t - 3.013))
+    slow = np.arange(0.0, 20.0, 0.05)
+    read = 5.0 * np.sign(np.interp(slow, t, v)) + force(slow, 3)
+    drawn = np.interp(t, slow, read)
+    prepared = Prepared.of(Rig(), Run.from_arrays(t, v, drawn, name="a"))
+    assert len(prepared.run) < 0.15 * len(t)
+    core = prepared.core
+    assert core.kept is not None
+    assert len(core.motion) > 0.9 * len(t)
+    at = np.asarray(core.motion.columns["time_s"])
+    np.testing.assert_allclose(at[core.kept], prepared.run.time_s, rtol=1e-12)
+    speed = np.asarray(core.motion.columns["velocity_m_s"])
+    assert np.max(np.abs(np.interp(t, at, speed) - v)) < 1e-3

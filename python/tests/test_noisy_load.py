@@ -76,3 +76,16 @@ def test_a_prediction_takes_the_mean() -> None:
     noisy = model.predict(Run.from_arrays(TIME, v, load_n=load))
     steady = model.predict(Run.from_arrays(TIME, v, load_n=np.full(len(TIME), np.mean(load))))
     np.testing.assert_array_equal(noisy, steady)
+
+
+def test_a_steady_load_stays_steady_at_other_instants() -> None:
+    """Lines through white noise are not white: whoever resamples a run has the mean already."""
+    (prepared,) = campaign(LOAD_N + noise(0.03)).prepared
+    assert prepared.run.load_n is not None
+    assert np.ptp(prepared.run.load_n) == 0.0
+    for other in (prepared.shifted(7e-3, 0.0).run, prepared.run.at(TIME[:-1] + 0.003, TIME[:-1])):
+        assert other.load_n is not None
+        assert np.ptp(other.load_n) < 1e-9 * LOAD_N
+    (changing,) = campaign(LOAD_N * (1.0 + 0.2 * np.sin(0.3 * TIME)) + noise(0.01)).prepared
+    assert changing.run.load_n is not None
+    assert np.ptp(changing.run.load_n) > 0.3 * LOAD_N

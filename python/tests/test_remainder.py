@@ -22,6 +22,7 @@ from jbf.estimation.minimum import approach, settle
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from scipy import signal
 
 Array = npt.NDArray[np.float64]
 SIGMA_N = 0.3
@@ -77,6 +78,19 @@ def test_coloured_noise_does_not_come_again(seed: int) -> None:
 
     # What the noise model finds of it: about a fifth of the mean square, remembered 0.2 s.
     assert _replicates(*_with(coloured, seed, Noise(0.2, 0.5))) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_that_remembers_a_period_does_not_come_again(seed: int) -> None:
+    """Slow noise of 3 s, longer than a noise is described by: as like itself half a period ago."""
+
+    def slow(random: np.random.Generator, run: int) -> Array:
+        white = _white(random, run)
+        keep = np.exp(-_solved()[0].campaign.prepared[run].step_s / 3.0)
+        kicks = random.normal(0.0, 0.6 * SIGMA_N * np.sqrt(1.0 - keep**2), len(white))
+        return white + np.asarray(signal.lfilter([1.0], [1.0, -keep], kicks))
+
+    assert _replicates(*_with(slow, seed)) == []
 
 
 def test_an_error_that_comes_with_each_period_is_told_with_its_share() -> None:

@@ -7,9 +7,14 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from by_hand import coulomb
+from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, evidence_alone
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import WHITE
 from made_up import BARE_N, MadeUp, N, sets
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
@@ -268,3 +273,48 @@ def test_an_alternative_whose_score_promises_nothing_is_none() -> None:
         {"sensor_lag": 300.0, "sensor_drift": 300.0}, scores={frozenset(["sensor_drift"]): 5.0}
     )
     assert alternatives(cast(Candidates, candidates), ("sensor_lag",)) == {"sensor_lag": ()}
+
+
+# ---- whose gain it is -------------------------------------------------------------------------
+
+
+def test_a_round_begins_again_where_the_model_without_found_its_way() -> None:
+    gains = sets({"": 0.0, "sensor_lag": 300.0})
+    valley = MadeUp(FOUR, dict(gains), from_richer={frozenset[str](): 295.0})
+    found = try_candidates(cast(Candidates, valley), ())
+    # Fitted from where the model with the lag ended, the law alone is as good.
+    assert found.leader is None
+    assert [s for what, s in valley.asked if what == "refit"] == [frozenset[str]()]
+    little = MadeUp(FOUR, dict(gains), from_richer={frozenset[str](): 55.0})
+    assert try_candidates(cast(Candidates, little), ()).leader == "sensor_lag"
+
+
+def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
+    """A law led astray by three wild samples at a start; a delay that sets them aside."""
+    t = np.arange(0.0, 20.0, 0.02)
+    runs = []
+    for i in range(2):
+        v = 0.1 * np.sin((1.0 + 0.2 * i) * t + 0.4)
+        noise = 0.1 * np.random.default_rng(i).standard_normal(len(t))
+        runs.append(Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=str(i)))
+    campaign = Campaign.prepare(Rig(), runs)
+    candidates = Candidates(campaign, "coulomb", "journal")
+    problem = candidates.fitted(()).problem
+    right = candidates.converge(())
+    every = [np.ones(len(t), dtype=bool) for _ in runs]
+    every[0][500:503] = False
+    fewer = right.samples.within(every)
+    # As if those three had bent the law, and a delay of nothing had set them aside.
+    moved = right.values * np.where(np.array(problem.names) == "F_c_n", 1.02, 1.0)
+    astray = problem.solution(moved, right.samples, WHITE)
+    delay = candidates.converge(("time_delay",))
+    richer = replace(delay, samples=fewer, values=np.append(right.values, 1e-4))
+    cost = fewer.cost(right.residuals, WHITE)
+    richer = replace(richer, residuals=right.residuals, noise=WHITE, cost=cost)
+    assert evidence(candidates, richer, astray) > 60.0
+    assert evidence_alone(candidates, richer, astray) < 0.0
+    # On the same samples the two are one.
+    whole = astray.samples.cost(right.residuals, WHITE)
+    same = replace(richer, samples=astray.samples, cost=whole)
+    alone = evidence_alone(candidates, same, astray)
+    assert alone == evidence(candidates, same, astray) > 60.0

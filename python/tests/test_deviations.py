@@ -78,7 +78,8 @@ def test_a_zero_of_its_own_is_found_and_must_gain_enough() -> None:
     assert solution.noise.colour > 0.01
     white = samples.cost(solution.residuals, solution.noise) - samples.cost(r, WHITE)
     volume = found.samples.between.log_determinant(samples.weight, samples.steps_s, WHITE)
-    assert found.gain == pytest.approx(white - volume, rel=0.05)
+    assert found.gain == pytest.approx(white - volume, rel=0.01)
+    assert volume > 0.02 * white
     assert deviation(problem, solution, samples, DEFAULT, 0.99 * found.gain) is not None
     assert deviation(problem, solution, samples, DEFAULT, 1.01 * found.gain) is None
 

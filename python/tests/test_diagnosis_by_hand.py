@@ -150,10 +150,12 @@ def test_what_helps_in_one_run_only_is_not_added() -> None:
     assert book.rms(3) < 0.99 * book.rms(2)
     assert book.held_out(3) > book.held_out(2)
     assert d.effects == ()
-    # Something is there, and where.
+    # Noise does not reach such a gain anywhere: something of its kind is there, and where.
     assert d.verdict == "unexplained"
     assert d.unexplained[0].axis == "frequency"
     assert d.unexplained[0].where.endswith(f"in {runs[0].name}")
+    told = [r.where for r in d.unexplained if r.axis == "run"]
+    assert any(w.startswith("inertia_leak fits") and "left out no better" in w for w in told)
 
 
 def test_effects_that_fit_equally_well_tie() -> None:

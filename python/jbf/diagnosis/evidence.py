@@ -10,7 +10,12 @@ import numpy as np
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.likelihood import likelihood_gain, next_step_gain, share_of_gain
+from jbf.estimation.likelihood import (
+    effective_share,
+    likelihood_gain,
+    next_step_gain,
+    share_of_gain,
+)
 from jbf.estimation.minimum import search
 from jbf.estimation.solution import Solution
 
@@ -27,33 +32,42 @@ def price_of(candidates: Candidates, parameters: int) -> float:
     return price(parameters, samples, tried, candidates.policy)
 
 
-def evidence(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
+def evidence(
+    candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
+) -> float:
     """Evidence for the richer of two models.
 
     Where even the richer one leaves an error that is smooth, samples count for less. For an effect
     that the fit left at its null there is none: what is gained beside it is the search's.
+
+    Parameters
+    ----------
+    anywhere
+        A gain counts that comes and goes, too: it tells of structure, and not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0:
-        gain *= share_of_gain(richer, simpler)
+        gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
     return gain - price_of(candidates, richer.free - simpler.free)
 
 
-def evidence_alone(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
+def evidence_alone(
+    candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
+) -> float:
     """Evidence for the richer of two models, the other fitted to the same samples.
 
     An effect that moves jumps sets the samples beside them aside, and with them what may have led
     the model without it astray: that gain is not the effect's.
     """
-    gain = evidence(candidates, richer, simpler)
+    gain = evidence(candidates, richer, simpler, anywhere=anywhere)
     if richer.samples is simpler.samples or gain <= 0.0:
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
     values, *_ = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS)
     there = problem.solution(values, samples, simpler.noise)
-    return min(gain, evidence(candidates, richer, there))
+    return min(gain, evidence(candidates, richer, there, anywhere=anywhere))
 
 
 def swap_cost(

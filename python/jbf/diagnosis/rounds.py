@@ -79,12 +79,12 @@ def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[T
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """What a candidate saw that helps where it was fitted and not in runs left out."""
-    base = candidates.converge(present)
+    """What a candidate saw that helps where it was fitted, or in places, and not elsewhere."""
+    base, weak = candidates.converge(present), candidates.policy.weak
     found = [
         (fitted.found().rms_n, name)
         for name, fitted in candidates.one_more(present).items()
-        if evidence_alone(candidates, fitted.found(), base) > candidates.policy.weak
+        if evidence_alone(candidates, fitted.found(), base, anywhere=True) > weak
     ]
     if not found:
         return ()

@@ -290,10 +290,14 @@ def test_a_slow_reversal_is_no_rest() -> None:
     time = np.arange(400) * 5e-3
     rate, step = 0.008, 7e-6
     v = rate * (time - 1.0)
-    v[-1] = 1.0
+    v[-1] = 0.2
     path = step * np.round(0.5 * rate * (time - 1.0) ** 2 / step)
     assert np.ptp(path[190:211]) <= step
     assert not still_samples(time, path, v, step).any()
+    # Nor is a long rest a reversal, where rounding leaves speeds of either sign about it.
+    at_rest = np.where(np.abs(time - 1.0) < 0.8, 0.0, 1e-15 * np.sign(time - 1.0))
+    at_rest[-1] = 1.0
+    assert still_samples(time, np.zeros(400), at_rest, step)[45:355].all()
     # As long a rest between the same speeds is one.
     still = np.where(np.abs(time - 1.0) < 0.4, 0.0, v)
     path = step * np.round(np.cumsum(still) * 5e-3 / step)

@@ -11,6 +11,9 @@ from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
 from jbf.estimation.campaign import Campaign
 
+LESS = 0.99
+"""Share of an RMS below which something fits better for anybody who reads it."""
+
 
 @dataclass(frozen=True)
 class Selected:
@@ -84,7 +87,8 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     found = [
         (fitted.found().rms_n, name)
         for name, fitted in candidates.one_more(present).items()
-        if evidence_alone(candidates, fitted.found(), base, anywhere=True) > weak
+        if fitted.found().rms_n < LESS * base.rms_n
+        and evidence_alone(candidates, fitted.found(), base, anywhere=True) > weak
     ]
     if not found:
         return ()

@@ -72,10 +72,12 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
 def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
     """Whether a reversal at the acceleration from before to after would stay within the encoder's
     step for about as long."""
-    way = end - first
+    way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
     v0, v1 = velocity_m_s[before], velocity_m_s[after]
-    if v0 * v1 >= 0.0:
+    # What rounding leaves of a speed is none.
+    least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity_m_s)))
+    if v0 * v1 >= 0.0 or min(abs(v0), abs(v1)) < least:
         return False
     rate = abs(v1 - v0) / (time_s[after] - time_s[before])
     still_s = 2.0 * np.sqrt(2.0 * STILL_STEPS * step / rate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -10,12 +11,12 @@ import pytest
 from by_hand import coulomb
 from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, evidence_alone
+from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
-from made_up import BARE_N, MadeUp, N, sets
+from made_up import BARE_N, SAMPLES, MadeUp, N, sets
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
 PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
@@ -318,3 +319,20 @@ def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
     same = replace(richer, samples=astray.samples, cost=whole)
     alone = evidence_alone(candidates, same, astray)
     assert alone == evidence(candidates, same, astray) > 60.0
+
+
+@pytest.mark.parametrize(("noise_n", "counts"), [(0.10, False), (0.35, True)])
+def test_what_a_converters_steps_do_is_no_evidence(noise_n: float, counts: bool) -> None:
+    """0.03 N that an effect moves, read in steps of 0.4 N: noise of a quarter of a step hides no
+    curve of the converter, noise of a step does."""
+    step_n, random = 0.4, np.random.default_rng(2)
+    force = np.linspace(-6.0, 6.0, 200000)
+    read = step_n * np.round((force + noise_n * random.standard_normal(len(force))) / step_n)
+    off = float(np.std([np.mean((read - force)[k : k + 1000]) for k in range(0, 200000, 1000)]))
+    # By simulation: is the converter's own curve larger than what the effect moves?
+    assert (off > 0.03 / np.sqrt(2.0)) == (not counts)
+    rms = float(np.hypot(noise_n, step_n / np.sqrt(12.0)))
+    near = SimpleNamespace(rms_n=rms, residuals=[np.zeros(N)], samples=SAMPLES)
+    more = SimpleNamespace(rms_n=rms, residuals=[0.03 * np.sin(np.arange(N))], samples=SAMPLES)
+    assert _within_steps(step_n, cast(Any, more), cast(Any, near)) == (not counts)
+    assert not _within_steps(0.0, cast(Any, more), cast(Any, near))

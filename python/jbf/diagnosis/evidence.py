@@ -17,6 +17,7 @@ from jbf.estimation.likelihood import (
     share_of_gain,
 )
 from jbf.estimation.minimum import search
+from jbf.estimation.samples import least_weights
 from jbf.estimation.solution import Solution
 
 
@@ -46,11 +47,29 @@ def evidence(
         A gain counts that comes and goes, too: it tells of structure, and not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
+    if gain > 0.0 and _within_steps(candidates.campaign.step_n, richer, simpler):
+        gain = 0.0
     if gain > 0.0:
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
     return gain - price_of(candidates, richer.free - simpler.free)
+
+
+def _within_steps(step_n: float, richer: Solution, simpler: Solution) -> bool:
+    """Whether two models differ by no more than a converter's steps move a mean reading.
+
+    Of a force f with Gaussian noise of s the mean of readings in steps q is off by
+    `(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)`, its first and largest harmonic (Widrow 1956):
+    a curve of the force that no sample averages out.
+    """
+    if step_n <= 0.0:
+        return False
+    noise = np.sqrt(max(simpler.rms_n**2 - step_n**2 / 12.0, 0.0))
+    off = step_n / np.pi * np.exp(-2.0 * (np.pi * noise / step_n) ** 2) / np.sqrt(2.0)
+    samples = least_weights(richer.samples, simpler.samples)
+    ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
+    return bool(samples.rms(ways) < off)
 
 
 def evidence_alone(

@@ -120,6 +120,11 @@ class Campaign:
         """The campaign with findings that took a model to see."""
         return replace(self, more_findings=(*self.more_findings, *findings))
 
+    @property
+    def step_n(self) -> float:
+        """The largest step of a converter that is as large as the noise, N; zero without one."""
+        return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
+
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """The campaign with more samples set aside, one mask a run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))

@@ -116,6 +116,14 @@ def test_a_delay_that_all_runs_share_is_none_of_the_recording(
     assert told((late_s,) * 4, effects=effects, seed=seed) is None
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_force_that_is_early_in_all_runs_is_the_recordings(seed: int) -> None:
+    found = told((-6e-3,) * 4, seed=seed)
+    assert found is not None
+    assert (found.drift, found.spread_s) == (0.0, 0.0)
+    np.testing.assert_allclose(found.late_s, -6e-3, atol=0.5e-3)
+
+
 def test_of_two_runs_nobody_knows() -> None:
     assert told(DIFFER_S[:2]) is None
 

@@ -68,7 +68,8 @@ class _Place:
 def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> Lateness | None:
     """How the lateness of the runs differs; None where it does not beyond chance.
 
-    A lateness that all runs have in common may be the instrument's: that is an effect's to tell.
+    A lateness that all runs have in common may be the instrument's: that is an effect's to tell. A
+    force that is early in all of them is none's.
 
     Parameters
     ----------
@@ -87,7 +88,11 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
     if not differ and not grows:
-        return None
+        # No instrument is early: there the motion is late, and that is the recording's.
+        early = _common(whole)
+        if early is None or early[0] >= 0.0 or early[1] >= chance:
+            return None
+        return Lateness(tuple(early[0] for _ in whole), 0.0, 0.0)
     share = drift[0] if drift is not None and grows else 0.0
     if by_run is None or not differ:
         # One clock, started with each run.

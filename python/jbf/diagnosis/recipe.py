@@ -10,7 +10,7 @@ from jbf.comparison.comparison import compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.late_channels import bought_by_lateness, on_time
+from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
@@ -148,7 +148,9 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
         # What several effects together make of runs that are late, the lateness says alone.
         rest = tuple(name for name in present if name not in bought)
         simpler, near = candidates.fitted(rest).problem, candidates.converge(rest)
-        most = candidates.policy.no_worse * solution.rms_n
+        # One delay of all runs is simpler than one of each: there the shifts must leave less.
+        more = 1.0 if bought == (DELAY,) else candidates.policy.no_worse
+        most = more * solution.rms_n
         shifted = on_time(simpler, near, candidates.policy, most)
     return shifted
 

@@ -12,6 +12,7 @@ import numpy as np
 from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Rig
 from jbf.diagnosis import Policy
+from jbf.diagnosis.deviations import deviation
 from jbf.diagnosis.remainder import find_patterns
 from jbf.diagnosis.replicates import find_replicates
 from jbf.diagnosis.second_look import second_look
@@ -108,9 +109,13 @@ def of_runs(kind: str) -> Callable[[Policy, float], bool]:
         e = [noise(i, 501) for i in range(4)]
         if kind == "noise_by_run":
             e = [x * (1.0 + size * (i % 2)) for i, x in enumerate(e)]
-        else:
-            e = [x + size * (i % 2) for i, x in enumerate(e)]
-        return kind in looked_at(linear(), e, policy)
+            return kind in looked_at(linear(), e, policy)
+        e = [x + size * (i % 2) for i, x in enumerate(e)]
+        problem = linear()
+        samples = problem.campaign.samples
+        near = problem.solution(problem.starts({})[0], samples, WHITE)
+        found = deviation(problem, replace(near, residuals=e), samples, policy)
+        return found is not None and found.finding.kind == kind
 
     return finds
 

@@ -12,6 +12,7 @@ from campaigns import campaign
 from jbf import Rig, Run, diagnose
 from jbf.diagnosis.constancy import disagreement, find_disagreement
 from jbf.diagnosis.policy import DEFAULT
+from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
@@ -100,6 +101,25 @@ def test_parameters_in_common_that_are_off_are_no_disagreement() -> None:
     off = problem.solution(values, solution.samples, solution.noise)
     # The runs would gain much, but all the same.
     assert disagreement(problem, off).gain < at.gain + 4.0 * np.sqrt(2.0 * at.degrees)
+
+
+def test_in_what_runs_are_known_to_deviate_they_need_not_agree() -> None:
+    rig, runs, _ = campaign(11)
+    problem, solution = _solved(rig, runs)
+    # One oil in the first two runs, a thicker one in the others.
+    place = [problem.names[i] for i in problem.open].index("gamma")
+    thicker = [
+        e + 0.15 * (1 if i < 2 else -1) * j[:, place]
+        for i, (e, j) in enumerate(zip(solution.residuals, solution.jacobian, strict=True))
+    ]
+    off = replace(solution, residuals=thicker)
+    assert disagreement(problem, off).beyond_chance()
+    # Directions so small that they whiten nothing: it is the parameter that is set aside.
+    tiny = tuple(np.full((len(e), 1), 1e-12) for e in thicker)
+    known = replace(off.samples, between=BetweenRuns(("gamma",), tiny, 1.0))
+    assert not disagreement(problem, replace(off, samples=known)).beyond_chance()
+    other = replace(off.samples, between=BetweenRuns(("zero",), tiny, 1.0))
+    assert disagreement(problem, replace(off, samples=other)).beyond_chance()
 
 
 def test_each_run_may_have_its_peak_of_a_ringing_drive() -> None:

@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
 from by_hand import LAW, Array, coulomb
 from jbf import Rig, Run
+from jbf.diagnosis import late_channels, recipe
+from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.late_channels import on_time
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
@@ -19,6 +22,7 @@ from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from made_up import MadeUp, sets
 
 CHANCE = DEFAULT.deviation_chance
 NOISE_N = 0.03
@@ -169,6 +173,58 @@ def test_a_drifting_clock_leaves_no_lateness() -> None:
 @pytest.mark.parametrize(("late_s", "effects"), [(0.0, ()), (25e-3, DELAY)])
 def test_runs_that_are_late_alike_stay_as_they_are(late_s: float, effects: tuple[str, ...]) -> None:
     assert on_time(*fitted(campaign((late_s,) * 4), effects), DEFAULT) is None
+
+
+@pytest.mark.parametrize("right", [False, True])
+def test_one_clock_is_believed_where_it_leaves_as_little(
+    right: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Runs that start late by times of their own under a clock that drifts, or on time: whichever
+    of the two is told, the other shifts the runs to where they do not belong."""
+    drift = 1e-3
+    middle = 0.5 * drift * LASTS_S
+    truly = np.full(4, middle) + (0.0 if right else np.array(DIFFER_S))
+    wrong = np.full(4, middle) + (np.array(DIFFER_S) if right else 0.0)
+
+    def two_ways(
+        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool
+    ) -> Lateness | None:
+        late = truly if one_clock == right else wrong
+        return Lateness(tuple(late.tolist()), drift, 0.0) if look == 0 else None
+
+    monkeypatch.setattr(late_channels, "lateness", two_ways)
+    again = on_time(*fitted(campaign(truly.tolist(), drift)), DEFAULT)
+    assert again is not None
+    middles = [float(f.words.split(": ")[1].split()[0]) for f in again.more_findings]
+    np.testing.assert_allclose(middles, 1e3 * truly, atol=0.2)
+    assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+
+
+def test_of_runs_that_differ_one_clock_says_what_the_drift_makes() -> None:
+    drift = 4e-4
+    middle = 0.5 * drift * LASTS_S
+    there = fitted(campaign([middle + late for late in DIFFER_S], drift))
+    by_run, clock = (lateness(*there, 0, CHANCE, one) for one in (False, True))
+    assert by_run is not None
+    np.testing.assert_allclose(by_run.late_s, middle + np.array(DIFFER_S), atol=2e-3)
+    assert clock is not None
+    assert clock.spread_s == 0.0
+    np.testing.assert_allclose(clock.late_s, 0.5 * clock.drift * LASTS_S, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("effects", "more"), [(DELAY, 1.0), (("sensor_lag",), DEFAULT.no_worse)])
+def test_one_delay_of_all_runs_must_be_beaten_outright(
+    effects: tuple[str, ...], more: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[float] = []
+
+    def never(problem: object, near: object, policy: object, rms_n: float = np.inf) -> None:
+        asked.append(rms_n)
+
+    monkeypatch.setattr(recipe, "on_time", never)
+    candidates = MadeUp(list(effects), sets({"": 0.0, effects[0]: 500.0}))
+    assert recipe._on_time(cast(Candidates, candidates), effects) is None
+    assert asked == [np.inf, more * candidates.converge(effects).rms_n]
 
 
 # ---- the shift ---------------------------------------------------------------------------------

@@ -47,6 +47,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "least_left_out_gain": 0.5,
         "leader_rms": 1.25,
         "weak": 60.0,
+        "refused_rms": 0.99,
         "least_score": 10.0,
         "least_swap": 0.05,
         "contender": 60.0,
@@ -55,6 +56,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "peaks_share": 0.5,
         "most_looks": 6,
         "most_shifts": 3,
+        "late_apart": 0.08,
         "deviation_chance": 1e-4,
         "no_worse": 1.03,
         "uneven_noise": 1.25,
@@ -113,6 +115,25 @@ def swapped(policy: Policy) -> object:
     scores = {frozenset(["sensor_drift"]): 50.0}
     candidates = MadeUp(["sensor_lag", "sensor_drift"], gains, scores=scores, policy=policy)
     return alternatives(cast(Candidates, candidates), ("sensor_lag",))
+
+
+def refused(policy: Policy) -> object:
+    """A candidate that fits down to 0.99 of the RMS, and is refused for other reasons."""
+    gains = sets({"": 0.0, "sensor_lag": -2.0 * N * float(np.log(0.99))})
+    candidates = MadeUp(["sensor_lag"], gains, policy=replace(policy, weak=-100.0))
+    return select(cast(Candidates, candidates), 1.0).refused
+
+
+def apart(policy: Policy) -> object:
+    """Runs of which half are 1.6 ms late and half as early, where a delay that they share could
+    say it as well; samples are 20 ms apart."""
+    late = Lateness((1.6e-3, 1.6e-3, -1.6e-3, -1.6e-3), 0.0, 1e-3)
+    problem = linear()
+    near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(late_channels, "lateness", lambda *_: late)
+        found = late_channels.on_time(problem, near, replace(policy, most_shifts=1), 1e9)
+    return found is None
 
 
 def standing(disagreement: float) -> Callable[[Policy], object]:
@@ -183,6 +204,8 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         9.9,
         10.1,
     ),
+    "refused_rms": (refused, 0.989, 0.991),
+    "late_apart": (apart, 0.079, 0.081),
     "least_swap": (swapped, 0.049, 0.051),
     "contender": (
         selected({"sensor_lag": PRICE + 280.0, "sensor_drift": PRICE + LINE}),
@@ -250,7 +273,7 @@ def test_a_number_is_what_a_test_of_the_remainder_waits_for(name: str) -> None:
 def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     looks, rounds_of = [], []
 
-    def seen(candidates: Candidates, selected: Selected) -> Campaign:
+    def seen(candidates: Candidates, present: tuple[str, ...]) -> Campaign:
         looks.append(candidates.campaign)
         return candidates.campaign
 
@@ -274,7 +297,7 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
 def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     looks: list[int] = []
 
-    def always(problem: Problem, solution: object, look: int, chance: float) -> Lateness:
+    def always(problem: Problem, near: object, look: int, chance: float, one: bool) -> Lateness:
         looks.append(look)
         assert chance == DEFAULT.deviation_chance
         return Lateness((1e-3, 2e-3, 3e-3, 4e-3), 0.0, 1e-3)

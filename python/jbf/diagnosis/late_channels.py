@@ -3,15 +3,17 @@ at the instants at which it was read."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.lateness import lateness
+from jbf.estimation.likelihood import independent_share
 from jbf.estimation.minimum import search
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -20,11 +22,9 @@ from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 
+Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 DELAY = "time_delay"
-LEAST_APART = 0.08
-"""Share of a sample by which half of the runs must be off the middle one, where a model without a
-delay of its own says that they differ."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 
@@ -41,13 +41,49 @@ def on_time(
     rms_n
         What the model may leave on runs that were shifted, N.
     """
-    campaign = problem.campaign
-    if any(f.kind in ("late_channel", "drifting_clock") for f in campaign.more_findings):
+    if any(f.kind in ("late_channel", "drifting_clock") for f in problem.campaign.more_findings):
         return None
-    old = campaign
-    prepared, late_s, drift = campaign.prepared, np.zeros(len(campaign.prepared)), 0.0
+    found = _shifted(problem, solution, policy, one_clock=False)
+    if found is not None and found.drift != 0.0:
+        simpler = _shifted(problem, solution, policy, one_clock=True)
+        if simpler is not None and _as_good(simpler.solution, found.solution):
+            found = simpler
+    if found is None or found.solution.rms_n > rms_n:
+        return None
+    campaign, late_s = found.campaign, found.late_s
+    apart = np.abs(late_s - np.median(late_s))
+    if (
+        np.isfinite(rms_n)
+        and float(np.median(apart)) < policy.late_apart * campaign.prepared[0].step_s
+    ):
+        # On their way they seemed to differ; where they end, most do not: a delay of all.
+        return None
+    findings = [
+        _finding(p.run.name, late, found.drift)
+        for p, late in zip(campaign.prepared, late_s.tolist(), strict=True)
+    ]
+    return campaign.with_findings(findings)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shifted:
+    """Runs that were shifted, by how much, and the model on them."""
+
+    campaign: Campaign
+    solution: Solution
+    late_s: Array
+    drift: float
+
+
+def _shifted(
+    problem: Problem, solution: Solution, policy: Policy, one_clock: bool
+) -> _Shifted | None:
+    """The runs shifted by their lateness until there is none; None where there was none."""
+    campaign = problem.campaign
+    old, prepared = campaign, campaign.prepared
+    late_s, drift = np.zeros(len(prepared)), 0.0
     for look in range(policy.most_shifts):
-        found = lateness(problem, solution, look, policy.deviation_chance)
+        found = lateness(problem, solution, look, policy.deviation_chance, one_clock)
         if found is None or (look == 0 and not _by_any_weights(problem, solution, policy)):
             break
         # Where runs differ in it, a delay that they share is the recording's as well.
@@ -60,16 +96,16 @@ def on_time(
         ]
         campaign = _settled(problem, shifted)
         problem, solution = _refitted(problem, campaign, known, solution)
-    if campaign is old or solution.rms_n > rms_n:
-        return None
-    apart = np.abs(late_s - np.median(late_s))
-    if np.isfinite(rms_n) and float(np.median(apart)) < LEAST_APART * prepared[0].step_s:
-        # On their way they seemed to differ; where they end, most do not: a delay of all.
-        return None
-    findings = [
-        _finding(p.run.name, late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
-    ]
-    return campaign.with_findings(findings)
+    return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
+
+
+def _as_good(simpler: Solution, other: Solution) -> bool:
+    """Whether one clock explains what a lateness of each run does, by Schwarz's criterion."""
+    samples = other.samples
+    share = min(independent_share(other.residuals, samples.steps_s), 1.0)
+    count = samples.count * share
+    price = len(samples.runs) * np.log(count)
+    return bool(2.0 * count * np.log(simpler.rms_n / other.rms_n) <= price)
 
 
 def _by_any_weights(problem: Problem, solution: Solution, policy: Policy) -> bool:

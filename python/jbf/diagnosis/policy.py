@@ -54,6 +54,11 @@ class Policy:
         "candidate that fits and does not predict is structure that nothing explains",
         "chosen on simulated campaigns; noise does not reach it",
     )
+    refused_rms: float = _number(
+        0.99,
+        "share of the RMS below which such a candidate fits better at all",
+        "what anybody sees who reads it",
+    )
     # ---- which candidates are fitted --------------------------------------------------------
     least_score: float = _number(
         10.0,
@@ -94,6 +99,12 @@ class Policy:
     )
     most_shifts: int = _number(
         3, "times that the runs' lateness is estimated", "a second look sees it sharper"
+    )
+    late_apart: float = _number(
+        0.08,
+        "share of a sample by which half of the runs must be off the middle one, where a delay "
+        "that they share could say it as well",
+        "below it the lateness of most runs is one",
     )
     deviation_chance: float = _number(
         1e-4,

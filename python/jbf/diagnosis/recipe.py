@@ -15,7 +15,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
-from jbf.diagnosis.rounds import Selected, least_gain, select, step
+from jbf.diagnosis.rounds import select, step
 from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.selection import Names, alternatives
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
@@ -85,7 +85,7 @@ def diagnose(
     selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
         late = _on_time(candidates, selected.present)
-        again = late or selected.differ or _weighed(candidates, selected)
+        again = late or selected.differ or _weighed(candidates, selected.present)
         if again is None:
             break
         campaign = again
@@ -155,12 +155,10 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
     return shifted
 
 
-def _weighed(candidates: Candidates, selected: Selected) -> Campaign | None:
+def _weighed(candidates: Candidates, present: Names) -> Campaign | None:
     """The campaign as the residuals of a model ask for it; None where they ask for nothing more."""
-    present = selected.present
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    least = least_gain(candidates, selected.steps[-1].trials)
-    again = second_look(problem, solution, candidates.policy, least)
+    again = second_look(problem, solution, candidates.policy)
     return again.campaign if again.found else None
 
 

@@ -11,9 +11,6 @@ from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
 from jbf.estimation.campaign import Campaign
 
-LESS = 0.99
-"""Share of an RMS below which something fits better for anybody who reads it."""
-
 
 @dataclass(frozen=True)
 class Selected:
@@ -64,16 +61,12 @@ def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campai
     """The campaign with a deviation of its runs that has more evidence than the leading effect."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     campaign, policy = candidates.campaign, candidates.policy
-    least = least_gain(candidates, found.trials)
+    # More than chance would, and more than any effect.
+    least = price_of(candidates, 1) + max(
+        (t.evidence for t in found.trials if t.evidence > 0.0), default=0.0
+    )
     differ = deviation(problem, solution, campaign.samples, policy, least)
     return None if differ is None else allowing_for(campaign, differ)
-
-
-def least_gain(candidates: Candidates, trials: tuple[Trial, ...]) -> float:
-    """What a deviation of the runs must gain: more than chance, and than any effect would."""
-    return price_of(candidates, 1) + max(
-        (t.evidence for t in trials if t.evidence > 0.0), default=0.0
-    )
 
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:
@@ -83,12 +76,12 @@ def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[T
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     """What a candidate saw that helps where it was fitted, or in places, and not elsewhere."""
-    base, weak = candidates.converge(present), candidates.policy.weak
+    base, policy = candidates.converge(present), candidates.policy
     found = [
         (fitted.found().rms_n, name)
         for name, fitted in candidates.one_more(present).items()
-        if fitted.found().rms_n < LESS * base.rms_n
-        and evidence_alone(candidates, fitted.found(), base, anywhere=True) > weak
+        if fitted.found().rms_n < policy.refused_rms * base.rms_n
+        and evidence_alone(candidates, fitted.found(), base, anywhere=True) > policy.weak
     ]
     if not found:
         return ()

@@ -1,9 +1,9 @@
 """A second look at the samples, once a first round of selection has said what the model is.
 
-Where the noise grows with the force or differs by run, where its tails are heavy, and where runs
-deviate from one another in their zero or their oil, the first likelihood was not the data's. What
-the residuals of the first answer tell of that goes into the samples: weights, and deviations of the
-runs with a spread (`estimation.between_runs`). Then selection begins anew.
+Where the noise grows with the force or differs by run, and where its tails are heavy, the first
+likelihood was not the data's. What the residuals of the first answer tell of that goes into the
+samples as weights. Then selection begins anew. (Runs that deviate from one another are asked for in
+each round of selection: `deviations`.)
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.deviations import deviation
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_weights
 from jbf.estimation.campaign import Campaign
@@ -31,22 +30,14 @@ EVALUATIONS = 8
 
 @dataclass(frozen=True, eq=False)
 class SecondLook:
-    """What the residuals of a first answer tell of the noise and of the runs."""
+    """What the residuals of a first answer tell of the noise."""
 
     campaign: Campaign
     found: bool
 
 
-def second_look(
-    problem: Problem, solution: Solution, policy: Policy, least_gain: float = 0.0
-) -> SecondLook:
-    """The campaign as the residuals of a solution ask for it.
-
-    Parameters
-    ----------
-    least_gain
-        What a deviation of the runs must gain, in twice the log likelihood.
-    """
+def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondLook:
+    """The campaign weighed as the residuals of a solution ask for it."""
     campaign = problem.campaign
     known = {f.kind for f in campaign.more_findings}
     ones = [np.ones(len(r)) for r in solution.residuals]
@@ -69,12 +60,9 @@ def second_look(
             problem, solution, campaign.samples.weighed(sizes, shares, None), policy.no_worse
         ):
             robust, found = shares, [*found, *heavy]
-    samples = campaign.samples.weighed(sizes, robust, campaign.samples.between)
-    differ = deviation(problem, solution, samples, policy, least_gain)
-    if differ is not None:
-        samples, found = differ.samples, [*found, differ.finding]
     if not found:
         return SecondLook(campaign, False)
+    samples = campaign.samples.weighed(sizes, robust, campaign.samples.between)
     again = replace(campaign, samples=samples).with_findings(found)
     return SecondLook(again, True)
 

@@ -65,7 +65,9 @@ class _Place:
     variance: float
 
 
-def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> Lateness | None:
+def lateness(
+    problem: Problem, solution: Solution, look: int, chance: float, one_clock: bool = False
+) -> Lateness | None:
     """How the lateness of the runs differs; None where it does not beyond chance.
 
     A lateness that all runs have in common may be the instrument's: that is an effect's to tell. A
@@ -77,6 +79,9 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
         0 at first; 1 where the runs were shifted before.
     chance
         Probability at which runs that differ, or grow later alike, are chance.
+    one_clock
+        Whether runs that grow later alike were on time when they began: what they seem to differ
+        by in the middle is then the drift's, seen through parts that tell more than others.
     """
     reach, step = RANGES[min(look, len(RANGES) - 1)]
     grid = np.arange(-reach, reach + 0.5 * step, step)
@@ -94,7 +99,7 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
             return None
         return Lateness(tuple(early[0] for _ in whole), 0.0, 0.0)
     share = drift[0] if drift is not None and grows else 0.0
-    if by_run is None or not differ:
+    if by_run is None or not differ or (grows and one_clock):
         # One clock, started with each run.
         runs = problem.campaign.prepared
         return Lateness(tuple(0.5 * share * p.run.duration_s for p in runs), share, 0.0)

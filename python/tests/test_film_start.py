@@ -80,6 +80,17 @@ def test_a_rest_is_kept_and_a_long_one_settles_the_film() -> None:
     assert not after[2].any()
 
 
+def test_what_is_forgotten_before_a_rest_is_not_remembered_after_it() -> None:
+    t = np.arange(0.0, 30.0, 0.1)
+    phase = t % 6.0
+    v = np.where((phase > 4.0) | (t < 0.4), 0.0, 0.08 * np.sin(np.pi * phase / 4.0))
+    run = Run.from_arrays(t, v, np.ones(len(t)), name="stop and go")
+    problem, values = posed([run])
+    (mask,) = unsettled(problem, values, 0.02)
+    assert mask.any()
+    assert run.time_s[mask][-1] < 3.0
+
+
 def test_less_noise_remembers_longer() -> None:
     problem, values = posed([motion("moving", None)])
     counts = [int(unsettled(problem, values, noise_n)[0].sum()) for noise_n in (0.01, 0.1, 1.0)]

@@ -55,7 +55,8 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
     prepared = problem.campaign.prepared
     if not find_law(problem.law).has_film:
         return [np.zeros(len(p.run), dtype=bool) for p in prepared]
-    begun = [problem.predict(values)]
+    # The fit's own motion has starts between samples, these have not: it would differ at each stop.
+    begun = []
     for share in SPEEDS:
         motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
         begun.append(problem.chain.predict(values, motions))

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
+from scipy import stats
 
 Array = npt.NDArray[np.float64]
 
@@ -19,6 +20,10 @@ WINDOW_S = 3.0
 """Length of the windows, s: five times the longest memory that a noise may be described by,"""
 LEAST_WINDOWS = 8
 """but so many fit into a record."""
+LEAST_RUNS = 3
+"""Fewer runs have no scatter."""
+BY_CHANCE = 0.01
+"""Probability of a scatter of the runs that is taken for chance."""
 
 
 def score_square(directions: Array, innovations: Array, step_s: float) -> float:
@@ -64,6 +69,32 @@ def score_inflation(
         for d, e, step in zip(directions, innovations, steps_s, strict=True)
     )
     return max(found / (square * white), 1.0)
+
+
+def between_runs(
+    directions: Sequence[Array], innovations: Sequence[Array], inflation: float
+) -> float:
+    """The same by what whole runs pull, where they scatter more than chance; else zero.
+
+    A level that each run has of its own outlasts any window (clusters: Liang & Zeger 1986).
+
+    Parameters
+    ----------
+    inflation
+        By the windows within the runs.
+    """
+    pulls = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
+    sizes = np.array([float(d @ d) for d in directions])
+    white = sum(float(np.sum(e**2)) for e in innovations)
+    white /= max(sum(int(np.count_nonzero(e)) for e in innovations), 1)
+    own = sizes > 0.0
+    runs = int(np.count_nonzero(own))
+    if runs < LEAST_RUNS or white <= 0.0:
+        return 0.0
+    square = float(np.sum(pulls[own] ** 2 / sizes[own])) / (white * inflation)
+    if stats.chi2.sf(square, runs - 1) > BY_CHANCE:
+        return 0.0
+    return float(np.sum(pulls**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
 
 
 def long_run_variance(scores: Array, step_s: float) -> Array:

@@ -1,4 +1,5 @@
-"""How far the open parameters of a fit may be off: the curvature of the likelihood."""
+"""How far the open parameters of a fit may be off: the curvature of the likelihood and, where the
+residual is not the noise that it is described by, the long-run variance of what pulls at each."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.long_run import between_runs, score_inflation
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 
@@ -28,7 +30,10 @@ class Spread:
     Attributes
     ----------
     sd
-        Standard deviation in the search's variable, shape (k,); nan of one that never moved.
+        Standard deviation in the search's variable, shape (k,), by the curvature; nan of one that
+        never moved.
+    inflation
+        By how much the residual's long-run variance makes it larger, shape (k,), at least one.
     scale
         Change of the parameter with the search's variable, shape (k,).
     correlation
@@ -40,6 +45,7 @@ class Spread:
     """
 
     sd: Array
+    inflation: Array
     scale: Array
     correlation: Array
     moved: Mask
@@ -47,7 +53,7 @@ class Spread:
 
     def error(self, k: int) -> float:
         """One standard error in the parameter's unit; nan where there is none."""
-        return float(self.sd[k] * self.scale[k])
+        return float(self.sd[k] * self.inflation[k] * self.scale[k])
 
 
 def spread(problem: Problem, solution: Solution) -> Spread:
@@ -71,7 +77,30 @@ def spread(problem: Problem, solution: Solution) -> Spread:
         correlation = covariance / np.outer(sd, sd)
     values = np.abs(solution.values)
     change = np.where(problem.log, values, 1.0)[problem.open]
-    return Spread(sd, change, correlation, moved, separate)
+    inflation = np.ones(free)
+    if moved.any():
+        inflation[moved] = _inflation(solution, covariance[np.ix_(moved, moved)], moved)
+    return Spread(sd, inflation, change, correlation, moved, separate)
+
+
+def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
+    """How many times as large as by the curvature each standard deviation is: a parameter follows
+    a weighted sum of the innovations, whose variance they tell themselves (Newey & West 1987)."""
+    samples = solution.samples
+    parts = [
+        samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
+        for i in range(len(samples.runs))
+    ]
+    # A scale of its own for each parameter: their units have nothing to do with each other.
+    influence = [j[:, moved] @ (covariance / np.sqrt(np.diag(covariance))) for _, j in parts]
+    innovations = [r for r, _ in parts]
+    found = []
+    for k in range(len(covariance)):
+        own = [a[:, k] for a in influence]
+        ratio = score_inflation(own, innovations, samples.steps_s)
+        found.append(np.sqrt(max(ratio, between_runs(own, innovations, ratio))))
+    ratios: Array = np.array(found)
+    return ratios
 
 
 def _separate(normal: Array) -> Mask:

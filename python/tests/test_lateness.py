@@ -216,15 +216,15 @@ def test_of_runs_that_differ_one_clock_says_what_the_drift_makes() -> None:
 def test_one_delay_of_all_runs_must_be_beaten_outright(
     effects: tuple[str, ...], more: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[float] = []
+    asked: list[float | None] = []
 
-    def never(problem: object, near: object, policy: object, rms_n: float = np.inf) -> None:
+    def never(problem: object, near: object, policy: object, rms_n: float | None = None) -> None:
         asked.append(rms_n)
 
     monkeypatch.setattr(recipe, "on_time", never)
     candidates = MadeUp(list(effects), sets({"": 0.0, effects[0]: 500.0}))
     assert recipe._on_time(cast(Candidates, candidates), effects) is None
-    assert asked == [np.inf, more * candidates.converge(effects).rms_n]
+    assert asked == [None, more * candidates.converge(effects).rms_n]
 
 
 # ---- the shift ---------------------------------------------------------------------------------

@@ -300,16 +300,16 @@ def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPat
     def always(problem: Problem, near: object, look: int, chance: float, one: bool) -> Lateness:
         looks.append(look)
         assert chance == DEFAULT.deviation_chance
-        return Lateness((1e-3, 2e-3, 3e-3, 4e-3), 0.0, 1e-3)
+        return Lateness((3e-3, 6e-3, 9e-3, 12e-3), 0.0, 3e-3)
 
     monkeypatch.setattr(late_channels, "lateness", always)
     problem = linear()
     near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
-    found = late_channels.on_time(problem, near, with_number("most_shifts", most))
+    found = late_channels.on_time(problem, near, with_number("most_shifts", most), 1e9)
     assert looks == list(range(most))
     assert found is not None
     late = [f.size for f in found.more_findings]
-    np.testing.assert_allclose(late, most * 1e-3 * np.arange(1, 5))
+    np.testing.assert_allclose(late, most * 3e-3 * np.arange(1, 5))
 
 
 # ---- the whole way ----------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
-from jbf.estimation.lateness import lateness
+from jbf.estimation.lateness import Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.minimum import search
 from jbf.estimation.prepared import Prepared
@@ -30,7 +30,7 @@ EVALUATIONS = 12
 
 
 def on_time(
-    problem: Problem, solution: Solution, policy: Policy, rms_n: float = np.inf
+    problem: Problem, solution: Solution, policy: Policy, rms_n: float | None = None
 ) -> Campaign | None:
     """The campaign with each run's force where it belongs; None where it is there already.
 
@@ -39,21 +39,26 @@ def on_time(
     Parameters
     ----------
     rms_n
-        What the model may leave on runs that were shifted, N.
+        What the model may leave on runs that were shifted, N; less than this one leaves, and by
+        more than chance, where not given.
     """
     if any(f.kind in ("late_channel", "drifting_clock") for f in problem.campaign.more_findings):
         return None
     found = _shifted(problem, solution, policy, one_clock=False)
     if found is not None and found.drift != 0.0:
         simpler = _shifted(problem, solution, policy, one_clock=True)
-        if simpler is not None and _as_good(simpler.solution, found.solution):
+        # One clock says more simply what a lateness of each run does.
+        if simpler is not None and not _gains(simpler.solution, found.solution):
             found = simpler
-    if found is None or found.solution.rms_n > rms_n:
+    if found is None:
+        return None
+    worth_it = _gains(solution, found.solution) if rms_n is None else found.solution.rms_n <= rms_n
+    if not worth_it:
         return None
     campaign, late_s = found.campaign, found.late_s
     apart = np.abs(late_s - np.median(late_s))
     if (
-        np.isfinite(rms_n)
+        rms_n is not None
         and float(np.median(apart)) < policy.late_apart * campaign.prepared[0].step_s
     ):
         # On their way they seemed to differ; where they end, most do not: a delay of all.
@@ -84,7 +89,9 @@ def _shifted(
     late_s, drift = np.zeros(len(prepared)), 0.0
     for look in range(policy.most_shifts):
         found = lateness(problem, solution, look, policy.deviation_chance, one_clock)
-        if found is None or (look == 0 and not _by_any_weights(problem, solution, policy)):
+        if look == 0 and found is not None:
+            found = _by_any_weights(problem, solution, policy, found, one_clock)
+        if found is None:
             break
         # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
@@ -99,24 +106,26 @@ def _shifted(
     return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
 
 
-def _as_good(simpler: Solution, other: Solution) -> bool:
-    """Whether one clock explains what a lateness of each run does, by Schwarz's criterion."""
-    samples = other.samples
-    share = min(independent_share(other.residuals, samples.steps_s), 1.0)
+def _gains(simpler: Solution, shifted: Solution) -> bool:
+    """Whether a lateness of each run gains more than so many parameters, by Schwarz's criterion."""
+    samples = shifted.samples
+    share = min(independent_share(shifted.residuals, samples.steps_s), 1.0)
     count = samples.count * share
-    price = len(samples.runs) * np.log(count)
-    return bool(2.0 * count * np.log(simpler.rms_n / other.rms_n) <= price)
+    gain = 2.0 * count * np.log(simpler.rms_n / shifted.rms_n)
+    return bool(gain > len(samples.runs) * np.log(count))
 
 
-def _by_any_weights(problem: Problem, solution: Solution, policy: Policy) -> bool:
-    """Whether the runs differ in lateness, too, where noise that is larger in places counts less:
-    else it is the noise that chose where each run's squares are least."""
+def _by_any_weights(
+    problem: Problem, solution: Solution, policy: Policy, plain: Lateness, one_clock: bool
+) -> Lateness | None:
+    """The lateness where noise that is larger in places counts less; None where the runs do not
+    differ in it then: it was the noise that chose where each run's squares are least."""
     sizes, uneven = noise_sizes(problem, solution, policy)
     if not uneven:
-        return True
+        return plain
     ones = [np.ones(len(s)) for s in sizes]
     even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
-    return lateness(problem, even, 0, policy.deviation_chance) is not None
+    return lateness(problem, even, 0, policy.deviation_chance, one_clock)
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:

@@ -125,9 +125,12 @@ def _scans(
     ]
     share = min(independent_share(_on_time(problem, solution, slopes), samples.steps_s), 1.0)
     found = []
+    left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, (instants, _), force) in enumerate(
         zip(problem.campaign.prepared, fine, forces, strict=True)
     ):
+        # A zero or a gain of the run's own is no lateness.
+        read = p.friction_n - (solution.residuals[i] - left_over[i])
         # The same samples at every lateness: those no reversal comes near.
         width = int(np.ceil(reach / p.step_s))
         unsure = ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
@@ -135,7 +138,7 @@ def _scans(
         rows = []
         for late in grid:
             shifted = np.interp(p.run.time_s - late, instants, force)
-            left = (p.friction_n - shifted) * samples.weight[i]
+            left = (read - shifted) * samples.weight[i]
             rows.append(left[kept])
         e = np.array(rows)
         size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
@@ -149,9 +152,10 @@ def _scans(
 def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[Array]:
     """Residuals less what lateness makes of them, one array a run: to first order in a lateness and
     its growth, which would else make the noise seem coloured."""
-    left = []
+    samples, left = solution.samples, []
+    left_over = samples.without_deviations(solution.residuals, solution.noise)
     for p, residual, slope, counted in zip(
-        problem.campaign.prepared, solution.residuals, slopes, solution.samples.counted, strict=True
+        problem.campaign.prepared, left_over, slopes, samples.counted, strict=True
     ):
         time = p.run.time_s - np.mean(p.run.time_s)
         x = np.stack([slope, slope * time], axis=1) * counted[:, None]

@@ -22,7 +22,7 @@ def force(time: Array, seed: int, sd: float = 0.3) -> Array:
     return 20.0 * np.tanh(50.0 * np.sin(0.3 * time)) + noise
 
 
-@pytest.mark.parametrize("rate_hz", [20.0, 25.0, 31.7, 40.0])
+@pytest.mark.parametrize("rate_hz", [20.0, 25.0, 31.7, 40.0, 41.5, 43.3, 46.9])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_readings_are_recovered(rate_hz: float, seed: int) -> None:
     ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
@@ -60,7 +60,7 @@ def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omeg
         assert find_repeated(TIME, np.round(y / step_n) * step_n if step_n else y) is None
 
 
-@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35])
+@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35, 14.94])
 def test_readings_are_not_those_of_a_multiple_of_their_rate(samples: float) -> None:
     step_s = 0.02 * samples
     ticks = np.arange(-0.3 * step_s, TIME[-1] + 2.0 * step_s, step_s)

@@ -151,6 +151,8 @@ pub struct JournalMotion<T> {
     pub direction: T,
     /// Time since the run began, s.
     pub time_s: T,
+    /// Recorded load, N.
+    pub load_n: T,
 }
 
 impl<T: Real> JournalMotion<T> {
@@ -177,6 +179,7 @@ impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
             angle_rad: m.angle_rad,
             direction: m.velocity_m_s.sign(),
             time_s: m.time_s,
+            load_n: m.load_n,
         }
     }
 }

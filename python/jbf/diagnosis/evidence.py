@@ -10,6 +10,7 @@ import numpy as np
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
+from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.likelihood import (
     effective_share,
     likelihood_gain,
@@ -57,19 +58,10 @@ def evidence(
 
 
 def _within_steps(step_n: float, richer: Solution, simpler: Solution) -> bool:
-    """Whether two models differ by no more than a converter's steps move a mean reading.
-
-    Of a force f with Gaussian noise of s the mean of readings in steps q is off by
-    `(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)`, its first and largest harmonic (Widrow 1956):
-    a curve of the force that no sample averages out.
-    """
-    if step_n <= 0.0:
-        return False
-    noise = np.sqrt(max(simpler.rms_n**2 - step_n**2 / 12.0, 0.0))
-    off = step_n / np.pi * np.exp(-2.0 * (np.pi * noise / step_n) ** 2) / np.sqrt(2.0)
+    """Whether two models differ by no more than a converter's steps move a mean reading."""
     samples = least_weights(richer.samples, simpler.samples)
     ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
-    return bool(samples.rms(ways) < off)
+    return bool(samples.rms(ways) < curve_rms_n(step_n, simpler.rms_n))
 
 
 def evidence_alone(

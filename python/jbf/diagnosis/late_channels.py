@@ -57,11 +57,11 @@ def on_time(
         return None
     campaign, late_s = found.campaign, found.late_s
     apart = np.abs(late_s - np.median(late_s))
-    if (
-        rms_n is not None
-        and float(np.median(apart)) < policy.late_apart * campaign.prepared[0].step_s
-    ):
-        # On their way they seemed to differ; where they end, most do not: a delay of all.
+    if (rms_n is not None or problem.campaign.samples.between is not None) and float(
+        np.median(apart)
+    ) < policy.late_apart * campaign.prepared[0].step_s:
+        # On their way they seemed to differ; where they end, most do not: a delay of all, or what
+        # is left of runs that deviate otherwise.
         return None
     findings = [
         _finding(p.run.name, late, found.drift)

@@ -143,6 +143,7 @@ impl<T: Real> Drive<T> for Backlash<T> {
             angle_rad: to.angle_rad - (state.place_m - state.first_m) / rig.radius_m,
             direction: to.direction * driven,
             time_s: to.time_s,
+            load_n: to.load_n,
         }
     }
 }

@@ -5,10 +5,11 @@ use super::place::{
 };
 use super::registry::{signal_chain, Shelf};
 use super::{
-    backlash, coulomb_drag, direction_asymmetry, drive_compliance, dwell_stiction, film_memory,
-    inertia_leak, load_dependence, position_ripple, presliding, quadratic_drag, sensor_drift,
-    sensor_lag, sensor_offset, shear_thinning, stribeck_excess, thermal_thinning, time_delay,
-    wear_in,
+    backlash, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
+    dwell_stiction, film_memory, gravity, inertia_leak, load_dependence, position_ripple,
+    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
+    stribeck_excess, thermal_thinning, time_delay, viscous_asymmetry, viscous_load_dependence,
+    wear_in, zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
 use crate::error::ParameterError;
@@ -28,6 +29,9 @@ signal_chain! {
         wear_in::WearIn,
         dwell_stiction::DwellStiction,
         stribeck_excess::StribeckExcess,
+        dry_load_dependence::DryLoadDependence,
+        viscous_load_dependence::ViscousLoadDependence,
+        viscous_asymmetry::ViscousAsymmetry,
         direction_asymmetry::DirectionAsymmetry,
         position_ripple::PositionRipple,
     ],
@@ -36,6 +40,8 @@ signal_chain! {
         coulomb_drag::CoulombDrag,
         quadratic_drag::QuadraticDrag,
         inertia_leak::InertiaLeak,
+        zero_load_dependence::ZeroLoadDependence,
+        gravity::Gravity,
     ],
     instrument: InInstrument [
         sensor_lag::SensorLag,

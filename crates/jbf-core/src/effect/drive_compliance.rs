@@ -182,6 +182,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             angle_rad: state.angle_rad,
             direction,
             time_s: to.time_s,
+            load_n: to.load_n,
         }
     }
 

@@ -7,6 +7,8 @@ use crate::law;
 pub enum Need {
     /// Of the law: a lubricant film.
     Film,
+    /// Of the law: that it is one in newtons, which knows no load.
+    NoFilm,
     /// Of the law: that it jumps at zero speed, so that a bristle or a soft drive can take the
     /// jump's place.
     NoBristle,
@@ -25,6 +27,7 @@ impl Need {
     pub const fn name(self) -> &'static str {
         match self {
             Need::Film => "film",
+            Need::NoFilm => "no_film",
             Need::NoBristle => "no_bristle",
             Need::NoDryLevel => "no_dry_level",
             Need::Angle => "angle",
@@ -37,6 +40,7 @@ impl Need {
     pub const fn met_by(self, law: &law::Info) -> bool {
         match self {
             Need::Film => law.has_film,
+            Need::NoFilm => !law.has_film,
             Need::NoBristle => !law.has_bristle,
             Need::NoDryLevel => !law.has_dry_level,
             Need::Angle | Need::Path | Need::Loads => true,
@@ -47,6 +51,7 @@ impl Need {
     pub const fn why_not(self) -> &'static str {
         match self {
             Need::Film => "has no lubricant film",
+            Need::NoFilm => "is a bearing's: its friction follows the load and the film",
             Need::NoBristle => "bends before it slides: it has a bristle of its own",
             Need::NoDryLevel => "already holds a dry friction that does not depend on the load",
             Need::Angle => "needs no angle",

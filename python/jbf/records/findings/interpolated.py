@@ -19,7 +19,12 @@ from scipy import linalg
 Array = npt.NDArray[np.float64]
 
 WINDOW = 40
-"""Samples of a first look; shorter periods leave a polygon nothing to be tested by."""
+"""Samples of a first look."""
+LONGER = 240
+"""Samples of a look for shorter periods: nearly as many corners as samples leave a polygon little
+to be tested by."""
+SHORT = np.exp(np.arange(np.log(1.04), np.log(1.3), 0.0005))
+"""Periods looked for there, in samples."""
 LOOKS = 3
 """First looks, along the record."""
 PERIODS = np.exp(np.arange(np.log(1.2), np.log(8.0), 0.005))
@@ -30,8 +35,9 @@ FOLLOWED = 8
 """Of them followed."""
 LEAST_FREE = 6
 """Samples of a window beyond its corners."""
-LIKELY, EXACT = 0.25, 0.005
-"""What a polygon leaves, as shares of the noise: for a second look, and to be believed."""
+LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
+"""What a polygon leaves, as shares of the noise: for a second look, for one at a short period (whose
+grid is coarser for so long a window), and to be believed."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
@@ -40,7 +46,7 @@ SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
 EVEN = 1e-3
 """Samples are evenly spaced where they are off an even grid by less than this share of a step."""
-MOST_CORNERS = 0.9
+MOST_CORNERS = 0.97
 """Corners a sample; more would be the samples themselves."""
 
 
@@ -68,7 +74,31 @@ def find_native(time: Array, values: Array) -> Native | None:
         for found in _first_look(t, y, step, noise):
             period, phase = _sharpened(t, y, *found)
             if _polygon(t, y, period, phase)[0] < EXACT * noise:
-                return _whole(time, values, first, period, phase, noise)
+                return _whole(time, values, first, WINDOW, period, phase, noise)
+    return _of_short_period(time, values, step)
+
+
+def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
+    """The same of a channel that is hardly slower than its record."""
+    n = len(time)
+    if n < 2 * LONGER:
+        return None
+    first = (n - LONGER) // 2
+    t, y = time[first : first + LONGER], values[first : first + LONGER]
+    noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
+    if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
+        return None
+    tried = [
+        (_polygon(t, y, p * step, f * p * step)[0], p * step, f * p * step)
+        for p in SHORT.tolist()
+        for f in PHASES.tolist()
+    ]
+    for left, period, phase in sorted(tried)[:FOLLOWED]:
+        if left > LIKELY_SHORT * noise:
+            break
+        period, phase = _sharpened(t, y, period, phase)
+        if _polygon(t, y, period, phase)[0] < EXACT * noise:
+            return _whole(time, values, first, LONGER, period, phase, noise)
     return None
 
 
@@ -86,10 +116,16 @@ def _smooth(values: Array) -> bool:
 
 
 def _whole(
-    time: Array, values: Array, first: int, period: float, phase: float, noise: float
+    time: Array,
+    values: Array,
+    first: int,
+    length: int,
+    period: float,
+    phase: float,
+    noise: float,
 ) -> Native | None:
-    """The corners of the whole record, from what a window tells of them."""
-    n, length = len(time), WINDOW
+    """The corners of the whole record, from what a window of so many samples tells of them."""
+    n = len(time)
     begin = first
     while length < n:
         # Four times as long a stretch makes the period four times as sharp.
@@ -108,7 +144,7 @@ def _longest(
 ) -> tuple[float, float]:
     """The longest multiple of a period whose polygon fits: corners at a fraction of the true one
     fit as well, and are not readings."""
-    for times in (7, 5, 3, 2):
+    for times in (17, 13, 11, 7, 5, 3, 2):
         for k in range(times):
             left, _, _ = _polygon(time, values, times * period, phase + k * period)
             if left < EXACT * noise:

@@ -1,0 +1,49 @@
+//! Dry friction that grows with the load: `+ mu F` to the level that jumps with the direction.
+//!
+//! Source: Amontons (1699) and Coulomb (1785); of gears and strain-wave drives, whose friction grows
+//! with the torque that they transmit, Hamon, Gautier & Garrec (2010); of a seal, that the pressure
+//! presses on its rod.
+//!
+//! A law in newtons knows no load: its level is that of no load here. A bristle bends towards the
+//! whole level.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A coefficient of friction beside a level.
+#[derive(Clone, Copy, Debug)]
+pub struct DryLoadDependence<T> {
+    coefficient: T,
+}
+
+impl<T: Real> Effect<T> for DryLoadDependence<T> {
+    const INFO: Info = Info::new("dry_load_dependence", Stage::Contact)
+        .summary("dry friction that grows with the load, pressure or transmitted force")
+        .equation("F -> F + mu L sgn(v), L the recorded load; the level never below zero")
+        .source("Amontons 1699; Coulomb 1785; Hamon, Gautier & Garrec 2010")
+        .limits("a straight line over the load: what a seal or a gear does far from it is not said")
+        .parameters(&[
+            Parameter::new("mu", "-", "dry friction over load", [-10.0, 10.0], &[0.1]).null(0.0),
+        ])
+        .needs(&[Need::NoFilm, Need::Loads]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            coefficient: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for DryLoadDependence<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        sliding.jump = (sliding.jump + self.coefficient * journal.load_n).max(T::ZERO);
+    }
+}

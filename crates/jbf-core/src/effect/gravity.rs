@@ -1,0 +1,77 @@
+//! The weight of a link: `+ G sin(theta - theta_0)`.
+//!
+//! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. Of an axis that
+//! slides at an angle it is a constant, which `sensor_offset` says.
+
+use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A force that goes once a turn with the angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Gravity<T> {
+    weight_n: T,
+    cos_offset: T,
+    sin_offset: T,
+}
+
+impl<T: Real> Effect<T> for Gravity<T> {
+    const INFO: Info = Info::new("gravity", Stage::Other)
+        .summary("the weight of a link, or an unbalance, that the drive carries")
+        .equation("F -> F + G sin(theta - theta_0)")
+        .source("Siciliano et al. 2009, section 7.3")
+        .limits(
+            "one link, the others standing still; the angle must be absolute or have the same \
+                 zero in every run",
+        )
+        .parameters(&[
+            Parameter::new(
+                "G_n",
+                "N",
+                "weight where the link lies level, as a force at the radius",
+                [0.0, 1e7],
+                &[1.0],
+            )
+            .null(0.0)
+            .start(Start::Kinetic),
+            Parameter::new(
+                "theta_0_rad",
+                "rad",
+                "angle at which the link hangs",
+                [-4.0 * PI, 4.0 * PI],
+                &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
+            )
+            .period(TAU)
+            .signed(),
+        ])
+        .needs(&[Need::NoFilm, Need::Angle]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            weight_n: parameters[0],
+            cos_offset: parameters[1].cos(),
+            sin_offset: parameters[1].sin(),
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> OtherFriction<T> for Gravity<T> {
+    #[inline(always)]
+    fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+        // sin(theta - theta_0) with the offset's own cosine and sine taken once.
+        let level =
+            journal.angle_rad.sin() * self.cos_offset - journal.angle_rad.cos() * self.sin_offset;
+        Friction {
+            jump: T::ZERO,
+            smooth: self.weight_n * level,
+        }
+    }
+}

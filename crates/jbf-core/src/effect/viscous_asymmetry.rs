@@ -1,0 +1,55 @@
+//! Viscous friction that is larger one way than the other: `+ b |v|`.
+//!
+//! Source: the ball-screw axis of Janot, Gautier & Brunot (2019), whose viscous friction alone depends
+//! on the direction; Armstrong-Helouvry et al. (1994) for friction that does.
+//!
+//! A dry level that depends on the direction is, in motion, a zero that is off: `sensor_offset`.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// Half the difference of the viscous slopes of the two directions.
+#[derive(Clone, Copy, Debug)]
+pub struct ViscousAsymmetry<T> {
+    slope_n_s_m: T,
+}
+
+impl<T: Real> Effect<T> for ViscousAsymmetry<T> {
+    const INFO: Info = Info::new("viscous_asymmetry", Stage::Contact)
+        .summary("viscous friction that is larger one way than the other")
+        .equation("F -> F + b |v|")
+        .source("Janot, Gautier & Brunot 2019; Armstrong-Helouvry et al. 1994")
+        .limits("straight lines over the speed, one each way; beside b = 0 they are one")
+        .parameters(&[Parameter::new(
+            "b_n_s_m",
+            "N s/m",
+            "half of what the slope is larger by in positive motion",
+            [-1e7, 1e7],
+            &[1.0],
+        )
+        .null(0.0)
+        .signed()
+        .start(Start::Damping)])
+        .needs(&[Need::NoFilm]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            slope_n_s_m: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for ViscousAsymmetry<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        sliding.smooth += self.slope_n_s_m * journal.velocity_m_s.abs();
+    }
+}

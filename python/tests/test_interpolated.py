@@ -60,7 +60,7 @@ def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omeg
         assert find_repeated(TIME, np.round(y / step_n) * step_n if step_n else y) is None
 
 
-@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35, 14.94])
+@pytest.mark.parametrize("samples", [3.0, 5.0, 7.35, 14.94, 22.3])
 def test_readings_are_not_those_of_a_multiple_of_their_rate(samples: float) -> None:
     step_s = 0.02 * samples
     ticks = np.arange(-0.3 * step_s, TIME[-1] + 2.0 * step_s, step_s)

@@ -27,8 +27,12 @@ SHORT = np.exp(np.arange(np.log(1.04), np.log(1.3), 0.0005))
 """Periods looked for there, in samples."""
 LOOKS = 3
 """First looks, along the record."""
-PERIODS = np.exp(np.arange(np.log(1.2), np.log(8.0), 0.005))
-"""Periods looked for, in samples."""
+PERIODS = np.exp(
+    np.concatenate(
+        [np.arange(np.log(1.2), np.log(8.0), 0.005), np.arange(np.log(8.0), np.log(25.0), 0.02)]
+    )
+)
+"""Periods looked for, in samples: a window of few periods tells them less sharply."""
 PHASES = np.arange(0.0, 1.0, 0.1)
 """Phases looked for, in periods."""
 FOLLOWED = 8
@@ -46,8 +50,9 @@ SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
 EVEN = 1e-3
 """Samples are evenly spaced where they are off an even grid by less than this share of a step."""
-MOST_CORNERS = 0.97
-"""Corners a sample; more would be the samples themselves."""
+MANY_CORNERS, MOST_CORNERS = 0.9, 0.97
+"""Corners a sample: from the first on they must be rougher than a curve; more than the second would
+be the samples themselves."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,9 @@ def find_native(time: Array, values: Array) -> Native | None:
         for found in _first_look(t, y, step, noise):
             period, phase = _sharpened(t, y, *found)
             if _polygon(t, y, period, phase)[0] < EXACT * noise:
-                return _whole(time, values, first, WINDOW, period, phase, noise)
+                native = _whole(time, values, first, WINDOW, period, phase, noise)
+                if native is not None:
+                    return native
     return _of_short_period(time, values, step)
 
 
@@ -98,7 +105,9 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
             break
         period, phase = _sharpened(t, y, period, phase)
         if _polygon(t, y, period, phase)[0] < EXACT * noise:
-            return _whole(time, values, first, LONGER, period, phase, noise)
+            native = _whole(time, values, first, LONGER, period, phase, noise)
+            if native is not None:
+                return native
     return None
 
 
@@ -109,10 +118,10 @@ def _as_rough_as_noise(values: Array) -> bool:
     return bool(near > ROUGH * far)
 
 
-def _smooth(values: Array) -> bool:
+def _smooth(values: Array, share: float = SMOOTH) -> bool:
     """True of a record without noise: a polygon goes through any smooth curve."""
     second, third = np.abs(np.diff(values, 2)), np.abs(np.diff(values, 3))
-    return bool(np.quantile(third, 0.7) < SMOOTH * np.quantile(second, 0.7))
+    return bool(np.quantile(third, 0.7) < share * np.quantile(second, 0.7))
 
 
 def _whole(
@@ -160,8 +169,12 @@ def _whole_of(
     if left > EXACT * noise or inside.sum() > MOST_CORNERS * len(time):
         return None
     read = corners[inside]
-    # Corners on a curve, or on a plateau, are of a record without noise.
-    if _smooth(read) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read):
+    # Corners on a curve, or on a plateau, are of a record without noise; those nearly as close as
+    # samples go through any curve.
+    curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
+    if _smooth(read, curved) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(
+        read
+    ):
         return None
     return Native(knots[inside], read, period)
 

@@ -187,7 +187,7 @@ def test_one_clock_is_believed_where_it_leaves_as_little(
     wrong = np.full(4, middle) + (np.array(DIFFER_S) if right else 0.0)
 
     def two_ways(
-        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool
+        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool, jumps: bool
     ) -> Lateness | None:
         late = truly if one_clock == right else wrong
         return Lateness(tuple(late.tolist()), drift, 0.0) if look == 0 else None

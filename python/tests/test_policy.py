@@ -297,7 +297,9 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
 def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     looks: list[int] = []
 
-    def always(problem: Problem, near: object, look: int, chance: float, one: bool) -> Lateness:
+    def always(
+        problem: Problem, near: object, look: int, chance: float, one: bool, jumps: bool
+    ) -> Lateness:
         looks.append(look)
         assert chance == DEFAULT.deviation_chance
         return Lateness((3e-3, 6e-3, 9e-3, 12e-3), 0.0, 3e-3)

@@ -28,6 +28,8 @@ Mask = npt.NDArray[np.bool_]
 
 SENSITIVE = 1e-3
 """A direction in which a run moves with the parameters less than this share of its best is none."""
+OIL = {"U_tr_m_s", "gamma"}
+"""What the oil's warmth moves together: a run whose one differs has another of the other."""
 NAMED = 3
 """Runs named in the description."""
 
@@ -71,7 +73,9 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     if samples.between is not None:
         # In what they are known to differ runs do not agree, by more than to first order.
-        known = samples.between.names
+        known = set(samples.between.names)
+        if known & OIL:
+            known |= OIL
         aside = aside | np.array([problem.names[i] in known for i in problem.open])
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
     parts = [

@@ -44,7 +44,9 @@ def on_time(
     """
     if any(f.kind in ("late_channel", "drifting_clock") for f in problem.campaign.more_findings):
         return None
-    found = _shifted(problem, solution, policy, one_clock=False)
+    found = _shifted(problem, solution, policy)
+    if found is None:
+        found = _shifted(problem, solution, policy, at_jumps=True)
     if found is not None and found.drift != 0.0:
         simpler = _shifted(problem, solution, policy, one_clock=True)
         # One clock says more simply what a lateness of each run does.
@@ -81,16 +83,20 @@ class _Shifted:
 
 
 def _shifted(
-    problem: Problem, solution: Solution, policy: Policy, one_clock: bool
+    problem: Problem,
+    solution: Solution,
+    policy: Policy,
+    one_clock: bool = False,
+    at_jumps: bool = False,
 ) -> _Shifted | None:
     """The runs shifted by their lateness until there is none; None where there was none."""
     campaign = problem.campaign
     old, prepared = campaign, campaign.prepared
     late_s, drift = np.zeros(len(prepared)), 0.0
     for look in range(policy.most_shifts):
-        found = lateness(problem, solution, look, policy.deviation_chance, one_clock)
+        found = lateness(problem, solution, look, policy.deviation_chance, one_clock, at_jumps)
         if look == 0 and found is not None:
-            found = _by_any_weights(problem, solution, policy, found, one_clock)
+            found = _by_any_weights(problem, solution, policy, found, one_clock, at_jumps)
         if found is None:
             break
         # Where runs differ in it, a delay that they share is the recording's as well.
@@ -116,7 +122,12 @@ def _gains(simpler: Solution, shifted: Solution) -> bool:
 
 
 def _by_any_weights(
-    problem: Problem, solution: Solution, policy: Policy, plain: Lateness, one_clock: bool
+    problem: Problem,
+    solution: Solution,
+    policy: Policy,
+    plain: Lateness,
+    one_clock: bool,
+    at_jumps: bool,
 ) -> Lateness | None:
     """The lateness where noise that is larger in places counts less; None where the runs do not
     differ in it then: it was the noise that chose where each run's squares are least."""
@@ -125,7 +136,7 @@ def _by_any_weights(
         return plain
     ones = [np.ones(len(s)) for s in sizes]
     even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
-    return lateness(problem, even, 0, policy.deviation_chance, one_clock)
+    return lateness(problem, even, 0, policy.deviation_chance, one_clock, at_jumps)
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:

@@ -9,6 +9,7 @@ force is shifted along time; the parts of a run tell whether it grows.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,8 @@ PARTS = 3
 """Parts of a run that tell whether its lateness grows."""
 LEAST_SAMPLES = 60
 """Samples of a part that can tell it."""
+OUTSIDE = 0.01
+"""Likelihood at the ends of the range from which on the lateness may lie outside."""
 RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
 """Lateness looked for and steps of it, s: at first, and once runs were shifted."""
 
@@ -65,8 +68,17 @@ class _Place:
     variance: float
 
 
+Tell = Callable[[Array, Array, int], _Place]
+"""Where the squares of so many samples are least over a grid."""
+
+
 def lateness(
-    problem: Problem, solution: Solution, look: int, chance: float, one_clock: bool = False
+    problem: Problem,
+    solution: Solution,
+    look: int,
+    chance: float,
+    one_clock: bool = False,
+    at_jumps: bool = False,
 ) -> Lateness | None:
     """How the lateness of the runs differs; None where it does not beyond chance.
 
@@ -82,13 +94,17 @@ def lateness(
     one_clock
         Whether runs that grow later alike were on time when they began: what they seem to differ
         by in the middle is then the drift's, seen through parts that tell more than others.
+    at_jumps
+        Whether the samples beside reversals are asked, too: they tell a lateness of less than a
+        sample where friction is smooth over time, and tell it in steps.
     """
     reach, step = RANGES[min(look, len(RANGES) - 1)]
     grid = np.arange(-reach, reach + 0.5 * step, step)
     whole, drifts = [], []
-    for squares, time in _scans(problem, solution, grid, reach):
-        whole.append(_place(grid, squares.sum(axis=1), squares.shape[1]))
-        drifts.append(_drift(grid, squares, time))
+    place = _valley if at_jumps else _place
+    for squares, time in _scans(problem, solution, grid, 0.0 if at_jumps else reach):
+        whole.append(place(grid, squares.sum(axis=1), squares.shape[1]))
+        drifts.append(_drift(grid, squares, time, place))
     by_run, drift = _spread(whole), _common(drifts)
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
@@ -131,10 +147,11 @@ def _scans(
     ):
         # A zero or a gain of the run's own is no lateness.
         read = p.friction_n - (solution.residuals[i] - left_over[i])
-        # The same samples at every lateness: those no reversal comes near.
-        width = int(np.ceil(reach / p.step_s))
-        unsure = ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
-        kept = samples.counted[i] & ~unsure
+        # The same samples at every lateness: those no reversal comes nearer than the reach.
+        kept = samples.counted[i]
+        if reach > 0.0:
+            width = int(np.ceil(reach / p.step_s))
+            kept = kept & ~ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
         rows = []
         for late in grid:
             shifted = np.interp(p.run.time_s - late, instants, force)
@@ -189,13 +206,27 @@ def _place(grid: Array, costs: Array, count: int) -> _Place:
     return _Place(float(grid[k]) + off * step, 2.0 * step**2 / bend * max(here / count, 1.0))
 
 
-def _drift(grid: Array, squares: Array, time: Array) -> _Place:
+def _valley(grid: Array, costs: Array, count: int) -> _Place:
+    """The same where jumps tell it: squares fall and rise in steps, and the mean and the variance
+    of the likelihood on the grid say where."""
+    k = int(np.argmin(costs))
+    if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
+        return _Place(0.0, np.inf)
+    likely = np.exp(-0.5 * (costs - costs[k]) / max(float(costs[k]) / count, 1.0))
+    likely /= np.sum(likely)
+    if likely[0] + likely[-1] > OUTSIDE:
+        return _Place(0.0, np.inf)
+    mean, step = float(np.sum(likely * grid)), float(grid[1] - grid[0])
+    return _Place(mean, float(np.sum(likely * (grid - mean) ** 2)) + step**2 / 12.0)
+
+
+def _drift(grid: Array, squares: Array, time: Array, tell: Tell) -> _Place:
     """The slope of the lateness over the parts of a run."""
     edges = np.linspace(0.0, float(time[-1]) if len(time) else 0.0, PARTS + 1)
     middles, values, weights = [], [], []
     for low, high in itertools.pairwise(edges):
         here = (time >= low) & (time < high)
-        place = _place(grid, squares[:, here].sum(axis=1), int(here.sum()))
+        place = tell(grid, squares[:, here].sum(axis=1), int(here.sum()))
         if np.isfinite(place.variance):
             middles.append(0.5 * (low + high))
             values.append(place.value)

@@ -44,6 +44,7 @@ impl<T: Real> Effect<T> for DryLoadDependence<T> {
 impl<T: Real> Contact<T> for DryLoadDependence<T> {
     #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
-        sliding.jump = (sliding.jump + self.coefficient * journal.load_n).max(T::ZERO);
+        let level = sliding.jump + self.coefficient * journal.load_n;
+        sliding.jump = if level < T::ZERO { T::ZERO } else { level };
     }
 }

@@ -9,9 +9,11 @@ mod coulomb_drag;
 mod derivatives;
 mod direction_asymmetry;
 mod drive_compliance;
+mod dry_load_dependence;
 mod dwell_stiction;
 mod film_memory;
 mod finite;
+mod gravity;
 mod inertia_leak;
 mod load_dependence;
 mod null;
@@ -27,7 +29,10 @@ mod symmetry;
 mod thermal_thinning;
 mod time_delay;
 mod together;
+mod viscous_asymmetry;
+mod viscous_load_dependence;
 mod wear_in;
+mod zero_load_dependence;
 
 /// A new effect comes with a closed form: a file of its name here, named above, with a test.
 #[test]

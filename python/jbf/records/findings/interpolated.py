@@ -40,8 +40,8 @@ FOLLOWED = 8
 LEAST_FREE = 6
 """Samples of a window beyond its corners."""
 LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
-"""What a polygon leaves, as shares of the noise: for a second look, for one at a short period (whose
-grid is coarser for so long a window), and to be believed."""
+"""What a polygon leaves, as shares of the noise: for a second look, for one at a short period
+(whose grid is coarser for so long a window), and to be believed."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7

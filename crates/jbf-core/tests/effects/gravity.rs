@@ -1,0 +1,25 @@
+//! A pendulum on the shaft: `G sin(theta - theta_0)`, moving or at rest.
+
+use crate::common::motion::{constant, Sines};
+use crate::common::{chain_round, newtons, readings};
+
+const F_C_N: f64 = 6.0;
+
+#[test]
+fn weighs_as_the_sine_of_the_angle() {
+    let sines = Sines::two_way(1.0);
+    for (g, theta_0) in [(3.0, 0.4), (110.0, -2.0)] {
+        let chain = chain_round(newtons(F_C_N, 0.0), &[("gravity", &[g, theta_0])]);
+        let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+        for (i, f) in got.iter().enumerate().skip(1) {
+            let t = 0.01 * i as f64;
+            let theta = 10.0 * (1.0 - t.cos());
+            let expected = F_C_N * t.sin().signum() + g * (theta - theta_0).sin();
+            assert!((f - expected).abs() < 1e-10, "{g} {i}: {f} {expected}");
+        }
+        let held = |t: f64| constant::<f64>(0.0, t).with_angle_rad(1.1);
+        for r in readings(&chain, 0.01, 5, held) {
+            assert!((r - g * (1.1_f64 - theta_0).sin()).abs() < 1e-12);
+        }
+    }
+}

@@ -4,8 +4,9 @@
 FOLDER holds `leadscrew/drive1.csv` and `drive2.csv` (time_ms, speed_rpm, torque_pct; the torque of
 a drive in % stands for the force), `seal/NAP310_1bar.csv` and so on, and `emps/run.csv` (time_s,
 position_m, velocity_m_s, friction_n). Drives are cut into their sweeps, each of which is halved; of
-the seal every other pair of strokes is fitted; EMPS is halved. The recordings are not ours to ship:
-without them this says so and does nothing.
+the seal every other pair of strokes is fitted, one pressure at a time and all of them; EMPS and the
+joints of a robot (`ur10e_joints/joint1.csv`, on a radius of 1 m: N are N m) are halved. The
+recordings are not ours to ship: without them this says so and does nothing.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import jbf
@@ -47,8 +49,9 @@ def drive(path: Path) -> Halves:
 def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
     """Some samples of a recording."""
     t, v, f = (c[k][at] for k in ("time_s", "velocity_m_s", "friction_n"))
-    position = c["position_m"][at] if "position_m" in c else None
-    return jbf.Run.from_arrays(t, v, f, position_m=position, name=name)
+    others = {k: c[k][at] for k in ("position_m", "angle_rad") if k in c}
+    pressure = {k: c[k][at] for k in ("pressure_pa",) if k in c}
+    return jbf.Run.from_arrays(t, v, f, **others, extra=pressure, name=name)
 
 
 def strokes(path: Path) -> Halves:
@@ -64,6 +67,15 @@ def strokes(path: Path) -> Halves:
     pairs = [np.concatenate(parts[i : i + 2]) for i in range(0, len(parts) - 1, 2)]
     runs = [part(c, p, f"pair {i}") for i, p in enumerate(pairs)]
     return runs[0::2], runs[1::2]
+
+
+def all_strokes(paths: list[Path]) -> Halves:
+    """The same of several pressures at once."""
+    fitted, left = [], []
+    for path in paths:
+        for some, into in zip(strokes(path), (fitted, left), strict=True):
+            into += [replace(run, name=f"{path.stem} {run.name}") for run in some]
+    return fitted, left
 
 
 def halved(path: Path) -> Halves:
@@ -101,6 +113,7 @@ def main() -> int:
     plan = [(f"leadscrew/drive{k}.csv", drive) for k in (1, 2)]
     plan += [(f"seal/NAP310_{bar}bar.csv", strokes) for bar in (1, 3, 5, 7)]
     plan += [("emps/run.csv", halved)]
+    plan += [(f"ur10e_joints/joint{k}.csv", halved) for k in (1, 2, 3, 4, 5)]
     print("| recording | law | left-out RMS, N (drives: %) | verdict | named | findings | CPU s |")
     print("|---|---|---|---|---|---|---|")
     for name, cut in plan:
@@ -111,6 +124,9 @@ def main() -> int:
             print(f"skipped: there is no {path}")
             continue
         row(name, cut(path), asked.law)
+    seals = [asked.folder / f"seal/NAP310_{bar}bar.csv" for bar in (1, 3, 5, 7)]
+    if asked.only in "seal/all" and all(path.is_file() for path in seals):
+        row("seal/all", all_strokes(seals), asked.law)
     return 0
 
 

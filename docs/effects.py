@@ -22,6 +22,7 @@ from matplotlib.figure import Figure
 FOLDER = Path(__file__).resolve().parent / "effects"
 RIG = jbf.Rig.thesis()
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
+IN_NEWTONS = {"F_c_n": 12.0, "F_s_n": 12.0, "F_v_n_s_m": 60.0}
 RATE_HZ = 200.0
 PLAIN, WITH = "0.3", "tab:red"
 
@@ -47,12 +48,17 @@ SHOWN = {
         {"a": 0.15, "t_0": 3.0, "m": 0.7, "s_0": 3e-3}, "starts after rests of 1, 3 and 9 s"
     ),
     "stribeck_excess": Shown({"a": 0.1, "v_s": 0.012, "n": 1.5}),
+    "dry_load_dependence": Shown({"mu": 0.08}),
+    "viscous_load_dependence": Shown({"c": 0.8}),
+    "viscous_asymmetry": Shown({"b": 40.0}),
     "direction_asymmetry": Shown({"a": 0.2}),
     "position_ripple": Shown({"a": 0.25, "theta_0": 0.5}, "a sine of 0.1 rad/s"),
     "presliding": Shown({"sigma": 300.0}),
     "coulomb_drag": Shown({"F_d": 4.0}),
     "quadratic_drag": Shown({"c": 500.0}),
     "inertia_leak": Shown({"m_e": 30.0}),
+    "zero_load_dependence": Shown({"k": 0.03}),
+    "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
     "sensor_lag": Shown({"tau": 0.15}),
     "time_delay": Shown({"tau": 0.12}),
     "sensor_offset": Shown({"b": 4.0}),
@@ -94,8 +100,9 @@ def draw(effect: Effect) -> Figure:
     load = np.full(len(time), what.load_share * RIG.load.normal_n)
     run = jbf.Run.from_arrays(time, speed, angle_rad=angle / RIG.bearing.radius_m, load_n=load)
     own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
-    plain = jbf.Model(RIG, parameters=LAW).predict(run)
-    model = jbf.Model(RIG, effects=[effect.name], parameters=LAW | own)
+    law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
+    plain = jbf.Model(RIG, law, parameters=values).predict(run)
+    model = jbf.Model(RIG, law, effects=[effect.name], parameters=values | own)
     changed = model.predict(run)
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
     plane, along = figure.subplots(1, 2)
@@ -121,6 +128,10 @@ def page(effect: Effect) -> str:
     under = f"under {what.motion}"
     if what.load_share != 1.0:
         under += f" and {what.load_share:g} of the rig's load"
+    law, options = "`journal`, Table 4.2", ""
+    if "journal" in effect.refused:
+        options = "--law coulomb "
+        law = f"`coulomb`, {IN_NEWTONS['F_c_n']:g} N and {IN_NEWTONS['F_v_n_s_m']:g} N s/m"
     lines = [
         f"# {effect.name}",
         "",
@@ -133,7 +144,7 @@ def page(effect: Effect) -> str:
         f"![Friction against speed and along time, without and with {effect.name}]"
         f"({effect.name}.png)",
         "",
-        f"Dark: the law alone (`journal`, Table 4.2). Red: with {values}, {under}.",
+        f"Dark: the law alone ({law}). Red: with {values}, {under}.",
         "",
         "| parameter | unit | from | to | vanishes at | meaning |",
         "| --- | --- | --- | --- | --- | --- |",
@@ -151,7 +162,7 @@ def page(effect: Effect) -> str:
     lines += [
         "",
         "```sh",
-        f"jbf fit rig.toml runs/ --effects {effect.name} --out model.toml",
+        f"jbf fit rig.toml runs/ {options}--effects {effect.name} --out model.toml",
         "```",
         "",
     ]

@@ -11,6 +11,7 @@ from jbf import Model, Parameter, Rig, Run, effects, fit, laws
 STEP_S = 0.01
 NOISE_N = 0.002
 LAW_OF = {
+    "no_film": "coulomb",
     "film": "journal",
     "loads": "journal",
     "no_dry_level": "journal",

@@ -1,5 +1,6 @@
 """rigsim: an independent simulator of a friction rig with hidden effects."""
 
+from .axes import AXIS_EFFECTS, axis_campaign
 from .bearing import Base, Bearing
 from .campaign import Campaign, draw_base, simulate_campaign, standard, write_campaign
 from .catalogue import CATALOGUE, draw
@@ -10,6 +11,7 @@ from .record import Record
 from .simulate import simulate_run
 
 __all__ = [
+    "AXIS_EFFECTS",
     "CATALOGUE",
     "FOREIGN",
     "Base",
@@ -18,6 +20,7 @@ __all__ = [
     "Motion",
     "Noise",
     "Record",
+    "axis_campaign",
     "draw",
     "draw_base",
     "draw_foreign",

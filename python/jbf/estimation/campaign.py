@@ -21,6 +21,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_run import copies, repeated
 from jbf.records.motion.roughness import noise_of
+from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -89,11 +90,10 @@ class Campaign:
     def has_loads(self) -> bool:
         """True where the loads differ, within a run or from run to run."""
         usual = self.rig.load.normal_n if self.rig.load is not None else None
-        means = [
-            usual if p.run.load_n is None else float(np.median(p.run.load_n)) for p in self.prepared
-        ]
+        loads = [recorded_load(self.rig, p.run) for p in self.prepared]
+        means = [usual if load is None else float(np.median(load)) for load in loads]
         known = [m for m in means if m is not None]
-        spans = [_span(p.run.load_n) for p in self.prepared if p.run.load_n is not None]
+        spans = [_span(load) for load in loads if load is not None]
         span = max([*spans, max(known) - min(known)]) if known else 0.0
         return bool(known) and span > LOADS_DIFFER * max(known)
 

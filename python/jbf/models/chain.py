@@ -24,6 +24,7 @@ from jbf.models.own_effects import OwnEffect
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.motion.imposed import ImposedMotion, impose
+from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -138,8 +139,9 @@ def core_motion(
         An imagined motion before the run: its constant speed, as a share of the run's largest, in
         the direction in which the run first moves, and how long it lasts, s.
     """
-    if run.load_n is not None:
-        load = steady_load(run.load_n)
+    recorded = recorded_load(rig, run)
+    if recorded is not None:
+        load = steady_load(recorded)
     else:
         load = np.full(len(run), core_load_n(rig) or 1.0)
     columns = run.columns() | {

@@ -10,7 +10,7 @@ from jbf.reporting.paragraphs import columns, hanging
 NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
-    "loads": "runs under several loads",
+    "loads": "runs under several loads (load_n, or pressure_pa on an axis without a bearing)",
 }
 
 

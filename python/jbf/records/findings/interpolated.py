@@ -100,11 +100,13 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
         for p in SHORT.tolist()
         for f in PHASES.tolist()
     ]
+    # Through a curve that a filter has made smooth any such polygon goes nearly.
+    usual = float(np.median([left for left, _, _ in tried]))
     for left, period, phase in sorted(tried)[:FOLLOWED]:
         if left > LIKELY_SHORT * noise:
             break
         period, phase = _sharpened(t, y, period, phase)
-        if _polygon(t, y, period, phase)[0] < EXACT * noise:
+        if _polygon(t, y, period, phase)[0] < EXACT * min(noise, usual):
             native = _whole(time, values, first, LONGER, period, phase, noise)
             if native is not None:
                 return native

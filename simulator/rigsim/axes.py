@@ -1,0 +1,112 @@
+"""Drives, slides and joints: dry and viscous friction under a load that changes, and what may be
+beside it. Forces are closed forms of the true motion; the records have counts and noise.
+
+`jbf` is never imported here.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .catalogue import Spread
+
+Vector = npt.NDArray[np.float64]
+
+AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
+    "dry_load_dependence": {"mu": Spread(0.01, 0.03, "-", 1.0)},
+    "viscous_load_dependence": {"c": Spread(0.06, 0.2, "s/m", 1.0)},
+    "zero_load_dependence": {"k": Spread(0.006, 0.02, "-", 1.0, signed=True)},
+    "viscous_asymmetry": {"b": Spread(6.0, 15.0, "N s/m", 1.0, signed=True)},
+    "gravity": {"G": Spread(0.8, 4.0, "N", 1.0), "theta_0": Spread(0.0, 2.0 * math.pi, "rad")},
+    "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
+    "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
+}
+"""Parameters as drawn at strength 1, some noises large."""
+
+STEP_S = 0.01
+ARM_M = 1.0
+"""A joint on a radius of one metre: its angle is the path."""
+COUNTS_PER_M = 2.0e4
+LOADS_N = (60.0, 100.0, 160.0)
+
+
+@dataclass(frozen=True)
+class AxisRun:
+    """A recorded run: time (s), angle (rad) or position (m), speed (m/s), force (N), load (N)."""
+
+    name: str
+    time_s: Vector
+    path: Vector
+    velocity_m_s: Vector
+    force_n: Vector
+    load_n: Vector
+
+
+def draw_axis(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str, float]:
+    """Random parameters of an effect on an axis."""
+    return {key: spread.draw(rng, strength) for key, spread in AXIS_EFFECTS[name].items()}
+
+
+def axis_campaign(
+    seed: int, effects: tuple[str, ...] = (), *, strength: float = 1.0, runs: int = 6
+) -> tuple[list[AxisRun], dict[str, object]]:
+    """Runs of one drive, each under one of three loads, and the truth behind them."""
+    rng = np.random.default_rng([seed, 77])
+    hidden = {name: draw_axis(name, rng, strength) for name in effects}
+    law = {"F_c_n": float(rng.uniform(3.0, 9.0)), "F_v_n_s_m": float(rng.uniform(15.0, 60.0))}
+    noise_n = float(rng.uniform(0.15, 0.35))
+    records = [_run(i, law, hidden, noise_n, rng) for i in range(runs)]
+    return records, {"law": law, "effects": hidden, "noise_n": noise_n}
+
+
+def _run(
+    i: int,
+    law: dict[str, float],
+    hidden: dict[str, dict[str, float]],
+    noise_n: float,
+    rng: np.random.Generator,
+) -> AxisRun:
+    time = np.arange(0.0, 40.0, STEP_S)
+    rates = 2.0 * math.pi * rng.uniform(0.05, 0.6, 3)
+    sizes, phases = rng.uniform(0.03, 0.09, 3), rng.uniform(0.0, 2.0 * math.pi, 3)
+    waves = rates[:, None] * time + phases[:, None]
+    speed = sizes @ np.sin(waves)
+    acceleration = (sizes * rates) @ np.cos(waves)
+    path = -(sizes / rates) @ np.cos(waves)
+    load = np.full(len(time), LOADS_N[i % len(LOADS_N)])
+    force = _force(law, hidden, speed, acceleration, path, load)
+    return AxisRun(
+        name=f"{i}_load_{load[0]:g}",
+        time_s=time,
+        path=np.round(path * COUNTS_PER_M) / COUNTS_PER_M,
+        velocity_m_s=speed + 2e-4 * rng.standard_normal(len(time)),
+        force_n=force + noise_n * rng.standard_normal(len(time)),
+        load_n=load,
+    )
+
+
+def _force(
+    law: dict[str, float],
+    hidden: dict[str, dict[str, float]],
+    v: Vector,
+    a: Vector,
+    path: Vector,
+    load: Vector,
+) -> Vector:
+    """What the drive must push with, N."""
+
+    def of(effect: str, key: str) -> float:
+        return hidden.get(effect, {}).get(key, 0.0)
+
+    level = law["F_c_n"] + of("dry_load_dependence", "mu") * load
+    slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
+    slope = slope + of("viscous_asymmetry", "b") * np.where(v > 0.0, 1.0, -1.0)
+    hangs = of("gravity", "theta_0")
+    weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
+    push = weight + of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
+    found: Vector = np.sign(v) * level + slope * v + push + of("inertia_leak", "m_e") * a
+    return found

@@ -65,7 +65,9 @@ def fits(monkeypatch: pytest.MonkeyPatch) -> Fits:
     found = Fits()
     for name in ("approach", "settle", "search_peaks"):
         monkeypatch.setattr(module, name, getattr(found, name))
-    monkeypatch.setattr(module, "left_out_rms", lambda problem, near, apart: near.rms_n)
+    monkeypatch.setattr(
+        module, "left_out_by_run", lambda problem, near, apart: [np.array([near.rms_n])]
+    )
     return found
 
 
@@ -171,5 +173,6 @@ def test_the_score_test_promises_what_a_linear_effect_gains(campaign: Campaign) 
 def test_every_effect_is_tried_or_said_not_to_be(campaign: Campaign) -> None:
     every = Candidates(campaign, "coulomb", "journal")
     assert RING in every.names
-    assert set(every.not_tried) == {"position_ripple"}
+    of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
+    assert set(every.not_tried) == {"position_ripple", "gravity", *of_loads}
     assert not {"coulomb_drag", "film_memory"} & {*every.names, *every.not_tried}

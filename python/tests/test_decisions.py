@@ -57,11 +57,19 @@ def test_the_ledger_says_how_each_addition_ended() -> None:
 
 
 @pytest.mark.parametrize(
-    ("strength", "share", "confirmed"),
-    [(59.0, 0.51, True), (59.0, 0.49, False), (61.0, 0.01, True), (61.0, 0.0, False)],
+    ("strength", "share", "better", "confirmed"),
+    [
+        (59.0, 0.51, 0.0, True),
+        (59.0, 0.49, 1.0, False),
+        (61.0, 0.01, 0.0, True),
+        (61.0, 0.0, 0.5, False),
+        (61.0, -9.0, 2.0 / 3.0, True),
+    ],
 )
-def test_what_left_out_runs_must_confirm(strength: float, share: float, confirmed: bool) -> None:
-    assert left_out_confirms(strength, share, DEFAULT) == confirmed
+def test_what_left_out_runs_must_confirm(
+    strength: float, share: float, better: float, confirmed: bool
+) -> None:
+    assert left_out_confirms(strength, share, better, DEFAULT) == confirmed
 
 
 def test_the_price_is_schwarzs_and_that_of_the_best_of_many() -> None:

@@ -81,11 +81,18 @@ pub(crate) fn laws<T: Real>(take: Take<'_>) {
     }
 }
 
-/// Every effect round the first law.
+/// Every effect round the first law that it goes with.
 pub(crate) fn effects<T: Real>(take: Take<'_>) {
     for info in effect::CATALOGUE {
-        let hash = along::<T>(&law::CATALOGUE[0], |i| i.name == info.name);
-        take("effect", info.name, hash);
+        let mut laws = law::CATALOGUE.iter();
+        let Some(page) = laws.find(|page| info.lacking(page).is_none()) else {
+            continue;
+        };
+        take(
+            "effect",
+            info.name,
+            along::<T>(page, |i| i.name == info.name),
+        );
     }
 }
 

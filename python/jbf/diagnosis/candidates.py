@@ -13,11 +13,12 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
-from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import likelihood_gain, score_gain
 from jbf.estimation.minimum import approach, search_peaks, settle
 from jbf.estimation.problem import Problem
@@ -38,6 +39,9 @@ def many_peaks(effects: Iterable[str]) -> bool:
     return any(find_effect(name).peaks for name in effects)
 
 
+Array = npt.NDArray[np.float64]
+
+
 @dataclass
 class Fitted:
     """A set of effects beside the law, as far as it has been fitted.
@@ -51,9 +55,9 @@ class Fitted:
         likelihood; infinite where the null is out of a step's reach.
     peaks_searched
         True once its other peaks were looked for.
-    left_out_n
-        RMS over runs left out of the fit one at a time, N; True for the RMS apart from what the
-        runs are known to deviate by.
+    left_out
+        Sums of squares, N^2, and samples by the run that was left out of the fit; True for those
+        apart from what the runs are known to deviate by.
     """
 
     problem: Problem
@@ -61,7 +65,7 @@ class Fitted:
     solution: Solution | None = None
     score: float | None = None
     peaks_searched: bool = False
-    left_out_n: dict[bool, float] = field(default_factory=dict)
+    left_out: dict[bool, tuple[Array, Array]] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The solution so far."""
@@ -72,7 +76,7 @@ class Fitted:
         """Take a better solution of the same problem; what followed from the other is void."""
         if better is not self.solution:
             self.solution = better
-            self.left_out_n = {}
+            self.left_out = {}
 
     def named_values(self) -> dict[str, float]:
         """Parameter name to value."""
@@ -231,11 +235,25 @@ class Candidates:
     def left_out_rms(self, effects: Sequence[str], *, apart: bool = False) -> float:
         """RMS over runs left out of the fit one at a time, N; or `apart` from what the runs are
         known to deviate by."""
+        square, count = self._left_out(effects, apart)
+        return float(np.sqrt(np.sum(square) / max(np.sum(count), 1)))
+
+    def left_out_by_run(self, effects: Sequence[str], *, apart: bool = False) -> Array:
+        """The same of each run, N."""
+        square, count = self._left_out(effects, apart)
+        return np.sqrt(square / np.maximum(count, 1))
+
+    def _left_out(self, effects: Sequence[str], apart: bool) -> tuple[Array, Array]:
+        """Sums of squares, N^2, and samples, by the run that was left out."""
         solution, fitted = self.converge(effects), self.fitted(effects)
         which = apart and solution.samples.between is not None
-        if which not in fitted.left_out_n:
-            fitted.left_out_n[which] = left_out_rms(fitted.problem, solution, apart=which)
-        return fitted.left_out_n[which]
+        if which not in fitted.left_out:
+            left = left_out_by_run(fitted.problem, solution, apart=which)
+            fitted.left_out[which] = (
+                np.array([float(e @ e) for e in left]),
+                np.array([float(len(e)) for e in left]),
+            )
+        return fitted.left_out[which]
 
     def _values_of(self, near: Solution) -> dict[str, float]:
         names = self.fitted(near.effects).problem.names

@@ -42,6 +42,12 @@ class Policy:
         "evidence is weak",
         "chosen on simulated campaigns",
     )
+    least_better_runs: float = _number(
+        0.66,
+        "share of the runs left out that a candidate with strong evidence must predict better, "
+        "where it predicts them worse together",
+        "two of three: a run that alone tells a parameter is predicted without it",
+    )
     leader_rms: float = _number(
         1.25,
         "times the smallest RMS of all candidates with evidence that the leader's may be",

@@ -43,18 +43,23 @@ class Round:
     leader: str | None
 
 
-def left_out_confirms(evidence: float, gained_share: float, policy: Policy) -> bool:
+def left_out_confirms(evidence: float, gained_share: float, better: float, policy: Policy) -> bool:
     """Do runs left out confirm what a candidate gains where it is fitted?
 
-    Any gain will do where the evidence is strong: one run alone may hold the rests, or the
-    reversals, that an effect needs.
+    Any gain will do where the evidence is strong, or one in most of the runs: one run alone may
+    hold the rests, or the reversals, that an effect needs, and without it no fit knows how large
+    the effect is.
 
     Parameters
     ----------
     gained_share
         Gain in mean square on left-out runs, as a share of that in the fit.
+    better
+        Share of the runs that are predicted better.
     """
-    return gained_share > (0.0 if evidence > policy.weak else policy.least_left_out_gain)
+    if evidence <= policy.weak:
+        return gained_share > policy.least_left_out_gain
+    return gained_share > 0.0 or better >= policy.least_better_runs
 
 
 def try_candidates(candidates: Candidates, present: Names) -> Round:
@@ -78,10 +83,12 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name), apart=True)
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
+            runs = [candidates.left_out_by_run(e, apart=True) for e in (present, (*present, name))]
+            better = float(np.mean(runs[1] < runs[0]))
             alone = evidence_alone(candidates, found.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"
-            elif left_out_confirms(gain, gained, policy):
+            elif left_out_confirms(gain, gained, better, policy):
                 if _found_its_way(candidates, present, name, base):
                     return try_candidates(candidates, present)
                 leader, best = name, gain

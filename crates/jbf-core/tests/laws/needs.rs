@@ -10,9 +10,24 @@ fn lacking(effect: &str, law: &str) -> Option<Need> {
 }
 
 #[test]
-fn every_effect_goes_with_the_journal() {
-    for effect in effect::CATALOGUE {
-        assert_eq!(lacking(effect.name, "journal"), None);
+fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
+    let refused: Vec<_> = effect::CATALOGUE
+        .iter()
+        .filter(|effect| lacking(effect.name, "journal").is_some())
+        .map(|effect| (effect.name, lacking(effect.name, "journal")))
+        .collect();
+    let of_drives = [
+        "dry_load_dependence",
+        "viscous_load_dependence",
+        "viscous_asymmetry",
+        "zero_load_dependence",
+        "gravity",
+    ];
+    assert_eq!(refused, of_drives.map(|name| (name, Some(Need::NoFilm))));
+    for name in of_drives {
+        for law in law::CATALOGUE.iter().filter(|l| !l.has_film) {
+            assert_eq!(lacking(name, law.name), None);
+        }
     }
 }
 

@@ -168,6 +168,9 @@ def test_the_score_test_promises_what_a_linear_effect_gains(campaign: Campaign) 
     assert every.score_test(["sensor_drift"], bare) < 10.0
     # The null of a stiff contact is at infinity: no step leads there.
     assert every.score_test(["presliding"], bare) == np.inf
+    # A jump that moves by less than a sample moves none: at their null these show nothing.
+    assert every.score_test(["backlash"], bare) == np.inf
+    assert every.score_test(["time_delay"], bare) == np.inf
 
 
 def test_every_effect_is_tried_or_said_not_to_be(campaign: Campaign) -> None:

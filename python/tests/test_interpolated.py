@@ -10,7 +10,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.records.findings.interpolated import find_native
 from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.rig import Rig
-from scipy.signal import lfilter
+from scipy.signal import butter, filtfilt, lfilter
 
 Array = npt.NDArray[np.float64]
 TIME = 0.02 * np.arange(3000)
@@ -88,6 +88,16 @@ def test_noise_of_any_memory_is_no_polygon(seed: int, keep: float) -> None:
     noise = lfilter([1.0], [1.0, -keep], kicks)
     assert find_native(TIME, noise) is None
     assert find_native(TIME, 20.0 * np.tanh(50.0 * np.sin(0.3 * TIME)) + noise) is None
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("cut", [0.15, 0.25, 0.4])
+def test_a_record_behind_a_low_pass_is_no_polygon(seed: int, cut: float) -> None:
+    random = np.random.default_rng(seed)
+    force = 20.0 * np.sign(np.sin(3.0 * TIME)) + 0.3 * random.standard_normal(len(TIME))
+    low = filtfilt(*butter(4, cut), force)
+    assert find_native(TIME, low) is None
+    assert find_native(TIME, np.round(low, 4)) is None
 
 
 @pytest.mark.parametrize("omega", [0.02, 0.3, 3.0])

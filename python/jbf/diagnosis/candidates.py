@@ -147,7 +147,7 @@ class Candidates:
 
         The gain in twice the log likelihood that one Gauss-Newton step promises from the effects'
         null, the law free to move with them; the largest from any start. Infinite of an effect
-        whose null is out of a step's reach.
+        whose null is out of a step's reach, or that moves the instants of jumps.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -158,7 +158,9 @@ class Candidates:
                 if name.split(".")[0] in added
             }
             nulls = {n: p.null for n, p in pages.items() if p.null is not None}
-            if not nulls or not all(np.isfinite(null) for null in nulls.values()):
+            reach = bool(nulls) and all(np.isfinite(null) for null in nulls.values())
+            # What moves a jump by less than a sample moves no sample: a null says nothing of more.
+            if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
                 known = self._values_of(near)

@@ -23,7 +23,7 @@ WINDOW = 40
 LONGER = 240
 """Samples of a look for shorter periods: nearly as many corners as samples leave a polygon little
 to be tested by."""
-SHORT = np.exp(np.arange(np.log(1.04), np.log(1.3), 0.0005))
+SHORT = np.exp(np.arange(np.log(1.05), np.log(1.3), 0.0005))
 """Periods looked for there, in samples."""
 LOOKS = 3
 """First looks, along the record."""
@@ -42,6 +42,9 @@ LEAST_FREE = 6
 LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 """What a polygon leaves, as shares of the noise: for a second look, for one at a short period
 (whose grid is coarser for so long a window), and to be believed."""
+ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
+"""Phases, in periods off the best, at which a polygon must leave more, and the share of that which
+the best may leave."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
@@ -50,7 +53,7 @@ SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
 EVEN = 1e-3
 """Samples are evenly spaced where they are off an even grid by less than this share of a step."""
-MANY_CORNERS, MOST_CORNERS = 0.9, 0.97
+MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
 """Corners a sample: from the first on they must be rougher than a curve; more than the second would
 be the samples themselves."""
 
@@ -92,7 +95,8 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
         return None
     first = (n - LONGER) // 2
     t, y = time[first : first + LONGER], values[first : first + LONGER]
-    noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
+    # The usual one: of jumps behind a filter such a polygon leaves little, too.
+    noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
     tried = [
@@ -169,6 +173,10 @@ def _whole_of(
     left, knots, corners = _polygon(time, values, period, phase)
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
     if left > EXACT * noise or inside.sum() > MOST_CORNERS * len(time):
+        return None
+    # Through a record that a filter has made smooth, a polygon of any phase goes nearly.
+    elsewhere = [_polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
+    if left > CLEARLY * min(elsewhere):
         return None
     read = corners[inside]
     # Corners on a curve, or on a plateau, are of a record without noise; those nearly as close as

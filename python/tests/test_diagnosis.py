@@ -11,7 +11,8 @@ from jbf.diagnosis import Policy
 
 LATER = ("backlash", "time_delay", "load_dependence")
 """Last, so that the seeds of the others stay what they were."""
-EFFECTS = (*(e for e in catalogue() if e not in LATER), *LATER)
+OF_BEARINGS = [name for name, page in catalogue().items() if "journal" not in page.refused]
+EFFECTS = (*(e for e in OF_BEARINGS if e not in LATER), *LATER)
 QUICK = (
     "drive_compliance",
     "thermal_thinning",

@@ -204,4 +204,5 @@ def test_what_these_motions_cannot_show_could_hide() -> None:
     # Whereas these would have been seen.
     assert not {"inertia_leak", "quadratic_drag", "sensor_drift"} & set(d.unseen)
     assert d.next_experiment
-    assert set(d.not_tried) == {"position_ripple", "drive_compliance"}
+    of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
+    assert set(d.not_tried) == {"position_ripple", "drive_compliance", "gravity", *of_loads}

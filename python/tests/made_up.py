@@ -79,7 +79,9 @@ class MadeUp:
     smooth: int = 1
     policy: Policy = DEFAULT
     asked: list[tuple[str, Set]] = field(default_factory=list)
-    campaign: Any = field(default_factory=lambda: SimpleNamespace(samples=SAMPLES, step_n=0.0))
+    campaign: Any = field(
+        default_factory=lambda: SimpleNamespace(samples=SAMPLES, steps_rms_n=lambda rms_n: 0.0)
+    )
 
     def _gain(self, effects: Iterable[str]) -> float:
         here = frozenset(effects)

@@ -59,6 +59,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "most_shifts": 3,
         "late_apart": 0.08,
         "deviation_chance": 1e-4,
+        "bias_moves": 0.01,
         "no_worse": 1.03,
         "uneven_noise": 1.25,
         "heavy_tails": 6.0,
@@ -337,5 +338,5 @@ def test_a_run_is_proposed_that_parts_rivals_far_enough() -> None:
 
 def test_no_number_is_left_out_here() -> None:
     known = {f.name for f in fields(Policy)}
-    elsewhere = {"most_looks", "most_shifts", "least_separation", "no_worse"}
+    elsewhere = {"most_looks", "most_shifts", "least_separation", "no_worse", "bias_moves"}
     assert {*TURNS, *GATES, *elsewhere} == known

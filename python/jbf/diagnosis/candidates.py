@@ -29,6 +29,7 @@ from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
 State = Literal["posed", "ranked", "converged"]
+Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 8
 """Steps after which candidates are ranked; only those that could win go on."""
@@ -37,9 +38,6 @@ RANKING_EVALUATIONS = 8
 def many_peaks(effects: Iterable[str]) -> bool:
     """True where the likelihood of these effects has peak beside peak."""
     return any(find_effect(name).peaks for name in effects)
-
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass

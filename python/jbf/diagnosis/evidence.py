@@ -10,7 +10,7 @@ import numpy as np
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.converter import curve_rms_n
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
     effective_share,
     likelihood_gain,
@@ -48,7 +48,7 @@ def evidence(
         A gain counts that comes and goes, too: it tells of structure, and not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
-    if gain > 0.0 and _within_steps(candidates.campaign.step_n, richer, simpler):
+    if gain > 0.0 and _within_steps(candidates.campaign, richer, simpler):
         gain = 0.0
     if gain > 0.0:
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
@@ -57,11 +57,11 @@ def evidence(
     return gain - price_of(candidates, richer.free - simpler.free)
 
 
-def _within_steps(step_n: float, richer: Solution, simpler: Solution) -> bool:
+def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
     """Whether two models differ by no more than a converter's steps move a mean reading."""
     samples = least_weights(richer.samples, simpler.samples)
     ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
-    return bool(samples.rms(ways) < curve_rms_n(step_n, simpler.rms_n))
+    return bool(samples.rms(ways) < campaign.steps_rms_n(simpler.rms_n))
 
 
 def evidence_alone(

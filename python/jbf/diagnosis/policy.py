@@ -117,6 +117,12 @@ class Policy:
         "probability at which runs that deviate from one another alike are chance",
         "one campaign in ten thousand",
     )
+    bias_moves: float = _number(
+        0.01,
+        "share of a converter's step by which the bias of its steps must move, RMS, to be taken "
+        "off anew",
+        "a tenth of what it is beside little noise",
+    )
     no_worse: float = _number(
         1.03,
         "times the error that weights, shifts in time and deviations of the runs may leave more "

@@ -6,8 +6,9 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from jbf.comparison.comparison import compare_prepared
+from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
@@ -79,23 +80,31 @@ def diagnose(
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
     campaign = settled_campaign(Campaign.prepare(rig, runs), law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
-    bare = finish(candidates.fitted(()).problem, candidates.converge(()))
-    before = compare_prepared(bare.model, campaign)
-
+    corrected = _without_bias(candidates, ())
+    if corrected is not None:
+        candidates = Candidates(corrected, law, clock, policy, progress, candidates)
+    before = _before(candidates)
     selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
-        late = _on_time(candidates, selected.present)
-        again = late or selected.differ or _weighed(candidates, selected.present)
+        weighed = None
+        again = _on_time(candidates, selected.present)
+        again = again or _without_bias(candidates, selected.present) or selected.differ
+        if again is None:
+            again = weighed = _weighed(candidates, selected.present)
         if again is None:
             break
-        campaign = again
+        last, was = candidates, selected
         candidates.before = None
-        candidates = Candidates(campaign, law, clock, policy, progress, candidates)
-        bare = finish(candidates.fitted(()).problem, candidates.converge(()))
-        before = compare_prepared(bare.model, campaign)
+        candidates = Candidates(again, law, clock, policy, progress, candidates)
+        before = _before(candidates)
         # What differs from run to run was seen beside the effects: they stay if they are needed.
-        start = selected if late is None and selected.differ is not None else None
+        start = selected if again is selected.differ else None
         selected = select(candidates, before.noise_n, start)
+        if weighed is not None and _lost(last, candidates, was.present, selected.present):
+            candidates, selected = last, was
+            before = _before(candidates)
+            break
+    campaign = candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
     doubted = confounders(candidates, present) if remains else ()
@@ -153,6 +162,28 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
         most = more * solution.rms_n
         shifted = on_time(simpler, near, candidates.policy, most)
     return shifted
+
+
+def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign without the bias of coarse steps; None where it is off already."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    return without_bias(problem, solution, candidates.policy)
+
+
+def _before(candidates: Candidates) -> Comparison:
+    """The law alone, beside the records."""
+    bare = finish(candidates.fitted(()).problem, candidates.converge(()))
+    return compare_prepared(bare.model, candidates.campaign)
+
+
+def _lost(last: Candidates, now: Candidates, was: Names, present: Names) -> bool:
+    """Whether weights led to the same effects, and to a fit that is worse where all count alike: on
+    its way to its end it went astray."""
+    if frozenset(was) != frozenset(present):
+        return False
+    before, after = last.converge(was), now.converge(present)
+    samples = before.samples.within(after.samples.counted)
+    return samples.rms(after.residuals) > now.policy.no_worse * samples.rms(before.residuals)
 
 
 def _weighed(candidates: Candidates, present: Names) -> Campaign | None:

@@ -21,7 +21,6 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.replicates import find_replicates
 from jbf.diagnosis.tones import find_tones
-from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
@@ -44,7 +43,7 @@ def find_remainder(
     found += find_bursts(prepared, samples, plain, left, policy)
     found += find_disagreement(problem, solution, policy)
     # Of steps as coarse as these no mean reading is right, along whatever axis and in each run.
-    steps_n = curve_rms_n(problem.campaign.step_n, solution.rms_n)
+    steps_n = problem.campaign.steps_rms_n(solution.rms_n)
     found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]
     return tuple(sorted(found, key=lambda r: -r.share))
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.converter import curve_rms_n, noise_before
 from jbf.estimation.noise_floor import most_noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
@@ -28,6 +29,9 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+LEFT_OF_BIAS = 0.3
+"""Share of the bias of coarse steps that is left where it was taken off: the noise and the force by
+which it is known are estimates."""
 LOADS_DIFFER = 0.05
 """Loads that differ by less than this share are one load."""
 NOISE_SPAN = 3.29
@@ -124,6 +128,23 @@ class Campaign:
     def step_n(self) -> float:
         """The largest step of a converter that is as large as the noise, N; zero without one."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
+
+    def steps_rms_n(self, residual_rms_n: float) -> float:
+        """What a converter's steps make of mean readings and no model takes off, RMS in N; zero
+        without one.
+
+        Noise smooths it; how large that is the readings say. A residual of this RMS holds what
+        the model lacks, too, and is no less than the noise.
+        """
+        if self.step_n <= 0.0:
+            return 0.0
+        taken = self.samples.rms([p.readings_n - p.friction_n for p in self.prepared])
+        if taken > 0.0:
+            return LEFT_OF_BIAS * taken
+        pairs = zip(self.prepared, self.samples.counted, strict=True)
+        moves = [np.diff(p.readings_n)[at[1:] & at[:-1]] for p, at in pairs]
+        noise_n = noise_before(self.step_n, np.concatenate(moves))
+        return curve_rms_n(self.step_n, min(noise_n, residual_rms_n))
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """The campaign with more samples set aside, one mask a run."""

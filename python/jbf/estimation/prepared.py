@@ -33,7 +33,8 @@ FINER = 1.5
 @dataclass(frozen=True)
 class Prepared:
     """One run, ready: its motion, its usual step, and what its recording did. Which of its samples
-    count, `Samples` says."""
+    count, `Samples` says. With `friction_n` a model is compared: the run's readings, without what
+    its converter's steps are known to add."""
 
     rig: Rig
     run: Run
@@ -85,6 +86,12 @@ class Prepared:
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
 
+    @property
+    def readings_n(self) -> Array:
+        """The run's readings, N."""
+        assert self.run.friction_n is not None
+        return self.run.friction_n
+
     def finding(self, more: Sequence[Finding]) -> Prepared:
         """The run with more findings."""
         whole = (*self.examined.findings, *more)
@@ -106,7 +113,7 @@ class Prepared:
         read = time - late_s - drift * (time - middle)
         # What was read before the motion begins, or after it ends, cannot be compared.
         kept = (read >= instants[0]) & (read <= instants[-1])
-        run = self.run.select(kept).at(read[kept], self.friction_n[kept])
+        run = self.run.select(kept).at(read[kept], self.readings_n[kept])
         usable = self.examined.usable[kept]
         assert run.friction_n is not None
         return replace(

@@ -31,6 +31,7 @@ from jbf.estimation.lateness import Lateness
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
+from jbf.records.findings.finding import Finding
 from made_up import MadeUp, N, sets
 from policy_gates import GATES, linear, looked_at
 from scipy import stats
@@ -63,6 +64,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "no_worse": 1.03,
         "uneven_noise": 1.25,
         "heavy_tails": 6.0,
+        "coarse_steps": 2.0,
         "clear": 20.0,
         "pattern_share": 0.01,
         "pattern_sigma": 6.0,
@@ -172,7 +174,12 @@ def bursts(count: int, size: float, rest: Array) -> Callable[[Policy], object]:
     return decide
 
 
-def tails(policy: Policy) -> object:
+def coarse(policy: Policy) -> object:
+    """The same in readings whose steps are twice the residual's RMS."""
+    return tails(replace(policy, heavy_tails=5.0), steps=2.0)
+
+
+def tails(policy: Policy, steps: float = 0.0) -> object:
     """Ten of the innovations of a long run are at five standard deviations: six times as many
     beyond four as Gaussian noise has."""
     count = round(10 / (6.0 * 2.0 * stats.norm.sf(4.0)))
@@ -180,7 +187,11 @@ def tails(policy: Policy) -> object:
     assert len(run) == count
     e = 0.6745 * np.where(np.arange(count) % 2, 1.0, -1.0)
     e[1000:11000:1000] = 5.0
-    problem = Problem(Campaign.prepare(Rig(), [run]), "coulomb", "journal", ())
+    campaign = Campaign.prepare(Rig(), [run])
+    if steps > 0.0:
+        size = steps * campaign.samples.rms([e])
+        campaign = campaign.with_findings([Finding("steps", "", "long", size, "N", "", "")])
+    problem = Problem(campaign, "coulomb", "journal", ())
     return looked_at(problem, [e], policy)
 
 
@@ -232,6 +243,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         0.51,
     ),
     "heavy_tails": (tails, 5.9, 6.1),
+    "coarse_steps": (coarse, 1.99, 2.01),
     "leader_rms": (leaves_more(1.25), 1.24, 1.26),
     "uneven_noise": (uneven(1.25), 1.24, 1.26),
     "clear": (standing(50.0), 19.9, 20.1),

@@ -142,6 +142,12 @@ class Policy:
         "least squares lose a twentieth of their precision there",
     )
     # ---- names of confounders -------------------------------------------------------------------
+    coarse_steps: float = _number(
+        2.0,
+        "times the residual's RMS from which on a converter's steps are its tails, and no sample "
+        "counts less for lying in them",
+        "errors of such steps spread evenly are more than half of its standard deviation",
+    )
     clear: float = _number(
         20.0,
         "times what the runs' disagreement on an effect's own parameters is worth that it must "

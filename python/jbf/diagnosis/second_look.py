@@ -54,7 +54,7 @@ def second_look(problem: Problem, solution: Solution, policy: Policy) -> SecondL
             problem, solution, campaign.samples.weighed(shares, ones, None), policy.no_worse
         ):
             sizes, found = shares, uneven
-    if "heavy_tails" not in known:
+    if "heavy_tails" not in known and campaign.step_n < policy.coarse_steps * solution.rms_n:
         shares, heavy = robust_weights(solution, sizes, policy.heavy_tails)
         if heavy and _keeps(
             problem, solution, campaign.samples.weighed(sizes, shares, None), policy.no_worse

@@ -1,6 +1,6 @@
 """rigsim: an independent simulator of a friction rig with hidden effects."""
 
-from .axes import AXIS_EFFECTS, axis_campaign
+from .axes import AXIS_EFFECTS, AxisRun, axis_campaign
 from .bearing import Base, Bearing
 from .campaign import Campaign, draw_base, simulate_campaign, standard, write_campaign
 from .catalogue import CATALOGUE, draw
@@ -12,6 +12,7 @@ from .simulate import simulate_run
 
 __all__ = [
     "AXIS_EFFECTS",
+    "AxisRun",
     "CATALOGUE",
     "FOREIGN",
     "Base",

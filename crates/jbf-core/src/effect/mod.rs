@@ -28,6 +28,7 @@ pub mod shear_thinning;
 pub mod stribeck_excess;
 pub mod thermal_thinning;
 pub mod time_delay;
+pub mod torque_proportional;
 pub mod viscous_asymmetry;
 pub mod viscous_load_dependence;
 pub mod wear_in;
@@ -48,12 +49,13 @@ pub use catalogue::{fits, moves_jumps, peaks, type_names, Effects, States, CATAL
 pub use info::{Info, Stage};
 pub use need::Need;
 pub use place::{
-    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, Place, UnderLoad,
+    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
+    Place, UnderLoad,
 };
 pub use set::EffectSet;
 pub use stage::{
     Bristle, Contact, Drive, Film, Instrument, Loading, Lubricant, OtherFriction, Resistance,
-    Signal,
+    Signal, Transmission,
 };
 
 use crate::bearing::Bearing;

@@ -29,6 +29,7 @@ mod symmetry;
 mod thermal_thinning;
 mod time_delay;
 mod together;
+mod torque_proportional;
 mod viscous_asymmetry;
 mod viscous_load_dependence;
 mod wear_in;

@@ -20,6 +20,7 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
         "dry_load_dependence",
         "viscous_load_dependence",
         "viscous_asymmetry",
+        "torque_proportional",
         "zero_load_dependence",
         "gravity",
     ];

@@ -53,9 +53,9 @@ SHOWN = {
     "dry_load_dependence": Shown({"mu": 0.08}),
     "viscous_load_dependence": Shown({"c": 0.8}),
     "viscous_asymmetry": Shown({"b": 40.0}),
-    "torque_proportional": Shown(
-        {"mu": 0.3}, beside={"gravity.G": 20.0, "gravity.theta_0": 0.5}
-    ),
+    "pitch_ripple": Shown({"a": 0.3, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
+    "warm_up": Shown({"a": 0.5, "tau": 10.0}, "eight periods of 1 rad/s"),
+    "torque_proportional": Shown({"mu": 0.3}, beside={"gravity.G": 20.0, "gravity.theta_0": 0.5}),
     "direction_asymmetry": Shown({"a": 0.2}),
     "position_ripple": Shown({"a": 0.25, "theta_0": 0.5}, "a sine of 0.1 rad/s"),
     "presliding": Shown({"sigma": 300.0}),
@@ -64,6 +64,7 @@ SHOWN = {
     "inertia_leak": Shown({"m_e": 30.0}),
     "zero_load_dependence": Shown({"k": 0.03}),
     "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
+    "cogging": Shown({"A": 2.0, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
     "sensor_lag": Shown({"tau": 0.15}),
     "time_delay": Shown({"tau": 0.12}),
     "sensor_offset": Shown({"b": 4.0}),
@@ -142,6 +143,7 @@ def page(effect: Effect) -> str:
     if what.beside:
         named = ", ".join(f"`{n}` = {v:g}" for n, v in what.beside.items())
         under += f", both with {named}"
+    chosen = ",".join([*_others(what), effect.name])
     law, options = "`journal`, Table 4.2", ""
     if "journal" in effect.refused:
         options = "--law coulomb "
@@ -176,7 +178,7 @@ def page(effect: Effect) -> str:
     lines += [
         "",
         "```sh",
-        f"jbf fit rig.toml runs/ {options}--effects {','.join([*_others(what), effect.name])} --out model.toml",
+        f"jbf fit rig.toml runs/ {options}--effects {chosen} --out model.toml",
         "```",
         "",
     ]

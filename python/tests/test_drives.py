@@ -111,6 +111,16 @@ def test_a_weight_alone_is_not_taken_for_what_a_gear_loses() -> None:
     assert (found.verdict, found.effects) == ("missing", ("gravity",))
 
 
+def test_running_in_is_not_taken_for_warming() -> None:
+    records, truth = axis_campaign(16)
+    for r in records:
+        slid = np.cumsum(np.abs(r.velocity_m_s)) * 0.01
+        r.force_n[:] += 0.3 * truth["law"]["F_c_n"] * np.sign(r.velocity_m_s) * np.exp(-slid / 0.8)
+    found = diagnose(Rig(), joints(records), **COULOMB)
+    assert (found.verdict, found.effects) == ("missing", ("wear_in",))
+    assert found.alternatives == {"wear_in": ()}
+
+
 def test_what_driving_loses_more_than_being_driven_back_is_in_the_weight() -> None:
     """Efficiencies of 1/1.3 and 0.9: the fit finds their product, and the weight times 1.1."""
     records, truth = axis_campaign(17, ("gravity",), swing=SWING)

@@ -12,9 +12,9 @@ from .simulate import simulate_run
 
 __all__ = [
     "AXIS_EFFECTS",
-    "AxisRun",
     "CATALOGUE",
     "FOREIGN",
+    "AxisRun",
     "Base",
     "Bearing",
     "Campaign",

@@ -23,6 +23,17 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "viscous_asymmetry": {"b": Spread(6.0, 15.0, "N s/m", 1.0, signed=True)},
     "torque_proportional": {"mu": Spread(0.08, 0.2, "-", 1.0)},
     "gravity": {"G": Spread(0.8, 4.0, "N", 1.0), "theta_0": Spread(0.0, 2.0 * math.pi, "rad")},
+    "cogging": {
+        "A": Spread(0.3, 1.0, "N", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "pitch_ripple": {
+        "a": Spread(0.05, 0.2, "-", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "warm_up": {"a": Spread(0.08, 0.25, "-", 1.0), "tau": Spread(6.0, 20.0, "s")},
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
     "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
 }
@@ -88,7 +99,7 @@ def _run(
     acceleration = (sizes * rates) @ np.cos(waves)
     path = -(sizes / rates) @ np.cos(waves)
     load = np.full(len(time), LOADS_N[i % len(LOADS_N)])
-    force = _force(law, hidden, speed, acceleration, path, load)
+    force = _force(law, hidden, speed, acceleration, path, load, time)
     return AxisRun(
         name=f"{i}_load_{load[0]:g}",
         time_s=time,
@@ -106,12 +117,14 @@ def _force(
     a: Vector,
     path: Vector,
     load: Vector,
+    time: Vector,
 ) -> Vector:
     """What the drive must push with, N."""
 
     def of(effect: str, key: str) -> float:
         return hidden.get(effect, {}).get(key, 0.0)
 
+    tau_s = hidden.get("warm_up", {}).get("tau", 1.0)
     level = law["F_c_n"] + of("dry_load_dependence", "mu") * load
     slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
     slope = slope + of("viscous_asymmetry", "b") * np.where(v > 0.0, 1.0, -1.0)
@@ -121,5 +134,17 @@ def _force(
     push = of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
     # A gear asks for more than it carries where it drives and, driven back, gives less.
     lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)
-    found: Vector = np.sign(v) * level + slope * v + carried + lost + push
+    cold = 1.0 + of("warm_up", "a") * np.exp2(-time / (math.log(2.0) * tau_s))
+    place = 1.0 + of("pitch_ripple", "a") * _wave(hidden, "pitch_ripple", path, 0.25)
+    push = push + of("cogging", "A") * _wave(hidden, "cogging", path, 0.0)
+    sliding = (np.sign(v) * level + slope * v) * cold * place
+    found: Vector = sliding + carried + lost + push
+    return found
+
+
+def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:
+    """A sine over the pitch, `ahead` of it by a share of a period; the phase lags."""
+    own = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
+    turns = path / own["pitch"] - own["phase"] / (2.0 * math.pi) + ahead
+    found: Vector = np.imag(np.exp(2j * math.pi * turns))
     return found

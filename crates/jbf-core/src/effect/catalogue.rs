@@ -6,11 +6,11 @@ use super::place::{
 };
 use super::registry::{signal_chain, Shelf};
 use super::{
-    backlash, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
-    dwell_stiction, film_memory, gravity, inertia_leak, load_dependence, position_ripple,
-    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
-    stribeck_excess, thermal_thinning, time_delay, torque_proportional, viscous_asymmetry,
-    viscous_load_dependence, wear_in, zero_load_dependence,
+    backlash, cogging, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
+    dwell_stiction, film_memory, gravity, inertia_leak, load_dependence, pitch_ripple,
+    position_ripple, presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset,
+    shear_thinning, stribeck_excess, thermal_thinning, time_delay, torque_proportional,
+    viscous_asymmetry, viscous_load_dependence, warm_up, wear_in, zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
 use crate::error::ParameterError;
@@ -35,6 +35,8 @@ signal_chain! {
         viscous_asymmetry::ViscousAsymmetry,
         direction_asymmetry::DirectionAsymmetry,
         position_ripple::PositionRipple,
+        pitch_ripple::PitchRipple,
+        warm_up::WarmUp,
     ],
     transmission: InTransmission [torque_proportional::TorqueProportional],
     bristle: AsBristle [presliding::Presliding],
@@ -44,6 +46,7 @@ signal_chain! {
         inertia_leak::InertiaLeak,
         zero_load_dependence::ZeroLoadDependence,
         gravity::Gravity,
+        cogging::Cogging,
     ],
     instrument: InInstrument [
         sensor_lag::SensorLag,

@@ -9,6 +9,7 @@
 //! file below, and name the effect in its stage's line of `catalogue.rs`.
 
 pub mod backlash;
+pub mod cogging;
 pub mod coulomb_drag;
 pub mod direction_asymmetry;
 pub mod drive_compliance;
@@ -18,6 +19,7 @@ pub mod film_memory;
 pub mod gravity;
 pub mod inertia_leak;
 pub mod load_dependence;
+pub mod pitch_ripple;
 pub mod position_ripple;
 pub mod presliding;
 pub mod quadratic_drag;
@@ -31,6 +33,7 @@ pub mod time_delay;
 pub mod torque_proportional;
 pub mod viscous_asymmetry;
 pub mod viscous_load_dependence;
+pub mod warm_up;
 pub mod wear_in;
 pub mod zero_load_dependence;
 
@@ -38,6 +41,7 @@ mod catalogue;
 mod compose;
 mod info;
 mod need;
+mod pitch;
 pub mod place;
 mod registry;
 pub mod set;

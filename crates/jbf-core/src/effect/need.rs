@@ -21,6 +21,8 @@ pub enum Need {
     Angle,
     /// Of the record: how far the drive has gone, as an angle or on a line.
     Path,
+    /// Of the record: where the drive stands, as an angle or on a line.
+    Position,
     /// Of the record: loads that differ, within a run or from run to run.
     Loads,
 }
@@ -36,6 +38,7 @@ impl Need {
             Need::Transmitted => "transmitted",
             Need::Angle => "angle",
             Need::Path => "path",
+            Need::Position => "position",
             Need::Loads => "loads",
         }
     }
@@ -47,7 +50,7 @@ impl Need {
             Need::NoFilm => !law.has_film,
             Need::NoBristle => !law.has_bristle,
             Need::NoDryLevel => !law.has_dry_level,
-            Need::Transmitted | Need::Angle | Need::Path | Need::Loads => true,
+            Need::Transmitted | Need::Angle | Need::Path | Need::Position | Need::Loads => true,
         }
     }
 
@@ -61,6 +64,7 @@ impl Need {
             Need::Transmitted => "transmits nothing",
             Need::Angle => "needs no angle",
             Need::Path => "needs no path",
+            Need::Position => "needs no position",
             Need::Loads => "needs no loads",
         }
     }

@@ -5,6 +5,7 @@
 mod common;
 
 mod backlash;
+mod cogging;
 mod coulomb_drag;
 mod derivatives;
 mod direction_asymmetry;
@@ -17,6 +18,7 @@ mod gravity;
 mod inertia_leak;
 mod load_dependence;
 mod null;
+mod pitch_ripple;
 mod position_ripple;
 mod presliding;
 mod quadratic_drag;
@@ -32,6 +34,7 @@ mod together;
 mod torque_proportional;
 mod viscous_asymmetry;
 mod viscous_load_dependence;
+mod warm_up;
 mod wear_in;
 mod zero_load_dependence;
 

@@ -66,8 +66,8 @@ def check(law: str, effect: str, page: Parameter, value: float) -> None:
     needs = effects()[effect].needs if effect else ()
     beside = [other for need, others in COMPANY.items() if need in needs for other in others]
     chosen = [*beside, effect] if effect else []
-    own = effects()[effect].parameters if effect else ()
-    given = {f"{effect}.{p.name}": p.starts[0] for p in own} | {name: value}
+    pages = ((e, p) for e in chosen for p in effects()[e].parameters)
+    given = {f"{e}.{p.name}": p.starts[0] for e, p in pages} | {name: value}
     truth = Model(rig, law, chosen, given)
     random = np.random.default_rng(1)
     runs = [

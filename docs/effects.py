@@ -34,6 +34,8 @@ class Shown:
     values: Mapping[str, float] = field(default_factory=dict)
     motion: str = "a sine of 1 rad/s"
     load_share: float = 1.0
+    beside: Mapping[str, float] = field(default_factory=dict)
+    """Parameters of effects without which it shows nothing, drawn on both curves."""
 
 
 SHOWN = {
@@ -51,6 +53,9 @@ SHOWN = {
     "dry_load_dependence": Shown({"mu": 0.08}),
     "viscous_load_dependence": Shown({"c": 0.8}),
     "viscous_asymmetry": Shown({"b": 40.0}),
+    "pitch_ripple": Shown({"a": 0.3, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
+    "warm_up": Shown({"a": 0.5, "tau": 10.0}, "eight periods of 1 rad/s"),
+    "torque_proportional": Shown({"mu": 0.3}, beside={"gravity.G": 20.0, "gravity.theta_0": 0.5}),
     "direction_asymmetry": Shown({"a": 0.2}),
     "position_ripple": Shown({"a": 0.25, "theta_0": 0.5}, "a sine of 0.1 rad/s"),
     "presliding": Shown({"sigma": 300.0}),
@@ -59,6 +64,7 @@ SHOWN = {
     "inertia_leak": Shown({"m_e": 30.0}),
     "zero_load_dependence": Shown({"k": 0.03}),
     "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
+    "cogging": Shown({"A": 2.0, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
     "sensor_lag": Shown({"tau": 0.15}),
     "time_delay": Shown({"tau": 0.12}),
     "sensor_offset": Shown({"b": 4.0}),
@@ -101,8 +107,10 @@ def draw(effect: Effect) -> Figure:
     run = jbf.Run.from_arrays(time, speed, angle_rad=angle / RIG.bearing.radius_m, load_n=load)
     own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
-    plain = jbf.Model(RIG, law, parameters=values).predict(run)
-    model = jbf.Model(RIG, law, effects=[effect.name], parameters=values | own)
+    others = _others(what)
+    values = {**values, **what.beside}
+    plain = jbf.Model(RIG, law, effects=others, parameters=values).predict(run)
+    model = jbf.Model(RIG, law, effects=[*others, effect.name], parameters=values | own)
     changed = model.predict(run)
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
     plane, along = figure.subplots(1, 2)
@@ -112,6 +120,10 @@ def draw(effect: Effect) -> Figure:
     along.set(xlabel="time, s")
     figure.legend(*along.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
+
+
+def _others(what: Shown) -> list[str]:
+    return list(dict.fromkeys(name.split(".")[0] for name in what.beside))
 
 
 def _curves(axes: Axes, x: np.ndarray, plain: np.ndarray, changed: np.ndarray) -> None:
@@ -128,6 +140,10 @@ def page(effect: Effect) -> str:
     under = f"under {what.motion}"
     if what.load_share != 1.0:
         under += f" and {what.load_share:g} of the rig's load"
+    if what.beside:
+        named = ", ".join(f"`{n}` = {v:g}" for n, v in what.beside.items())
+        under += f", both with {named}"
+    chosen = ",".join([*_others(what), effect.name])
     law, options = "`journal`, Table 4.2", ""
     if "journal" in effect.refused:
         options = "--law coulomb "
@@ -162,7 +178,7 @@ def page(effect: Effect) -> str:
     lines += [
         "",
         "```sh",
-        f"jbf fit rig.toml runs/ {options}--effects {effect.name} --out model.toml",
+        f"jbf fit rig.toml runs/ {options}--effects {chosen} --out model.toml",
         "```",
         "",
     ]

@@ -16,10 +16,10 @@ from jbf.reporting.words import verdict_sentence
 
 NOISE_N = 0.1
 CANDIDATES = sum(
-    "coulomb" not in e.refused and not {"angle", "path", "loads"} & set(e.needs)
+    "coulomb" not in e.refused and not {"angle", "path", "position", "loads"} & set(e.needs)
     for e in effects().values()
 )
-"""Effects that go with Coulomb's law and need neither angle nor path nor loads."""
+"""Effects that go with Coulomb's law and need neither angle nor position nor loads."""
 
 
 @cache
@@ -205,4 +205,7 @@ def test_what_these_motions_cannot_show_could_hide() -> None:
     assert not {"inertia_leak", "quadratic_drag", "sensor_drift"} & set(d.unseen)
     assert d.next_experiment
     of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
-    assert set(d.not_tried) == {"position_ripple", "drive_compliance", "gravity", *of_loads}
+    of_places = {"position_ripple", "gravity", "cogging", "pitch_ripple"}
+    assert set(d.not_tried) == {"drive_compliance", *of_places, *of_loads}
+    # And what a gear loses of what it carries is nothing here.
+    assert "torque_proportional" not in d.unseen

@@ -19,6 +19,10 @@ LAW_OF = {
 """Needs that Coulomb's law, on which all else is tried, does not meet."""
 
 
+COMPANY = {"transmitted": ["gravity"]}
+"""Needs to effects that meet them."""
+
+
 def law_of(effect: str) -> str:
     needs = effects()[effect].needs
     return next((law for need, law in LAW_OF.items() if need in needs), "coulomb")
@@ -59,9 +63,11 @@ def check(law: str, effect: str, page: Parameter, value: float) -> None:
     """Fit the one parameter to runs made with it: it comes back, with an error."""
     name = f"{effect}.{page.name}" if effect else page.name
     rig = Rig.thesis()
-    chosen = [effect] if effect else []
-    own = effects()[effect].parameters if effect else ()
-    given = {f"{effect}.{p.name}": p.starts[0] for p in own} | {name: value}
+    needs = effects()[effect].needs if effect else ()
+    beside = [other for need, others in COMPANY.items() if need in needs for other in others]
+    chosen = [*beside, effect] if effect else []
+    pages = ((e, p) for e in chosen for p in effects()[e].parameters)
+    given = {f"{e}.{p.name}": p.starts[0] for e, p in pages} | {name: value}
     truth = Model(rig, law, chosen, given)
     random = np.random.default_rng(1)
     runs = [

@@ -140,6 +140,7 @@ def test_runs_left_out_have_a_veto(gain: float, share: float, outcome: str) -> N
     assert (found.leader == "sensor_lag") == (outcome == "added")
     words = "largest evidence" if outcome == "added" else "predicts left-out runs no better"
     assert words in found.trials[0].reason
+    assert found.unconfirmed == (set() if outcome == "added" else {"sensor_lag"})
 
 
 def test_after_a_veto_the_next_one_leads() -> None:
@@ -250,6 +251,20 @@ def test_an_effect_that_another_replaces_better_is_exchanged(better: float, last
         "sensor_drift sensor_offset": 300.0 + better,
     }
     assert thought_over(made(gains), "sensor_lag", "sensor_offset") == (last, "sensor_offset")
+
+
+def test_what_left_out_runs_spoke_against_does_not_come_in_by_exchange() -> None:
+    gains = {
+        "sensor_offset": 100.0,
+        "sensor_lag": 200.0,
+        "sensor_lag sensor_offset": 300.0,
+        "sensor_drift sensor_offset": 400.0,
+        "inertia_leak sensor_offset": 320.0,
+    }
+    candidates, present = cast(Candidates, made(gains)), ("sensor_lag", "sensor_offset")
+    assert reconsider(candidates, present) == ("sensor_drift", "sensor_offset")
+    against = frozenset({"sensor_drift"})
+    assert reconsider(candidates, present, against) == ("inertia_leak", "sensor_offset")
 
 
 def test_a_single_effect_is_not_questioned() -> None:

@@ -6,7 +6,7 @@ import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import scales
-from jbf.estimation.starts import LINEAR_RULES, RULES, with_starts
+from jbf.estimation.starts import CAMPAIGN_RULES, LINEAR_RULES, RULES, with_starts
 from jbf.models.catalogue import Parameter, effects, laws, parameters_of
 
 MINE = Parameter("F_n", "N", lower=1e-6, upper=1e7, starts=(10.0,), start="kinetic")
@@ -19,7 +19,7 @@ def prepared() -> Campaign:
 
 def test_each_start_that_a_page_names_has_a_rule_and_each_rule_a_page() -> None:
     pages = [p for x in (*laws().values(), *effects().values()) for p in x.parameters]
-    assert {p.start for p in pages} == {"catalogue", *RULES, *LINEAR_RULES}
+    assert {p.start for p in pages} == {"catalogue", *RULES, *LINEAR_RULES, *CAMPAIGN_RULES}
     assert {p.bound for p in pages} == {"catalogue", "transition_speed"}
 
 
@@ -45,3 +45,11 @@ def test_a_drive_starts_from_the_data_on_a_linear_axis_alone() -> None:
     name = "drive_compliance.k_n_m_rad"
     found = with_starts(pages, prepared(), in_newtons=True)
     assert found[name].starts == pages[name].starts
+
+
+def test_a_time_starts_within_a_usual_run() -> None:
+    data = prepared()
+    found = with_starts(parameters_of("coulomb", ("warm_up",)), data, in_newtons=True)
+    whole = sorted(p.run.duration_s for p in data.prepared)
+    starts = found["warm_up.tau_s"].starts
+    assert all(0.05 * whole[0] < start < 0.5 * whole[-1] for start in starts)

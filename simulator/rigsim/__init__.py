@@ -1,6 +1,6 @@
 """rigsim: an independent simulator of a friction rig with hidden effects."""
 
-from .axes import AXIS_EFFECTS, axis_campaign
+from .axes import AXIS_EFFECTS, AxisRun, axis_campaign
 from .bearing import Base, Bearing
 from .campaign import Campaign, draw_base, simulate_campaign, standard, write_campaign
 from .catalogue import CATALOGUE, draw
@@ -14,6 +14,7 @@ __all__ = [
     "AXIS_EFFECTS",
     "CATALOGUE",
     "FOREIGN",
+    "AxisRun",
     "Base",
     "Bearing",
     "Campaign",

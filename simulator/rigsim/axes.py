@@ -21,7 +21,19 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "viscous_load_dependence": {"c": Spread(0.06, 0.2, "s/m", 1.0)},
     "zero_load_dependence": {"k": Spread(0.006, 0.02, "-", 1.0, signed=True)},
     "viscous_asymmetry": {"b": Spread(6.0, 15.0, "N s/m", 1.0, signed=True)},
+    "torque_proportional": {"mu": Spread(0.08, 0.2, "-", 1.0)},
     "gravity": {"G": Spread(0.8, 4.0, "N", 1.0), "theta_0": Spread(0.0, 2.0 * math.pi, "rad")},
+    "cogging": {
+        "A": Spread(0.3, 1.0, "N", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "pitch_ripple": {
+        "a": Spread(0.05, 0.2, "-", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "warm_up": {"a": Spread(0.08, 0.25, "-", 1.0), "tau": Spread(6.0, 20.0, "s")},
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
     "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
 }
@@ -52,14 +64,22 @@ def draw_axis(name: str, rng: np.random.Generator, strength: float = 1.0) -> dic
 
 
 def axis_campaign(
-    seed: int, effects: tuple[str, ...] = (), *, strength: float = 1.0, runs: int = 6
+    seed: int,
+    effects: tuple[str, ...] = (),
+    *,
+    strength: float = 1.0,
+    runs: int = 6,
+    swing: float = 1.0,
 ) -> tuple[list[AxisRun], dict[str, object]]:
-    """Runs of one drive, each under one of three loads, and the truth behind them."""
+    """Runs of one drive, each under one of three loads, and the truth behind them.
+
+    `swing` widens the motion: times 8 it is a joint's, a radian or two to either side.
+    """
     rng = np.random.default_rng([seed, 77])
     hidden = {name: draw_axis(name, rng, strength) for name in effects}
     law = {"F_c_n": float(rng.uniform(3.0, 9.0)), "F_v_n_s_m": float(rng.uniform(15.0, 60.0))}
     noise_n = float(rng.uniform(0.15, 0.35))
-    records = [_run(i, law, hidden, noise_n, rng) for i in range(runs)]
+    records = [_run(i, law, hidden, noise_n, rng, swing) for i in range(runs)]
     return records, {"law": law, "effects": hidden, "noise_n": noise_n}
 
 
@@ -69,16 +89,17 @@ def _run(
     hidden: dict[str, dict[str, float]],
     noise_n: float,
     rng: np.random.Generator,
+    swing: float,
 ) -> AxisRun:
     time = np.arange(0.0, 40.0, STEP_S)
     rates = 2.0 * math.pi * rng.uniform(0.05, 0.6, 3)
-    sizes, phases = rng.uniform(0.03, 0.09, 3), rng.uniform(0.0, 2.0 * math.pi, 3)
+    sizes, phases = swing * rng.uniform(0.03, 0.09, 3), rng.uniform(0.0, 2.0 * math.pi, 3)
     waves = rates[:, None] * time + phases[:, None]
     speed = sizes @ np.sin(waves)
     acceleration = (sizes * rates) @ np.cos(waves)
     path = -(sizes / rates) @ np.cos(waves)
     load = np.full(len(time), LOADS_N[i % len(LOADS_N)])
-    force = _force(law, hidden, speed, acceleration, path, load)
+    force = _force(law, hidden, speed, acceleration, path, load, time)
     return AxisRun(
         name=f"{i}_load_{load[0]:g}",
         time_s=time,
@@ -96,17 +117,34 @@ def _force(
     a: Vector,
     path: Vector,
     load: Vector,
+    time: Vector,
 ) -> Vector:
     """What the drive must push with, N."""
 
     def of(effect: str, key: str) -> float:
         return hidden.get(effect, {}).get(key, 0.0)
 
+    tau_s = hidden.get("warm_up", {}).get("tau", 1.0)
     level = law["F_c_n"] + of("dry_load_dependence", "mu") * load
     slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
     slope = slope + of("viscous_asymmetry", "b") * np.where(v > 0.0, 1.0, -1.0)
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
-    push = weight + of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
-    found: Vector = np.sign(v) * level + slope * v + push + of("inertia_leak", "m_e") * a
+    carried = weight + of("inertia_leak", "m_e") * a
+    push = of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
+    # A gear asks for more than it carries where it drives and, driven back, gives less.
+    lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)
+    cold = 1.0 + of("warm_up", "a") * np.exp2(-time / (math.log(2.0) * tau_s))
+    place = 1.0 + of("pitch_ripple", "a") * _wave(hidden, "pitch_ripple", path, 0.25)
+    push = push + of("cogging", "A") * _wave(hidden, "cogging", path, 0.0)
+    sliding = (np.sign(v) * level + slope * v) * cold * place
+    found: Vector = sliding + carried + lost + push
+    return found
+
+
+def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:
+    """A sine over the pitch, `ahead` of it by a share of a period; the phase lags."""
+    own = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
+    turns = path / own["pitch"] - own["phase"] / (2.0 * math.pi) + ahead
+    found: Vector = np.imag(np.exp(2j * math.pi * turns))
     return found

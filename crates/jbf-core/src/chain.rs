@@ -222,6 +222,11 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             &mut sliding,
             dt_s,
         );
+        let (mut beside_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
+        self.effects
+            .other(&state.effects, &journal, &mut beside_n, &mut transmitted_n);
+        self.effects
+            .transmission(&state.effects, transmitted_n, &mut sliding);
         // What bends a bristle, and what acts beside it.
         let (magnitude, beside) = if L::BENDS_WHOLE {
             (sliding.jump + sliding.smooth.abs(), T::ZERO)
@@ -242,8 +247,6 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         };
         let bent = bent.map(|bristle| bristle + beside);
         let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
-        let mut beside_n = Friction::NONE;
-        self.effects.other(&state.effects, &journal, &mut beside_n);
         // A bristle turns the contact's jump into a slope.
         let contact_n = if bent.is_some() {
             T::ZERO

@@ -38,6 +38,12 @@ pub enum Start {
     Damping,
     /// A small share of friction in motion.
     Drag,
+    /// Pitches at which the force comes again along the way.
+    Pitch,
+    /// Pitches at which the force in the direction of motion does.
+    RipplePitch,
+    /// A share of a usual run's time.
+    RunTime,
     /// On a linear axis: a drive that gives by a small share of a stroke.
     DriveStiffness,
     /// On a linear axis: a drive that rings fast against a stroke.
@@ -60,6 +66,9 @@ impl Start {
             Start::Stiffness => "stiffness",
             Start::Damping => "damping",
             Start::Drag => "drag",
+            Start::Pitch => "pitch",
+            Start::RipplePitch => "ripple_pitch",
+            Start::RunTime => "run_time",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",
             Start::DriveDamping => "drive_damping",

@@ -2,7 +2,7 @@
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
-use jbf_core::effect;
+use jbf_core::effect::{self, Need};
 use jbf_core::law::{self, Named};
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{Bearing, Chain, Clock, Real};
@@ -81,7 +81,7 @@ pub(crate) fn laws<T: Real>(take: Take<'_>) {
     }
 }
 
-/// Every effect round the first law that it goes with.
+/// Every effect round the first law that it goes with, and beside it what it needs to show.
 pub(crate) fn effects<T: Real>(take: Take<'_>) {
     for info in effect::CATALOGUE {
         let mut laws = law::CATALOGUE.iter();
@@ -91,7 +91,10 @@ pub(crate) fn effects<T: Real>(take: Take<'_>) {
         take(
             "effect",
             info.name,
-            along::<T>(page, |i| i.name == info.name),
+            along::<T>(page, |i| {
+                let needed = i.transmitted && info.needs.contains(&Need::Transmitted);
+                needed || i.name == info.name
+            }),
         );
     }
 }

@@ -52,7 +52,7 @@ def select(candidates: Candidates, noise_n: float, start: Selected | None = None
         if len(present) >= candidates.policy.most_effects:
             return Selected(present, steps)
         candidates.search_peaks((*present, found.leader))
-        grown = reconsider(candidates, (*present, found.leader))
+        grown = reconsider(candidates, (*present, found.leader), found.unconfirmed)
         if frozenset(grown) in visited:
             return Selected(present, steps)
         visited.add(frozenset(grown))

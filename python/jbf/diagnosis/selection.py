@@ -37,10 +37,12 @@ class Ranked:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of trials beside a model."""
+    """One round of trials beside a model; `unconfirmed` are the candidates that had more evidence
+    than the leader, and predicted runs left out no better."""
 
     trials: tuple[Trial, ...]
     leader: str | None
+    unconfirmed: frozenset[str] = frozenset()
 
 
 def left_out_confirms(evidence: float, gained_share: float, better: float, policy: Policy) -> bool:
@@ -67,6 +69,7 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
     base, policy = candidates.converge(present), candidates.policy
     ranked = _rank(candidates, present, base)
     leader, best, trials = None, 0.0, []
+    unconfirmed: set[str] = set()
     bare = base.rms_n
     before = (
         candidates.left_out_rms(present, apart=True)
@@ -96,6 +99,7 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
             else:
                 outcome = "rejected"
                 reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+                unconfirmed.add(name)
         elif gain > 0 and _leaves_more(found, least, policy):
             outcome, reason = "rejected", f"leaves {rms:.3g} N where {leader} does not"
         elif gain > 0 and gain > best - policy.tie:
@@ -104,7 +108,8 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
             outcome = "rejected"
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
-    return Round(tuple(sorted(trials, key=lambda t: -t.evidence)), leader)
+    ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
+    return Round(ordered, leader, frozenset(unconfirmed))
 
 
 def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solution) -> bool:
@@ -171,8 +176,16 @@ def still_needed(candidates: Candidates, present: Names) -> Names:
     return current
 
 
-def reconsider(candidates: Candidates, present: Names) -> Names:
-    """Take out effects that are no longer needed; exchange those that another replaces better."""
+def reconsider(
+    candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
+) -> Names:
+    """Take out effects that are no longer needed; exchange those that another replaces better.
+
+    Parameters
+    ----------
+    unconfirmed
+        Effects that runs left out have just spoken against: none of them comes in by the back door.
+    """
     current = present
     for name in present:
         if len(current) < 2 or name not in current:
@@ -186,7 +199,7 @@ def reconsider(candidates: Candidates, present: Names) -> Names:
             continue
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
-            if other in current:
+            if other in current or other in unconfirmed:
                 continue
             better = -swap_cost(candidates, (*rest, other), whole, simpler)
             if better > gain:

@@ -43,6 +43,9 @@ def unseen(candidates: Candidates, present: Names) -> Names:
             continue
         richer, values = _with_usual(candidates, present, name)
         gaps = [a - b for a, b in zip(richer.predict(values), now, strict=True)]
+        if "transmitted" in find_effect(name).needs and not any(np.any(gap) for gap in gaps):
+            # It changes nothing beside this model, whatever the motion.
+            continue
         gap, _ = base.samples.stacked(gaps, base.jacobian, base.noise)
         evidence = unexplained_square(slopes, gap) / level
         if evidence < price_of(candidates, len(richer.names) - base.free):

@@ -16,7 +16,7 @@ from jbf.estimation.samples import Samples
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
-from jbf.models.requirements import has_angle, has_path
+from jbf.models.requirements import has_angle, has_path, has_position
 from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
@@ -111,6 +111,8 @@ class Campaign:
             return "not every run has the shaft's angle"
         if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
             return "not every run has the path of the drive"
+        if "position" in needs and not all(has_position(p.run) for p in self.prepared):
+            return "not every run has a position or an angle"
         if "loads" in needs and not self.has_loads:
             return "all runs have one load, under which it changes nothing"
         return None

@@ -48,10 +48,7 @@ class Scales:
 
 def scales(campaign: Campaign) -> Scales:
     """The sizes of a campaign's runs, from samples that move."""
-    moving = [
-        _moving(p, counted)
-        for p, counted in zip(campaign.prepared, campaign.samples.counted, strict=True)
-    ]
+    moving = moving_samples(campaign)
     v = np.concatenate(
         [p.motion.velocity_m_s[m] for p, m in zip(campaign.prepared, moving, strict=True)]
     )
@@ -71,6 +68,14 @@ def scales(campaign: Campaign) -> Scales:
     step = float(np.median([p.step_s for p in campaign.prepared]))
     resolved = min(max(0.1 * slow_m_s * step, 1e-7 * stroke), 1e-2 * stroke)
     return Scales(whole, kinetic, slope, breakaway, slow_m_s, usual_m_s, stroke, resolved)
+
+
+def moving_samples(campaign: Campaign) -> list[Mask]:
+    """True where a run moves, and its sample counts; one mask a run."""
+    return [
+        _moving(p, counted)
+        for p, counted in zip(campaign.prepared, campaign.samples.counted, strict=True)
+    ]
 
 
 def _moving(p: Prepared, counted: Mask) -> Mask:

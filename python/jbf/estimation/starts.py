@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.pitches import pitches
 from jbf.estimation.scales import Scales, scales
 from jbf.models.catalogue import Parameter
 
@@ -54,12 +55,32 @@ LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
 """The same for a drive on a linear axis, whose catalogue values are those of a shaft."""
 
 
+def _run_time(campaign: Campaign) -> Starts:
+    """A tenth and a third of a usual run, s."""
+    usual = float(np.median([p.run.duration_s for p in campaign.prepared]))
+    return (0.3 * usual, 0.1 * usual)
+
+
+CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
+    "pitch": lambda c: pitches(c, along=False),
+    "ripple_pitch": lambda c: pitches(c, along=True),
+    "run_time": _run_time,
+}
+"""What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
+
+
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     """A transition speed as the data bound it: a film that carries the load only at several times
     the fastest speed on record never shows, and its equations grow stiff."""
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
     upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
     return replace(page, upper=upper)
+
+
+def _inside(page: Parameter, starts: Starts) -> Parameter:
+    """The page with these starting values, brought within its bounds; as it is without any."""
+    inside = (float(np.clip(x, page.lower, page.upper)) for x in starts)
+    return replace(page, starts=tuple(dict.fromkeys(inside)) or page.starts)
 
 
 def with_starts(
@@ -79,7 +100,8 @@ def with_starts(
         if page.bound == "transition_speed":
             page = _bounded(page, campaign)
         if sizes is not None and page.start in rules:
-            inside = (float(np.clip(x, page.lower, page.upper)) for x in rules[page.start](sizes))
-            page = replace(page, starts=tuple(dict.fromkeys(inside)))
+            page = _inside(page, rules[page.start](sizes))
+        if in_newtons and page.start in CAMPAIGN_RULES:
+            page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
         found[name] = page
     return found

@@ -21,6 +21,11 @@ def has_path(rig: Rig, run: Run) -> bool:
     return run.position_m is not None or (run.angle_rad is not None and rig.bearing is not None)
 
 
+def has_position(run: Run) -> bool:
+    """True where the run tells where the drive stands, as an angle or on a line."""
+    return run.position_m is not None or run.angle_rad is not None
+
+
 def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
     """An InputError where a run lacks a column that one of the effects needs."""
     for name in effects:
@@ -36,6 +41,8 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
                 problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
                 mend="drop position_m, or give the rig its [bearing]",
             )
+        if "position" in needs and not has_position(run):
+            require(run, "angle_rad" if rig.bearing else "position_m", f"the effect {name}")
         if "path" in needs and not has_path(rig, run):
             if rig.bearing is not None:
                 require(run, "angle_rad", f"the effect {name}")

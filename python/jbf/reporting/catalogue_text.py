@@ -8,8 +8,10 @@ from jbf.models.catalogue import Effect, Parameter, built_in
 from jbf.reporting.paragraphs import columns, hanging
 
 NEEDS = {
+    "transmitted": "an effect beside it whose force the drive transmits: gravity, inertia_leak",
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
+    "position": "the column angle_rad or position_m in every run",
     "loads": "runs under several loads (load_n, or pressure_pa on an axis without a bearing)",
 }
 

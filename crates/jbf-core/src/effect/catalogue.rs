@@ -1,15 +1,16 @@
 //! The catalogue of effects: the signal chain's fixed order, in one place.
 
 use super::place::{
-    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, Place, UnderLoad,
+    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
+    Place, UnderLoad,
 };
 use super::registry::{signal_chain, Shelf};
 use super::{
-    backlash, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
-    dwell_stiction, film_memory, gravity, inertia_leak, load_dependence, position_ripple,
-    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
-    stribeck_excess, thermal_thinning, time_delay, viscous_asymmetry, viscous_load_dependence,
-    wear_in, zero_load_dependence,
+    backlash, cogging, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
+    dwell_stiction, film_memory, gravity, inertia_leak, load_dependence, pitch_ripple,
+    position_ripple, presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset,
+    shear_thinning, stribeck_excess, thermal_thinning, time_delay, torque_proportional,
+    viscous_asymmetry, viscous_load_dependence, warm_up, wear_in, zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
 use crate::error::ParameterError;
@@ -34,7 +35,10 @@ signal_chain! {
         viscous_asymmetry::ViscousAsymmetry,
         direction_asymmetry::DirectionAsymmetry,
         position_ripple::PositionRipple,
+        pitch_ripple::PitchRipple,
+        warm_up::WarmUp,
     ],
+    transmission: InTransmission [torque_proportional::TorqueProportional],
     bristle: AsBristle [presliding::Presliding],
     other: Beside [
         coulomb_drag::CoulombDrag,
@@ -42,6 +46,7 @@ signal_chain! {
         inertia_leak::InertiaLeak,
         zero_load_dependence::ZeroLoadDependence,
         gravity::Gravity,
+        cogging::Cogging,
     ],
     instrument: InInstrument [
         sensor_lag::SensorLag,
@@ -70,6 +75,7 @@ impl<T: Real> EffectSet<T> for Effects<T> {
             load: self.load.start(motion, rig),
             film: self.film.start(motion, rig),
             contact: self.contact.start(motion, rig),
+            transmission: self.transmission.start(motion, rig),
             bristle: self.bristle.start(motion, rig),
             other: self.other.start(motion, rig),
             instrument: self.instrument.start(motion, rig),
@@ -87,6 +93,7 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         let contact = self
             .contact
             .longest_step_s()
+            .min(self.transmission.longest_step_s())
             .min(self.bristle.longest_step_s());
         let after = self
             .other
@@ -160,8 +167,19 @@ impl<T: Real> EffectSet<T> for Effects<T> {
             .bristle(&mut s.bristle, from, to, magnitude, dt_s)
     }
     #[inline(always)]
-    fn other(&self, s: &States<T>, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
-        self.other.other(&s.other, journal, all_n);
+    fn other(
+        &self,
+        s: &States<T>,
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        self.other.other(&s.other, journal, all_n, transmitted_n);
+    }
+    #[inline(always)]
+    fn transmission(&self, s: &States<T>, transmitted_n: T, sliding: &mut Friction<T>) {
+        self.transmission
+            .transmission(&s.transmission, transmitted_n, sliding);
     }
     #[inline]
     fn first(&self, s: &mut States<T>, force_n: T) -> T {

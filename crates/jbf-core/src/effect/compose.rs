@@ -91,9 +91,20 @@ impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
         first.or_else(|| self.1.bristle(&mut s.1, from, to, magnitude, dt_s))
     }
     #[inline(always)]
-    fn other(&self, s: &Self::State, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
-        self.0.other(&s.0, journal, all_n);
-        self.1.other(&s.1, journal, all_n);
+    fn other(
+        &self,
+        s: &Self::State,
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        self.0.other(&s.0, journal, all_n, transmitted_n);
+        self.1.other(&s.1, journal, all_n, transmitted_n);
+    }
+    #[inline(always)]
+    fn transmission(&self, s: &Self::State, transmitted_n: T, sliding: &mut Friction<T>) {
+        self.0.transmission(&s.0, transmitted_n, sliding);
+        self.1.transmission(&s.1, transmitted_n, sliding);
     }
     #[inline]
     fn first(&self, s: &mut Self::State, force_n: T) -> T {
@@ -202,9 +213,21 @@ impl<T: Real, A: EffectSet<T>> EffectSet<T> for Option<A> {
         }
     }
     #[inline(always)]
-    fn other(&self, s: &Self::State, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
+    fn other(
+        &self,
+        s: &Self::State,
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
         if let (Some(set), Some(s)) = (self, s) {
-            set.other(s, journal, all_n);
+            set.other(s, journal, all_n, transmitted_n);
+        }
+    }
+    #[inline(always)]
+    fn transmission(&self, s: &Self::State, transmitted_n: T, sliding: &mut Friction<T>) {
+        if let (Some(set), Some(s)) = (self, s) {
+            set.transmission(s, transmitted_n, sliding);
         }
     }
     #[inline]

@@ -23,6 +23,7 @@ impl<T: Real> Effect<T> for Gravity<T> {
     const INFO: Info = Info::new("gravity", Stage::Other)
         .summary("the weight of a link, or an unbalance, that the drive carries")
         .equation("F -> F + G sin(theta - theta_0)")
+        .transmitted()
         .source("Siciliano et al. 2009, section 7.3")
         .limits(
             "one link, the others standing still; the angle must be absolute or have the same \

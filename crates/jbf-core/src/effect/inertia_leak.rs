@@ -19,6 +19,7 @@ impl<T: Real> Effect<T> for InertiaLeak<T> {
     const INFO: Info = Info::new("inertia_leak", Stage::Other)
         .summary("the load cell also feels a mass that is accelerated")
         .equation("F -> F + m_e dv/dt")
+        .transmitted()
         .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
         .limits("a rigid mass; the slope of the speed comes from the record and has its noise")
         .parameters(&[Parameter::new(

@@ -60,6 +60,8 @@ pub struct Info {
     pub needs: &'static [Need],
     /// Longest inner step at which the effect is still exact to a hundredth of a usual noise, s.
     pub longest_step_s: f64,
+    /// True of a force, beside friction, that the drive's transmission carries: a weight, a mass.
+    pub transmitted: bool,
 }
 
 impl Info {
@@ -75,6 +77,7 @@ impl Info {
             parameters: &[],
             needs: &[],
             longest_step_s: 0.02,
+            transmitted: false,
         }
     }
 
@@ -117,6 +120,12 @@ impl Info {
     /// Longest inner step that is still exact, s.
     pub const fn longest_step_s(mut self, step_s: f64) -> Self {
         self.longest_step_s = step_s;
+        self
+    }
+
+    /// A force that the drive's transmission carries.
+    pub const fn transmitted(mut self) -> Self {
+        self.transmitted = true;
         self
     }
 

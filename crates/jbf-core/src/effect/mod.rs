@@ -9,6 +9,7 @@
 //! file below, and name the effect in its stage's line of `catalogue.rs`.
 
 pub mod backlash;
+pub mod cogging;
 pub mod coulomb_drag;
 pub mod direction_asymmetry;
 pub mod drive_compliance;
@@ -18,6 +19,7 @@ pub mod film_memory;
 pub mod gravity;
 pub mod inertia_leak;
 pub mod load_dependence;
+pub mod pitch_ripple;
 pub mod position_ripple;
 pub mod presliding;
 pub mod quadratic_drag;
@@ -28,8 +30,10 @@ pub mod shear_thinning;
 pub mod stribeck_excess;
 pub mod thermal_thinning;
 pub mod time_delay;
+pub mod torque_proportional;
 pub mod viscous_asymmetry;
 pub mod viscous_load_dependence;
+pub mod warm_up;
 pub mod wear_in;
 pub mod zero_load_dependence;
 
@@ -37,6 +41,7 @@ mod catalogue;
 mod compose;
 mod info;
 mod need;
+mod pitch;
 pub mod place;
 mod registry;
 pub mod set;
@@ -48,12 +53,13 @@ pub use catalogue::{fits, moves_jumps, peaks, type_names, Effects, States, CATAL
 pub use info::{Info, Stage};
 pub use need::Need;
 pub use place::{
-    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, Place, UnderLoad,
+    AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
+    Place, UnderLoad,
 };
 pub use set::EffectSet;
 pub use stage::{
     Bristle, Contact, Drive, Film, Instrument, Loading, Lubricant, OtherFriction, Resistance,
-    Signal,
+    Signal, Transmission,
 };
 
 use crate::bearing::Bearing;

@@ -1,8 +1,9 @@
-//! What an effect needs of the law beside it, and of the record.
+//! What an effect needs of the law and the effects beside it, and of the record.
 
 use crate::law;
 
-/// One need. Those of a law are answered by its page; those of a record by whoever reads it.
+/// One need. Those of a law are answered by its page; those of a record by whoever reads it;
+/// without the effect that it needs beside it an effect changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// Of the law: a lubricant film.
@@ -14,10 +15,14 @@ pub enum Need {
     NoBristle,
     /// Of the law: no dry friction of its own that depends on no load.
     NoDryLevel,
+    /// Of the effects beside it: one whose force the drive transmits ([`super::Info::transmitted`]).
+    Transmitted,
     /// Of the record: the shaft's angle.
     Angle,
     /// Of the record: how far the drive has gone, as an angle or on a line.
     Path,
+    /// Of the record: where the drive stands, as an angle or on a line.
+    Position,
     /// Of the record: loads that differ, within a run or from run to run.
     Loads,
 }
@@ -30,8 +35,10 @@ impl Need {
             Need::NoFilm => "no_film",
             Need::NoBristle => "no_bristle",
             Need::NoDryLevel => "no_dry_level",
+            Need::Transmitted => "transmitted",
             Need::Angle => "angle",
             Need::Path => "path",
+            Need::Position => "position",
             Need::Loads => "loads",
         }
     }
@@ -43,7 +50,7 @@ impl Need {
             Need::NoFilm => !law.has_film,
             Need::NoBristle => !law.has_bristle,
             Need::NoDryLevel => !law.has_dry_level,
-            Need::Angle | Need::Path | Need::Loads => true,
+            Need::Transmitted | Need::Angle | Need::Path | Need::Position | Need::Loads => true,
         }
     }
 
@@ -54,8 +61,10 @@ impl Need {
             Need::NoFilm => "is a bearing's: its friction follows the load and the film",
             Need::NoBristle => "bends before it slides: it has a bristle of its own",
             Need::NoDryLevel => "already holds a dry friction that does not depend on the load",
+            Need::Transmitted => "transmits nothing",
             Need::Angle => "needs no angle",
             Need::Path => "needs no path",
+            Need::Position => "needs no position",
             Need::Loads => "needs no loads",
         }
     }

@@ -10,7 +10,7 @@
 
 use super::{
     Bristle, Contact, Drive, EffectSet, Film, Info, Instrument, Loading, Lubricant, OtherFriction,
-    Resistance, Rig, Signal, Stage,
+    Resistance, Rig, Signal, Stage, Transmission,
 };
 use crate::error::{check, ParameterError};
 use crate::friction::Friction;
@@ -76,6 +76,8 @@ places! {
     InFilm: Film at Stage::Film,
     /// Between the surfaces.
     InContact: Contact at Stage::Contact,
+    /// In the drive's transmission, after the contact.
+    InTransmission: Transmission at Stage::Contact,
     /// In the place of the motion's sign, last in the contact.
     AsBristle: Bristle at Stage::Contact,
     /// Beside the bearing's friction.
@@ -205,6 +207,22 @@ impl<T: Real, E: Contact<T>> EffectSet<T> for InContact<E> {
     }
 }
 
+impl<T: Real, E: Transmission<T>> EffectSet<T> for InTransmission<E> {
+    type State = E::State;
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
+        self.0.start(motion, rig)
+    }
+    #[inline]
+    fn longest_step_s(&self) -> f64 {
+        <Self as Place<T>>::INFO.longest_step_s
+    }
+    #[inline(always)]
+    fn transmission(&self, s: &Self::State, transmitted_n: T, sliding: &mut Friction<T>) {
+        self.0.apply(s, transmitted_n, sliding);
+    }
+}
+
 impl<T: Real, E: Bristle<T>> EffectSet<T> for AsBristle<E> {
     type State = E::State;
 
@@ -243,10 +261,19 @@ impl<T: Real, E: OtherFriction<T>> EffectSet<T> for Beside<E> {
         <Self as Place<T>>::INFO.longest_step_s
     }
     #[inline(always)]
-    fn other(&self, s: &Self::State, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
+    fn other(
+        &self,
+        s: &Self::State,
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
         let own_n = self.0.friction_n(s, journal);
         all_n.jump += own_n.jump;
         all_n.smooth += own_n.smooth;
+        if <Self as Place<T>>::INFO.transmitted {
+            *transmitted_n += own_n.smooth;
+        }
     }
 }
 

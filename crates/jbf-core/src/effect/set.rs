@@ -116,6 +116,12 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, from, to, sliding, dt_s);
     }
 
+    /// Contact: change the sliding friction by what the drive's transmission carries, N.
+    #[inline(always)]
+    fn transmission(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>) {
+        let _ = (state, transmitted_n, sliding);
+    }
+
     /// Contact: its coefficient, signed, through the bristle where there is one.
     #[inline(always)]
     fn bristle(
@@ -130,10 +136,16 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         None
     }
 
-    /// Other friction: add it, N.
+    /// Other friction: add it, N, and what of it the drive's transmission carries, N.
     #[inline(always)]
-    fn other(&self, state: &Self::State, journal: &JournalMotion<T>, all_n: &mut Friction<T>) {
-        let _ = (state, journal, all_n);
+    fn other(
+        &self,
+        state: &Self::State,
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        let _ = (state, journal, all_n, transmitted_n);
     }
 
     /// Instrument: the first reading of a run, N.

@@ -86,6 +86,13 @@ pub trait Contact<T: Real>: Effect<T> {
     }
 }
 
+/// Friction of the drive's transmission under what it carries: gears, a screw.
+pub trait Transmission<T: Real>: Effect<T> {
+    /// Change the sliding friction under a transmitted force, N, positive where it takes a push in
+    /// positive direction.
+    fn apply(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>);
+}
+
 /// Replaces the sign of the motion by a deflection: the last step of the contact stage.
 pub trait Bristle<T: Real>: Effect<T> {
     /// The coefficient at the start of a run: bent already where the run starts in motion.

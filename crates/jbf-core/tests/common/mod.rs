@@ -9,7 +9,7 @@ pub mod motion;
 pub mod random;
 pub mod table;
 
-use jbf_core::effect::{Effects, Rig};
+use jbf_core::effect::{Effects, Info, Need, Rig};
 use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::{Law, Named};
@@ -67,6 +67,14 @@ pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L
         effects: all,
         rig,
     }
+}
+
+/// What must stand beside an effect for it to change anything: where it needs something that the
+/// drive transmits, a weight.
+pub fn company(info: &Info) -> Vec<(&'static str, &'static [f64])> {
+    const WEIGHT: &[f64] = &[40.0, 0.3];
+    let needs = info.needs.contains(&Need::Transmitted);
+    needs.then_some(("gravity", WEIGHT)).into_iter().collect()
 }
 
 /// Readings (N) of a chain along a motion: the first sample, then `steps` steps of `dt_s`.

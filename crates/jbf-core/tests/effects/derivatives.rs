@@ -6,7 +6,7 @@
 //! left; the second is the rounding of a thousand steps, 1e-12 of the force, over h.
 
 use crate::common::motion::Sines;
-use crate::common::{readings, table_4_2, LOAD_N};
+use crate::common::{company, readings, table_4_2, LOAD_N};
 use jbf_core::effect::{Effects, Info, Need, Rig, CATALOGUE};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
@@ -33,6 +33,10 @@ fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<
     let law = Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("valid");
     let mut effects = Effects::NONE;
     effects.set(info.name, &p[4..]).expect("valid");
+    for (name, values) in company(info) {
+        let lifted: Vec<T> = values.iter().map(|&v| T::of(v)).collect();
+        effects.set(name, &lifted).expect("valid");
+    }
     let rig = Rig {
         radius_m: T::of(Bearing::THESIS.radius_m),
         count: T::of(4.0),

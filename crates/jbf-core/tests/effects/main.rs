@@ -5,6 +5,7 @@
 mod common;
 
 mod backlash;
+mod cogging;
 mod coulomb_drag;
 mod derivatives;
 mod direction_asymmetry;
@@ -17,6 +18,7 @@ mod gravity;
 mod inertia_leak;
 mod load_dependence;
 mod null;
+mod pitch_ripple;
 mod position_ripple;
 mod presliding;
 mod quadratic_drag;
@@ -29,8 +31,10 @@ mod symmetry;
 mod thermal_thinning;
 mod time_delay;
 mod together;
+mod torque_proportional;
 mod viscous_asymmetry;
 mod viscous_load_dependence;
+mod warm_up;
 mod wear_in;
 mod zero_load_dependence;
 

@@ -2,7 +2,7 @@
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
-use crate::common::{chain, readings};
+use crate::common::{chain, company, readings};
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::Real;
 
@@ -26,8 +26,10 @@ fn check<T: Real>() {
             let motion = Sines::random(&mut random);
             let values = at_null(info, &mut random);
             let swinging = |t: f64| motion.under(104.0 + 30.0 * (2.0 * t).sin(), t);
-            let bare = readings(&chain::<T>(&[]), 0.01, 500, swinging);
-            let with = readings(&chain::<T>(&[(info.name, &values)]), 0.01, 500, swinging);
+            let company = company(info);
+            let whole = [company.as_slice(), &[(info.name, &values)]].concat();
+            let bare = readings(&chain::<T>(&company), 0.01, 500, swinging);
+            let with = readings(&chain::<T>(&whole), 0.01, 500, swinging);
             assert!(bare.iter().any(|&r| r != T::ZERO));
             for (a, b) in bare.iter().zip(&with) {
                 assert_eq!(
@@ -58,8 +60,10 @@ fn away_from_its_null_every_effect_shows() {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let motion = Sines::two_way(1.0).resting(3.0, 1.0);
         let lighter = |t: f64| motion.under(83.5, t);
-        let bare = readings(&chain::<f64>(&[]), 0.01, 700, lighter);
-        let with = readings(&chain::<f64>(&[(info.name, &values)]), 0.01, 700, lighter);
+        let company = company(info);
+        let whole = [company.as_slice(), &[(info.name, &values)]].concat();
+        let bare = readings(&chain::<f64>(&company), 0.01, 700, lighter);
+        let with = readings(&chain::<f64>(&whole), 0.01, 700, lighter);
         let difference = bare
             .iter()
             .zip(&with)

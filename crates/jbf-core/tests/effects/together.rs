@@ -1,20 +1,24 @@
 //! Effects in company: two that can be composed by hand, every pair, all at once.
 
 use crate::common::motion::Sines;
-use crate::common::{chain, readings};
+use crate::common::{chain, chain_round, company, law, readings};
 use jbf_core::effect::{Info, CATALOGUE};
-use jbf_core::Real;
+use jbf_core::law::coulomb::Coulomb;
+use jbf_core::law::{self, Named};
+use jbf_core::{Clock, Real};
 
 fn starts(info: &Info) -> Vec<f64> {
     info.parameters.iter().map(|p| p.starts[0]).collect()
 }
 
-fn run<T: Real>(which: &[&Info]) -> Vec<T> {
+/// Effects at their starts, and what must stand beside some that are looked at.
+fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
     let values: Vec<Vec<f64>> = which.iter().map(|info| starts(info)).collect();
     let effects: Vec<(&str, &[f64])> = which
         .iter()
         .zip(&values)
         .map(|(info, v)| (info.name, v.as_slice()))
+        .chain(beside.iter().copied())
         .collect();
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     readings(&chain::<T>(&effects), 0.01, 700, |t| sines.under(83.5, t))
@@ -55,12 +59,14 @@ fn the_instrument_sees_the_drag() {
 fn pairs_run_in_the_order_of_the_chain() {
     for (i, a) in CATALOGUE.iter().enumerate() {
         for b in &CATALOGUE[i + 1..] {
-            let one = run::<f64>(&[a, b]);
-            let other = run::<f64>(&[b, a]);
+            let mut beside = [company(a), company(b)].concat();
+            beside.retain(|(name, _)| ![a.name, b.name].contains(name));
+            let one = run::<f64>(&[a, b], &beside);
+            let other = run::<f64>(&[b, a], &beside);
             assert_eq!(one, other, "{} {}", a.name, b.name);
             assert!(one.iter().all(|r| r.is_finite()));
             for single in [a, b] {
-                let alone = run::<f64>(&[single]);
+                let alone = run::<f64>(&[single], &beside);
                 let apart = one
                     .iter()
                     .zip(&alone)
@@ -72,14 +78,38 @@ fn pairs_run_in_the_order_of_the_chain() {
     }
 }
 
-#[test]
-fn all_at_once_stay_finite_and_agree_in_both_precisions() {
-    let all: Vec<&Info> = CATALOGUE.iter().collect();
-    let double = run::<f64>(&all);
-    let single = run::<f32>(&all);
+/// Everything that goes with a law, round it.
+fn all_round<T: Real, L: Named<T>>(law: L) -> Vec<T> {
+    let page = law::CATALOGUE.iter().find(|page| page.name == L::INFO.name);
+    let page = page.expect("a law of the catalogue");
+    let all = CATALOGUE.iter().filter(|e| e.lacking(page).is_none());
+    let values: Vec<(&str, Vec<f64>)> = all.map(|e| (e.name, starts(e))).collect();
+    let effects: Vec<(&str, &[f64])> = values.iter().map(|(n, v)| (*n, v.as_slice())).collect();
+    let sines = Sines::two_way(1.0).resting(3.0, 1.0);
+    readings(&chain_round(law, &effects), 0.01, 700, |t| {
+        sines.under(83.5, t)
+    })
+}
+
+fn agree(double: &[f64], single: &[f32]) {
     let peak = double.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
     assert!(peak > 1.0 && peak < 1e3, "{peak}");
-    for (a, b) in double.iter().zip(&single) {
+    for (a, b) in double.iter().zip(single) {
         assert!((a - f64::from(*b)).abs() < 1e-3 * peak, "{a} {b}");
     }
+}
+
+#[test]
+fn all_at_once_stay_finite_and_agree_in_both_precisions() {
+    agree(
+        &all_round(law::<f64>(Clock::Journal)),
+        &all_round(law::<f32>(Clock::Journal)),
+    );
+    agree(&all_round(dry::<f64>()), &all_round(dry::<f32>()));
+}
+
+/// Dry friction in newtons, with a viscous part.
+fn dry<T: Real>() -> Coulomb<T> {
+    let values = [6.0, 6.0, 20.0].map(T::of);
+    Coulomb::build(None, None, &values, Clock::Journal).expect("a sound law")
 }

@@ -20,8 +20,12 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
         "dry_load_dependence",
         "viscous_load_dependence",
         "viscous_asymmetry",
+        "pitch_ripple",
+        "warm_up",
+        "torque_proportional",
         "zero_load_dependence",
         "gravity",
+        "cogging",
     ];
     assert_eq!(refused, of_drives.map(|name| (name, Some(Need::NoFilm))));
     for name in of_drives {

@@ -1,0 +1,65 @@
+//! A force that comes again with every pitch of the way: `+ A sin(2 pi x/p - phi)`.
+//!
+//! Magnets that look for teeth: the motor pushes and holds back in turn, moving or at rest, whatever
+//! the friction. In a rotary motor the pitch is a turn over the least common multiple of poles and
+//! slots, in a linear one the magnets'; behind a gear or a screw it is that much shorter.
+//!
+//! `gravity` is once a turn of the shaft; this is at any pitch, which the fit has to find.
+//! `pitch_ripple` scales friction instead, and has nothing to say of a drive that stands.
+//!
+//! Source: Zhu & Howe (2000) for rotary machines; Otten et al. (1997) for linear ones.
+
+use super::pitch::{Pitch, PHASE, PITCH};
+use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// A force over a pitch.
+#[derive(Clone, Copy, Debug)]
+pub struct Cogging<T> {
+    amplitude_n: T,
+    pitch: Pitch<T>,
+}
+
+impl<T: Real> Effect<T> for Cogging<T> {
+    const INFO: Info = Info::new("cogging", Stage::Other)
+        .summary("a motor's force that rises and falls with every pitch of the way, at rest too")
+        .equation("F -> F + A sin(2 pi x/p - phi), x the way of the surface, m")
+        .source("Zhu & Howe 2000; Otten et al. 1997")
+        .limits("one harmonic; the way must be absolute or have the same zero in every run")
+        .parameters(&[
+            Parameter::new("A_n", "N", "amplitude", [0.0, 1e7], &[1.0])
+                .null(0.0)
+                .start(Start::Drag),
+            PITCH,
+            PHASE,
+        ])
+        .needs(&[Need::NoFilm, Need::Position]);
+    /// Radius, m.
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            amplitude_n: parameters[0],
+            pitch: Pitch::new(parameters[1], parameters[2]),
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
+        rig.radius_m
+    }
+}
+
+impl<T: Real> OtherFriction<T> for Cogging<T> {
+    #[inline(always)]
+    fn friction_n(&self, radius_m: &T, journal: &JournalMotion<T>) -> Friction<T> {
+        Friction {
+            jump: T::ZERO,
+            smooth: self.amplitude_n * self.pitch.angle(journal.angle_rad * *radius_m).sin(),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! A pitch of the way and the place within it, as `cogging` and `pitch_ripple` have them.
+
+use super::Parameter;
+use crate::page::Start;
+use crate::real::Real;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The page of a pitch that the fit has to find.
+pub(super) const PITCH: Parameter = Parameter::new(
+    "pitch_m",
+    "m",
+    "way of one period, at the radius",
+    [1e-6, 1e3],
+    &[0.5, 0.2],
+)
+.log()
+.start(Start::Pitch);
+
+/// The page of the place at which a period begins.
+pub(super) const PHASE: Parameter = Parameter::new(
+    "phase_rad",
+    "rad",
+    "phase at the way's zero",
+    [-4.0 * PI, 4.0 * PI],
+    &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
+)
+.period(TAU)
+.signed();
+
+/// `2 pi x/p - phi`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pitch<T> {
+    inverse_1_m: T,
+    phase_rad: T,
+}
+
+impl<T: Real> Pitch<T> {
+    pub(super) fn new(pitch_m: T, phase_rad: T) -> Self {
+        Self {
+            inverse_1_m: T::ONE / pitch_m,
+            phase_rad,
+        }
+    }
+
+    /// The angle at a place, m, less whole periods: single precision has none to lose.
+    #[inline(always)]
+    pub(super) fn angle(&self, place_m: T) -> T {
+        let periods = place_m * self.inverse_1_m;
+        let whole = T::of(libm::round(periods.value()));
+        (periods - whole) * T::of(TAU) - self.phase_rad
+    }
+}

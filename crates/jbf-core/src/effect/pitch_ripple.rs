@@ -1,0 +1,60 @@
+//! Friction that rises and falls with every pitch of the way: times `1 + a cos(2 pi x/p - phi)`.
+//!
+//! A screw's lead, the balls that come round, a gear's teeth, a belt's: what presses changes from
+//! place to place, and friction with it. `position_ripple` is once a turn of the shaft.
+//!
+//! Source: Armstrong-Helouvry (1991), chapter 3, whose friction of gears depends on the position at
+//! the pitch of the teeth.
+
+use super::pitch::{Pitch, PHASE, PITCH};
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// Friction that depends on the place within a pitch.
+#[derive(Clone, Copy, Debug)]
+pub struct PitchRipple<T> {
+    depth: T,
+    pitch: Pitch<T>,
+}
+
+impl<T: Real> Effect<T> for PitchRipple<T> {
+    const INFO: Info = Info::new("pitch_ripple", Stage::Contact)
+        .summary("friction that rises and falls with every pitch of a screw, of teeth, of balls")
+        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the way of the surface, m")
+        .source("Armstrong-Helouvry 1991, chapter 3")
+        .limits("one harmonic; the way must be absolute or have the same zero in every run")
+        .parameters(&[
+            Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
+            PITCH.start(Start::RipplePitch),
+            PHASE,
+        ])
+        .needs(&[Need::NoFilm, Need::Position]);
+    /// Radius, m.
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            depth: parameters[0],
+            pitch: Pitch::new(parameters[1], parameters[2]),
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
+        rig.radius_m
+    }
+}
+
+impl<T: Real> Contact<T> for PitchRipple<T> {
+    #[inline(always)]
+    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        let wave = self.pitch.angle(journal.angle_rad * *radius_m).cos();
+        let factor = T::ONE + self.depth * wave;
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
+    }
+}

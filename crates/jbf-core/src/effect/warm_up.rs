@@ -1,0 +1,66 @@
+//! Friction times `1 + a exp(-t/tau)`, t since the run began: a drive that starts cold.
+//!
+//! Grease and oil of a gearbox warm from the motor, from the bearings, from the sun, and all that
+//! they resist falls with it, sliding or not: by the clock. `wear_in` goes by the distance slid and
+//! changes the dry level alone; `thermal_thinning` is a film's, warmed by its own friction and by
+//! nothing else; `sensor_drift` is a force one way. Where a temperature was recorded, `temperature`
+//! says more.
+//!
+//! Source: Bittencourt & Gunnarsson (2012) and Simoni et al. (2019) on robot joints that warm; of one
+//! lumped body the temperature goes as `exp(-t/tau)`, and friction with it as long as it changes by
+//! little.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// An excess of friction that dies away with time.
+#[derive(Clone, Copy, Debug)]
+pub struct WarmUp<T> {
+    excess: T,
+    rate_1_s: T,
+}
+
+impl<T: Real> Effect<T> for WarmUp<T> {
+    const INFO: Info = Info::new("warm_up", Stage::Contact)
+        .summary("a drive that begins each run cold: all its friction falls with time")
+        .equation("f -> f (1 + a exp(-t/tau)), t since the run began")
+        .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
+        .limits("as cold at the start of each run; one lumped temperature, small changes")
+        .parameters(&[
+            Parameter::new("a", "-", "excess of the cold drive", [-0.95, 10.0], &[0.2]).null(0.0),
+            Parameter::new(
+                "tau_s",
+                "s",
+                "time in which the excess falls to 1/e",
+                [0.1, 1e5],
+                &[10.0, 60.0],
+            )
+            .log()
+            .start(Start::RunTime),
+        ])
+        .needs(&[Need::NoFilm]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            excess: parameters[0],
+            rate_1_s: T::ONE / parameters[1],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for WarmUp<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        let factor = T::ONE + self.excess * (-(journal.time_s * self.rate_1_s)).exp();
+        sliding.jump *= factor;
+        sliding.smooth *= factor;
+    }
+}

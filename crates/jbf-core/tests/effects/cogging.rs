@@ -1,0 +1,78 @@
+//! Magnets that look for teeth: `A sin(2 pi x/p - phi)`, moving or at rest, and no friction.
+
+use crate::common::motion::{constant, Sines};
+use crate::common::{chain_round, newtons, readings};
+use core::f64::consts::TAU;
+use jbf_core::Bearing;
+
+const F_C_N: f64 = 6.0;
+
+#[test]
+fn comes_again_with_every_pitch_of_the_way() {
+    let sines = Sines::two_way(1.0);
+    for (a, pitch, phi) in [(0.7, 0.011, 0.4), (3.0, 0.2, -2.0)] {
+        let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[a, pitch, phi])]);
+        let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+        for (i, f) in got.iter().enumerate().skip(1) {
+            let t = 0.01 * i as f64;
+            let way = 0.127 * (1.0 - t.cos());
+            let expected = F_C_N * t.sin().signum() + a * (TAU * way / pitch - phi).sin();
+            assert!((f - expected).abs() < 1e-9, "{a} {i}: {f} {expected}");
+        }
+    }
+}
+
+/// At rest it is what the drive holds against; friction has no more to hold with than before.
+#[test]
+fn is_there_at_rest() {
+    let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, 0.01, 0.5])]);
+    let held = |t: f64| constant::<f64>(0.0, t).with_angle_rad(1.1);
+    let expected = 2.0 * (TAU * 1.1 * Bearing::THESIS.radius_m / 0.01 - 0.5).sin();
+    for r in readings(&chain, 0.01, 5, held) {
+        assert!((r - expected).abs() < 1e-12);
+    }
+    let felt = chain.felt(&chain.start(&held(0.0)));
+    assert_eq!(felt.jump, F_C_N);
+}
+
+/// Over whole pitches it gives back all the work that it takes.
+#[test]
+fn does_no_work() {
+    let (pitch, speed) = (0.01, 0.02);
+    let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, pitch, 0.5])]);
+    let steps = 2000;
+    let dt = 4.0 * pitch / speed / f64::from(steps);
+    let got = readings(&chain, dt, steps, |t| constant::<f64>(speed, t));
+    let mean = got[1..].iter().sum::<f64>() / f64::from(steps);
+    assert!((mean - F_C_N).abs() < 1e-9, "{mean}");
+}
+
+/// Far from the way's zero single precision still knows the place within a pitch.
+#[test]
+fn does_not_lose_its_place_in_single_precision() {
+    use crate::common::chain;
+    let effects: [(&str, &[f64]); 1] = [("cogging", &[2.0, 0.01, 0.5])];
+    let sines = Sines::two_way(1.0);
+    let double = readings(&chain::<f64>(&effects), 0.01, 300, |t| sines.at(t));
+    let single = readings(&chain::<f32>(&effects), 0.01, 300, |t| sines.at(t));
+    for (a, b) in double.iter().zip(&single) {
+        assert!((a - f64::from(*b)).abs() < 1e-3);
+    }
+}
+
+/// It is the motor's: no gear carries it, and friction under a weight does not know it.
+#[test]
+fn is_not_transmitted() {
+    let gear: (&str, &[f64]) = ("torque_proportional", &[0.5]);
+    let teeth: (&str, &[f64]) = ("cogging", &[2.0, 0.01, 0.5]);
+    let sines = Sines::two_way(1.0);
+    let [with, without] = [vec![gear, teeth], vec![teeth]].map(|effects| {
+        readings(
+            &chain_round(newtons(F_C_N, 0.0), &effects),
+            0.01,
+            300,
+            |t| sines.at::<f64>(t),
+        )
+    });
+    assert_eq!(with, without);
+}

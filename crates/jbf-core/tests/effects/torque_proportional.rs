@@ -1,0 +1,90 @@
+//! Gears under a weight and a mass: what they lose is a share of what they carry, whichever way the
+//! power flows.
+
+use crate::common::motion::{held, Sines};
+use crate::common::{chain_round, newtons, readings};
+
+const F_C_N: f64 = 6.0;
+const WEIGHT: [f64; 2] = [30.0, 0.4];
+const MASS_KG: f64 = 50.0;
+const SHARE: f64 = 0.2;
+
+/// What the drive carries at a time of the two-way sine, N.
+fn carried_n(t: f64) -> f64 {
+    let theta = 10.0 * (1.0 - t.cos());
+    WEIGHT[0] * (theta - WEIGHT[1]).sin() + MASS_KG * 0.127 * t.cos()
+}
+
+#[test]
+fn loses_one_share_of_what_it_carries_both_ways() {
+    let sines = Sines::two_way(1.0);
+    let chain = chain_round(
+        newtons(F_C_N, 0.0),
+        &[
+            ("gravity", &WEIGHT),
+            ("inertia_leak", &[MASS_KG]),
+            ("torque_proportional", &[SHARE]),
+        ],
+    );
+    let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+    let (mut drives, mut driven) = (0, 0);
+    for (i, f) in got.iter().enumerate().skip(1) {
+        let t = 0.01 * i as f64;
+        let (carried, way) = (carried_n(t), t.sin().signum());
+        // Driving it takes 1 + mu times the load, driven back it gives 1 - mu times.
+        let factor = if carried * way > 0.0 {
+            drives += 1;
+            1.0 + SHARE
+        } else {
+            driven += 1;
+            1.0 - SHARE
+        };
+        let expected = F_C_N * way + factor * carried;
+        assert!((f - expected).abs() < 1e-10, "{i}: {f} {expected}");
+    }
+    assert!(drives > 200 && driven > 200, "{drives} {driven}");
+}
+
+/// At rest the drive holds up to the level of both; a share of one locks it against its weight.
+#[test]
+fn at_rest_it_holds_by_the_load() {
+    for share in [0.0, 0.5, 1.0] {
+        let effects: [(&str, &[f64]); 2] =
+            [("gravity", &WEIGHT), ("torque_proportional", &[share])];
+        let chain = chain_round(newtons(F_C_N, 0.0), &effects);
+        let state = chain.start(&held::<f64>(2.0, 0.0));
+        let weight = WEIGHT[0] * (2.0 - WEIGHT[1]).sin();
+        let felt = chain.felt(&state);
+        assert!((felt.jump - (F_C_N + share * weight)).abs() < 1e-12);
+        assert!((felt.smooth - weight).abs() < 1e-12);
+    }
+}
+
+/// What a transmission does not carry is not in it: an offset of the cell, a drag.
+#[test]
+fn knows_no_load_but_what_is_carried() {
+    let sines = Sines::two_way(1.0);
+    let beside: [(&str, &[f64]); 2] = [("coulomb_drag", &[3.0]), ("sensor_offset", &[20.0])];
+    let with = [beside.as_slice(), &[("torque_proportional", &[SHARE])]].concat();
+    let [with, without] = [with.as_slice(), &beside].map(|effects| {
+        readings(&chain_round(newtons(F_C_N, 1.0), effects), 0.01, 300, |t| {
+            sines.at::<f64>(t)
+        })
+    });
+    assert_eq!(with, without);
+}
+
+/// A bristle takes this level's place, too: past a reversal it slopes as the law's own does.
+#[test]
+fn bends_with_a_bristle() {
+    let sines = Sines::two_way(1.0);
+    let effects: [(&str, &[f64]); 3] = [
+        ("gravity", &[30.0, -1.2]),
+        ("torque_proportional", &[SHARE]),
+        ("presliding", &[200.0]),
+    ];
+    let chain = chain_round(newtons(F_C_N, 0.0), &effects);
+    let got = readings(&chain, 0.001, 4000, |t| sines.at::<f64>(t));
+    let largest = got.windows(2).map(|w| (w[1] - w[0]).abs());
+    assert!(largest.skip(1).fold(0.0, f64::max) < 0.1 * F_C_N);
+}

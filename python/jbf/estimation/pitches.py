@@ -1,0 +1,134 @@
+"""Pitches at which a drive's force comes again along its way: where a fit of one may start.
+
+The likelihood of a pitch has a peak for each pitch that the way could hold, as narrow as the way is
+long: no search finds one from afar. What depends on the speed, the acceleration and once a turn on
+the angle is taken from the force first, whatever the law; of the rest the spectrum over the place
+is asked, and its highest lines are where a fit starts.
+
+The search has its price: of noise the highest line of as many pitches as the way can hold gains
+`2 log(pitches)`, in twice the log likelihood; the pitches are fewer than the samples, and an effect
+with a size, a phase and a pitch pays `3 log(samples)` for its three parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.scales import moving_samples
+
+Array = npt.NDArray[np.float64]
+
+LINES = 3
+"""Highest lines of a spectrum that are tried."""
+LEAST_PERIODS = 3.0
+"""Periods that the way must hold: what is longer is a slope, or once a turn."""
+BINS_A_PITCH = 4.0
+"""Bins of the place in the shortest pitch that is looked for."""
+MOST_BINS = 2**15
+PADDING = 8
+"""Spectral lines to the width of one."""
+KNOTS = 8
+"""Speeds each way between which friction over the speed is a line."""
+
+_known: WeakKeyDictionary[Campaign, dict[bool, tuple[float, ...]]] = WeakKeyDictionary()
+
+
+def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
+    """The likeliest pitches of a campaign, m, likeliest first; none where nothing goes far enough.
+
+    Parameters
+    ----------
+    along
+        Of the force in the direction of motion, which turns round with it; else of the force
+        itself.
+    """
+    found = _known.setdefault(campaign, {})
+    if along not in found:
+        found[along] = _pitches(campaign, along)
+    return found[along]
+
+
+def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
+    place, rest, speed = _what_is_left(campaign)
+    if len(place) < PADDING * KNOTS:
+        return ()
+    span = float(np.ptp(place))
+    fine = max(_way_a_sample(campaign), span / MOST_BINS)
+    count = int(span / fine)
+    if count < LEAST_PERIODS * BINS_A_PITCH:
+        return ()
+    which = np.minimum((place - place.min()) / fine, count - 1).astype(np.intp)
+    signal = rest * np.sign(speed) if along else rest
+    total = np.bincount(which, signal - np.mean(signal), count)
+    length = PADDING * count
+    power = np.abs(np.fft.rfft(total, length)) ** 2
+    # In lines of a spectrum that is not padded: periods of the way.
+    periods = np.arange(len(power)) / PADDING * (span / (count * fine))
+    power[(periods < LEAST_PERIODS) | (periods * BINS_A_PITCH > count)] = 0.0
+    return tuple(float(span / periods[k]) for k in _highest(power))
+
+
+def _highest(power: Array) -> Sequence[int]:
+    """Indices of the highest lines, none on the slope of a higher one."""
+    power = power.copy()
+    found: list[int] = []
+    while len(found) < LINES and power.max(initial=0.0) > 0.0:
+        k = int(np.argmax(power))
+        found.append(k)
+        power[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = 0.0
+    return found
+
+
+def _what_is_left(campaign: Campaign) -> tuple[Array, Array, Array]:
+    """Place, m, what of the force no speed, acceleration or turn explains, N, and the speed, m/s,
+    of the samples that move."""
+    moving = moving_samples(campaign)
+    pairs = list(zip(campaign.prepared, moving, strict=True))
+    angle = np.concatenate([p.motion.angle_rad[m] for p, m in pairs])
+    speed = np.concatenate([p.motion.velocity_m_s[m] for p, m in pairs])
+    slope = np.concatenate([p.motion.acceleration_m_s2[m] for p, m in pairs])
+    force = np.concatenate([p.friction_n[m] for p, m in pairs])
+    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
+    if len(speed) < PADDING * KNOTS:
+        return angle * arm, force, speed
+    of_run = np.repeat(np.arange(len(pairs)), [int(m.sum()) for _, m in pairs])
+    known = [slope, np.cos(angle), np.sin(angle), *_hats(speed)]
+    # Each run has its own load, and its own warmth.
+    known += [np.where(of_run == i, sign, 0.0) for i in range(len(pairs)) for sign in _ways(speed)]
+    columns = np.stack(known, axis=1)
+    scale = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
+    solution, *_ = np.linalg.lstsq(columns / scale, force, rcond=1e-9)
+    return angle * arm, force - (columns / scale) @ solution, speed
+
+
+def _ways(speed: Array) -> tuple[Array, Array]:
+    """One, and the direction of motion."""
+    return np.ones_like(speed), np.sign(speed)
+
+
+def _hats(speed: Array) -> list[Array]:
+    """Lines between knots over the speed, for each way: any steady curve."""
+    found = []
+    for way in (-1.0, 1.0):
+        there = speed * way > 0.0
+        if not there.any():
+            continue
+        knots = np.unique(np.quantile(speed[there], np.linspace(0.0, 1.0, KNOTS)))
+        for hat in np.eye(len(knots)):
+            found.append(np.where(there, np.interp(speed, knots, hat), 0.0))
+    return found
+
+
+def _way_a_sample(campaign: Campaign) -> float:
+    """How far the drive usually goes from sample to sample, m."""
+    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
+    steps = [
+        np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]]
+        for p, m in zip(campaign.prepared, moving_samples(campaign), strict=True)
+    ]
+    return float(np.median(np.concatenate(steps))) * arm

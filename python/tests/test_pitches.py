@@ -1,0 +1,73 @@
+"""Pitches at which a force comes again along the way, found in the data."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from jbf import Rig, Run
+from jbf.diagnosis import Policy
+from jbf.diagnosis.evidence import price
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.pitches import pitches
+
+STEP_S = 0.01
+NOISE_N = 0.2
+
+
+def runs(pitch_m: float | None, *, along: bool = False, seed: int = 0) -> list[Run]:
+    """Two runs of an axis to and fro under dry and viscous friction, a weight and a mass."""
+    found = []
+    for i in range(2):
+        rng = np.random.default_rng([seed, i])
+        t = np.arange(0.0, 20.0, STEP_S)
+        v = 0.06 * np.sin(0.9 * t + i) + 0.03 * np.sin(2.3 * t + 2.0 * i)
+        a = 0.054 * np.cos(0.9 * t + i) + 0.069 * np.cos(2.3 * t + 2.0 * i)
+        x = -0.06 / 0.9 * np.cos(0.9 * t + i) - 0.03 / 2.3 * np.cos(2.3 * t + 2.0 * i)
+        force = (5.0 + i) * np.sign(v) + 30.0 * v + 3.0 * a + 20.0 * np.sin(x - 1.0)
+        if pitch_m is not None:
+            wave = 0.3 * np.sin(2.0 * np.pi * x / pitch_m - 0.7)
+            force = force + (wave * np.sign(v) if along else wave)
+        force = force + NOISE_N * rng.standard_normal(len(t))
+        found.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
+    return found
+
+
+@pytest.mark.parametrize("along", [False, True])
+@pytest.mark.parametrize("pitch_m", [0.0041, 0.0123, 0.031])
+def test_a_pitch_is_the_likeliest(pitch_m: float, along: bool) -> None:
+    campaign = Campaign.prepare(Rig(), runs(pitch_m, along=along))
+    span = np.ptp(np.concatenate([p.run.position_m for p in campaign.prepared]))
+    found = pitches(campaign, along=along)
+    # A search starts within the width of the likelihood's peak, half a period over the whole way.
+    assert abs(span / found[0] - span / pitch_m) < 0.25
+
+
+def test_of_noise_the_highest_line_gains_less_than_its_parameters_cost() -> None:
+    gains = []
+    for seed in range(20):
+        some = runs(None, seed=seed)
+        campaign = Campaign.prepare(Rig(), some)
+        noise = np.concatenate(
+            [
+                NOISE_N * np.random.default_rng([seed, i]).standard_normal(len(r))
+                for i, r in enumerate(some)
+            ]
+        )
+        place = np.concatenate([r.position_m for r in some])
+        for pitch in pitches(campaign, along=False):
+            wave = np.exp(2j * np.pi * place / pitch)
+            pair = np.stack([wave.real, wave.imag], axis=1)
+            fitted = pair @ np.linalg.lstsq(pair, noise, rcond=None)[0]
+            gains.append(float(np.sum(fitted**2)) / NOISE_N**2)
+    samples = sum(len(r) for r in some)
+    without_margin = price(3, samples, 1, Policy(margin=0.0))
+    # More than two parameters of noise alone would gain: the search does find something.
+    assert 4.0 < np.median(gains) < 0.8 * without_margin
+    assert max(gains) < without_margin
+
+
+def test_a_way_that_holds_no_pitch_has_none() -> None:
+    t = np.arange(0.0, 0.5, STEP_S)
+    v = np.full(len(t), 0.01)
+    run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)
+    assert pitches(Campaign.prepare(Rig(), [run]), along=False) == ()

@@ -77,6 +77,8 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "burst_chance": 1e-4,
         "constancy_chance": 1e-8,
         "constancy_ratio": 2.5,
+        "law_tie": 2.0,
+        "law_same": 1.005,
         "least_separation": 25.0,
     }
     for value, decides, source in Policy.explained().values():
@@ -350,5 +352,13 @@ def test_a_run_is_proposed_that_parts_rivals_far_enough() -> None:
 
 def test_no_number_is_left_out_here() -> None:
     known = {f.name for f in fields(Policy)}
-    elsewhere = {"most_looks", "most_shifts", "least_separation", "no_worse", "bias_moves"}
+    elsewhere = {
+        "law_tie",
+        "law_same",
+        "most_looks",
+        "most_shifts",
+        "least_separation",
+        "no_worse",
+        "bias_moves",
+    }
     assert {*TURNS, *GATES, *elsewhere} == known

@@ -35,9 +35,9 @@ def add_runs(parser: Parser, *, needed: bool = True) -> None:
     )
 
 
-def add_law(parser: Parser) -> None:
-    """--law and --clock."""
-    add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal)")
+def add_law(parser: Parser, also: str = "") -> None:
+    """--law and --clock; `also` says what else may stand for a law."""
+    add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal){also}")
     parser.add_argument(
         "--clock",
         metavar="NAME",

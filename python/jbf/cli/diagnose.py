@@ -10,6 +10,7 @@ from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, 
 from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.models.catalogue import find_law
+from jbf.models.vocabulary import AUTO
 from jbf.reporting.json import json_text
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("--out", metavar="MODEL", help="write the completed model")
     add_json(parser)
     add_report(parser)
-    add_law(parser)
+    add_law(parser, also=f"; {AUTO}: the one that alone predicts best")
     add_own(parser)
     _add_next_run(parser)
     diagnose_many.add(parser)
@@ -80,7 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
     wanted["--next-run"] = arguments.next_run
     limits = _limits(arguments)
     outputs.check(wanted, [arguments.rig, *arguments.runs])
-    find_law(arguments.law)
+    if arguments.law != AUTO:
+        find_law(arguments.law)
     rig = inputs.rig(arguments.rig, arguments.law)
     runs = inputs.runs(arguments.runs, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])

@@ -11,6 +11,7 @@ from jbf.diagnosis.recipe import diagnose
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError, JbfError
 from jbf.models.catalogue import find_clock, find_law
+from jbf.models.vocabulary import AUTO
 from jbf.records.arguments import check_callable, described, one_of
 from jbf.records.folder import read_campaign
 from jbf.records.rig import Rig
@@ -57,7 +58,8 @@ def diagnose_many(
     """
     for option in options:
         one_of(option, OPTIONS, "option")
-    find_law(options.get("law", "journal"))
+    if options.get("law") != AUTO:
+        find_law(options.get("law", "journal"))
     find_clock(options.get("clock", "journal"))
     check_callable(progress, "progress")
     if not isinstance(campaigns, Mapping):

@@ -205,6 +205,17 @@ class Policy:
         "simulated campaigns: noise is never quite what it is taken for",
     )
     # ---- the next run -----------------------------------------------------------------------
+    law_tie: float = _number(
+        2.0,
+        "standard errors, between stretches of the records, by which a law must predict worse than "
+        "the best not to be tied with it",
+        "one in forty by chance",
+    )
+    law_same: float = _number(
+        1.005,
+        "times the left-out error of the best law that is the same to anybody who uses it",
+        "half a per cent",
+    )
     least_separation: float = _number(
         25.0,
         "evidence to be expected from a run that is worth proposing; twice that of one that "

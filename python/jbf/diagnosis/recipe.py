@@ -22,12 +22,13 @@ from jbf.diagnosis.selection import Names, alternatives
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
+from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
-from jbf.models.vocabulary import Clock
+from jbf.models.vocabulary import AUTO, Clock
 from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -54,7 +55,8 @@ def diagnose(
     runs
         Recorded runs with friction; several different motions tell effects apart.
     law, clock
-        Base law and its clock.
+        Base law and its clock; `auto` takes the law, of those that the rig allows, that alone
+        predicts runs best that were left out of its fit.
     limits
         What the rig may be asked to do in the next experiment; from the runs where not given.
     policy
@@ -73,12 +75,18 @@ def diagnose(
         A run lacks friction, or nothing moves in it.
     """
     begun = time.monotonic()
-    check_rig(rig, law)
+    if law != AUTO:
+        check_rig(rig, law)
     clock = find_clock(clock)
     check_callable(progress, "progress")
     if limits is not None:
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
-    campaign = settled_campaign(Campaign.prepare(rig, runs), law, clock)
+    recorded = Campaign.prepare(rig, runs)
+    laws: tuple[LawTried, ...] = ()
+    if law == AUTO:
+        laws = which_law(recorded, clock, policy, progress)
+        law = laws[0].law
+    campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     corrected = _without_bias(candidates, ())
     if corrected is not None:
@@ -121,6 +129,9 @@ def diagnose(
     tied = {name: others for name, others in equal.items() if others}
     answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))
     hidden = () if remains else unseen(candidates, present)
+    instead = None
+    if not laws and (len(named) > 1 or remains):
+        instead = simpler_law(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
         proposal = propose_to_see(candidates, present, hidden, limits)
@@ -145,6 +156,8 @@ def diagnose(
         policy=policy,
         findings=candidates.campaign.findings,
         confounders=tuple(name for name in doubted if name in kept),
+        laws=laws,
+        simpler_law=instead,
     )
 
 

@@ -11,6 +11,7 @@ from jbf.diagnosis.experiment import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.verdict import Verdict
+from jbf.diagnosis.which_law import LawTried
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
 from jbf.records.findings.finding import Finding
@@ -55,6 +56,11 @@ class Diagnosis(Result):
     confounders
         Effects that the model has because it predicts runs left out better with them, and that are
         not named: the runs disagree on their parameters.
+    laws
+        Where the data chose the law: those that the rig allows, the one taken first.
+    simpler_law
+        Another law that alone predicts runs left out no worse than the final model; None where
+        there is none, or nothing made it worth a search.
     """
 
     verdict: Verdict
@@ -74,6 +80,8 @@ class Diagnosis(Result):
     policy: Policy = DEFAULT
     findings: tuple[Finding, ...] = ()
     confounders: tuple[str, ...] = ()
+    laws: tuple[LawTried, ...] = ()
+    simpler_law: LawTried | None = None
 
     @property
     def model(self) -> Model:
@@ -91,6 +99,9 @@ class Diagnosis(Result):
             "unexplained": [r.to_dict() for r in self.unexplained],
             "findings": [f.to_dict() for f in self.findings],
             "confounders": list(self.confounders),
+            "law": self.model.law,
+            "laws": [t.to_dict() for t in self.laws],
+            "simpler_law": None if self.simpler_law is None else self.simpler_law.to_dict(),
             "next_experiment": self.next_experiment,
             "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
             "not_tried": dict(self.not_tried),

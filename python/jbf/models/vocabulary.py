@@ -15,6 +15,9 @@ from jbf.records.toml_file import number, refuse_unknown
 Clock = Literal["journal", "thesis"]
 """How a film's time runs: `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s)."""
 
+AUTO = "auto"
+"""What stands for a law's name where the data are to choose it."""
+
 CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 

@@ -12,6 +12,7 @@ from jbf.reporting.page import measurement, page, pattern_rows, picture
 from jbf.reporting.tables import (
     correlation_pairs,
     finding_rows,
+    law_rows,
     ledger_rows,
     parameter_rows,
     ratio,
@@ -53,6 +54,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         verdict=diagnosis.verdict,
         sentence=verdict_sentence(diagnosis),
         next_experiment=diagnosis.next_experiment,
+        laws=law_rows(diagnosis),
         measurement=measurement(before, bare.noise_n),
         ledger=ledger_rows(diagnosis),
         picture=picture(plot_diagnosis(diagnosis)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from jbf.diagnosis.result import Diagnosis
 from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import ledger_rows, trial_rows
+from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, parameter_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
 
@@ -43,6 +43,10 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
     if diagnosis.next_experiment:
         lines += hanging("Next experiment: ", diagnosis.next_experiment)
+    if diagnosis.laws:
+        lines += ["", "Which law, each alone"]
+        names = ("law", "parameters", "held out (N)", "")
+        lines += columns([names, *law_rows(diagnosis)], "<>><", 4)
     lines += [
         "",
         "Measurement",

@@ -97,3 +97,16 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
             said.append(f"and in {count_of(len(found) - MOST_RUNS_NAMED, 'run')} more")
         rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
     return rows
+
+
+def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
+    """Law, number of parameters, left-out error (N), and how it compares."""
+    return [
+        (
+            tried.law,
+            str(tried.parameters),
+            number(tried.left_out_rms_n),
+            "taken" if i == 0 else "predicts as well" if tried.tied else "predicts worse",
+        )
+        for i, tried in enumerate(diagnosis.laws)
+    ]

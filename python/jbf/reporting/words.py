@@ -98,7 +98,31 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
     place
         Where the rest of what remains stands.
     """
-    return _found(diagnosis, place) + _confounders_sentence(diagnosis.confounders)
+    return (
+        _found(diagnosis, place)
+        + _confounders_sentence(diagnosis.confounders)
+        + _law_sentence(diagnosis)
+    )
+
+
+def _law_sentence(diagnosis: Diagnosis) -> str:
+    """Which law the data chose, or that another would do with less."""
+    if diagnosis.laws:
+        first, *others = diagnosis.laws
+        tied = [other.law for other in others if other.tied]
+        words = f" The data chose the law {first.law}"
+        if tied:
+            return f"{words}, the simplest of those that predict alike ({listed(tied)} too)."
+        return f"{words}."
+    other = diagnosis.simpler_law
+    if other is None:
+        return ""
+    here = diagnosis.steps[-1].holdout_rms_n
+    return (
+        f" Another law may be the right one: {other.law} alone predicts runs left out to within "
+        f"{number(other.left_out_rms_n)} N, {diagnosis.model.law} with all of this to "
+        f"{number(here)} N; --law auto compares them all."
+    )
 
 
 def _found(diagnosis: Diagnosis, place: str) -> str:

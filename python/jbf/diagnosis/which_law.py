@@ -1,0 +1,149 @@
+"""Which law at all: every law that a rig allows, without effects, by the runs that it was not
+fitted to.
+
+The left-out error charges a parameter what it costs. Laws that predict equally well, as far as the
+scatter between stretches of the records tells, are tied; of these the one with fewest parameters is
+taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.policy import Policy
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_start import settled_campaign
+from jbf.estimation.left_out import left_out_by_run
+from jbf.models.catalogue import find_law, laws
+from jbf.models.chain import check_rig
+from jbf.models.vocabulary import Clock
+from jbf.records.rig import Rig
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+STRETCHES = 40
+"""Parts of a campaign whose mean squares are compared."""
+
+
+@dataclass(frozen=True)
+class LawTried:
+    """A law without effects, as far as it predicts.
+
+    Attributes
+    ----------
+    law, parameters
+        Its name, and how many parameters it has.
+    left_out_rms_n
+        RMS over runs left out of its fit, N, at the samples that count for every law.
+    tied
+        True where it predicts as well as the best, as far as chance tells.
+    """
+
+    law: str
+    parameters: int
+    left_out_rms_n: float
+    tied: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "law": self.law,
+            "parameters": self.parameters,
+            "left_out_rms_n": self.left_out_rms_n,
+            "tied": self.tied,
+        }
+
+
+def allowed(rig: Rig) -> list[str]:
+    """The laws for which a rig has all that they need."""
+    found = []
+    for name in laws():
+        try:
+            check_rig(rig, name)
+        except InputError:
+            continue
+        found.append(name)
+    return found
+
+
+def which_law(
+    campaign: Campaign, clock: Clock, policy: Policy, progress: Progress | None = None
+) -> tuple[LawTried, ...]:
+    """The laws that the rig allows, the one to take first, then by their left-out error."""
+    names = allowed(campaign.rig)
+    left = []
+    for i, name in enumerate(names):
+        if progress is not None:
+            progress(f"trying the law {name}", i, len(names))
+        left.append(left_out(Candidates(settled_campaign(campaign, name, clock), name, clock), ()))
+    tried = compared(names, [len(find_law(n).parameters) for n in names], left, policy)
+    first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
+    return (first, *(t for t in tried if t is not first))
+
+
+def left_out(candidates: Candidates, effects: tuple[str, ...]) -> list[Array]:
+    """Errors of prediction of every run by a fit to the others, one row a run, N; NaN at samples
+    that do not count."""
+    solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
+    rows = []
+    pairs = zip(left_out_by_run(problem, solution), solution.samples.counted, strict=True)
+    for errors, counted in pairs:
+        row = np.full(len(counted), np.nan)
+        row[counted] = errors
+        rows.append(row)
+    return rows
+
+
+def compared(
+    names: Sequence[str],
+    parameters: Sequence[int],
+    left: Sequence[Sequence[Array]],
+    policy: Policy,
+) -> list[LawTried]:
+    """Models by their left-out errors, best first, and which of them are tied with the best."""
+    squares = np.array([np.concatenate(rows) ** 2 for rows in left])
+    squares = squares[:, np.isfinite(squares).all(axis=0)]
+    # Neighbouring samples err together: stretches are what is independent.
+    parts = np.array_split(squares, min(STRETCHES, squares.shape[1]), axis=1)
+    means = np.array([part.mean(axis=1) for part in parts]).T
+    rms = np.sqrt(squares.mean(axis=1))
+    best = int(np.argmin(rms))
+    worse = means - means[best]
+    chance = policy.law_tie * worse.std(axis=1) / np.sqrt(worse.shape[1])
+    same = (policy.law_same**2 - 1.0) * rms[best] ** 2
+    tied = worse.mean(axis=1) <= np.maximum(chance, same)
+    order = np.argsort(rms, kind="stable")
+    return [LawTried(names[i], parameters[i], float(rms[i]), bool(tied[i])) for i in order]
+
+
+def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
+    """Another law that alone predicts no worse than a model with effects, and has no more
+    parameters; None where there is none. What several effects mend, one law may say."""
+    policy, whole = candidates.policy, candidates.campaign
+    most = len(candidates.fitted(effects).problem.names)
+    others = [
+        name
+        for name in allowed(whole.rig)
+        if name != candidates.law and len(find_law(name).parameters) <= most
+    ]
+    left = [left_out(candidates, effects)]
+    names, counts = [""], [most]
+    for name in others:
+        other = Candidates(whole, name, clock, policy)
+        # Far off in the fit is far off elsewhere.
+        if other.converge(()).rms_n < policy.leader_rms * candidates.converge(effects).rms_n:
+            left.append(left_out(other, ()))
+            names.append(name)
+            counts.append(len(find_law(name).parameters))
+    tried = compared(names, counts, left, policy)
+    here = next(t for t in tried if t.law == "")
+    better = [t for t in tried if t.law and t.left_out_rms_n <= here.left_out_rms_n and t.tied]
+    return min(better, key=lambda t: t.parameters, default=None)

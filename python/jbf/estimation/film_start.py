@@ -37,7 +37,9 @@ RANKING_EVALUATIONS = 8
 BEFORE_S = 6.0
 """How long the imagined motions before a run last."""
 SPEEDS = (1e-3, 0.1, 1.0)
-"""Their speeds, as shares of the run's top speed."""
+"""Their speeds, as shares of the run's top speed: where a film was,"""
+WAYS = (-1.0, 1.0)
+"""and where a contact bends, which may have slid either way."""
 LONGER = 1.5
 """The film may be slower than this model's: what follows is set aside for so many times as long."""
 
@@ -53,11 +55,12 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
         Noise on the friction, N.
     """
     prepared = problem.campaign.prepared
-    if not find_law(problem.law).has_film:
+    law = find_law(problem.law)
+    if not _remembers(problem.law):
         return [np.zeros(len(p.run), dtype=bool) for p in prepared]
     # The fit's own motion has starts between samples, these have not: it would differ at each stop.
     begun = []
-    for share in SPEEDS:
+    for share in SPEEDS if law.has_film else WAYS:
         motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
         begun.append(problem.chain.predict(values, motions))
     found = []
@@ -79,9 +82,15 @@ def _remembering(p: Prepared, apart: Mask) -> Mask:
     return mask if mask.mean() < MOST_OF_A_RUN else np.zeros(len(apart), dtype=bool)
 
 
+def _remembers(law: str) -> bool:
+    """Whether a law has a film, or bends before it slides."""
+    page = find_law(law)
+    return page.has_film or page.has_bristle
+
+
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     """The campaign without the samples that remember how their run began, by the bare law."""
-    if not find_law(law).has_film:
+    if not _remembers(law):
         return campaign
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
@@ -91,13 +100,14 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)
-    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples))
+    what = "film was not settled" if find_law(law).has_film else "contact was bent another way"
+    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples, what))
 
 
 def _findings(
-    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples
+    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples, what: str
 ) -> list[Finding]:
-    """The runs whose beginning is not what a rested film would have given."""
+    """The runs whose beginning is not what a rested film, or the first motion, would have given."""
     found = []
     whole = zip(campaign.prepared, residuals, masks, campaign.samples.counted, strict=True)
     usual = kept.rms(residuals)
@@ -109,7 +119,7 @@ def _findings(
         if size < OFF * usual:
             continue
         span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
-        words = f"the film was not settled when the run began: {span:.2g} s, off by {size:.2g} N"
+        words = f"the {what} when the run began: {span:.2g} s, off by {size:.2g} N"
         found.append(
             Finding("unsettled_start", "friction_n", p.run.name, span, "s", "set aside", words)
         )

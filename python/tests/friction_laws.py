@@ -83,10 +83,19 @@ def lugre(
 
 
 def maxwell_slip(
-    speed: Speed, t: Array, *, fc: float, s0: float, exponent: float, fv: float
+    speed: Speed,
+    t: Array,
+    *,
+    fc: float,
+    s0: float,
+    exponent: float,
+    fv: float,
+    excess: float = 0.0,
+    vs: float = 1.0,
 ) -> Array:
     """Maxwell slip as a crowd of four hundred elements, equally stiff, whose slip displacements are
-    drawn evenly from those of a virgin curve of that exponent, N."""
+    drawn evenly from those of a virgin curve of that exponent, N; its level falls with speed by
+    `excess` (GMS)."""
     crowd, finer = 400, 4
     u = (np.arange(crowd) + 0.5) / crowd
     if exponent == 1.0:
@@ -98,8 +107,9 @@ def maxwell_slip(
     v = np.array([speed(x) for x in fine])
     bent = np.zeros(crowd)
     force = np.zeros(len(fine))
+    level = 1.0 + excess / fc * np.exp(-((v / vs) ** 2))
     for i, way in enumerate(0.5 * (v[1:] + v[:-1]) * step, start=1):
-        bent = np.clip(bent + way, -slip, slip)
+        bent = np.clip(bent + way, -slip * level[i], slip * level[i])
         force[i] = s0 * np.mean(bent)
     return force[::finer] + fv * v[::finer]
 

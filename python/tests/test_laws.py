@@ -122,6 +122,19 @@ def test_a_law_that_bends_lacks_nothing_in_its_own_data(law: str, shape: dict[st
     assert not tried & {"presliding", "drive_compliance", "backlash"}
 
 
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+def test_a_level_that_falls_with_speed_is_found(amplitude_m: float, fc: float) -> None:
+    """Generalised Maxwell slip: the law and `stribeck_excess`, whatever the machine's size."""
+    vs = 0.6 * amplitude_m
+    runs = bending("maxwell_slip", amplitude_m, fc, exponent=0.5, excess=0.4 * fc, vs=vs)
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
+    assert diagnosis.effects == ("stribeck_excess",), diagnosis.summary()
+    found = diagnosis.model.parameters
+    assert found["stribeck_excess.a"].value == pytest.approx(0.4 * fc, rel=0.05)
+    assert found["stribeck_excess.v_s_m_s"].value == pytest.approx(vs, rel=0.1)
+    assert found["F_c_n"].value == pytest.approx(fc, rel=0.02)
+
+
 def test_a_load_dependent_elasto_plastic_law_is_found() -> None:
     """A level that grows with the load, as strain-wave drives have it."""
     mu, fc = 0.3, 2.3

@@ -29,7 +29,9 @@ Mask = npt.NDArray[np.bool_]
 REMEMBERED = 0.2
 """Share of the noise below which a difference is forgotten."""
 MOST_OF_A_RUN = 0.5
-"""A run that never forgets its beginning is taken as it is."""
+"""A run that never forgets its beginning is taken as it is: one of a film,"""
+MOST_OF_A_STROKE = 0.75
+"""and one of a contact, which may be a single stroke, half of it to bend."""
 OFF = 2.0
 """Times the usual residual from which on a beginning is worth a word."""
 RANKING_EVALUATIONS = 8
@@ -41,7 +43,9 @@ SPEEDS = (1e-3, 0.1, 1.0)
 WAYS = (-1.0, 1.0)
 """and where a contact bends, which may have slid either way."""
 LONGER = 1.5
-"""The film may be slower than this model's: what follows is set aside for so many times as long."""
+"""The film may be slower than this model's: what follows is set aside for so many times as long,"""
+FURTHER = 1.1
+"""and a contact softer, whose way to bend the records tell better."""
 
 
 def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
@@ -66,20 +70,21 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
     found = []
     for p, ways in zip(prepared, zip(*begun, strict=True), strict=True):
         spread = np.ptp(np.array(ways), axis=0)
-        found.append(_remembering(p, spread > REMEMBERED * noise_n))
+        limits = (LONGER, MOST_OF_A_RUN) if law.has_film else (FURTHER, MOST_OF_A_STROKE)
+        found.append(_remembering(p, spread > REMEMBERED * noise_n, *limits))
     return found
 
 
-def _remembering(p: Prepared, apart: Mask) -> Mask:
+def _remembering(p: Prepared, apart: Mask, longer: float, most: float) -> Mask:
     """The first stretch of motion in which two beginnings are apart, made longer for safety."""
     index = np.flatnonzero(apart)
     if not len(index):
         return np.zeros(len(apart), dtype=bool)
     time = p.run.time_s
-    until = time[index[0]] + LONGER * (time[index[-1]] - time[index[0]])
+    until = time[index[0]] + longer * (time[index[-1]] - time[index[0]])
     # What lies before the motion (a rest) does not depend on the start.
     mask: Mask = (time >= time[index[0]]) & (time <= until)
-    return mask if mask.mean() < MOST_OF_A_RUN else np.zeros(len(apart), dtype=bool)
+    return mask if mask.mean() < most else np.zeros(len(apart), dtype=bool)
 
 
 def _remembers(law: str) -> bool:

@@ -4,8 +4,9 @@
 FOLDER holds `leadscrew/drive1.csv` and `drive2.csv` (time_ms, speed_rpm, torque_pct; the torque of
 a drive in % stands for the force), `seal/NAP310_1bar.csv` and so on, and `emps/run.csv` (time_s,
 position_m, velocity_m_s, friction_n). Drives are cut into their sweeps, each of which is halved; of
-the seal every other pair of strokes is fitted, one pressure at a time and all of them; EMPS and the
-joints of a robot (`ur10e_joints/joint1.csv`, on a radius of 1 m: N are N m) are halved. The
+the seal every other pair of strokes is fitted, one pressure at a time and all of them; of a
+tribometer (`tribometer/run.csv`, for laws that bend: --law maxwell_slip) every other cycle; EMPS
+and the joints of a robot (`ur10e_joints/joint1.csv`, on a radius of 1 m: N are N m) are halved. The
 recordings are not ours to ship: without them this says so and does nothing.
 """
 
@@ -78,6 +79,21 @@ def all_strokes(paths: list[Path]) -> Halves:
     return fitted, left
 
 
+def cycles(path: Path) -> Halves:
+    """Every other cycle of a slide to and fro, and the others.
+
+    They are cut where the slide enters the upper fifth of its stroke: there it slides, and a
+    contact that bends begins a run as it ended the last one.
+    """
+    c = columns(path)
+    place = c["position_m"]
+    upper = np.min(place) + 0.8 * np.ptp(place)
+    cuts = np.flatnonzero((place[1:] >= upper) & (place[:-1] < upper)) + 1
+    parts = [p for p in np.split(np.arange(len(place)), cuts) if len(p) > 50]
+    runs = [part(c, p, f"cycle {i}") for i, p in enumerate(parts)]
+    return runs[0::2], runs[1::2]
+
+
 def halved(path: Path) -> Halves:
     """The first half, and the second."""
     c = columns(path)
@@ -114,6 +130,7 @@ def main() -> int:
     plan += [(f"seal/NAP310_{bar}bar.csv", strokes) for bar in (1, 3, 5, 7)]
     plan += [("emps/run.csv", halved)]
     plan += [(f"ur10e_joints/joint{k}.csv", halved) for k in (1, 2, 3, 4, 5)]
+    plan += [("tribometer/run.csv", cycles)]
     print("| recording | law | left-out RMS, N (drives: %) | verdict | named | findings | CPU s |")
     print("|---|---|---|---|---|---|---|")
     for name, cut in plan:

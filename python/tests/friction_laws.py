@@ -26,8 +26,13 @@ def stroke_speed(amplitude_m: float, omega: float, second: float = 0.37) -> Spee
 
 def _bristle(speed: Speed, t: Array, slope: Callable[[float, float], float]) -> Array:
     """A state driven by speed from zero, at the times `t`."""
+    return driven(lambda s, y: slope(speed(s), y), t)
+
+
+def driven(rate: Callable[[float, float], float], t: Array) -> Array:
+    """A state of a given rate (time, state) from zero, at the times `t`."""
     found = solve_ivp(
-        lambda s, y: [slope(speed(s), y[0])],
+        lambda s, y: [rate(s, y[0])],
         (t[0], t[-1]),
         [0.0],
         method="LSODA",
@@ -77,6 +82,74 @@ def lugre(
     return s0 * z + damped + fv * v
 
 
+def maxwell_slip(
+    speed: Speed,
+    t: Array,
+    *,
+    fc: float,
+    s0: float,
+    exponent: float,
+    fv: float,
+    excess: float = 0.0,
+    vs: float = 1.0,
+) -> Array:
+    """Maxwell slip as a crowd of four hundred elements, equally stiff, whose slip displacements are
+    drawn evenly from those of a virgin curve of that exponent, N; its level falls with speed by
+    `excess` (GMS)."""
+    crowd, finer = 400, 4
+    u = (np.arange(crowd) + 0.5) / crowd
+    if exponent == 1.0:
+        slip = -np.log(u) * fc / s0
+    else:
+        slip = (1.0 - u ** (1.0 / exponent - 1.0)) / (1.0 - exponent) * fc / s0
+    step = (t[1] - t[0]) / finer
+    fine = t[0] + step * np.arange(finer * (len(t) - 1) + 1)
+    v = np.array([speed(x) for x in fine])
+    bent = np.zeros(crowd)
+    force = np.zeros(len(fine))
+    level = 1.0 + excess / fc * np.exp(-((v / vs) ** 2))
+    for i, way in enumerate(0.5 * (v[1:] + v[:-1]) * step, start=1):
+        bent = np.clip(bent + way, -slip * level[i], slip * level[i])
+        force[i] = s0 * np.mean(bent)
+    return force[::finer] + fv * v[::finer]
+
+
+def elasto_plastic(
+    speed: Speed, t: Array, *, fc: float, s0: float, breakaway: float, fv: float
+) -> Array:
+    """Dupont's single state, alpha rising so that the force nears its level exponentially, N."""
+
+    def alpha(share: float) -> float:
+        return 0.0 if share <= breakaway else (1.0 - breakaway / share) / (1.0 - breakaway)
+
+    return _single_state(speed, t, alpha, fc, s0, fv)
+
+
+def elasto_plastic_sine(
+    speed: Speed, t: Array, *, fc: float, s0: float, breakaway: float, fv: float
+) -> Array:
+    """The same with the half sine of the paper, N."""
+
+    def alpha(share: float) -> float:
+        middle, width = 0.5 * (1.0 + breakaway), 1.0 - breakaway
+        if share <= breakaway:
+            return 0.0
+        return 1.0 if share >= 1.0 else 0.5 * np.sin(np.pi * (share - middle) / width) + 0.5
+
+    return _single_state(speed, t, alpha, fc, s0, fv)
+
+
+def _single_state(
+    speed: Speed, t: Array, alpha: Callable[[float], float], fc: float, s0: float, fv: float
+) -> Array:
+    def slope(v: float, f: float) -> float:
+        share = f / fc * np.sign(v)
+        return float(s0 * v * (1.0 - alpha(share) * share))
+
+    v = np.array([speed(x) for x in t])
+    return _bristle(speed, t, slope) + fv * v
+
+
 def stribeck(
     speed: Speed, t: Array, *, fc: float, fs: float, vs: float, delta: float, fv: float
 ) -> Array:
@@ -120,9 +193,15 @@ def seven(
 
 
 def record(
-    speed: Speed, t: Array, friction: Array, noise_n: float, seed: int, name: str = "run"
+    speed: Speed,
+    t: Array,
+    friction: Array,
+    noise_n: float,
+    seed: int,
+    name: str = "run",
+    count_m: float = 1e-7,
 ) -> Run:
-    """A run of a linear axis: position to 0.1 um, speed and friction with noise."""
+    """A run of a linear axis: position in counts of 0.1 um, speed and friction with noise."""
     rng = np.random.default_rng(seed)
     v = np.array([speed(x) for x in t])
     place = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))))
@@ -130,6 +209,6 @@ def record(
         t,
         v + 1e-4 * np.max(np.abs(v)) * rng.standard_normal(len(t)),
         friction + noise_n * rng.standard_normal(len(t)),
-        position_m=np.round(place, 7),
+        position_m=count_m * np.round(place / count_m),
         name=name,
     )

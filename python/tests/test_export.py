@@ -18,6 +18,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 RUST_MAIN = """
 mod drag;
+mod gear;
+mod gms;
 mod slider;
 
 use jbf_core::effect::EffectSet;
@@ -35,6 +37,8 @@ fn main() {
     }
     match std::env::args().nth(2).unwrap().as_str() {
         "drag" => run(drag::model::<f64>().unwrap(), drag::model::<f32>().unwrap(), &columns),
+        "gear" => run(gear::model::<f64>().unwrap(), gear::model::<f32>().unwrap(), &columns),
+        "gms" => run(gms::model::<f64>().unwrap(), gms::model::<f32>().unwrap(), &columns),
         _ => run(slider::model::<f64>().unwrap(), slider::model::<f32>().unwrap(), &columns),
     }
 }
@@ -142,7 +146,7 @@ jbf-core = {{ path = "{core}" }}
 
 
 def models() -> dict[str, jbf.Model]:
-    """A bearing with effects at three stages, and a slider without a bearing."""
+    """A bearing with effects at three stages, and sliders without a bearing."""
     return {
         "drag": jbf.Model(
             jbf.Rig.thesis("4.2"),
@@ -151,6 +155,8 @@ def models() -> dict[str, jbf.Model]:
             clock="thesis",
         ),
         "slider": jbf.Model(jbf.Rig(), law="lugre", effects=["sensor_offset"]),
+        "gms": jbf.Model(jbf.Rig(), law="maxwell_slip", effects=["stribeck_excess"]),
+        "gear": jbf.Model(jbf.Rig(), law="elasto_plastic", effects=["dry_load_dependence"]),
     }
 
 

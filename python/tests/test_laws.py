@@ -3,6 +3,7 @@ command line."""
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -63,6 +64,136 @@ def test_lugre_is_recovered() -> None:
     fit = jbf.fit(jbf.Rig(), runs_of("lugre", 1e-3, 0.03, **p), law="lugre")
     truth = {"F_c_n": 6.0, "F_s_n": 9.0, "v_s_m_s": 0.003, "sigma_0_n_m": 6e4, "F_v_n_s_m": 40.0}
     check(fit, truth, 0.03, 0.05)
+
+
+# A robot's joint (rad, N m), a machine's slide, a fine stage.
+SIZES = [(0.05, 40.0), (2e-4, 2.3), (2e-6, 0.05)]
+
+
+def bending(law: str, amplitude_m: float, fc: float, **shape: float) -> list[jbf.Run]:
+    """Two runs of a contact that bends over a fifth of the amplitude."""
+    s0, fv = fc / (0.2 * amplitude_m), 0.02 * fc / amplitude_m
+    found = []
+    for seed, omega in enumerate((0.8, 4.0)):
+        speed = other.stroke_speed(amplitude_m, omega)
+        friction = getattr(other, law)(speed, T, fc=fc, s0=s0, fv=fv, **shape)
+        count = 1e-4 * amplitude_m
+        found.append(other.record(speed, T, friction, 0.02 * fc, seed, f"run{seed}", count_m=count))
+    return found
+
+
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+@pytest.mark.parametrize("exponent", [1.0 / 3.0, 0.7])
+def test_maxwell_slip_is_recovered(amplitude_m: float, fc: float, exponent: float) -> None:
+    runs = bending("maxwell_slip", amplitude_m, fc, exponent=exponent)
+    fit = jbf.fit(jbf.Rig(), runs, law="maxwell_slip")
+    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check(fit, {"exponent": exponent, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+
+
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+@pytest.mark.parametrize("breakaway", [0.3, 0.8])
+def test_elasto_plastic_is_recovered(amplitude_m: float, fc: float, breakaway: float) -> None:
+    runs = bending("elasto_plastic", amplitude_m, fc, breakaway=breakaway)
+    fit = jbf.fit(jbf.Rig(), runs, law="elasto_plastic")
+    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check(fit, {"breakaway": breakaway, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+
+
+def test_the_half_sine_of_the_paper_is_nearly_the_same() -> None:
+    runs = bending("elasto_plastic_sine", 2e-4, 2.3, breakaway=0.6)
+    fit = jbf.fit(jbf.Rig(), runs, law="elasto_plastic")
+    check(fit, {"F_c_n": 2.3, "sigma_0_n_m": 2.3 / 4e-5}, 0.02 * 2.3, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("law", "shape"),
+    [
+        ("maxwell_slip", {"exponent": 0.5}),
+        ("maxwell_slip", {"exponent": 1.0}),
+        ("elasto_plastic", {"breakaway": 0.6}),
+    ],
+)
+def test_a_law_that_bends_lacks_nothing_in_its_own_data(law: str, shape: dict[str, float]) -> None:
+    diagnosis = jbf.diagnose(jbf.Rig(), bending(law, 2e-4, 2.3, **shape), law=law)
+    assert diagnosis.verdict == "adequate", diagnosis.summary()
+    assert diagnosis.effects == ()
+    tried = {t.effect for step in diagnosis.steps for t in step.trials}
+    assert not tried & {"presliding", "drive_compliance", "backlash"}
+
+
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+def test_a_level_that_falls_with_speed_is_found(amplitude_m: float, fc: float) -> None:
+    """Generalised Maxwell slip: the law and `stribeck_excess`, whatever the machine's size."""
+    vs = 0.6 * amplitude_m
+    runs = bending("maxwell_slip", amplitude_m, fc, exponent=0.5, excess=0.4 * fc, vs=vs)
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
+    assert diagnosis.effects == ("stribeck_excess",), diagnosis.summary()
+    found = diagnosis.model.parameters
+    assert found["stribeck_excess.a"].value == pytest.approx(0.4 * fc, rel=0.05)
+    assert found["stribeck_excess.v_s_m_s"].value == pytest.approx(vs, rel=0.1)
+    assert found["F_c_n"].value == pytest.approx(fc, rel=0.02)
+
+
+def test_a_load_dependent_elasto_plastic_law_is_found() -> None:
+    """A level that grows with the load, as strain-wave drives have it."""
+    mu, fc = 0.3, 2.3
+    runs = []
+    for seed, omega in enumerate((0.8, 4.0)):
+        speed = other.stroke_speed(2e-4, omega)
+        load = 4.0 + 3.0 * np.sin(0.21 * T + seed)
+
+        def bent(t: float, f: float, speed: other.Speed = speed, seed: int = seed) -> float:
+            level = fc + mu * (4.0 + 3.0 * np.sin(0.21 * t + seed))
+            v = speed(t)
+            share = f / level * np.sign(v)
+            beyond = (share - 0.6) / 0.4 if share > 0.6 else 0.0
+            return float(6e4 * v * (1.0 - beyond))
+
+        friction = other.driven(bent, T)
+        run = other.record(speed, T, friction, 0.05, seed, f"run{seed}")
+        runs.append(dataclasses.replace(run, load_n=load))
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="elasto_plastic")
+    assert diagnosis.effects == ("dry_load_dependence",), diagnosis.summary()
+    found = diagnosis.model.parameters
+    assert found["dry_load_dependence.mu"].value == pytest.approx(mu, rel=0.05)
+    assert found["breakaway"].value == pytest.approx(0.6, rel=0.1)
+
+
+def test_a_hum_before_the_first_stroke_bends_nothing() -> None:
+    """A machine that stands, its speed a hum to and fro, then a stroke: the virgin curve."""
+    t = np.arange(0.0, 4.0, 0.005)
+    v = np.where(t < 1.0, -1e-9 * np.cos(40.0 * t), 2e-4 * np.minimum(2.0 * (t - 1.0), 1.0))
+    for law in ("dahl", "maxwell_slip", "elasto_plastic"):
+        force = jbf.Model(jbf.Rig(), law).predict(jbf.Run.from_arrays(t, v))
+        assert np.max(np.abs(force[t < 1.0])) < 1e-3, law
+        assert np.all(np.diff(force[t > 1.0]) > -1e-9), law
+    sliding = jbf.Run.from_arrays(t, np.where(t < 2.0, -2e-4, 2e-4))
+    # Friction of 10 N, and 2 mN of viscous.
+    assert jbf.Model(jbf.Rig(), "dahl").predict(sliding)[0] == pytest.approx(-10.002)
+
+
+def test_runs_cut_at_rest_lack_nothing() -> None:
+    """Strokes with rests between, cut within the rests: each run begins bent as the one before it
+    left the contact, which no record of a motion tells."""
+    p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
+
+    def speed(t: float) -> float:
+        # To and fro, a rest after each.
+        phase = t % 2.0
+        way = 1.0 if (t // 2.0) % 2.0 == 0.0 else -1.0
+        return way * 2.5e-4 * np.sin(np.pi * min(phase, 1.0))
+
+    t = np.arange(0.0, 40.0, 0.005)
+    whole = other.record(speed, t, other.maxwell_slip(speed, t, **p), 0.03, 0, count_m=1e-9)
+    runs = []
+    for k in range(5):
+        part = whole.select((t >= 8.0 * k + 1.5) & (t < 8.0 * k + 9.5))
+        runs.append(dataclasses.replace(part, name=f"run{k}"))
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
+    assert diagnosis.verdict == "adequate", diagnosis.summary()
+    assert {f.kind for f in diagnosis.findings} == {"unsettled_start"}
+    assert diagnosis.model.parameters["F_c_n"].value == pytest.approx(2.3, rel=0.01)
 
 
 def test_seven_parameters_are_recovered() -> None:

@@ -112,6 +112,10 @@ JBF_DECLARE(dahl, f32, float, 48, 128)
 JBF_DECLARE(dahl, f64, double, 96, 256)
 JBF_DECLARE(lugre, f32, float, 48, 128)
 JBF_DECLARE(lugre, f64, double, 96, 256)
+JBF_DECLARE(maxwell_slip, f32, float, 64, 128)
+JBF_DECLARE(maxwell_slip, f64, double, 128, 256)
+JBF_DECLARE(elasto_plastic, f32, float, 48, 128)
+JBF_DECLARE(elasto_plastic, f64, double, 96, 256)
 
 #ifdef __cplusplus
 }

@@ -152,4 +152,16 @@ laws! {
     lugre::LuGre, f64,
         jbf_lugre_f64_init jbf_lugre_f64_effect jbf_lugre_f64_start jbf_lugre_f64_step jbf_lugre_f64_predict,
         96, 256;
+    maxwell_slip::MaxwellSlip, f32,
+        jbf_maxwell_slip_f32_init jbf_maxwell_slip_f32_effect jbf_maxwell_slip_f32_start jbf_maxwell_slip_f32_step jbf_maxwell_slip_f32_predict,
+        64, 128;
+    maxwell_slip::MaxwellSlip, f64,
+        jbf_maxwell_slip_f64_init jbf_maxwell_slip_f64_effect jbf_maxwell_slip_f64_start jbf_maxwell_slip_f64_step jbf_maxwell_slip_f64_predict,
+        128, 256;
+    elasto_plastic::ElastoPlastic, f32,
+        jbf_elasto_plastic_f32_init jbf_elasto_plastic_f32_effect jbf_elasto_plastic_f32_start jbf_elasto_plastic_f32_step jbf_elasto_plastic_f32_predict,
+        48, 128;
+    elasto_plastic::ElastoPlastic, f64,
+        jbf_elasto_plastic_f64_init jbf_elasto_plastic_f64_effect jbf_elasto_plastic_f64_start jbf_elasto_plastic_f64_step jbf_elasto_plastic_f64_predict,
+        96, 256;
 }

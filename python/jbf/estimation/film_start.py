@@ -29,7 +29,9 @@ Mask = npt.NDArray[np.bool_]
 REMEMBERED = 0.2
 """Share of the noise below which a difference is forgotten."""
 MOST_OF_A_RUN = 0.5
-"""A run that never forgets its beginning is taken as it is."""
+"""A run that never forgets its beginning is taken as it is: one of a film,"""
+MOST_OF_A_STROKE = 0.75
+"""and one of a contact, which may be a single stroke, half of it to bend."""
 OFF = 2.0
 """Times the usual residual from which on a beginning is worth a word."""
 RANKING_EVALUATIONS = 8
@@ -37,9 +39,13 @@ RANKING_EVALUATIONS = 8
 BEFORE_S = 6.0
 """How long the imagined motions before a run last."""
 SPEEDS = (1e-3, 0.1, 1.0)
-"""Their speeds, as shares of the run's top speed."""
+"""Their speeds, as shares of the run's top speed: where a film was,"""
+WAYS = (-1.0, 1.0)
+"""and where a contact bends, which may have slid either way."""
 LONGER = 1.5
-"""The film may be slower than this model's: what follows is set aside for so many times as long."""
+"""The film may be slower than this model's: what follows is set aside for so many times as long,"""
+FURTHER = 1.1
+"""and a contact softer, whose way to bend the records tell better."""
 
 
 def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
@@ -53,35 +59,43 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
         Noise on the friction, N.
     """
     prepared = problem.campaign.prepared
-    if not find_law(problem.law).has_film:
+    law = find_law(problem.law)
+    if not _remembers(problem.law):
         return [np.zeros(len(p.run), dtype=bool) for p in prepared]
     # The fit's own motion has starts between samples, these have not: it would differ at each stop.
     begun = []
-    for share in SPEEDS:
+    for share in SPEEDS if law.has_film else WAYS:
         motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
         begun.append(problem.chain.predict(values, motions))
     found = []
     for p, ways in zip(prepared, zip(*begun, strict=True), strict=True):
         spread = np.ptp(np.array(ways), axis=0)
-        found.append(_remembering(p, spread > REMEMBERED * noise_n))
+        limits = (LONGER, MOST_OF_A_RUN) if law.has_film else (FURTHER, MOST_OF_A_STROKE)
+        found.append(_remembering(p, spread > REMEMBERED * noise_n, *limits))
     return found
 
 
-def _remembering(p: Prepared, apart: Mask) -> Mask:
+def _remembering(p: Prepared, apart: Mask, longer: float, most: float) -> Mask:
     """The first stretch of motion in which two beginnings are apart, made longer for safety."""
     index = np.flatnonzero(apart)
     if not len(index):
         return np.zeros(len(apart), dtype=bool)
     time = p.run.time_s
-    until = time[index[0]] + LONGER * (time[index[-1]] - time[index[0]])
+    until = time[index[0]] + longer * (time[index[-1]] - time[index[0]])
     # What lies before the motion (a rest) does not depend on the start.
     mask: Mask = (time >= time[index[0]]) & (time <= until)
-    return mask if mask.mean() < MOST_OF_A_RUN else np.zeros(len(apart), dtype=bool)
+    return mask if mask.mean() < most else np.zeros(len(apart), dtype=bool)
+
+
+def _remembers(law: str) -> bool:
+    """Whether a law has a film, or bends before it slides."""
+    page = find_law(law)
+    return page.has_film or page.has_bristle
 
 
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     """The campaign without the samples that remember how their run began, by the bare law."""
-    if not find_law(law).has_film:
+    if not _remembers(law):
         return campaign
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
@@ -91,13 +105,14 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)
-    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples))
+    what = "film was not settled" if find_law(law).has_film else "contact was bent another way"
+    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples, what))
 
 
 def _findings(
-    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples
+    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples, what: str
 ) -> list[Finding]:
-    """The runs whose beginning is not what a rested film would have given."""
+    """The runs whose beginning is not what a rested film, or the first motion, would have given."""
     found = []
     whole = zip(campaign.prepared, residuals, masks, campaign.samples.counted, strict=True)
     usual = kept.rms(residuals)
@@ -109,7 +124,7 @@ def _findings(
         if size < OFF * usual:
             continue
         span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
-        words = f"the film was not settled when the run began: {span:.2g} s, off by {size:.2g} N"
+        words = f"the {what} when the run began: {span:.2g} s, off by {size:.2g} N"
         found.append(
             Finding("unsettled_start", "friction_n", p.run.name, span, "s", "set aside", words)
         )

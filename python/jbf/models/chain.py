@@ -23,6 +23,7 @@ from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.findings.noisy_load import steady_load
+from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
@@ -145,7 +146,7 @@ def core_motion(
     else:
         load = np.full(len(run), core_load_n(rig) or 1.0)
     columns = run.columns() | {
-        "velocity_m_s": motion.velocity_m_s,
+        "velocity_m_s": _from_rest(run, motion.velocity_m_s),
         "acceleration_m_s2": motion.acceleration_m_s2,
         "angle_rad": motion.angle_rad,
         "load_n": load,
@@ -165,6 +166,13 @@ def core_motion(
     # What effects of one's own see: the record, its motion as the models are driven with it.
     made.columns = columns
     return Driven(made, kept)
+
+
+def _from_rest(run: Run, velocity_m_s: Array) -> Array:
+    """The speed, m/s, at rest at first where it only hums there."""
+    if not begins_in_a_hum(run.time_s, velocity_m_s):
+        return velocity_m_s
+    return np.concatenate(([0.0], velocity_m_s[1:]))
 
 
 def _with_motion_before(

@@ -7,6 +7,7 @@ use super::{Contact, Effect, Info, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// Friction above the law's at low speed.
@@ -31,15 +32,17 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
                 [0.0, 1e3],
                 &[0.05],
             )
-            .null(0.0),
+            .null(0.0)
+            .start(Start::BreakawayExcess),
             Parameter::new(
                 "v_s_m_s",
                 "m/s",
                 "speed at which it has fallen to 1/e",
-                [1e-5, 1e2],
+                [1e-7, 1e2],
                 &[0.01, 0.04],
             )
-            .log(),
+            .log()
+            .start(Start::StribeckSpeed),
             Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
         ]);
     type State = ();

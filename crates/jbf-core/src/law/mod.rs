@@ -9,9 +9,11 @@
 
 pub mod coulomb;
 pub mod dahl;
+pub mod elasto_plastic;
 pub mod journal;
 pub mod journal_full;
 pub mod lugre;
+pub mod maxwell_slip;
 pub mod seven_parameter;
 pub mod stribeck;
 
@@ -110,6 +112,8 @@ registry::laws! {
     seven_parameter::SevenParameter,
     dahl::Dahl,
     lugre::LuGre,
+    maxwell_slip::MaxwellSlip,
+    elasto_plastic::ElastoPlastic,
 }
 
 /// True where the catalogue has a law of that name, and the values are as many as its parameters and

@@ -5,9 +5,11 @@ mod common;
 
 mod closed_forms;
 mod derivatives;
+mod elasto_plastic;
 mod energy;
 mod finite;
 mod limits;
+mod maxwell_slip;
 mod needs;
 mod seven_parameter;
 mod steps;

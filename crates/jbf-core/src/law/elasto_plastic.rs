@@ -1,0 +1,159 @@
+//! The single-state elasto-plastic law: purely elastic up to a breakaway, plastic beyond.
+//!
+//! ```text
+//! dF/dx = sigma_0                                     while F sgn(v) < b F_c
+//!       = sigma_0 (1 - (F/F_c) sgn(v))/(1 - b)        beyond;       + F_v v
+//! ```
+//!
+//! Source: Dupont, Hayward, Armstrong & Altpeter (2002), `z' = v (1 - alpha(z, v) sgn(v) z/z_ss)` with
+//! `F = sigma_0 z`, alpha = 0 up to the breakaway displacement `z_ba = b F_c/sigma_0` and on the way
+//! back, and 1 at `z_ss = F_c/sigma_0`. They leave open how alpha rises between; theirs is half a sine.
+//! Here it is `alpha = (1 - z_ba/|z|)/(1 - b)`: the force then nears its level exponentially, and a
+//! step is solved in the way slid, to the point where it breaks away and exactly beyond it, so that
+//! none is too long.
+//!
+//! A load or a vibration that stays below the breakaway moves nothing for good, where Dahl's law and
+//! LuGre creep. b towards 1 is a spring and a slider; a Stribeck fall is `stribeck_excess`, a level that
+//! grows with the load `dry_load_dependence`: both move F_c and leave sigma_0 and b as they are.
+
+use super::bristle::bent;
+use super::newtons::{in_newtons, moving, stiffness, F_C, F_V};
+use super::{Info, Law, Named, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::JournalMotion;
+use crate::page::Parameter;
+use crate::path::{legs, Leg};
+use crate::real::Real;
+
+/// A contact that is elastic, then plastic.
+#[derive(Clone, Copy, Debug)]
+pub struct ElastoPlastic<T> {
+    coulomb_n: T,
+    stiffness_n_m: T,
+    breakaway: T,
+    viscous_n_s_m: T,
+}
+
+impl<T: Real> ElastoPlastic<T> {
+    /// The force at the end of a leg that begins with `force_n`.
+    #[inline(always)]
+    fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
+        let (way, [begin, end]) = (leg.direction, leg.level);
+        let plastic_n_m = self.stiffness_n_m / (T::ONE - self.breakaway);
+        // How far the force is below breakaway, and by how much it closes in on it: both go on
+        // straight lines.
+        let gap = self.breakaway * begin - way * force_n;
+        if gap.value() <= 0.0 {
+            return bent(force_n, leg, plastic_n_m);
+        }
+        let rise = self.stiffness_n_m * leg.distance_m;
+        let closing = rise - self.breakaway * (end - begin);
+        if closing <= gap {
+            return force_n + way * rise;
+        }
+        let share = gap / closing;
+        let at_breakaway = begin + (end - begin) * share;
+        let beyond = Leg {
+            direction: way,
+            distance_m: leg.distance_m * (T::ONE - share),
+            level: [at_breakaway, end],
+        };
+        bent(way * self.breakaway * at_breakaway, &beyond, plastic_n_m)
+    }
+}
+
+impl<T: Real> Named<T> for ElastoPlastic<T> {
+    const INFO: Info = Info::new::<T, Self>("elasto_plastic")
+        .summary("elastic up to a breakaway, plastic beyond: does not drift below it")
+        .equation(
+            "dF/dx = sigma_0 while F sgn(v) < b F_c, sigma_0 (1 - (F/F_c) sgn(v))/(1 - b) beyond; \
+                   + F_v v",
+        )
+        .source("Dupont, Hayward, Armstrong & Altpeter 2002")
+        .limits("no Stribeck fall of its own; inner loops that reach beyond the breakaway drift")
+        .parameters(&[
+            F_C,
+            stiffness("sigma_0_n_m", "stiffness up to breakaway", &[1e5, 1e6, 1e4]),
+            Parameter::new(
+                "breakaway",
+                "-",
+                "share of the level up to which the contact is elastic",
+                [0.0, 0.999],
+                &[0.7, 0.2],
+            ),
+            F_V,
+        ]);
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        Ok(Self {
+            coulomb_n: values[0],
+            stiffness_n_m: values[1],
+            breakaway: values[2],
+            viscous_n_s_m: values[3],
+        })
+    }
+}
+
+impl<T: Real> Law<T> for ElastoPlastic<T> {
+    /// Force of the bristle, N.
+    type State = T;
+
+    const HAS_BRISTLE: bool = true;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> T {
+        T::ZERO
+    }
+
+    #[inline(always)]
+    fn friction(&self, _state: &T, velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.coulomb_n,
+            smooth: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline(always)]
+    fn advance(&self, _state: &mut T, _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+
+    #[inline(always)]
+    fn bend(
+        &self,
+        state: &mut T,
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        if dt_s.value() <= 0.0 {
+            *state = level[1] * to.velocity_m_s.sign();
+            return *state;
+        }
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
+        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+            *state = self.slide(*state, leg);
+        }
+        *state
+    }
+}
+
+impl SteadyCurve for ElastoPlastic<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        Ok(self.friction(&0.0, velocity_m_s).along(velocity_m_s.sign()))
+    }
+}

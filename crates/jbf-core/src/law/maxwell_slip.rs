@@ -1,0 +1,210 @@
+//! Maxwell slip: springs side by side, each of which slips at its own share of the level.
+//!
+//! ```text
+//! F = sum F_j + F_v v,   dF_j/dx = k_j  while |F_j| < a_j F_c,   F_j = a_j F_c sgn(v)  beyond
+//! ```
+//!
+//! Source: Iwan (1966) for the elements; Lampaert, Swevers & Al-Bender (2003) and Al-Bender, Lampaert
+//! & Swevers (2005), whose generalised form (GMS) lets the level fall with the speed: here that is the
+//! contact effect `stribeck_excess`, and `dry_load_dependence` a level that grows with the load. They
+//! move F_c; the elements keep their stiffness and their shares of it. Each element remembers where it
+//! last turned round, so the force obeys Masing's rules (1926): a branch after a reversal is the
+//! virgin curve, twice as large; an inner loop closes, and behind it the force goes on as if the loop
+//! had not been. Dahl's law and LuGre, of one state, drift there.
+//!
+//! Free stiffnesses and shares are more numbers than a record determines, and change places without a
+//! trace. Of a contact two are known: how stiff it is at a reversal, `sigma_0`, and how its virgin
+//! curve bends. So the elements follow the virgin curve of Dahl's law, with Dahl's parameters,
+//!
+//! ```text
+//! F(x) = F_c [1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i))]
+//! ```
+//!
+//! whose exponent i spans what is known of contacts: towards 0 all slip at once (elastic, then
+//! plastic), 1/3 is a sphere on a plane (Cattaneo 1938; Mindlin 1949), 1/2 slip displacements spread
+//! evenly (Iwan), 1 an exponential. While x grows the share u of the stiffness that still sticks falls;
+//! the springs from the last to slip up to that share carry `g(u) = (u - i u^(1/i))/(1 - i)` of F_c, and
+//! an element is what lies between two borders of u.
+//!
+//! The rate does not enter: a sticking element is a spring and a sliding one is at its level, so a step
+//! along one way is exact whatever its length, and stable.
+
+use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
+use super::{Info, Law, Named, SteadyCurve};
+use crate::bearing::Bearing;
+use crate::clock::Clock;
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::JournalMotion;
+use crate::path::{legs, Leg};
+use crate::real::Real;
+
+/// How many elements: they meet the virgin curve to 0.8 % of F_c at i = 0.1, 0.2 % at 1/2, 0.6 % at 1.
+pub const ELEMENTS: usize = 16;
+
+/// Springs side by side that slip one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct MaxwellSlip<T> {
+    coulomb_n: T,
+    viscous_n_s_m: T,
+    /// Stiffness of each element, N/m.
+    stiffness_n_m: [T; ELEMENTS],
+    /// Share of the level that each carries.
+    share: [T; ELEMENTS],
+}
+
+/// Share of the stiffness that lies below each border between two elements: close together where
+/// the last of a brittle curve slip.
+fn borders() -> [f64; ELEMENTS + 1] {
+    core::array::from_fn(|j| {
+        let part = j as f64 / ELEMENTS as f64;
+        part * libm::sqrt(part)
+    })
+}
+
+/// `g(u) = (u - i u^(1/i))/(1 - i)`, which goes on through i = 1.
+fn carried<T: Real>(u: f64, exponent: T) -> T {
+    if u <= 0.0 {
+        return T::ZERO;
+    }
+    let log = T::of(libm::log(u));
+    let x = (T::ONE - exponent) / exponent * log;
+    // (e^x - 1)/x, by its series where it would be zero over zero.
+    let mean = if x.value().abs() < 1e-2 {
+        let of = |k: f64| T::of(1.0 / k);
+        T::ONE + x * (of(2.0) + x * (of(6.0) + x * (of(24.0) + x * (of(120.0) + x * of(720.0)))))
+    } else {
+        x.exp_m1() / x
+    };
+    T::of(u) * (T::ONE - log * mean)
+}
+
+impl<T: Real> MaxwellSlip<T> {
+    /// All elements along one leg.
+    #[inline(always)]
+    fn slide(&self, forces_n: &mut [T; ELEMENTS], leg: &Leg<T>) {
+        let way = leg.direction * leg.distance_m;
+        let level = leg.level[1].max(T::ZERO);
+        let elements = self.stiffness_n_m.iter().zip(&self.share);
+        for (force, (&stiffness, &share)) in forces_n.iter_mut().zip(elements) {
+            let (bent, most) = (*force + stiffness * way, share * level);
+            *force = if bent > most {
+                most
+            } else if bent < -most {
+                -most
+            } else {
+                bent
+            };
+        }
+    }
+
+    /// All elements at their levels, in the direction of motion.
+    fn sliding(&self, level: T, direction: T) -> [T; ELEMENTS] {
+        self.share.map(|share| share * level * direction)
+    }
+}
+
+/// The force of all elements, N.
+#[inline(always)]
+fn sum<T: Real>(forces_n: &[T; ELEMENTS]) -> T {
+    forces_n.iter().fold(T::ZERO, |sum, &force| sum + force)
+}
+
+impl<T: Real> Named<T> for MaxwellSlip<T> {
+    const INFO: Info = Info::new::<T, Self>("maxwell_slip")
+        .summary("springs side by side that slip one after the other: remembers every turn")
+        .equation(
+            "F = sum F_j + F_v v, dF_j/dx = k_j up to |F_j| = a_j F_c; virgin curve \
+                   F_c (1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i)))",
+        )
+        .source("Iwan 1966; Lampaert, Swevers & Al-Bender 2003; Al-Bender et al. 2005")
+        .limits("no Stribeck fall of its own; in sliding it is at its level, without a lag")
+        .parameters(&[
+            F_C,
+            stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
+            number(
+                "exponent",
+                "shape of the bend: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
+                [0.01, 2.0],
+                &[0.5, 0.1],
+            ),
+            F_V,
+        ]);
+
+    fn build(
+        _bearing: Option<&Bearing>,
+        _load_n: Option<f64>,
+        values: &[T],
+        _clock: Clock,
+    ) -> Result<Self, ParameterError> {
+        Self::INFO.check(values)?;
+        let (whole, exponent) = (values[1], values[2]);
+        let border = borders();
+        Ok(Self {
+            coulomb_n: values[0],
+            viscous_n_s_m: values[3],
+            stiffness_n_m: core::array::from_fn(|j| whole * T::of(border[j + 1] - border[j])),
+            share: core::array::from_fn(|j| {
+                carried(border[j + 1], exponent) - carried(border[j], exponent)
+            }),
+        })
+    }
+}
+
+impl<T: Real> Law<T> for MaxwellSlip<T> {
+    /// Force of each element, N.
+    type State = [T; ELEMENTS];
+
+    const HAS_BRISTLE: bool = true;
+
+    in_newtons!();
+
+    fn start(&self, _load_n: T) -> [T; ELEMENTS] {
+        [T::ZERO; ELEMENTS]
+    }
+
+    #[inline(always)]
+    fn friction(&self, _state: &[T; ELEMENTS], velocity_m_s: T) -> Friction<T> {
+        Friction {
+            jump: self.coulomb_n,
+            smooth: self.viscous_n_s_m * velocity_m_s,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline(always)]
+    fn advance(&self, _state: &mut [T; ELEMENTS], _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+
+    #[inline(always)]
+    fn bend(
+        &self,
+        state: &mut [T; ELEMENTS],
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        level: [T; 2],
+        dt_s: T,
+    ) -> T {
+        if dt_s.value() <= 0.0 {
+            *state = self.sliding(level[1], to.velocity_m_s.sign());
+            return sum(state);
+        }
+        let turning = |_| (level[0] + level[1]) * T::of(0.5);
+        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+            self.slide(state, leg);
+        }
+        sum(state)
+    }
+}
+
+impl SteadyCurve for MaxwellSlip<f64> {
+    fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
+        moving(velocity_m_s)?;
+        let forces = [0.0; ELEMENTS];
+        Ok(self
+            .friction(&forces, velocity_m_s)
+            .along(velocity_m_s.sign()))
+    }
+}

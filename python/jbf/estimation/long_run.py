@@ -58,8 +58,7 @@ def score_inflation(
         One array a run, shape (n,); of any length.
     """
     square = sum(float(np.sum(d**2)) for d in directions)
-    white = sum(float(np.sum(e**2)) for e in innovations)
-    white /= max(sum(int(np.count_nonzero(e)) for e in innovations), 1)
+    white = _white(innovations)
     if square <= 0.0 or white <= 0.0:
         return 1.0
     # What the score itself explains is no noise here either.
@@ -85,8 +84,7 @@ def between_runs(
     """
     pulls = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
     sizes = np.array([float(d @ d) for d in directions])
-    white = sum(float(np.sum(e**2)) for e in innovations)
-    white /= max(sum(int(np.count_nonzero(e)) for e in innovations), 1)
+    white = _white(innovations)
     own = sizes > 0.0
     runs = int(np.count_nonzero(own))
     if runs < LEAST_RUNS or white <= 0.0:
@@ -95,6 +93,12 @@ def between_runs(
     if stats.chi2.sf(square, runs - 1) > BY_CHANCE:
         return 0.0
     return float(np.sum(pulls**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
+
+
+def _white(innovations: Sequence[Array]) -> float:
+    """The mean square of those that count: the others are zero."""
+    counted = sum(int(np.count_nonzero(e)) for e in innovations)
+    return sum(float(np.sum(e**2)) for e in innovations) / max(counted, 1)
 
 
 def long_run_variance(scores: Array, step_s: float) -> Array:

@@ -128,7 +128,8 @@ def test_presliding_where_nothing_turns_round_is_no_effect() -> None:
         (
             "stribeck_excess",
             {"a": 0.0, "v_s_m_s": 2e-5, "n": 7.9},
-            {"a": 0.0, "v_s_m_s": 0.01, "n": 1.5},
+            # Where a fit would begin: at a slow speed of these runs.
+            {"a": 0.0, "v_s_m_s": pytest.approx(0.0526, rel=1e-3), "n": 1.5},
         ),
     ],
 )

@@ -15,6 +15,7 @@ from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.noise import WHITE
 from made_up import BARE_N, SAMPLES, MadeUp, N, sets
 
@@ -349,5 +350,7 @@ def test_what_a_converters_steps_do_is_no_evidence(noise_n: float, counts: bool)
     rms = float(np.hypot(noise_n, step_n / np.sqrt(12.0)))
     near = SimpleNamespace(rms_n=rms, residuals=[np.zeros(N)], samples=SAMPLES)
     more = SimpleNamespace(rms_n=rms, residuals=[0.03 * np.sin(np.arange(N))], samples=SAMPLES)
-    assert _within_steps(step_n, cast(Any, more), cast(Any, near)) == (not counts)
-    assert not _within_steps(0.0, cast(Any, more), cast(Any, near))
+    stepped = SimpleNamespace(steps_rms_n=lambda _: curve_rms_n(step_n, noise_n))
+    fine = SimpleNamespace(steps_rms_n=lambda _: 0.0)
+    found = [_within_steps(cast(Any, c), cast(Any, more), cast(Any, near)) for c in (stepped, fine)]
+    assert found == [not counts, False]

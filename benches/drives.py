@@ -1,0 +1,166 @@
+"""How often a diagnosis of simulated drives is right: `python benches/drives.py --seeds 4`.
+
+Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library),
+with nothing hidden, each effect of drives alone, two of them, or something that no catalogue has.
+Six runs are diagnosed, two more of the same drive are predicted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+
+import jbf
+import numpy as np
+from rigsim import AXIS_EFFECTS, AxisRun, axis_campaign
+from rigsim.foreign import FOREIGN, draw_foreign
+
+KINDS = ("none", "single", "pair", "foreign")
+COMPANY = {"torque_proportional": ("gravity",)}
+"""What must be hidden beside an effect for it to show."""
+SWING = 8.0
+"""A joint whose weight is carried swings so much wider than a slide."""
+FITTED, PREDICTED = 6, 2
+NONE_A_ROUND, PAIRS_A_ROUND = 6, 8
+
+
+@dataclass(frozen=True)
+class Task:
+    """A campaign to be simulated and diagnosed."""
+
+    kind: str
+    seed: int
+    effects: tuple[str, ...] = ()
+    foreign: str = ""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a diagnosis said of it."""
+
+    task: Task
+    judged: str
+    verdict: str
+    named: tuple[str, ...]
+    held_out: float
+    cpu_s: float
+
+
+def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
+    """The campaigns of some rounds; no two share a seed."""
+    singles = [tuple(sorted({name, *COMPANY.get(name, ())})) for name in AXIS_EFFECTS]
+    together = [
+        tuple(sorted(pair))
+        for pair in itertools.combinations(AXIS_EFFECTS, 2)
+        if not {"torque_proportional"} & set(pair)
+    ]
+    for number in rounds:
+        rng = np.random.default_rng([number, 15])
+        drawn = [together[i] for i in rng.choice(len(together), PAIRS_A_ROUND, replace=False)]
+        plan = [Task("none", 0) for _ in range(NONE_A_ROUND)]
+        plan += [Task("single", 0, effects) for effects in singles]
+        plan += [Task("pair", 0, effects) for effects in drawn]
+        # Cogging is in this catalogue.
+        plan += [Task("foreign", 0, (), name) for name in FOREIGN if name != "cogging"]
+        for i, task in enumerate(plan):
+            if task.kind in kinds:
+                yield replace(task, seed=1000 * number + i)
+
+
+def recorded(run: AxisRun, joint: bool) -> jbf.Run:
+    """A run as the library takes it: a joint has an angle, a slide a position."""
+    path = {"angle_rad" if joint else "position_m": run.path}
+    return jbf.Run.from_arrays(
+        run.time_s, run.velocity_m_s, run.force_n, load_n=run.load_n, name=run.name, **path
+    )
+
+
+def simulated(task: Task) -> tuple[list[jbf.Run], float]:
+    """The runs, and the noise on them, N."""
+    joint = "gravity" in task.effects or task.seed % 2 == 0
+    swing = SWING if "torque_proportional" in task.effects else 1.0
+    records, truth = axis_campaign(task.seed, task.effects, runs=FITTED + PREDICTED, swing=swing)
+    if task.foreign:
+        rng = np.random.default_rng([task.seed, 16])
+        strange = draw_foreign(task.foreign, rng)
+        records = [
+            replace(r, force_n=strange.apply(r.time_s, r.path, r.velocity_m_s, r.force_n, rng))
+            for r in records
+        ]
+    return [recorded(r, joint) for r in records], float(str(truth["noise_n"]))
+
+
+def answer(task: Task) -> Answer:
+    """Simulate, diagnose, judge."""
+    runs, noise_n = simulated(task)
+    begun = time.process_time()
+    found = jbf.diagnose(jbf.Rig(), runs[:FITTED], law="coulomb")
+    took = time.process_time() - begun
+    left = jbf.compare(found.model, runs[FITTED:]).rms_n / noise_n
+    return Answer(task, judged(task, found), found.verdict, found.effects, left, took)
+
+
+def judged(task: Task, found: jbf.Diagnosis) -> str:
+    """`right`, `tied`, `named falsely`, `unexplained`, `missed`."""
+    if task.foreign:
+        return "right" if found.verdict == "unexplained" else "not told"
+    named, true = set(found.effects), set(task.effects)
+    if named == true:
+        right = {"adequate", "missing", "ambiguous"} if true else {"adequate"}
+        return "right" if found.verdict in right else "unexplained"
+    others = {name: {name, *more} for name, more in found.alternatives.items()}
+    could = set().union(*others.values()) if others else set()
+    if found.verdict == "ambiguous" and len(named) == len(true) and true <= could:
+        return "tied"
+    return "named falsely" if named - true else "missed"
+
+
+def table(answers: list[Answer]) -> Iterator[str]:
+    """A row a kind, and every campaign that is not right."""
+    columns = ("right", "tied", "named falsely", "unexplained", "missed", "not told")
+    head = ("hidden", "campaigns", *columns, "held-out, median", "worst", "CPU s, worst")
+    yield f"| {' | '.join(head)} |"
+    yield "|---" * len(head) + "|"
+    for kind in KINDS:
+        own = [a for a in answers if a.task.kind == kind]
+        if not own:
+            continue
+        counts = Counter(a.judged for a in own)
+        left = [a.held_out for a in own]
+        numbers = " | ".join(str(counts[c]) for c in columns)
+        yield (
+            f"| {kind} | {len(own)} | {numbers} | {np.median(left):.3f} | {max(left):.3f} "
+            f"| {max(a.cpu_s for a in own):.0f} |"
+        )
+    for a in answers:
+        if a.judged != "right":
+            hidden = "+".join(a.task.effects) or a.task.foreign or "nothing"
+            yield f"{a.judged}: {hidden} ({a.task.seed}) -> {a.verdict} {'+'.join(a.named)}"
+
+
+def main() -> int:
+    """Do it."""
+    parser = argparse.ArgumentParser(prog="drives", description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--kinds", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
+    parser.add_argument("--seeds", type=int, default=1, help="rounds of about 30 campaigns; 1")
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
+    parser.add_argument("--least", type=float, metavar="SHARE", help="fail where fewer are right")
+    asked = parser.parse_args()
+    rounds = range(asked.first_seed, asked.first_seed + asked.seeds)
+    plan = list(tasks(asked.kinds.split(","), rounds))
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        answers = list(pool.map(answer, plan))
+    print("\n".join(table(answers)))
+    right = sum(a.judged in ("right", "tied") for a in answers) / max(len(answers), 1)
+    return 1 if asked.least is not None and right < asked.least else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -19,7 +19,8 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 
-STEP_N, NOISE_N = 4.0, 0.8
+STEP_N, NOISE_N, ZERO_N = 4.0, 0.8, 1.1
+"""Of a converter whose readings are no whole multiples of its step."""
 
 
 @pytest.mark.parametrize("noise_n", [0.15, 0.4, 0.8])
@@ -50,7 +51,8 @@ def stepped(off_n: float = 0.0) -> tuple[Problem, Solution]:
     read = []
     for run, force in zip(runs, forces, strict=True):
         noisy = force + NOISE_N * random.standard_normal(len(force))
-        read.append(replace(run, friction_n=STEP_N * np.round(noisy / STEP_N)))
+        steps = np.round((noisy - ZERO_N) / STEP_N)
+        read.append(replace(run, friction_n=ZERO_N + STEP_N * steps))
     whole = Campaign.prepare(rig, read)
     model = [f + off_n * np.sin(0.01 * np.arange(len(f))) for f in forces]
     left = [p.friction_n - m for p, m in zip(whole.prepared, model, strict=True)]

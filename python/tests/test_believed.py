@@ -294,6 +294,12 @@ def test_a_slow_reversal_is_no_rest() -> None:
     path = step * np.round(0.5 * rate * (time - 1.0) ** 2 / step)
     assert np.ptp(path[190:211]) <= step
     assert not still_samples(time, path, v, step).any()
+    # One that turns back at once is two of them.
+    graze = 0.05 * (time - 1.0) ** 2 - 3e-5
+    graze[-1] = 0.2
+    path = step * np.round((0.05 / 3.0 * (time - 1.0) ** 3 - 3e-5 * (time - 1.0)) / step)
+    assert np.ptp(path[188:213]) <= step
+    assert not still_samples(time, path, graze, step).any()
     # Nor is a long rest a reversal, where rounding leaves speeds of either sign about it.
     at_rest = np.where(np.abs(time - 1.0) < 0.8, 0.0, 1e-15 * np.sign(time - 1.0))
     at_rest[-1] = 1.0

@@ -90,7 +90,7 @@ def test_it_is_named_alone(name: str) -> None:
     assert all(not others for others in found.alternatives.values())
 
 
-@pytest.mark.parametrize("seed", [12, 14])
+@pytest.mark.parametrize("seed", [12, 13, 14])
 def test_of_a_drive_that_lacks_nothing_nothing_is_named(seed: int) -> None:
     runs, _ = drive(seed)
     found = diagnose(Rig(), runs, **COULOMB)

@@ -37,7 +37,7 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
     """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
     and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
 
-    Not in a slow reversal, which an encoder does not resolve either.
+    Not in slow reversals, which an encoder does not resolve either.
 
     Parameters
     ----------
@@ -70,16 +70,17 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
 
 
 def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
-    """Whether a reversal at the acceleration from before to after would stay within the encoder's
-    step for about as long."""
+    """Whether a reversal at the acceleration from before to after, or two of them, would stay within
+    the encoder's step for about as long."""
     way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
     v0, v1 = velocity_m_s[before], velocity_m_s[after]
     # What rounding leaves of a speed is none.
     least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity_m_s)))
-    if v0 * v1 >= 0.0 or min(abs(v0), abs(v1)) < least:
+    if min(abs(v0), abs(v1)) < least:
         return False
-    rate = abs(v1 - v0) / (time_s[after] - time_s[before])
+    # A speed that grazes zero has its reversals, too, or none.
+    rate = (abs(v0) + abs(v1)) / (time_s[after] - time_s[before])
     still_s = 2.0 * np.sqrt(2.0 * STILL_STEPS * step / rate)
     return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
 

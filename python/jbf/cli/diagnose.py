@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     find_law(arguments.law)
     rig = inputs.rig(arguments.rig, arguments.law)
-    runs = inputs.runs(arguments.runs, first="RIG")
+    runs = inputs.runs(arguments.runs, rig, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.diagnosis import diagnose

@@ -83,6 +83,7 @@ class Diagnosis(Result):
     def to_dict(self) -> dict[str, Any]:
         """For JSON, as the file contract has it."""
         return {
+            **self.model.told_units(),
             "verdict": self.verdict,
             "effects": list(self.effects),
             "alternatives": {k: list(v) for k, v in self.alternatives.items()},
@@ -92,7 +93,7 @@ class Diagnosis(Result):
             "findings": [f.to_dict() for f in self.findings],
             "confounders": list(self.confounders),
             "next_experiment": self.next_experiment,
-            "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
+            "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
             "policy": self.policy.to_dict(),

@@ -84,8 +84,9 @@ def times(error_n: float, noise_n: float) -> str:
 def comparison_sentence(comparison: Comparison) -> str:
     """How far a model is from its runs, and how that compares with the noise."""
     rms, noise = comparison.rms_n, comparison.noise_n
+    unit = comparison.model.rig.quantities.force
     return (
-        f"RMS {number(rms)} N against a noise floor of {number(noise)} N: "
+        f"RMS {number(rms)} {unit} against a noise floor of {number(noise)} {unit}: "
         f"{times(rms, noise)} the noise"
     )
 
@@ -103,12 +104,13 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
 
 def _found(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
+    unit = diagnosis.model.rig.quantities.force
     reached = (
-        f"{number(last.holdout_rms_n)} N, {times(last.holdout_rms_n, last.noise_n)} "
-        f"the noise of {number(last.noise_n)} N"
+        f"{number(last.holdout_rms_n)} {unit}, {times(last.holdout_rms_n, last.noise_n)} "
+        f"the noise of {number(last.noise_n)} {unit}"
     )
     added = listed(diagnosis.effects)
-    fall = f"the held-out error falls from {number(first.holdout_rms_n)} N to {reached}"
+    fall = f"the held-out error falls from {number(first.holdout_rms_n)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":
         return (
             f"Nothing is missing: the bare {diagnosis.model.law} law predicts runs that it was "

@@ -40,7 +40,10 @@ def _add_next_run(parser: Parser) -> None:
         "--next-run", metavar="CSV", help="write its motion, to be played; needs a tie"
     )
     group.add_argument(
-        "--max-velocity-m-s", metavar="X", type=float, help="of the rig; as recorded"
+        "--max-velocity-m-s",
+        metavar="X",
+        type=float,
+        help="of the rig (of a rotary drive in rad/s); as recorded",
     )
     group.add_argument(
         "--max-acceleration-m-s2", metavar="X", type=float, help="of the rig; as recorded"

@@ -104,12 +104,20 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
         kinds.setdefault(finding.kind, []).append(finding)
     rows = []
     for kind, found in kinds.items():
-        alike = {f.words for f in found}
-        if len(alike) == 1 and len(found) > MOST_RUNS_NAMED:
-            said = [f"{alike.pop()}, in all of {count_of(len(found), 'run')}"]
-        else:
-            said = [f"{f.words}, in {f.run}" for f in found[:MOST_RUNS_NAMED]]
-            if len(found) > MOST_RUNS_NAMED:
-                said.append(f"and in {count_of(len(found) - MOST_RUNS_NAMED, 'run')} more")
+        runs: dict[str, list[str]] = {}
+        for f in found:
+            runs.setdefault(f.words, []).append(f.run)
+        said = [f"{words}, in {_named(those)}" for words, those in runs.items()]
+        rest = sum(map(len, list(runs.values())[MOST_RUNS_NAMED:]))
+        if rest:
+            said = [*said[:MOST_RUNS_NAMED], f"and in {count_of(rest, 'run')} more"]
         rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
     return rows
+
+
+def _named(runs: list[str]) -> str:
+    """Runs by name; the first few of many."""
+    if len(runs) <= MOST_RUNS_NAMED:
+        return ", ".join(runs)
+    more = count_of(len(runs) - MOST_RUNS_NAMED, "run")
+    return f"{', '.join(runs[:MOST_RUNS_NAMED])} and {more} more"

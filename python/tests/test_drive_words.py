@@ -12,6 +12,9 @@ import numpy as np
 import pytest
 from jbf import Comparison, Diagnosis, Fit, Model, Rig, Run
 from jbf.cli import main
+from jbf.cli.diagnose_many import _table
+from jbf.export.c import c
+from jbf.export.rust import rust
 from jbf.models.catalogue import find_parameter, laws, parameters_of
 from jbf.models.parameter_units import bare_name, shown, unit_of
 from jbf.records.drive import Drive
@@ -143,6 +146,53 @@ def test_pictures_of_a_joint() -> None:
 def test_pictures_of_a_slide() -> None:
     first = compared(SLIDE).plot()[0]
     assert (first.get_xlabel(), first.get_ylabel()) == ("Speed (m/s)", "Friction force (N)")
+    # A rig without any section has no bearing either.
+    plain = jbf.compare(Model(Rig(), law="coulomb"), runs_of(SLIDE)[:1]).plot()[0]
+    assert (plain.get_xlabel(), plain.get_ylabel()) == ("Speed (m/s)", "Friction force (N)")
+
+
+def test_pictures_of_a_bearing_stay() -> None:
+    r = records()[0]
+    run = Run.from_arrays(r.time_s, r.velocity_m_s, r.force_n, angle_rad=r.path / 0.0127)
+    first = jbf.compare(Model(Rig.thesis()), [run]).plot()[0]
+    assert first.get_xlabel() == "Surface speed (m/s)"
+    assert first.get_ylabel() == "Friction of one bearing (N)"
+
+
+def test_a_small_motor_is_no_other_case() -> None:
+    """Millinewton metres and tens of radians a second: the same names, every number scaled."""
+    torque, angle = 1.0 / 3000.0, 30.0
+    runs = [
+        Run.from_arrays(
+            r.time_s,
+            angle * r.velocity_m_s,
+            torque * r.force_n,
+            angle_rad=angle * r.path,
+            name=r.name,
+        )
+        for r in records()
+    ]
+    large, small = diagnosed(JOINT), jbf.diagnose(JOINT, runs, law="coulomb")
+    assert (small.verdict, small.effects) == (large.verdict, large.effects)
+    scale = {"F_c": torque, "F_v": torque / angle, "inertia_leak.m_e": torque / angle}
+    for name, factor in (scale | {"sensor_offset.b": torque}).items():
+        was, now = large.fit[name], small.fit[name]
+        assert now.value == pytest.approx(factor * was.value, rel=1e-4), name
+        assert now.stderr == pytest.approx(factor * was.stderr, rel=0.02), name
+
+
+def test_a_table_of_many_rigs_has_each_in_its_unit() -> None:
+    mixed = _table({"a": diagnosed(JOINT), "b": diagnosed(SLIDE)})
+    assert "held out (" not in mixed[0]
+    assert mixed[1].endswith(" N m")
+    assert mixed[2].endswith(" N")
+    assert "held out (N m)" in _table({"a": diagnosed(JOINT)})[0]
+
+
+def test_an_export_says_what_turns() -> None:
+    for export in (rust, c):
+        assert "N m, rad, rad/s for N, m, m/s" in export(fitted(JOINT).model)
+        assert "N m" not in export(fitted(SLIDE).model)
 
 
 def test_json_keeps_its_keys_and_tells_the_units() -> None:

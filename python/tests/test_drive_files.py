@@ -216,6 +216,22 @@ def test_a_run_belongs_to_its_kind_of_rig(tmp_path: Path) -> None:
     one_line(caught)
 
 
+@pytest.mark.parametrize("wrong", ["rig.toml", Path("rig.toml"), 3])
+def test_what_is_no_rig_is_one_line(wrong: object, tmp_path: Path) -> None:
+    file = record(tmp_path, {"time_s": TIME_S, "angle_rad": ANGLE, "torque_n_m": TORQUE})
+    for read in (jbf.read_run, jbf.read_runs):
+        with pytest.raises(InputError, match="the rig is ") as caught:
+            read(file, wrong)
+        one_line(caught)
+
+
+def test_a_drive_column_without_a_rig_says_what_is_needed(tmp_path: Path) -> None:
+    file = record(tmp_path, {"time_s": TIME_S, "position_m": ANGLE, "current_a": TORQUE})
+    with pytest.raises(InputError, match=r"a rig with \[drive\] tells what current_a is") as caught:
+        jbf.read_run(file)
+    one_line(caught)
+
+
 def test_a_written_run_reads_back(tmp_path: Path) -> None:
     rig = Rig(drive=Drive("rotary", "torque"))
     columns = {"time_s": TIME_S, "angle_rad": ANGLE, "velocity_rad_s": SPEED, "torque_n_m": TORQUE}

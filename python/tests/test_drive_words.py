@@ -22,6 +22,7 @@ from jbf.records.findings.saturation import find_saturation
 from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY
 from jbf.records.run import run_on
 from jbf.reporting.comparison_plots import plot_run
+from jbf.reporting.effect_words import limits_of, summary_of
 from rigsim import AxisRun, axis_campaign
 
 SLIDE = Rig(drive=Drive("linear", "force"))
@@ -187,6 +188,21 @@ def test_a_table_of_many_rigs_has_each_in_its_unit() -> None:
     assert mixed[1].endswith(" N m")
     assert mixed[2].endswith(" N")
     assert "held out (N m)" in _table({"a": diagnosed(JOINT)})[0]
+
+
+def test_the_catalogue_beside_a_law_in_newtons_has_no_bearing(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["effects", "--law", "coulomb"]) == 0
+    said = capsys.readouterr().out.partition("[not with")[0]
+    assert "the zero of the force sensor is off" in " ".join(said.split())
+    assert FOREIGN.search(said.replace("coupling or shaft", "")) is None
+    for page in (page for page in jbf.effects().values() if "coulomb" not in page.refused):
+        for quantities in (LINEAR, ROTARY):
+            words = summary_of(page, quantities) + limits_of(page, quantities)
+            assert FOREIGN.search(words.replace("coupling or shaft", "")) is None, page.name
+    assert main(["effects", "--law", "journal"]) == 0
+    assert "the load cell's zero is off" in " ".join(capsys.readouterr().out.split())
 
 
 def test_an_export_says_what_turns() -> None:

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
+from jbf.records.arguments import the_rig
 from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
 from jbf.records.counts import count_of
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
@@ -202,7 +203,8 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     """
     path = path_of(path)
     header, header_row, rows, numbers = _read_table(path)
-    of_drive = None if rig is None or rig.drive is None else DriveColumns.of(rig.drive)
+    drive = None if rig is None else the_rig(rig).drive
+    of_drive = None if drive is None else DriveColumns.of(drive)
     if of_drive is not None:
         of_drive.refuse_strangers(path, header_row, header)
         required = of_drive.required(header, need_friction)

@@ -26,14 +26,18 @@ def summary_of(effect: Effect, said: Quantities) -> str:
         "cogging": f"a motor's {said.noun} that rises and falls with every pitch of the way, at "
         "rest too",
     }
-    return own.get(effect.name, effect.summary)
+    return own.get(effect.name) or _here(effect.summary, said)
 
 
 def limits_of(effect: Effect, said: Quantities) -> str:
     """What the effect does not cover, in the same words."""
     if said.motion == "bearing":
         return effect.limits
-    words = effect.limits
+    return _here(effect.limits, said)
+
+
+def _here(words: str, said: Quantities) -> str:
+    """The catalogue's words without what a bearing's rig has."""
     for of_bearing, here in (
         ("the cell", said.sensor),
         ("the journal", "what is driven"),

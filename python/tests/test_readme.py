@@ -22,7 +22,7 @@ def test_control_python(capsys: pytest.CaptureFixture[str]) -> None:
     assert 0.0 < float(capsys.readouterr().out) < 0.1
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/control.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/control.md", "docs/drives.md"])
 def test_pictures_and_links_are_there(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     targets = re.findall(r"\]\(([^)#:]+)\)", text)

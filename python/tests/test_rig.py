@@ -54,7 +54,7 @@ def test_sections_may_be_absent(tmp_path: Path) -> None:
     [
         ("radius_m", "raduis_m", "key bearing.raduis_m", 'is not known; did you mean "radius_m"?'),
         ("[lubricant]", "[lubricnt]", "key lubricnt", 'did you mean "lubricant"?'),
-        ("[load]", "[zzz]", "key zzz", "is not known; known: bearing, lubricant, load"),
+        ("[load]", "[zzz]", "key zzz", "is not known; known: bearing, lubricant, load, drive"),
         ("mass_kg = 2.27\n", "", "key bearing.mass_kg", "is missing; add it to [bearing]"),
         ("0.0127", '"0.0127"', "key bearing.radius_m", '"0.0127" is not a number; write a plain'),
         ("0.0127", "true", "key bearing.radius_m", "a bool is not a number"),

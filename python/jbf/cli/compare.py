@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json, "--report": arguments.report}
     outputs.check(wanted, [arguments.model, *arguments.runs])
     model = inputs.model(arguments.model)
-    runs = inputs.runs(arguments.runs, first="MODEL")
+    runs = inputs.runs(arguments.runs, model.rig, first="MODEL")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.comparison.comparison import compare

@@ -41,7 +41,10 @@ def _add_next_run(parser: Parser) -> None:
         "--next-run", metavar="CSV", help="write its motion, to be played; needs a tie"
     )
     group.add_argument(
-        "--max-velocity-m-s", metavar="X", type=float, help="of the rig; as recorded"
+        "--max-velocity-m-s",
+        metavar="X",
+        type=float,
+        help="of the rig (of a rotary drive in rad/s); as recorded",
     )
     group.add_argument(
         "--max-acceleration-m-s2", metavar="X", type=float, help="of the rig; as recorded"
@@ -84,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.law != AUTO:
         find_law(arguments.law)
     rig = inputs.rig(arguments.rig, arguments.law)
-    runs = inputs.runs(arguments.runs, first="RIG")
+    runs = inputs.runs(arguments.runs, rig, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.diagnosis import diagnose

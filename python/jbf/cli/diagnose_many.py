@@ -92,7 +92,11 @@ def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
 
 
 def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
-    rows = [("campaign", "verdict", "effects", "held out (N)", "noise (N)")]
+    done = [r for r in found.values() if not isinstance(r, Exception)]
+    units = {r.model.rig.quantities.force for r in done} or {"N"}
+    # Rigs of several kinds have each number with its own unit.
+    head = f" ({units.pop()})" if len(units) == 1 else ""
+    rows = [("campaign", "verdict", "effects", f"held out{head}", f"noise{head}")]
     failed = []
     for name, result in found.items():
         if isinstance(result, Exception):
@@ -101,6 +105,8 @@ def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
             continue
         last = result.steps[-1]
         effects = ", ".join(result.effects) or "-"
-        row = (name, result.verdict, effects, number(last.holdout_rms_n), number(last.noise_n))
+        unit = "" if head else f" {result.model.rig.quantities.force}"
+        held_out, noise = (f"{number(x)}{unit}" for x in (last.holdout_rms_n, last.noise_n))
+        row = (name, result.verdict, effects, held_out, noise)
         rows.append(row)
     return [*columns(rows, "<<<>>", 0), *([""] if failed else []), *failed]

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_applies(arguments.law, effects)
     fixed = _fixed(arguments.fix, arguments.law, effects)
     rig = inputs.rig(arguments.rig, arguments.law)
-    runs = inputs.runs(arguments.runs, first="RIG")
+    runs = inputs.runs(arguments.runs, rig, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.estimation.fit import fit

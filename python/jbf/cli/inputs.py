@@ -15,7 +15,7 @@ from jbf.records.run import Run
 from jbf.records.run_files import read_runs
 from jbf.records.toml_file import read_toml
 
-_RIG_SECTIONS = {"bearing", "lubricant", "load"}
+_RIG_SECTIONS = {"bearing", "lubricant", "load", "drive"}
 
 
 def rig(path: str, law: str) -> Rig:
@@ -30,7 +30,7 @@ def rig(path: str, law: str) -> Rig:
             raise InputError(
                 file=path,
                 problem="is a model file, not a rig",
-                mend="name the rig's TOML with [bearing], [lubricant] and [load]",
+                mend="name the rig's TOML with [bearing], [lubricant] and [load], or with [drive]",
             ) from None
         raise error.within(file=path) from None
     return found
@@ -52,17 +52,17 @@ def model(path: str) -> Model:
         raise
 
 
-def runs(items: Sequence[str], *, first: str) -> list[Run]:
-    """The runs of files, folders and patterns; `first` is the argument before them."""
+def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
+    """The runs, on a rig, of files, folders and patterns; `first` is the argument before them."""
     for item in items:
         _refuse_toml(item, first)
-    return read_runs(items)
+    return read_runs(items, on)
 
 
-def motion(item: str) -> Run:
-    """One run that need not hold friction."""
+def motion(item: str, on: Rig) -> Run:
+    """One run, on a rig, that need not hold friction."""
     _refuse_toml(item, "MODEL")
-    return read_run(item, need_friction=False)
+    return read_run(item, on, need_friction=False)
 
 
 def _keys(path: str) -> set[str]:

@@ -24,14 +24,15 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--out": arguments.out}
     outputs.check(wanted, [arguments.model, arguments.motion])
     model = inputs.model(arguments.model)
-    motion = inputs.motion(arguments.motion)
+    motion = inputs.motion(arguments.motion, model.rig)
     try:
         friction = model.predict(motion)
     except InputError as error:
         raise error.within(file=arguments.motion) from None
     rows = zip(motion.time_s.tolist(), friction.tolist(), strict=True)
     # repr of a float is the shortest text that reads back to the same bits.
-    lines = ["time_s,friction_n", *(f"{t!r},{f!r}" for t, f in rows)]
+    column = model.rig.quantities.friction_column
+    lines = [f"time_s,{column}", *(f"{t!r},{f!r}" for t, f in rows)]
     outputs.write({arguments.out: "\n".join(lines) + "\n"})
     outputs.say(f"{len(motion)} samples of friction written to {arguments.out}", wanted)
     return 0

@@ -48,8 +48,9 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
     count = len(edges) + 1
     middle = [float(np.median(moving[np.digitize(moving, edges) == i])) for i in range(count)]
-    bins = [Bin(centre=-m, unit="m/s", direction=-1) for m in middle]
-    bins += [Bin(centre=m, unit="m/s", direction=1) for m in middle]
+    unit = campaign.rig.quantities.speed
+    bins = [Bin(centre=-m, unit=unit, direction=-1) for m in middle]
+    bins += [Bin(centre=m, unit=unit, direction=1) for m in middle]
     places = []
     for p in campaign.prepared:
         v = p.motion.velocity_m_s
@@ -66,13 +67,13 @@ def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
         names: tuple[str, ...] = ("boundary", "mixed", "full film")
         edges = np.array([BOUNDARY_SHARE, 1.0]) * u_tr
     else:
-        axis = "speed range"
+        axis, unit = "speed range", campaign.rig.quantities.speed
         whole = np.concatenate(speeds)
         edges = np.quantile(whole[whole > 0.0], [1 / 3, 2 / 3])
         names = (
-            f"slow (to {edges[0]:.2g} m/s)",
+            f"slow (to {edges[0]:.2g} {unit})",
             "medium",
-            f"fast (over {edges[1]:.2g} m/s)",
+            f"fast (over {edges[1]:.2g} {unit})",
         )
     places = [
         np.where(p.motion.resting, 0, 1 + np.digitize(speed, edges)).astype(np.intp)
@@ -119,7 +120,7 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
 def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
     values = [measure(p) for p in campaign.prepared]
     known = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values] or [np.zeros(0)])
-    unit = "s" if axis == "time since a rest" else "m"
+    unit = "s" if axis == "time since a rest" else campaign.rig.quantities.length
     if len(known) < 100:
         return Binned(axis, (), [np.full(len(v), -1, dtype=np.intp) for v in values])
     edges = np.unique(np.quantile(known, [0.05, 0.1, 0.2, 0.4, 0.7]))
@@ -162,20 +163,20 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
     return Binned("run", bins, places)
 
 
-def force_axis(predictions: Sequence[Array]) -> Binned:
-    """Samples by the force that a model predicts, N: along it a cell that is not straight shows."""
+def force_axis(predictions: Sequence[Array], unit: str = "N") -> Binned:
+    """Samples by the force that a model predicts: along it a cell that is not straight shows."""
     every = np.concatenate(list(predictions))
     edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))
     count = len(edges) + 1
     places = [np.digitize(f, edges).astype(np.intp) for f in predictions]
     sorted_ = np.concatenate(places)
     bins = tuple(
-        Bin(centre=float(np.median(every[sorted_ == i])), unit="N")
+        Bin(centre=float(np.median(every[sorted_ == i])), unit=unit)
         if np.any(sorted_ == i)
         else Bin("none")
         for i in range(count)
     )
-    return Binned("force", bins, places)
+    return Binned("force", bins, places, unit)
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
@@ -194,4 +195,5 @@ def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
         axes.append(_angle(campaign, u_tr))
     axes.append(_since(campaign, "time since a rest", _time_since_rest))
     axes.append(_since(campaign, "distance since a reversal", _distance_since_reversal))
-    return [a for a in axes if a.bins]
+    unit = campaign.rig.quantities.force
+    return [replace(a, force_unit=unit) for a in axes if a.bins]

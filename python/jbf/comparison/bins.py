@@ -33,7 +33,7 @@ Axis = Literal[
 Direction = Literal[-1, 0, 1]
 """Of the motion in a bin: backwards, either way, forwards."""
 
-_CENTRES = {"velocity": "v = {:+.3g} m/s", "force": "f = {:+.3g} N", "angle": "angle {:.0f} deg"}
+_CENTRES = {"velocity": "v = {:+.3g}", "force": "f = {:+.3g}", "angle": "angle {:.0f}"}
 _AFTER = {"time since a rest": "a rest", "distance since a reversal": "a reversal"}
 
 
@@ -74,12 +74,14 @@ class Bin:
 class Binned:
     """Every run's samples sorted into bins.
 
-    `places` holds, one array a run, which bin each sample is in; -1 means in none.
+    `places` holds, one array a run, which bin each sample is in; -1 means in none. `force_unit` is
+    that of the residuals.
     """
 
     axis: Axis
     bins: tuple[Bin, ...]
     places: list[Places]
+    force_unit: str = "N"
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -109,7 +111,7 @@ def direction_words(b: Bin) -> str:
 def label(axis: Axis, b: Bin) -> str:
     """A bin in words: where it stands, then the direction of its motion."""
     if axis in _CENTRES and b.centre is not None:
-        place = _CENTRES[axis].format(b.centre)
+        place = f"{_CENTRES[axis].format(b.centre)} {b.unit}"
     elif axis in _AFTER:
         place = f"{span_words(b)} after {_AFTER[axis]}"
     elif b.span is not None:

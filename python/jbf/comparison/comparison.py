@@ -70,6 +70,7 @@ class Comparison(Result):
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
+            **self.model.told_units(),
             "rms_n": self.rms_n,
             "noise_n": self.noise_n,
             "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],

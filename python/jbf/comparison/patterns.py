@@ -126,23 +126,24 @@ def pattern_along(
 def pattern_words(axis: Binned, means: Array, counts: Counts, found: Array | None = None) -> str:
     """The pattern of the means in words; those in which it was `found` say in which bins."""
     weight = counts * (means if found is None else found) ** 2
+    unit = axis.force_unit
     # Of very many bins the strongest has little, too.
     strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
     ways = np.array([b.direction for b in axis.bins])
     both_ways = bool(np.all(ways != 0)) and strong.sum() > 1
     if both_ways and np.all(np.sign(means[strong]) == ways[strong]):
         size = np.average(np.abs(means[strong]), weights=counts[strong])
-        lead = f"sign of v: record above the model by {size:.2g} N in the direction of motion"
+        lead = f"sign of v: record above the model by {size:.2g} {unit} in the direction of motion"
     elif both_ways and np.all(np.sign(means[strong]) == -ways[strong]):
         size = np.average(np.abs(means[strong]), weights=counts[strong])
-        lead = f"sign of v: record below the model by {size:.2g} N in the direction of motion"
+        lead = f"sign of v: record below the model by {size:.2g} {unit} in the direction of motion"
     elif np.all(means[strong] > 0) or np.all(means[strong] < 0):
         size = np.average(means[strong], weights=counts[strong])
-        lead = f"one sign throughout: record minus model {size:+.2g} N"
+        lead = f"one sign throughout: record minus model {size:+.2g} {unit}"
     else:
         lead = ""
     worst = np.argsort(-np.where(strong, counts * means**2, -1.0), kind="stable")[:2]
-    spots = "; ".join(f"{means[i]:+.2g} N at {axis.labels[i]}" for i in worst if strong[i])
+    spots = "; ".join(f"{means[i]:+.2g} {unit} at {axis.labels[i]}" for i in worst if strong[i])
     if not lead:
         return f"most {spots}"
     throughout = strong.sum() / max(np.count_nonzero(counts), 1) > MOST_OF

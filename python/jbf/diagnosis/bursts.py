@@ -62,8 +62,9 @@ def find_bursts(
                 bursts.append((abs(float(r[top])), float(p.run.time_s[top]), p.run.name))
     bursts.sort(reverse=True)
     largest = ", ".join(f"{time:.1f} s in {name}" for _, time, name in bursts[:NAMED])
+    unit = prepared[0].run.quantities.force
     size = "of" if len(bursts) == 1 else "the largest"
-    where = f"{count_of(len(bursts), 'burst')}, {size} {bursts[0][0]:.2g} N: at {largest}"
+    where = f"{count_of(len(bursts), 'burst')}, {size} {bursts[0][0]:.2g} {unit}: at {largest}"
     return [Remainder("time", where, min(share, 1.0))]
 
 

@@ -22,6 +22,7 @@ from jbf.estimation.long_run import score_square
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
+from jbf.models.parameter_units import shown_name, unit_of
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -168,9 +169,10 @@ def own_step(problem: Problem, solution: Solution, run: str) -> str:
     step = float(j[:, best] @ r) / float(size[best]) ** 2
     place = problem.open[best]
     name, page = problem.names[place], problem.parameters[problem.names[place]]
+    unit = unit_of(name, page, problem.law, problem.campaign.rig.quantities)
+    said = shown_name(name, page, unit)
     more = "higher" if step > 0.0 else "lower"
     if problem.log[place]:
         part = float(np.expm1(min(step, 700.0)))
-        return f"{name} {100.0 * abs(part):.3g} % {more}"
-    unit = "" if page.unit == "-" else f" {page.unit}"
-    return f"{name} {abs(step):.2g}{unit} {more}"
+        return f"{said} {100.0 * abs(part):.3g} % {more}"
+    return f"{said} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"

@@ -142,7 +142,7 @@ def _clearest(
     if best is None:
         return None
     _, name, unit, sd, column = best
-    kind, words = _words(name, sd)
+    kind, words = _words(name, sd, unit)
     runs = ", ".join(samples.runs)
     finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
     own = [c[:, None] * sd for c in column]
@@ -154,9 +154,10 @@ def _clearest(
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
     """What a deviation adds to the friction: name, unit, one column a run."""
-    found = [("zero", "N", [np.ones(len(r)) for r in solution.residuals])]
+    said = problem.campaign.rig.quantities
+    found = [("zero", said.force, [np.ones(len(r)) for r in solution.residuals])]
     times = [p.run.time_s for p in problem.campaign.prepared]
-    found.append(("drift", "N/s", [t - 0.5 * (t[0] + t[-1]) for t in times]))
+    found.append(("drift", said.unit("N/s"), [t - 0.5 * (t[0] + t[-1]) for t in times]))
     by_name = {problem.names[i]: k for k, i in enumerate(problem.open)}
     for name in ("U_tr_m_s", "gamma"):
         # A warmer oil: a film that carries later, and less drag.
@@ -186,11 +187,11 @@ def _spread(
     return spread_between(np.array(estimates), np.array(precisions))
 
 
-def _words(name: str, sd: float) -> tuple[str, str]:
+def _words(name: str, sd: float, unit: str) -> tuple[str, str]:
     if name == "zero":
-        return "level_by_run", f"the zero differs by run by {sd:.2g} N (1 s.d.)"
+        return "level_by_run", f"the zero differs by run by {sd:.2g} {unit} (1 s.d.)"
     if name == "drift":
-        return "drift_by_run", f"the zero drifts, by another {sd:.2g} N/s (1 s.d.) in each run"
+        return "drift_by_run", f"the zero drifts, by another {sd:.2g} {unit} (1 s.d.) in each run"
     if name == "gain":
         return "gain_by_run", f"the gain differs by run by {100.0 * sd:.2g} % (1 s.d.)"
     what = "transition speed" if name == "U_tr_m_s" else "viscous friction"

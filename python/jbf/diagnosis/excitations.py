@@ -85,14 +85,14 @@ class Excitation:
     load_n: float | None
 
 
-def excitations(limits: Limits, step_s: float) -> Iterator[Excitation]:
+def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
     """Motions within limits that are filled in: each begins at rest."""
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
     top, sharp = limits.velocity_m_s, limits.acceleration_m_s2
     assert top is not None
     assert sharp is not None
     time = np.arange(0.0, limits.duration_s, step_s)
-    for words, velocity in _motions(time, top, sharp):
+    for words, velocity in _motions(time, top, sharp, speed_unit):
         if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * sharp * step_s:
             continue
         for load in loads:
@@ -100,31 +100,31 @@ def excitations(limits: Limits, step_s: float) -> Iterator[Excitation]:
             yield Excitation(words + under, velocity, load)
 
 
-def _motions(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
+def _motions(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
     duration = float(t[-1]) if len(t) else 0.0
     # So long a start that its acceleration stays within half of what is allowed.
     start = np.clip(t * 0.5 * sharp / top, 0.0, 1.0)
     for share in SHARES:
         for w in RATES_RAD_S:
             if w * duration > 4.0 * np.pi:
-                yield _sine(share * top, w), share * top * np.sin(w * t)
+                yield _sine(share * top, w, unit), share * top * np.sin(w * t)
     for w in RATES_RAD_S:
         if w * duration > 4.0 * np.pi:
-            name = f"a one-way sine from {0.1 * top:.3g} to {top:.3g} m/s at {w:g} rad/s"
+            name = f"a one-way sine from {0.1 * top:.3g} to {top:.3g} {unit} at {w:g} rad/s"
             yield name, top * start * (0.55 + 0.45 * np.sin(w * t))
     for share in (1.0, 0.3):
-        yield f"a run at a constant {share * top:.3g} m/s", share * top * start
+        yield f"a run at a constant {share * top:.3g} {unit}", share * top * start
     for share in STOP_SHARES:
-        yield _stops(share * top), _stop_and_go(t, share * top, sharp)[0]
-    yield from _mixed(t, top, sharp)
+        yield _stops(share * top, unit), _stop_and_go(t, share * top, sharp)[0]
+    yield from _mixed(t, top, sharp, unit)
 
 
-def _sine(speed: float, w: float) -> str:
-    return f"a two-way sine of {speed:.3g} m/s at {w:g} rad/s"
+def _sine(speed: float, w: float, unit: str) -> str:
+    return f"a two-way sine of {speed:.3g} {unit} at {w:g} rad/s"
 
 
-def _stops(speed: float) -> str:
-    return f"stop and go to {speed:.3g} m/s, both ways, with rests of {REST_S:g} s"
+def _stops(speed: float, unit: str) -> str:
+    return f"stop and go to {speed:.3g} {unit}, both ways, with rests of {REST_S:g} s"
 
 
 def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
@@ -137,7 +137,7 @@ def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
     return speed * height * way, 2.0 * cycle
 
 
-def _mixed(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
+def _mixed(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
     """Something of everything, one after the other: stop and go, a fast sine, a short and quick
     one. Each ends at rest, so that the next can begin there."""
     duration = float(t[-1]) if len(t) else 0.0
@@ -156,5 +156,6 @@ def _mixed(t: Array, top: float, sharp: float) -> Iterator[tuple[str, Array]]:
             then_s = after_s + waves * np.pi / quick[1.0]
             velocity = np.where(t < after_s, first, top * np.sin(quick[1.0] * (t - after_s)))
             last = short * top * np.sin(quick[short] * (t - then_s))
-            parts = (_stops(share * top), _sine(top, quick[1.0]), _sine(short * top, quick[short]))
+            sines = (_sine(top, quick[1.0], unit), _sine(short * top, quick[short], unit))
+            parts = (_stops(share * top, unit), *sines)
             yield ", then ".join(parts), np.where(t < then_s, velocity, last)

@@ -90,9 +90,10 @@ def propose(
     excitation, run = chosen
     sigma = float(np.sqrt(best / len(run)))
     noise_n = max(model.noise_n for model in models.values())
+    unit = candidates.campaign.rig.quantities.force
     words = (
         f"record {excitation.words} for {limits.duration_s:g} s: there {names} differ by "
-        f"{sigma * noise_n:.2g} N RMS after a new fit, {sigma:.2g} times the noise"
+        f"{sigma * noise_n:.2g} {unit} RMS after a new fit, {sigma:.2g} times the noise"
     )
     return Experiment(words, run, sigma * noise_n, sigma, best)
 

@@ -61,7 +61,7 @@ def find_patterns(
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
     # Along the model's own force a cell that is not straight shows.
-    force = force_axis(problem.predict(solution.values))
+    force = force_axis(problem.predict(solution.values), problem.campaign.rig.quantities.force)
     share, sigma = policy.pattern_share, policy.pattern_sigma
     found = (
         pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)

@@ -91,6 +91,7 @@ class Diagnosis(Result):
     def to_dict(self) -> dict[str, Any]:
         """For JSON, as the file contract has it."""
         return {
+            **self.model.told_units(),
             "verdict": self.verdict,
             "effects": list(self.effects),
             "alternatives": {k: list(v) for k, v in self.alternatives.items()},
@@ -103,7 +104,7 @@ class Diagnosis(Result):
             "laws": [t.to_dict() for t in self.laws],
             "simpler_law": None if self.simpler_law is None else self.simpler_law.to_dict(),
             "next_experiment": self.next_experiment,
-            "parameters": {name: p.to_dict() for name, p in self.fit.parameters.items()},
+            "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
             "policy": self.policy.to_dict(),

@@ -99,7 +99,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     if not found:
         return ()
     rms, name = min(found)
-    where = (
-        f"{name} fits {base.rms_n:.3g} N down to {rms:.3g} N but predicts runs left out no better"
-    )
+    unit = candidates.campaign.rig.quantities.force
+    fits = f"{name} fits {base.rms_n:.3g} {unit} down to {rms:.3g} {unit}"
+    where = f"{fits} but predicts runs left out no better"
     return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)

@@ -67,6 +67,7 @@ def left_out_confirms(evidence: float, gained_share: float, better: float, polic
 def try_candidates(candidates: Candidates, present: Names) -> Round:
     """Fit every candidate beside the effects present, and say which should be added."""
     base, policy = candidates.converge(present), candidates.policy
+    unit = candidates.campaign.rig.quantities.force
     ranked = _rank(candidates, present, base)
     leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
@@ -95,13 +96,13 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
                 if _found_its_way(candidates, present, name, base):
                     return try_candidates(candidates, present)
                 leader, best = name, gain
-                outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} N"
+                outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} {unit}"
             else:
                 outcome = "rejected"
-                reason = f"fits better but predicts left-out runs no better ({after:.4g} N)"
+                reason = f"fits better but predicts left-out runs no better ({after:.4g} {unit})"
                 unconfirmed.add(name)
         elif gain > 0 and _leaves_more(found, least, policy):
-            outcome, reason = "rejected", f"leaves {rms:.3g} N where {leader} does not"
+            outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"
         elif gain > 0 and gain > best - policy.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
         elif gain > 0:

@@ -18,7 +18,7 @@ from jbf.estimation.likelihood import unexplained_square
 from jbf.models.chain import core_load_n, core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
-from jbf.records.run import Run
+from jbf.records.run import Run, run_on
 
 Array = npt.NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def motions(
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
     """Every motion that the rig can make, as a run to play."""
     rig = candidates.campaign.rig
-    for excitation in excitations(limits, step_s):
+    for excitation in excitations(limits, step_s, rig.quantities.speed):
         run = _run(candidates, excitation, step_s)
         yield excitation, run, core_motion(rig, run, imposed(rig, run))
 
@@ -85,4 +85,5 @@ def _run(candidates: Candidates, excitation: Excitation, step_s: float) -> Run:
     place = {"position_m": path} if linear else {"angle_rad": path / radius}
     load_n = excitation.load_n or core_load_n(campaign.rig)
     load = None if load_n is None else np.full(len(time), load_n)
-    return Run.from_arrays(time, velocity, load_n=load, name="next", **place)
+    run = Run.from_arrays(time, velocity, load_n=load, name="next", **place)
+    return run_on(campaign.rig, run)

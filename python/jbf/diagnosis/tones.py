@@ -57,18 +57,24 @@ def find_tones(
     share = power / max(total, 1e-300)
     if share < policy.tone_share:
         return []
-    return [Remainder("frequency", _words(lines, len(prepared)), min(share, 1.0))]
+    return [
+        Remainder(
+            "frequency",
+            _words(lines, len(prepared), prepared[0].run.quantities.force),
+            min(share, 1.0),
+        )
+    ]
 
 
-def _words(lines: list[tuple[float, float, str]], runs: int) -> str:
+def _words(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
     """One tone in many runs, or each with its own."""
     middle = float(np.median([x[0] for x in lines]))
     same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
     scope = "in all runs" if len(lines) == runs else "in " + ", ".join(x[2] for x in lines)
     if len(same) == len(lines):
         amplitude = float(np.median([x[1] for x in same]))
-        return f"a {middle:.2f} Hz tone, amplitude {amplitude:.2g} N, {scope}"
-    return "tones: " + ", ".join(f"{x[0]:.2f} Hz of {x[1]:.2g} N in {x[2]}" for x in lines)
+        return f"a {middle:.2f} Hz tone, amplitude {amplitude:.2g} {unit}, {scope}"
+    return "tones: " + ", ".join(f"{x[0]:.2f} Hz of {x[1]:.2g} {unit} in {x[2]}" for x in lines)
 
 
 def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:

@@ -108,7 +108,7 @@ class Campaign:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
                 return f"not every run has the column {column}"
         if "angle" in needs and not self.has_angle:
-            return "not every run has the shaft's angle"
+            return f"not every run has {self.rig.quantities.mover}'s angle"
         if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
             return "not every run has the path of the drive"
         if "position" in needs and not all(has_position(p.run) for p in self.prepared):

@@ -21,7 +21,7 @@ from jbf.records.findings.noisy_load import find_noisy_load, steady_load
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
-from jbf.records.run import Run, require
+from jbf.records.run import Run, require, run_on
 
 Array = npt.NDArray[np.float64]
 
@@ -55,6 +55,7 @@ class Prepared:
         InputError
             The run has no friction, or nothing moves in it.
         """
+        run = run_on(rig, run)
         require(run, "friction_n", "a comparison with the model")
         motion = imposed(rig, run)
         assert run.friction_n is not None
@@ -70,10 +71,11 @@ class Prepared:
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(
                 file=run.path or run.name,
-                problem="the shaft never moves",
+                problem=f"{run.quantities.mover} never moves",
                 mend="leave this run out, or record one with motion",
             )
         more = (
+            *run.reading,
             *motion.findings,
             *find_pushing(run, motion, examined.usable),
             *find_noisy_load(run.name, run.load_n),

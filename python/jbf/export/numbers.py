@@ -44,6 +44,7 @@ class Numbers:
     clock: str
     bearing: _core.BearingSizes | None
     load_n: float
+    turns: bool = False
 
     @classmethod
     def of(cls, model: Model) -> Numbers:
@@ -72,6 +73,7 @@ class Numbers:
             clock=model.clock,
             bearing=core_bearing(model.rig),
             load_n=core_load_n(model.rig) or 1.0,
+            turns=model.rig.quantities.motion == "rotary",
         )
 
     @property
@@ -82,7 +84,8 @@ class Numbers:
     def title(self) -> str:
         """Law and effects, for people."""
         effects = ", ".join(group.name for group in self.effects)
-        return f"law {self.law.name}; effects: {effects or 'none'}"
+        units = "; of a rotary drive: N m, rad, rad/s for N, m, m/s" if self.turns else ""
+        return f"law {self.law.name}; effects: {effects or 'none'}{units}"
 
 
 def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:

@@ -27,7 +27,7 @@ from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
-from jbf.records.run import Run
+from jbf.records.run import Run, run_on
 
 Array = npt.NDArray[np.float64]
 MAX_STEP_S = 0.02
@@ -63,6 +63,11 @@ def check_rig(rig: Rig, law: str) -> None:
         ("lubricant", rig.lubricant),
         ("load", rig.load),
     ):
+        if there is None and rig.drive is not None:
+            raise InputError(
+                problem=f"the rig is a drive, and the law {law} is one of journal bearings",
+                mend="choose a law for it: --law coulomb, stribeck or lugre (`jbf.laws()`)",
+            )
         if there is None:
             raise InputError(
                 problem=f"the rig has no [{section}]",
@@ -126,7 +131,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
     """The motion that a run imposed on the rig's journal or slider."""
-    return impose(one_run(run), None if rig.bearing is None else rig.bearing.radius_m)
+    return impose(run_on(rig, one_run(run)), rig.radius_m)
 
 
 def core_motion(

@@ -32,6 +32,7 @@ from jbf.models.chain import (
 )
 from jbf.models.driven_motion import driven_motion
 from jbf.models.model_file import model_file_text, read_model_file, write_model_file
+from jbf.models.parameter_units import shown
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock, ModelFile
@@ -164,6 +165,22 @@ class Model:
                 bearing=core_bearing(self.rig),
                 load_n=core_load_n(self.rig),
             )
+
+    def told_units(self) -> dict[str, dict[str, str]]:
+        """For JSON: `units` of a rig with a drive, whose keys name newtons and metres whatever it
+        is; empty of any other."""
+        said = self.rig.quantities
+        return {} if self.rig.drive is None else {"units": said.to_dict()}
+
+    def told_parameters(
+        self, parameters: Mapping[str, ParameterValue]
+    ) -> dict[str, dict[str, float | str | bool | None]]:
+        """For JSON: each parameter, of a rig with a drive with its `unit`."""
+        units = shown(self.law, self.effects, self.rig.quantities)
+        return {
+            name: p.to_dict() | ({} if self.rig.drive is None else {"unit": units[name][1]})
+            for name, p in parameters.items()
+        }
 
     def _file(self) -> ModelFile:
         return ModelFile(

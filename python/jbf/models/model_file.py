@@ -25,6 +25,10 @@ jbf model file. Parameters are in SI units, stderr is one standard error; a bare
 f_m = 0.26. What is held was not determined: its value predicts, and is no answer. Each effect in
 the list has its parameters in [parameters.EFFECT]."""
 
+_TURNING = """\
+The rig is a rotary drive: where a parameter's name ends in n, m or kg, read N m, rad or kg m^2
+(F_v_n_s_m is in N m s/rad)."""
+
 
 def _text(content: Mapping[str, Any], key: str, default: str | None = None) -> str:
     value = content.get(key, default)
@@ -120,6 +124,9 @@ def model_file_text(model: ModelFile) -> str:
     document = tomlkit.document()
     for line in _HEADER.splitlines():
         document.add(tomlkit.comment(line))
+    if model.rig.quantities.motion == "rotary":
+        for line in _TURNING.splitlines():
+            document.add(tomlkit.comment(line))
     document["format"] = FORMAT
     document["law"] = model.law
     document["clock"] = model.clock

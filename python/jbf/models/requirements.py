@@ -18,7 +18,7 @@ def has_angle(rig: Rig, run: Run) -> bool:
 
 def has_path(rig: Rig, run: Run) -> bool:
     """True where the run tells how far the drive has gone, in the units of its speed."""
-    return run.position_m is not None or (run.angle_rad is not None and rig.bearing is not None)
+    return run.position_m is not None or (run.angle_rad is not None and rig.radius_m is not None)
 
 
 def has_position(run: Run) -> bool:
@@ -42,8 +42,8 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
                 mend="drop position_m, or give the rig its [bearing]",
             )
         if "position" in needs and not has_position(run):
-            require(run, "angle_rad" if rig.bearing else "position_m", f"the effect {name}")
+            require(run, "angle_rad" if rig.radius_m else "position_m", f"the effect {name}")
         if "path" in needs and not has_path(rig, run):
-            if rig.bearing is not None:
+            if rig.radius_m is not None:
                 require(run, "angle_rad", f"the effect {name}")
             require(run, "position_m", f"without a bearing's radius the effect {name}")

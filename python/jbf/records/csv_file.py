@@ -9,20 +9,38 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
+from jbf.records.arguments import the_rig
 from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
 from jbf.records.counts import count_of
+from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
+from jbf.records.drive_columns import DriveColumns
+from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.text_files import path_of, read_text
 
 Array = npt.NDArray[np.float64]
 
+OF_DRIVES = (
+    "torque_n_m",
+    "motor_torque_n_m",
+    "current_a",
+    "torque_percent",
+    "force_percent",
+    "velocity_rad_s",
+    "speed_rpm",
+    "motor_angle_rad",
+    "motor_velocity_rad_s",
+    "motor_speed_rpm",
+)
+"""Columns that only a rig with a drive can tell the meaning of."""
 _HEADER_EXAMPLE = "time_s,velocity_m_s,friction_n"
 _ALIASES = {
     "t": "time_s",
@@ -42,20 +60,30 @@ _ALIASES = {
 """Other names that people give a column, for the suggestion only."""
 
 
-def _near_miss(word: str, absent: Iterable[str]) -> str | None:
+def _near_miss(
+    word: str, absent: Iterable[str], aliases: Mapping[str, str] = _ALIASES
+) -> str | None:
     """The absent column that `word` looks like a slip of.
 
     A word of more parts than the column (``position_ref_m``) is a quantity of its own.
     """
     absent = list(absent)
-    alias = _ALIASES.get(word.lower())
+    alias = aliases.get(word.lower())
     if alias in absent:
         return alias
     shorter = [c for c in absent if word.count("_") <= c.count("_")]
     return closest(word, shorter, 0.7)
 
 
-def _checked_header(path: Path, row: int, header: Sequence[str], required: Sequence[str]) -> None:
+def _checked_header(
+    path: Path,
+    row: int,
+    header: Sequence[str],
+    required: Sequence[str],
+    of_drive: DriveColumns | None,
+) -> None:
+    known = COLUMNS if of_drive is None else of_drive.known
+
     def wrong(column: str | None, problem: str, mend: str) -> InputError:
         return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
 
@@ -70,11 +98,13 @@ def _checked_header(path: Path, row: int, header: Sequence[str], required: Seque
     for name in header:
         if name and header.count(name) > 1:
             raise wrong(name, "stands twice in the header", "keep one and rename or drop the other")
-    absent = [name for name in COLUMNS if name not in header]
+    # A drive's file holds much else: there only what must be there is looked for.
+    absent = [name for name in (COLUMNS if of_drive is None else required) if name not in header]
+    aliases = _ALIASES if of_drive is None else _ALIASES | DRIVE_ALIASES
     misses = {
         miss: name
         for name in header
-        if name not in COLUMNS and (miss := _near_miss(name, absent)) is not None
+        if name not in known and (miss := _near_miss(name, absent, aliases)) is not None
     }
     for name in required:
         if name in absent:
@@ -82,6 +112,9 @@ def _checked_header(path: Path, row: int, header: Sequence[str], required: Seque
                 mend = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
                 mend = f"add it; the header has {listed(header)}"
+                told = [other for other in OF_DRIVES if other in header]
+                if of_drive is None and told:
+                    mend += f"; a rig with [drive] tells what {told[0]} is"
             raise wrong(name, "is missing", mend)
     for name, found in misses.items():
         raise wrong(
@@ -144,7 +177,7 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
     return header, numbers[0], records[1:], numbers[1:]
 
 
-def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
+def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = True) -> Run:
     """Read one run from CSV.
 
     The header names the columns; ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
@@ -157,6 +190,9 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
     ----------
     path : path
         The file.
+    rig : Rig, optional
+        What it was recorded on. Its drive, where it has one, says which columns hold friction and
+        motion (``docs/drives.md``) and what converts them.
     need_friction : bool
         False lets ``friction_n`` be absent, as in a motion to predict for.
 
@@ -167,12 +203,15 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
     """
     path = path_of(path)
     header, header_row, rows, numbers = _read_table(path)
-    # The first that tells the motion will do; where there is none, the speed is missing.
-    motion = next((column for column in MOTION if column in header), MOTION[0])
-    if any(_near_miss(name, MOTION[:1]) for name in header):
-        motion = MOTION[0]
-    required = ["time_s", motion] + (["friction_n"] if need_friction else [])
-    _checked_header(path, header_row, header, required)
+    drive = None if rig is None else the_rig(rig).drive
+    of_drive = None if drive is None else DriveColumns.of(drive)
+    if of_drive is not None:
+        of_drive.refuse_strangers(path, header_row, header)
+        required = of_drive.required(header, need_friction)
+    else:
+        required = _required(header, need_friction)
+    known = COLUMNS if of_drive is None else of_drive.known
+    _checked_header(path, header_row, header, required, of_drive)
     if not rows:
         raise InputError(file=path, problem="has a header but no samples", mend="add the samples")
     if set(map(len, rows)) != {len(header)}:
@@ -188,11 +227,24 @@ def read_run(path: PathLike, *, need_friction: bool = True) -> Run:
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
-            if name in COLUMNS:
+            if name in known:
                 at = next(i for i, cell in enumerate(cells) if not _is_number(cell))
                 raise _bad_cell(path, numbers[at], name, cells[at]) from None
             continue
-        if name in COLUMNS or (name and np.isfinite(values).all()):
+        if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
     check_columns(path.stem, columns, path, numbers)
-    return Run.of_columns(path.stem, columns, path)
+    if of_drive is None:
+        return Run.of_columns(path.stem, columns, path)
+    columns, findings = of_drive.converted(path.stem, columns)
+    run = Run.of_columns(path.stem, columns, path)
+    return replace(run, quantities=of_drive.drive.quantities, reading=findings)
+
+
+def _required(header: Sequence[str], need_friction: bool) -> list[str]:
+    """Columns that must be there, of a machine without a drive in its rig."""
+    # The first that tells the motion will do; where there is none, the speed is missing.
+    motion = next((column for column in MOTION if column in header), MOTION[0])
+    if any(_near_miss(name, MOTION[:1]) for name in header):
+        motion = MOTION[0]
+    return ["time_s", motion] + (["friction_n"] if need_friction else [])

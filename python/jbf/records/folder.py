@@ -25,7 +25,8 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
         raise InputError(
             file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
         )
-    return read_rig(path), read_runs(folder)
+    rig = read_rig(path)
+    return rig, read_runs(folder, rig)
 
 
 def campaigns_in(folder: PathLike) -> dict[str, Path]:

@@ -1,4 +1,4 @@
-"""A rig: the bearing, its lubricant and its load, as a TOML file and as frozen values."""
+"""A rig: the bearing, its lubricant and its load, or a drive, as a TOML file and frozen values."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import tomlkit
 
 from jbf import _core
 from jbf.errors import InputError, quoted
+from jbf.records.drive import Drive
+from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.records.toml_file import PathLike, number, read_toml, refuse_unknown, table
 from jbf.text_files import write_text
 
@@ -106,11 +108,38 @@ def _section(
 
 @dataclass(frozen=True)
 class Rig:
-    """What a run was measured on; a law that needs no bearing leaves its sections None."""
+    """What a run was measured on; a law that needs no bearing leaves its sections None.
+
+    A `drive` says in which quantities a machine without bearings was recorded and is told.
+    """
 
     bearing: Bearing | None = None
     lubricant: Lubricant | None = None
     load: Load | None = None
+    drive: Drive | None = None
+
+    def __post_init__(self) -> None:
+        if self.bearing is not None and self.drive is not None:
+            raise InputError(
+                key="drive",
+                problem="stands beside a [bearing], and both say what friction is",
+                mend="keep one: [bearing] for journal bearings, [drive] for any other machine",
+            )
+
+    @property
+    def quantities(self) -> Quantities:
+        """The units and words of its friction and motion."""
+        if self.drive is not None:
+            return self.drive.quantities
+        return LINEAR if self.bearing is None else OF_BEARING
+
+    @property
+    def radius_m(self) -> float | None:
+        """Way for one radian of the recorded angle: the journal's radius, m, or one of a rotary
+        drive, whose way is its angle; None where an angle is no way."""
+        if self.bearing is not None:
+            return self.bearing.radius_m
+        return 1.0 if self.quantities.motion == "rotary" else None
 
     @classmethod
     def from_mapping(
@@ -136,6 +165,9 @@ class Rig:
                 _section(Bearing, mapping, "bearing", prefix),
                 _section(Lubricant, mapping, "lubricant", prefix),
                 _section(Load, mapping, "load", prefix),
+                Drive.from_mapping(mapping["drive"], f"{prefix}drive")
+                if "drive" in mapping
+                else None,
             )
         except InputError as error:
             raise error.within(file=file) from None
@@ -154,8 +186,12 @@ class Rig:
         return cls(Bearing(**sizes), lubricant, Load(normal_n=loads_n[table]))
 
     def to_mapping(self) -> dict[str, dict[str, Any]]:
-        """The nested mapping of plain values; sections that are None are left out."""
-        return {name: section for name, section in asdict(self).items() if section is not None}
+        """The nested mapping of plain values; sections and keys that are None are left out."""
+        return {
+            name: {key: value for key, value in section.items() if value is not None}
+            for name, section in asdict(self).items()
+            if section is not None
+        }
 
     def write(self, path: PathLike) -> None:
         """Write the rig as TOML, whole or not at all; reading it gives an equal rig.

@@ -8,14 +8,19 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.records.checks import COLUMNS, MOTION, as_array, check_columns, frozen, listed
+from jbf.records.findings.finding import Finding
+from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.text_files import write_text
+
+if TYPE_CHECKING:
+    from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
 PathLike = str | os.PathLike[str]
@@ -49,6 +54,10 @@ class Run:
         The file it came from.
     speed_recorded : bool
         False where the speed is but a difference of the position, or left to the angle.
+    quantities : Quantities
+        Units and words; those of a rotary drive have N m in the place of N and rad in that of m.
+    reading : tuple of Finding
+        What was converted when the run was read.
     """
 
     name: str
@@ -62,9 +71,11 @@ class Run:
     extra: dict[str, Array] = field(default_factory=dict)
     path: Path | None = None
     speed_recorded: bool = True
+    quantities: Quantities = OF_BEARING
+    reading: tuple[Finding, ...] = ()
 
     def __repr__(self) -> str:
-        there = ", ".join(self.columns())
+        there = ", ".join(self._called())
         return f"Run({self.name!r}, {len(self)} samples, {self.duration_s:g} s: {there})"
 
     def __len__(self) -> int:
@@ -81,6 +92,14 @@ class Run:
         if not self.speed_recorded:
             del known["velocity_m_s"]
         return {name: a for name, a in known.items() if a is not None} | self.extra
+
+    def _called(self) -> dict[str, Array]:
+        """`columns` by the names that tell their units."""
+        called = {
+            "friction_n": self.quantities.friction_column,
+            "velocity_m_s": self.quantities.speed_column,
+        }
+        return {called.get(name, name): a for name, a in self.columns().items()}
 
     def _arrays(self) -> dict[str, Array]:
         """The same, and the speed in any case."""
@@ -179,7 +198,7 @@ class Run:
         recorded = "velocity_m_s" in columns
         if not recorded:
             columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
-        known = {column: values for column, values in columns.items() if column in COLUMNS}
+        known: dict[str, Any] = {c: values for c, values in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
         return cls(name=name, **known, extra=extra, path=path, speed_recorded=recorded)
 
@@ -211,8 +230,8 @@ class Run:
         write_text(path, self.to_csv())
 
     def to_csv(self) -> str:
-        """The run as the text of a CSV file."""
-        columns = self.columns()
+        """The run as the text of a CSV file, its columns in the units that their names tell."""
+        columns = self._called()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
@@ -252,3 +271,29 @@ def require(run: Run, columns: str | Iterable[str], why: str) -> None:
                 problem=f"is missing, and {why} needs it",
                 mend=f"add the column (it has {listed(there)})",
             )
+
+
+def run_on(rig: Rig, run: Run) -> Run:
+    """The run in the quantities of its rig.
+
+    Raises
+    ------
+    InputError
+        It was read for a machine of another kind, or without the rig that its columns need.
+    """
+    wanted = rig.quantities
+    if run.quantities == wanted:
+        return run
+    if run.quantities != OF_BEARING and run.quantities.motion != wanted.motion:
+        raise InputError(
+            file=run.path or run.name,
+            problem=f"was read for a {run.quantities.motion} drive, and this rig is none",
+            mend="give the rig that it was read with",
+        )
+    if run.quantities == OF_BEARING and wanted.motion == "rotary" and run.path is not None:
+        raise InputError(
+            file=run.path,
+            problem="was read without the rig, whose [drive] says what its columns are",
+            mend="read it with the rig: jbf.read_run(path, rig)",
+        )
+    return replace(run, quantities=wanted)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from jbf.errors import InputError
 from jbf.records.csv_file import read_run
+from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.text_files import path_of
 
@@ -49,8 +50,12 @@ def _unique_names(paths: Sequence[Path]) -> list[str]:
     return names
 
 
-def read_runs(paths: PathLike | Iterable[PathLike], *, need_friction: bool = True) -> list[Run]:
+def read_runs(
+    paths: PathLike | Iterable[PathLike], rig: Rig | None = None, *, need_friction: bool = True
+) -> list[Run]:
     """Read runs from files, folders (every .csv in it, sorted) and glob patterns.
+
+    A rig with a drive says what the columns are, as in `read_run`.
 
     Names are the file stems; runs with equal stems get parent folders too: ``a/sweep``.
 
@@ -71,5 +76,9 @@ def read_runs(paths: PathLike | Iterable[PathLike], *, need_friction: bool = Tru
         if file.resolve() in seen:
             raise InputError(file=file, problem="is given twice", mend="name each run once")
         seen.add(file.resolve())
-    runs = [read_run(file, need_friction=need_friction) for file in files]
-    return [replace(run, name=name) for run, name in zip(runs, _unique_names(files), strict=True)]
+    runs = [read_run(file, rig, need_friction=need_friction) for file in files]
+    return [_named(run, name) for run, name in zip(runs, _unique_names(files), strict=True)]
+
+
+def _named(run: Run, name: str) -> Run:
+    return replace(run, name=name, reading=tuple(replace(f, run=name) for f in run.reading))

@@ -9,22 +9,25 @@ import numpy.typing as npt
 
 from jbf.comparison.bins import Axis, Bin, direction_words, label, span_words
 from jbf.comparison.patterns import Failure
+from jbf.records.quantities import OF_BEARING, Quantities
 
 Array = npt.NDArray[np.float64]
 
-_NAMES: dict[Axis, str] = {
-    "velocity": "Surface speed (m/s)",
-    "angle": "Shaft angle (deg)",
-    "time": "Time in the run (s)",
-    "time since a rest": "Time since the shaft rested",
-    "distance since a reversal": "Distance since the motion reversed",
-    "direction": "Direction of motion",
-    "regime": "Lubrication regime",
-    "force": "Force of the model (N)",
-    "speed range": "Speed range",
-    "acceleration": "Phase of the motion",
-    "run": "Run",
-}
+
+def _names(said: Quantities) -> dict[Axis, str]:
+    return {
+        "velocity": f"{said.velocity} ({said.speed})",
+        "angle": "Shaft angle (deg)" if said.motion == "bearing" else "Angle (deg)",
+        "time": "Time in the run (s)",
+        "time since a rest": f"Time since {said.mover} rested",
+        "distance since a reversal": "Distance since the motion reversed",
+        "direction": "Direction of motion",
+        "regime": "Lubrication regime",
+        "force": f"{said.noun.capitalize()} of the model ({said.force})",
+        "speed range": "Speed range",
+        "acceleration": "Phase of the motion",
+        "run": "Run",
+    }
 
 
 @dataclass(frozen=True)
@@ -49,9 +52,9 @@ class BinAxis:
     ticks: tuple[str, ...]
 
 
-def bin_axis(failure: Failure) -> BinAxis:
+def bin_axis(failure: Failure, said: Quantities = OF_BEARING) -> BinAxis:
     """Where a failure's bins stand: at their numbers, or side by side under their words."""
-    name = _NAMES[failure.axis]
+    name = _names(said)[failure.axis]
     series = tuple(_series(b, failure.axis) for b in failure.bins)
     positions = [b.position for b in failure.bins]
     if all(p is not None for p in positions):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jbf.models.catalogue import Effect, Parameter, built_in
+from jbf.models.catalogue import Effect, Parameter, built_in, find_law
+from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
+from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
 
 NEEDS = {
@@ -25,15 +27,19 @@ def refused_words(effect: Effect) -> str:
     )
 
 
-def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
+def effects_page(
+    pages: Iterable[Effect], law: str | None = None, said: Quantities = OF_BEARING
+) -> str:
     """One line an effect, in the order of the signal chain, headed by stage.
 
-    With a law, those that do not go with it follow, each with the reason.
+    With a law, those that do not go with it follow, each with the reason; one in newtons has no
+    bearing to speak of. `said` has the words for what moves and what is read.
     """
     pages = list(pages)
     if law is not None:
         refused = {e.name: e.refused[law] for e in pages if law in e.refused}
-        there = effects_page(e for e in pages if e.name not in refused)
+        said = OF_BEARING if find_law(law).needs_bearing else LINEAR
+        there = effects_page([e for e in pages if e.name not in refused], None, said)
         widest = max(map(len, refused), default=0)
         reasons = [x for n, r in refused.items() for x in hanging(f"{n:<{widest}}  ", r)]
         head = ["", f"[not with {law}: the law ...]"] if reasons else []
@@ -46,7 +52,7 @@ def effects_page(pages: Iterable[Effect], law: str | None = None) -> str:
         if own + effect.stage != stage:
             stage = own + effect.stage
             lines += ([""] if lines else []) + [f"[{stage}]"]
-        lines += hanging(f"{effect.name:<{widest}}  ", effect.summary)
+        lines += hanging(f"{effect.name:<{widest}}  ", summary_of(effect, said))
     return "\n".join(lines)
 
 

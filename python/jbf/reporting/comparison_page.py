@@ -22,7 +22,8 @@ def comparison_page(comparison: Comparison) -> str:
         failures=pattern_rows(comparison.failures),
         picture=picture(plot_comparison(comparison)),
         run_picture=picture(plot_run(comparison)),
+        unit=model.rig.quantities.force,
         runs=run_rows(comparison),
         findings=finding_rows(comparison.findings),
-        parameters=parameter_rows(model.law, model.effects, model.parameters),
+        parameters=parameter_rows(model.law, model.effects, model.parameters, model.rig.quantities),
     )

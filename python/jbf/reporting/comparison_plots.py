@@ -24,6 +24,7 @@ from jbf.reporting.plot_parts import (
 )
 from jbf.reporting.residual_parts import (
     draw_bin_means,
+    friction_and_speed,
     friction_speed,
     means_along,
     residual_in_time,
@@ -56,9 +57,10 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
     left, right = axes_or_new(axes, 1, 2, (10.0, 4.2))
     index = most_telling(comparison)
     friction_speed(left, comparison, index, MODEL, f"Run {comparison.runs[index].name}")
-    noise_band(right, comparison.noise_n)
+    said = comparison.model.rig.quantities
+    noise_band(right, comparison.noise_n, unit=said.force)
     failure = means_along(comparison, None)
-    draw_bin_means(right, failure, MODEL)
+    draw_bin_means(right, failure, MODEL, said)
     if not comparison.failures:
         right.set_title("No pattern in the residual", loc="left", fontsize="medium")
     legend_on_top(right)
@@ -90,7 +92,7 @@ def plot_run(
     time_s = p.run.time_s
     top.plot(time_s, p.friction_n, ".", color=MEASURED, markersize=2, label="measured")
     top.plot(time_s, comparison.predictions[index], color=MODEL, linewidth=1.0, label="model")
-    dress(top, f"Run {p.run.name}", "Time (s)", "Friction of one bearing (N)")
+    dress(top, f"Run {p.run.name}", "Time (s)", friction_and_speed(comparison)[1])
     top.yaxis.set_major_locator(MaxNLocator(6))
     legend_on_top(top)
     residual_in_time(bottom, comparison, index)

@@ -10,7 +10,8 @@ from jbf.reporting.words import comparison_sentence
 
 
 def _run_lines(comparison: Comparison) -> list[str]:
-    rows = [("run", "samples", "RMS (N)", "RMS / noise")]
+    unit = comparison.model.rig.quantities.force
+    rows = [("run", "samples", f"RMS ({unit})", "RMS / noise")]
     return columns([*rows, *run_rows(comparison)], "<>>>", 4)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from jbf.diagnosis.result import Diagnosis
-from jbf.models.catalogue import find_effect
+from jbf.models.catalogue import Effect, find_effect
 from jbf.reporting.comparison_plots import plot_run
 from jbf.reporting.diagnosis_plot import plot_diagnosis
+from jbf.reporting.effect_words import known_mass, limits_of, summary_of
 from jbf.reporting.page import measurement, page, pattern_rows, picture
 from jbf.reporting.tables import (
     correlation_pairs,
@@ -22,10 +24,18 @@ from jbf.reporting.tables import (
 from jbf.reporting.words import BARE, number, verdict_sentence
 
 
+def _effect(diagnosis: Diagnosis, name: str) -> Effect:
+    """An effect's page in the words of the rig."""
+    page, said = find_effect(name), diagnosis.model.rig.quantities
+    summary = summary_of(page, said) + known_mass(diagnosis.model, name)
+    return replace(page, summary=summary, limits=limits_of(page, said))
+
+
 def diagnosis_page(diagnosis: Diagnosis) -> str:
     """The HTML text of a diagnosis's report."""
     before, after = diagnosis.before, diagnosis.after
     bare = diagnosis.steps[0]
+    said = diagnosis.model.rig.quantities
     trials = [
         (" + ".join([BARE, *step.effects]), trial_rows(diagnosis, step))
         for step in diagnosis.steps
@@ -34,7 +44,13 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
     head: tuple[str, ...]
     runs: Sequence[tuple[str, ...]]
     if diagnosis.effects:
-        head = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
+        head = (
+            "run",
+            "samples",
+            f"bare law ({said.force})",
+            f"final model ({said.force})",
+            "final / noise",
+        )
         runs = [
             (
                 x.name,
@@ -46,7 +62,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
             for x, y in zip(before.runs, after.runs, strict=True)
         ]
     else:
-        head, runs = ("run", "samples", "RMS (N)", "RMS / noise"), run_rows(before)
+        head, runs = ("run", "samples", f"RMS ({said.force})", "RMS / noise"), run_rows(before)
     pairs = correlation_pairs(diagnosis.fit)[:5]
     return page(
         "diagnosis.html.j2",
@@ -61,11 +77,12 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         before_picture=picture(plot_run(before)) if diagnosis.failures else "",
         failures=pattern_rows(diagnosis.failures),
         trials=trials,
-        effects=[find_effect(name) for name in diagnosis.effects],
+        unit=said.force,
+        effects=[_effect(diagnosis, name) for name in diagnosis.effects],
         unexplained=pattern_rows(diagnosis.unexplained),
         findings=finding_rows(diagnosis.findings),
         parameters=parameter_rows(
-            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters
+            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, said
         ),
         correlations="; ".join(f"{a} with {b} {c:+.2f}" for a, b, c in pairs),
         run_head=head,

@@ -44,13 +44,14 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
     before, after = diagnosis.before, diagnosis.after
     error_falling(falling, diagnosis)
     pattern = means_along(before, None)
-    noise_band(residual, before.noise_n)
-    draw_bin_means(residual, pattern, BEFORE, "bare law" if diagnosis.effects else "")
+    said = diagnosis.model.rig.quantities
+    noise_band(residual, before.noise_n, unit=said.force)
+    draw_bin_means(residual, pattern, BEFORE, said, "bare law" if diagnosis.effects else "")
     index = most_telling(before, after)
     name = before.runs[index].name
     friction_speed(first, before, index, BEFORE, f"Bare law, run {name}")
     if diagnosis.effects:
-        draw_bin_means(residual, means_along(after, pattern.axis), MODEL, "final")
+        draw_bin_means(residual, means_along(after, pattern.axis), MODEL, said, "final")
         friction_speed(last, after, index, MODEL, f"Final model, run {name}")
         last.set_ylim(first.get_ylim())
     else:
@@ -77,5 +78,6 @@ def error_falling(ax: Axes, diagnosis: Diagnosis) -> None:
     ax.set_xlim(-0.5, len(steps) - 0.5)
     highest = max(max(s.rms_n, s.holdout_rms_n, s.noise_n) for s in steps)
     ax.set_ylim(0.0, 1.15 * highest)
-    dress(ax, "The error falling", "Model", "RMS of record minus model (N)")
+    unit = diagnosis.model.rig.quantities.force
+    dress(ax, "The error falling", "Model", f"RMS of record minus model ({unit})")
     ax.legend(loc="best", frameon=False)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from jbf.diagnosis.result import Diagnosis
 from jbf.records.counts import count_of
+from jbf.reporting.effect_words import effect_lines
+from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
-from jbf.reporting.text_parts import finding_lines, parameter_lines, where_lines
+from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
 
 
 def _trial_lines(diagnosis: Diagnosis) -> list[str]:
+    unit = diagnosis.model.rig.quantities.force
     lines: list[str] = []
     for step in diagnosis.steps:
         if not step.trials:
@@ -18,7 +21,9 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         lines += ["", f"Candidates tried beside the {' + '.join([BARE, *step.effects])}"]
         rows = trial_rows(diagnosis, step)
         head, *table = columns(
-            [("effect", "RMS (N)", "evidence", "outcome"), *(row[:4] for row in rows)], "<>><", 4
+            [("effect", f"RMS ({unit})", "evidence", "outcome"), *(row[:4] for row in rows)],
+            "<>><",
+            4,
         )
         lead = max(map(len, [head, *table])) + 2
         lines.append(f"{head:<{lead}}why")
@@ -39,13 +44,14 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
     samples = diagnosis.before.samples.count
     model = diagnosis.model
+    unit = model.rig.quantities.force
     duration = sum(p.run.duration_s for p in campaign.prepared)
     lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
     if diagnosis.next_experiment:
         lines += hanging("Next experiment: ", diagnosis.next_experiment)
     if diagnosis.laws:
         lines += ["", "Which law, each alone"]
-        names = ("law", "parameters", "held out (N)", "")
+        names = ("law", "parameters", f"held out ({unit})", "")
         lines += columns([names, *law_rows(diagnosis)], "<>><", 4)
     lines += [
         "",
@@ -53,20 +59,21 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"    {count_of(len(campaign.prepared), 'run')} of {duration:.0f} s in all, "
         f"{count_of(samples, 'sample')} "
         f"where the sign of the motion is known",
-        f"    noise floor {number(bare.noise_n)} N, estimated from the records alone",
+        f"    noise floor {number(bare.noise_n)} {unit}, estimated from the records alone",
         "",
         f"The {BARE} ({law_words(model, ', ')})",
-        f"    misses by {number(bare.rms_n)} N RMS, {times(bare.rms_n, bare.noise_n)} the noise"
+        f"    misses by {number(bare.rms_n)} {unit} RMS, "
+        f"{times(bare.rms_n, bare.noise_n)} the noise"
         + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
     ]
     lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]
     lines += _trial_lines(diagnosis)
-    lines += ["", "The error falling (N)"]
+    lines += ["", f"The error falling ({unit})"]
     head = ("step", "fit", "held out", "noise", "held out / noise")
     lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)
     lines += finding_lines(diagnosis.findings)
     lines += ["", "What remains"]
     lines += where_lines(diagnosis.unexplained) or ["    nothing that stands above the noise"]
     lines += ["", "Parameters of the final model"]
-    lines += parameter_lines(model.law, model.effects, diagnosis.fit.parameters)
-    return "\n".join(lines)
+    lines += lines_of_parameters(diagnosis.fit)
+    return "\n".join([*lines, *effect_lines(model)])

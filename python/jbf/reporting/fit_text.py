@@ -6,8 +6,9 @@ from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.noise import Noise
 from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs
+from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs, shown_names
 from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import law_words, number
 
@@ -21,6 +22,12 @@ def noise_words(noise: Noise) -> str:
     return f"coloured, share {number(noise.colour, 2)}, memory {number(noise.memory_s, 2)} s"
 
 
+def lines_of_parameters(fit: Fit) -> list[str]:
+    """A line a parameter, in the quantities of the rig."""
+    model = fit.model
+    return parameter_lines(model.law, model.effects, fit.parameters, model.rig.quantities)
+
+
 def fit_report(fit: Fit) -> str:
     """Statistics, parameters with errors, and the strongest correlations."""
     model = fit.model
@@ -29,14 +36,15 @@ def fit_report(fit: Fit) -> str:
         ("effects", ", ".join(model.effects) or "none"),
         ("runs", str(len(fit.residuals))),
         ("samples", str(fit.samples)),
-        ("RMS of the residual", f"{number(fit.rms_n)} N"),
+        ("RMS of the residual", f"{number(fit.rms_n)} {model.rig.quantities.force}"),
         ("noise in the residual", noise_words(fit.noise)),
         ("search", "converged" if fit.converged else f"not converged: {fit.message}"),
     ]
     lines = ["[[Fit]]", *columns([(k, f"= {v}") for k, v in facts], "<<", 4)]
-    lines += ["[[Parameters]]", *parameter_lines(model.law, model.effects, fit.parameters)]
+    lines += ["[[Parameters]]", *lines_of_parameters(fit)]
     if fit.doubtful:
-        names = ", ".join(fit.doubtful)
+        called = shown_names(fit)
+        names = ", ".join(called[name] for name in fit.doubtful)
         lines += hanging(
             "note: ",
             f"of {names} the likelihood is no parabola within these errors, so they may be far "
@@ -50,7 +58,7 @@ def fit_report(fit: Fit) -> str:
         lines += columns(shown, "<<", 4)
         if len(pairs) > MOST_CORRELATIONS:
             lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} weaker ones")
-    return "\n".join([*lines, *finding_lines(fit.findings)])
+    return "\n".join([*lines, *effect_lines(model), *finding_lines(fit.findings)])
 
 
 def bootstrap_report(found: Bootstrap) -> str:

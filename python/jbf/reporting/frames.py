@@ -12,13 +12,18 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.catalogue import parameters_of
+from jbf.models.parameter_units import unit_of
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.quantities import OF_BEARING, Quantities
 
 Columns = dict[str, Any]
 
 
 def parameter_columns(
-    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
+    law: str,
+    effects: tuple[str, ...],
+    parameters: Mapping[str, ParameterValue],
+    quantities: Quantities = OF_BEARING,
 ) -> Columns:
     """A row a parameter: name, value, stderr, unit, whether it is held, note."""
     pages = parameters_of(law, effects)
@@ -26,7 +31,10 @@ def parameter_columns(
         "parameter": list(parameters),
         "value": [p.value for p in parameters.values()],
         "stderr": [np.nan if p.stderr is None else p.stderr for p in parameters.values()],
-        "unit": [pages[name].unit if name in pages else "" for name in parameters],
+        "unit": [
+            unit_of(name, pages[name], law, quantities) if name in pages else ""
+            for name in parameters
+        ],
         "held": [p.held for p in parameters.values()],
         "note": [p.note or "" for p in parameters.values()],
     }
@@ -34,7 +42,8 @@ def parameter_columns(
 
 def fit_columns(fit: Fit) -> Columns:
     """A row a parameter."""
-    return parameter_columns(fit.model.law, fit.model.effects, fit.parameters)
+    model = fit.model
+    return parameter_columns(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
 def trajectory_columns(fit: TrajectoryFit) -> Columns:

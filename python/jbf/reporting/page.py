@@ -70,9 +70,10 @@ def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str
 def measurement(comparison: Comparison, noise_n: float) -> str:
     """What was recorded, in half a sentence."""
     runs = comparison.campaign.prepared
+    unit = comparison.model.rig.quantities.force
     duration = sum(p.run.duration_s for p in runs)
     return (
         f"{count_of(len(runs), 'run')} of {duration:.0f} s in all, "
         f"{count_of(comparison.samples.count, 'sample')} "
-        f"where the sign of the motion is known, noise floor {number(noise_n)} N"
+        f"where the sign of the motion is known, noise floor {number(noise_n)} {unit}"
     )

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 
 WIDTH = 92
-_TOGETHER = re.compile(r"v (<|>|<=|>=|=) \S+( m/s)?|\d (N|m|s|deg)\b")
+_TOGETHER = re.compile(r"v (<|>|<=|>=|=) \S+( m/s| rad/s)?|\d (N m|N|m|s|deg|rad)\b")
 """What a line break would tear: `v < 0`, `0.25 N`."""
 
 

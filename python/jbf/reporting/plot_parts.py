@@ -49,9 +49,10 @@ def axes_or_new(
     return found
 
 
-def noise_band(ax: Axes, noise_n: float, name: str = "noise") -> None:
+def noise_band(ax: Axes, noise_n: float, name: str = "noise", unit: str = "N") -> None:
     """One standard deviation of the noise to either side of zero."""
-    ax.axhspan(-noise_n, noise_n, color=NOISE, alpha=0.15, label=f"{name}, ±{number(noise_n, 2)} N")
+    label = f"{name}, ±{number(noise_n, 2)} {unit}"
+    ax.axhspan(-noise_n, noise_n, color=NOISE, alpha=0.15, label=label)
     ax.axhline(0.0, color="black", linewidth=0.6)
 
 

@@ -12,10 +12,17 @@ from jbf.comparison.bins import Binned
 from jbf.comparison.comparison import Comparison
 from jbf.comparison.patterns import Failure
 from jbf.models.catalogue import transition_speed
+from jbf.records.quantities import Quantities
 from jbf.reporting.bin_axes import bin_axis
 from jbf.reporting.plot_parts import MEASURED, MODEL, dress, legend_on_top, noise_band, plain
 
 MOST_DOTS = 1500
+
+
+def friction_and_speed(comparison: Comparison) -> tuple[str, str]:
+    """Names of the axes: speed, friction."""
+    said = comparison.model.rig.quantities
+    return f"{said.velocity} ({said.speed})", f"{said.friction} ({said.force})"
 
 
 def friction_speed(ax: Axes, comparison: Comparison, index: int, colour: str, title: str) -> None:
@@ -40,7 +47,7 @@ def friction_speed(ax: Axes, comparison: Comparison, index: int, colour: str, ti
         comparison.samples.counted[index] & ~turns, comparison.predictions[index], np.nan
     )
     ax.plot(speed, shown, color=colour, linewidth=1.3, label="model")
-    dress(ax, title, "Surface speed (m/s)", "Friction of one bearing (N)")
+    dress(ax, title, *friction_and_speed(comparison))
     ax.legend(loc="upper left", frameon=False, markerscale=2)
 
 
@@ -58,9 +65,11 @@ def means_along(comparison: Comparison, axis: str | None) -> Failure:
     return Failure(binned.axis, "no pattern", 0.0, binned.bins, means, counts)
 
 
-def draw_bin_means(ax: Axes, failure: Failure, colour: str, label: str = "") -> None:
+def draw_bin_means(
+    ax: Axes, failure: Failure, colour: str, said: Quantities, label: str = ""
+) -> None:
     """Means of record minus model in the bins, a line for each direction of motion."""
-    place = bin_axis(failure)
+    place = bin_axis(failure, said)
     directions = list(dict.fromkeys(place.series))
     for direction, marker in zip(directions, "os", strict=False):
         own = np.array([s == direction for s in place.series]) & (failure.counts > 0)
@@ -87,14 +96,15 @@ def draw_bin_means(ax: Axes, failure: Failure, colour: str, label: str = "") -> 
             ha="right" if crowded else "center",
             fontsize="small",
         )
-    dress(ax, f"Residual along {failure.axis}", place.name, "Record minus model (N)")
+    dress(ax, f"Residual along {failure.axis}", place.name, f"Record minus model ({said.force})")
 
 
 def residual_in_time(ax: Axes, comparison: Comparison, index: int) -> None:
     """Record minus model of one run, where the sign of the motion is known."""
     p = comparison.campaign.prepared[index]
     shown = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
-    noise_band(ax, comparison.noise_n)
+    unit = comparison.model.rig.quantities.force
+    noise_band(ax, comparison.noise_n, unit=unit)
     ax.plot(p.run.time_s, shown, ".", color=MODEL, markersize=2, label="record minus model")
-    dress(ax, f"Residual, run {p.run.name}", "Time (s)", "Record minus model (N)")
+    dress(ax, f"Residual, run {p.run.name}", "Time (s)", f"Record minus model ({unit})")
     legend_on_top(ax)

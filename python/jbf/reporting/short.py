@@ -12,6 +12,7 @@ from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.counts import count_of
+from jbf.reporting.tables import shown_names
 from jbf.reporting.words import number, times, value_and_error
 
 LONGEST = 120
@@ -36,6 +37,11 @@ def _values(parameters: Mapping[str, ParameterValue]) -> str:
     return first_of(one(name, p) for name, p in parameters.items())
 
 
+def _fitted(fit: Fit) -> str:
+    called = shown_names(fit)
+    return _values({called[name]: p for name, p in fit.parameters.items()})
+
+
 def _law(model: Model) -> str:
     return first_of([model.law, *model.effects], " + ")
 
@@ -43,17 +49,18 @@ def _law(model: Model) -> str:
 def short_fit(fit: Fit) -> str:
     """Model, runs, RMS; below it the parameters."""
     search = "" if fit.converged else ", not converged"
+    unit = fit.model.rig.quantities.force
     return (
         f"Fit({_law(fit.model)}; {count_of(len(fit.residuals), 'run')}, "
         f"{count_of(fit.samples, 'sample')}, "
-        f"RMS {number(fit.rms_n)} N{search};\n    {_values(fit.parameters)})"
+        f"RMS {number(fit.rms_n)} {unit}{search};\n    {_fitted(fit)})"
     )
 
 
 def short_bootstrap(found: Bootstrap) -> str:
     """How many answers, and the parameters with the errors that they show."""
     repeats = len(next(iter(found.values.values())))
-    return f"Bootstrap({count_of(repeats, 'fit')} again;\n    {_values(found.fit.parameters)})"
+    return f"Bootstrap({count_of(repeats, 'fit')} again;\n    {_fitted(found.fit)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
@@ -68,9 +75,10 @@ def short_comparison(comparison: Comparison) -> str:
     """How far, and along which axes it fails."""
     where = first_of(f.axis for f in comparison.failures)
     rms, noise = comparison.rms_n, comparison.noise_n
+    unit = comparison.model.rig.quantities.force
     return (
         f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
-        f"RMS {number(rms)} N, {times(rms, noise)} the noise of {number(noise)} N;\n    "
+        f"RMS {number(rms)} {unit}, {times(rms, noise)} the noise of {number(noise)} {unit};\n    "
         + (f"fails along {where})" if where else "no pattern along any axis)")
     )
 
@@ -78,9 +86,10 @@ def short_comparison(comparison: Comparison) -> str:
 def short_diagnosis(diagnosis: Diagnosis) -> str:
     """Verdict, effects, and how far the final model is from runs left out."""
     last = diagnosis.steps[-1]
+    unit = diagnosis.model.rig.quantities.force
     effects = first_of(diagnosis.effects)
     added = f": {effects}" if effects else ""
     return (
-        f"Diagnosis({diagnosis.verdict}{added};\n    held out {number(last.holdout_rms_n)} N, "
-        f"{times(last.holdout_rms_n, last.noise_n)} the noise of {number(last.noise_n)} N)"
+        f"Diagnosis({diagnosis.verdict}{added};\n    held out {number(last.holdout_rms_n)} {unit}, "
+        f"{times(last.holdout_rms_n, last.noise_n)} the noise of {number(last.noise_n)} {unit})"
     )

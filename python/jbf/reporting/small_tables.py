@@ -36,16 +36,17 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str
 
 def fit_table(fit: Fit) -> str:
     """The parameters with errors."""
+    said = fit.model.rig.quantities
     search = "" if fit.converged else ", not converged"
-    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms_n)} N{search}"
-    rows = parameter_rows(fit.model.law, fit.model.effects, fit.parameters)
+    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms_n)} {said.force}{search}"
+    rows = parameter_rows(fit.model.law, fit.model.effects, fit.parameters, said)
     return table(title, PARAMETER_HEAD, rows)
 
 
 def bootstrap_table(found: Bootstrap) -> str:
     """The parameters with errors from fits again."""
     model = found.fit.model
-    rows = parameter_rows(model.law, model.effects, found.fit.parameters)
+    rows = parameter_rows(model.law, model.effects, found.fit.parameters, model.rig.quantities)
     return table("Errors from fits of simulated records", PARAMETER_HEAD, rows)
 
 
@@ -67,11 +68,13 @@ def comparison_table(comparison: Comparison) -> str:
     """How far each run is off."""
     where = listed(f.axis for f in comparison.failures)
     title = comparison_sentence(comparison) + (f"; fails along {where}" if where else "")
-    return table(title, ("run", "samples", "RMS (N)", "RMS / noise"), run_rows(comparison))
+    unit = comparison.model.rig.quantities.force
+    return table(title, ("run", "samples", f"RMS ({unit})", "RMS / noise"), run_rows(comparison))
 
 
 def diagnosis_table(diagnosis: Diagnosis) -> str:
     """The ledger below the verdict."""
     title = f"Verdict: {diagnosis.verdict}. {verdict_sentence(diagnosis, place='')}"
-    head = ("step", "fit (N)", "held out (N)", "noise (N)", "held out / noise")
+    unit = diagnosis.model.rig.quantities.force
+    head = ("step", f"fit ({unit})", f"held out ({unit})", f"noise ({unit})", "held out / noise")
     return table(title, head, ledger_rows(diagnosis))

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jbf.models.catalogue import parameters_of
+from jbf.models.parameter_units import shown
 from jbf.records.counts import count_of
+from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.reporting.words import number, percent, step_name, value_and_error
 
 if TYPE_CHECKING:
@@ -26,24 +27,35 @@ LEAST_CORRELATION = 0.3
 
 
 def parameter_rows(
-    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
+    law: str,
+    effects: tuple[str, ...],
+    parameters: Mapping[str, ParameterValue],
+    quantities: Quantities = OF_BEARING,
 ) -> list[tuple[str, str, str, str, str, str]]:
     """Name, value, error, percent, unit and note of each parameter, as text."""
-    pages = parameters_of(law, effects)
+    names = shown(law, effects, quantities)
     rows = []
     for name, p in parameters.items():
         value, error = value_and_error(p)
         note = p.note or ("" if error else "no error known")
-        unit = pages[name].unit if name in pages else ""
-        rows.append((name, value, error, percent(p), "" if unit == "-" else unit, note))
+        called, unit = names.get(name, (name, ""))
+        rows.append((called, value, error, percent(p), unit, note))
     return rows
+
+
+def shown_names(fit: Fit) -> dict[str, str]:
+    """Full names of a fit's parameters to those that are shown."""
+    model = fit.model
+    names = shown(model.law, model.effects, model.rig.quantities)
+    return {name: names[name][0] if name in names else name for name in fit.parameters}
 
 
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
     """Pairs of parameters correlated above 0.3, strongest first."""
     names = [name for name, p in fit.parameters.items() if not p.held]
+    called = shown_names(fit)
     found = [
-        (names[i], names[j], float(fit.correlations[i, j]))
+        (called[names[i]], called[names[j]], float(fit.correlations[i, j]))
         for i in range(len(names))
         for j in range(i + 1, len(names))
         if np.isfinite(fit.correlations[i, j]) and abs(fit.correlations[i, j]) > LEAST_CORRELATION
@@ -92,9 +104,13 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
         kinds.setdefault(finding.kind, []).append(finding)
     rows = []
     for kind, found in kinds.items():
-        said = [f"{f.words}, in {f.run}" for f in found[:MOST_RUNS_NAMED]]
-        if len(found) > MOST_RUNS_NAMED:
-            said.append(f"and in {count_of(len(found) - MOST_RUNS_NAMED, 'run')} more")
+        runs: dict[str, list[str]] = {}
+        for f in found:
+            runs.setdefault(f.words, []).append(f.run)
+        said = [f"{words}, in {_named(those)}" for words, those in runs.items()]
+        rest = sum(map(len, list(runs.values())[MOST_RUNS_NAMED:]))
+        if rest:
+            said = [*said[:MOST_RUNS_NAMED], f"and in {count_of(rest, 'run')} more"]
         rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
     return rows
 
@@ -110,3 +126,11 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
         )
         for i, tried in enumerate(diagnosis.laws)
     ]
+
+
+def _named(runs: list[str]) -> str:
+    """Runs by name; the first few of many."""
+    if len(runs) <= MOST_RUNS_NAMED:
+        return ", ".join(runs)
+    more = count_of(len(runs) - MOST_RUNS_NAMED, "run")
+    return f"{', '.join(runs[:MOST_RUNS_NAMED])} and {more} more"

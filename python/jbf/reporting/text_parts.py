@@ -8,12 +8,16 @@ from jbf.comparison.patterns import Failure
 from jbf.diagnosis.ledger import Remainder
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.findings.finding import Finding
+from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import finding_rows, parameter_rows
 
 
 def parameter_lines(
-    law: str, effects: tuple[str, ...], parameters: Mapping[str, ParameterValue]
+    law: str,
+    effects: tuple[str, ...],
+    parameters: Mapping[str, ParameterValue],
+    quantities: Quantities = OF_BEARING,
 ) -> list[str]:
     """A line a parameter: value, error, share, unit, note."""
     rows = [
@@ -25,7 +29,9 @@ def parameter_lines(
             unit,
             f"({note})" if note else "",
         )
-        for name, value, error, share, unit, note in parameter_rows(law, effects, parameters)
+        for name, value, error, share, unit, note in parameter_rows(
+            law, effects, parameters, quantities
+        )
     ]
     return columns(rows, "<>>><<", 4)
 

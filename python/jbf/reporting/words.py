@@ -84,8 +84,9 @@ def times(error_n: float, noise_n: float) -> str:
 def comparison_sentence(comparison: Comparison) -> str:
     """How far a model is from its runs, and how that compares with the noise."""
     rms, noise = comparison.rms_n, comparison.noise_n
+    unit = comparison.model.rig.quantities.force
     return (
-        f"RMS {number(rms)} N against a noise floor of {number(noise)} N: "
+        f"RMS {number(rms)} {unit} against a noise floor of {number(noise)} {unit}: "
         f"{times(rms, noise)} the noise"
     )
 
@@ -117,22 +118,23 @@ def _law_sentence(diagnosis: Diagnosis) -> str:
     other = diagnosis.simpler_law
     if other is None:
         return ""
-    here = diagnosis.steps[-1].holdout_rms_n
+    here, unit = diagnosis.steps[-1].holdout_rms_n, diagnosis.model.rig.quantities.force
     return (
         f" Another law may be the right one: {other.law} alone predicts runs left out to within "
-        f"{number(other.left_out_rms_n)} N, {diagnosis.model.law} with all of this to "
-        f"{number(here)} N; --law auto compares them all."
+        f"{number(other.left_out_rms_n)} {unit}, {diagnosis.model.law} with all of this to "
+        f"{number(here)} {unit}; --law auto compares them all."
     )
 
 
 def _found(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
+    unit = diagnosis.model.rig.quantities.force
     reached = (
-        f"{number(last.holdout_rms_n)} N, {times(last.holdout_rms_n, last.noise_n)} "
-        f"the noise of {number(last.noise_n)} N"
+        f"{number(last.holdout_rms_n)} {unit}, {times(last.holdout_rms_n, last.noise_n)} "
+        f"the noise of {number(last.noise_n)} {unit}"
     )
     added = listed(diagnosis.effects)
-    fall = f"the held-out error falls from {number(first.holdout_rms_n)} N to {reached}"
+    fall = f"the held-out error falls from {number(first.holdout_rms_n)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":
         return (
             f"Nothing is missing: the bare {diagnosis.model.law} law predicts runs that it was "

@@ -71,13 +71,17 @@ def examine_readings(run: Run, velocity_m_s: Array) -> Examined:
 
 def _interpolated(run: Run, native: Native) -> Finding:
     rate = 1.0 / native.period_s
-    words = f"the force was read at {rate:.4g} Hz and drawn as straight lines between"
+    words = (
+        f"the {run.quantities.noun} was read at {rate:.4g} Hz and drawn as straight lines between"
+    )
     done = "taken back to its readings"
     return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)
 
 
 def _repeated(run: Run, native: Native) -> Finding:
     rate = 1.0 / native.period_s
-    words = f"the force was read at {rate:.4g} Hz and repeated until the next reading"
+    words = (
+        f"the {run.quantities.noun} was read at {rate:.4g} Hz and repeated until the next reading"
+    )
     done = "taken back to its readings"
     return Finding("held_samples", "friction_n", run.name, rate, "Hz", done, words)

@@ -64,8 +64,9 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     singles = count_of(
         len(index), "single sample of the force is", "single samples of the force are"
     )
-    words = f"{singles} off by up to {size:.3g} N (at {first})"
-    return [Finding("glitches", "friction_n", run.name, size, "N", "set aside", words)], mask
+    unit = run.quantities.force
+    words = f"{singles} off by up to {size:.3g} {unit} (at {first})"
+    return [Finding("glitches", "friction_n", run.name, size, unit, "set aside", words)], mask
 
 
 def _breakaway(velocity_m_s: Array) -> Mask:

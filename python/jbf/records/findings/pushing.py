@@ -46,11 +46,13 @@ def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]
     push, error = push / scale[0], error / scale[0]
     if push > -max(SURE * error, SHARE * float(np.std(run.friction_n[moves]))):
         return []
+    said = run.quantities
     words = (
-        f"the force goes with the motion, by {-push:.3g} N: friction_n is against it where it is "
+        f"the {said.noun} goes with the motion, by {-push:.3g} {said.force}: "
+        f"{said.friction_column} is against it where it is "
         "positive with a positive speed; turn its sign, or the speed's and the position's"
     )
-    return [Finding("sign", "friction_n", run.name, push, "N", "none", words)]
+    return [Finding("sign", "friction_n", run.name, push, said.force, "none", words)]
 
 
 def _with_way(x: Array, force: Array) -> tuple[float, float]:

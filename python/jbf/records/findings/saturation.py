@@ -67,7 +67,11 @@ def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
     if not ends:
         return [], mask
     share = float(np.mean(np.isin(run.friction_n, ends)))
-    said = " and ".join(f"{end:.4g} N" for end in sorted(ends))
-    words = f"the force stands at the end of its range, {said}, in {100.0 * share:.2g} % of the run"
+    unit = run.quantities.force
+    said = " and ".join(f"{end:.4g} {unit}" for end in sorted(ends))
+    words = (
+        f"the {run.quantities.noun} stands at the end of its range, {said}, "
+        f"in {100.0 * share:.2g} % of the run"
+    )
     size = float(np.max(np.abs(ends)))
-    return [Finding("saturation", "friction_n", run.name, size, "N", "set aside", words)], mask
+    return [Finding("saturation", "friction_n", run.name, size, unit, "set aside", words)], mask

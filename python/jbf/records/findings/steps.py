@@ -43,5 +43,6 @@ def find_steps(run: Run, usable: Mask) -> list[Finding]:
     step = step_of(force)
     if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
         return []
-    words = f"the force comes in steps of {step:.3g} N"
-    return [Finding("steps", "friction_n", run.name, step, "N", "counted as noise", words)]
+    unit = run.quantities.force
+    words = f"the {run.quantities.noun} comes in steps of {step:.3g} {unit}"
+    return [Finding("steps", "friction_n", run.name, step, unit, "counted as noise", words)]

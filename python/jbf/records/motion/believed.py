@@ -57,6 +57,7 @@ def believed(run: Run, radius_m: float | None) -> Believed:
     its single samples.
     """
     name, time, speed = run.name, run.time_s, run.velocity_m_s
+    said = run.quantities
     stamps = uneven_stamps(name, time)
     position = recorded_position(run, radius_m)
     if position is None:
@@ -67,22 +68,23 @@ def believed(run: Run, radius_m: float | None) -> Believed:
                 problem="is missing, and an angle tells no speed without the journal's radius",
                 mend="add the column, or give the rig its [bearing]",
             )
-        speed, odd = mend_speed(name, time, speed, None)
+        speed, odd = mend_speed(name, time, speed, None, said.speed)
         return Believed(None, 0.0, speed, True, _there(odd, stamps))
     step = step_of(position.path_m)
     position, astray = mend_position(name, time, position)
     if not run.speed_recorded:
-        return _path_alone(name, time, position.path_m, step, _there(astray, stamps))
-    unit = wrong_unit(name, time, position, speed)
+        found = _there(astray, stamps)
+        return _path_alone(name, time, position.path_m, step, found, said.speed)
+    unit = wrong_unit(name, time, position, speed, said)
     if unit is not None and unit.channel != "velocity_m_s":
-        speed, odd = mend_speed(name, time, speed, None)
+        speed, odd = mend_speed(name, time, speed, None, said.speed)
         return Believed(None, 0.0, speed, True, _there(astray, unit, odd, stamps))
     path = position.path_m
     aside = unit or derived_speed(name, time, path, speed) or late_speed(name, time, path, speed)
     odd = held = None
     if aside is None:
-        speed, odd = mend_speed(name, time, speed, path)
-        position, held = mend_held(name, time, position, speed)
+        speed, odd = mend_speed(name, time, speed, path, said.speed)
+        position, held = mend_held(name, time, position, speed, said.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
@@ -92,12 +94,12 @@ def believed(run: Run, radius_m: float | None) -> Believed:
 
 
 def _path_alone(
-    name: str, time: Array, path: Array, step: float, found: tuple[Finding, ...]
+    name: str, time: Array, path: Array, step: float, found: tuple[Finding, ...], unit: str
 ) -> Believed:
     """The records of a motion whose speed was not recorded."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
-    made = Finding("no_speed", "velocity_m_s", name, 0.0, "m/s", "the path alone tells it", words)
+    made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)
     shaken = () if found else _there(shaken_path(name, time, path, speed))
     return Believed(path, step, speed, False, (made, *found, *shaken))
 

@@ -50,7 +50,7 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
 
 
 def mend_speed(
-    name: str, time: Array, speed: Array, path: Array | None
+    name: str, time: Array, speed: Array, path: Array | None, unit: str = "m/s"
 ) -> tuple[Array, Finding | None]:
     """The speed without its glitches; with a path only those that the path does not share."""
     n = len(speed)
@@ -73,9 +73,9 @@ def mend_speed(
         return speed, None
     mended = _between(time, speed, mask)
     size = float(np.max(np.abs(speed - mended)))
-    words = _words("speed", time, mask, f"{size:.3g} m/s")
+    words = _words("speed", time, mask, f"{size:.3g} {unit}")
     done = "left out of the motion"
-    return mended, Finding("glitches", "velocity_m_s", name, size, "m/s", done, words)
+    return mended, Finding("glitches", "velocity_m_s", name, size, unit, done, words)
 
 
 def _off(time: Array, path: Array, least: float) -> Mask:

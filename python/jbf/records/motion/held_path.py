@@ -25,7 +25,7 @@ MOST = 0.3
 
 
 def mend_held(
-    name: str, time: Array, position: Position, speed: Array
+    name: str, time: Array, position: Position, speed: Array, mover: str = "the shaft"
 ) -> tuple[Position, Finding | None]:
     """The path with its held readings put where the speed says that the shaft was."""
     path = position.path_m
@@ -53,7 +53,7 @@ def mend_held(
     if not 0 < count <= MOST * len(path):
         return position, None
     readings = count_of(count, "reading of the position repeats", "readings of the position repeat")
-    words = f"{readings} the one before while the shaft moves on"
+    words = f"{readings} the one before while {mover} moves on"
     done = "put where the speed says"
     found = Finding("held_samples", position.column, name, lasted, "s", done, words)
     return position.along(mended), found

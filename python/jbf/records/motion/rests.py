@@ -70,8 +70,8 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
 
 
 def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
-    """Whether a reversal at the acceleration from before to after, or two of them, would stay within
-    the encoder's step for about as long."""
+    """Whether a reversal at the acceleration from before to after, or two of them, would stay
+    within the encoder's step for about as long."""
     way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
     v0, v1 = velocity_m_s[before], velocity_m_s[after]

@@ -1,0 +1,161 @@
+"""A drive, slide or joint as a section of `rig.toml`: what moves, and as what friction was read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Literal, get_args
+
+from jbf.errors import InputError, did_you_mean, quoted
+from jbf.records.quantities import LINEAR, ROTARY, Quantities
+from jbf.records.toml_file import number, refuse_unknown, table
+
+Kind = Literal["rotary", "linear"]
+Friction = Literal["force", "torque", "current", "percent"]
+
+_CONSTANTS: dict[tuple[str, str], tuple[str, ...]] = {
+    ("rotary", "torque"): (),
+    ("rotary", "current"): ("torque_constant_n_m_a",),
+    ("rotary", "percent"): ("rated_torque_n_m",),
+    ("linear", "force"): (),
+    ("linear", "torque"): (),
+    ("linear", "current"): ("force_constant_n_a", "torque_constant_n_m_a"),
+    ("linear", "percent"): ("rated_force_n", "rated_torque_n_m"),
+}
+"""For each motion and reading the constants that turn it into a force or a torque: one of them."""
+_ALL_CONSTANTS = tuple(dict.fromkeys(name for names in _CONSTANTS.values() for name in names))
+_SENSORS = {
+    "force": "the force sensor",
+    "torque": "the torque sensor",
+    "current": "the current sensor",
+    "percent": "the drive's own reading of its load",
+}
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A rotary or linear drive, and what its columns are.
+
+    Attributes
+    ----------
+    motion : str
+        `rotary` (answers in N m and rad) or `linear` (in N and m).
+    friction : str
+        What was recorded: `force`, `torque`, `current` (A) or `percent` of a rated value.
+    torque_constant_n_m_a, force_constant_n_a : float, optional
+        Torque of the motor, N m, or force of a linear motor, N, for one ampere.
+    rated_torque_n_m, rated_force_n : float, optional
+        What 100 % are, at the motor.
+    gear_ratio : float
+        Turns of the motor for one turn of what it drives: the joint, or the screw.
+    pitch_m : float, optional
+        Way of a linear drive for one turn of its screw (lead), or of its pinion or pulley, m.
+    inertia_kg_m2, mass_kg : float, optional
+        What is known to be moved, told beside what `inertia_leak` finds; it is not taken off.
+    """
+
+    motion: Kind
+    friction: Friction
+    torque_constant_n_m_a: float | None = None
+    force_constant_n_a: float | None = None
+    rated_torque_n_m: float | None = None
+    rated_force_n: float | None = None
+    gear_ratio: float = 1.0
+    pitch_m: float | None = None
+    inertia_kg_m2: float | None = None
+    mass_kg: float | None = None
+
+    def __post_init__(self) -> None:
+        _check_word("motion", self.motion, get_args(Kind))
+        readings = [friction for motion, friction in _CONSTANTS if motion == self.motion]
+        _check_word("friction", self.friction, readings, f" of a {self.motion} drive")
+        for name in (f.name for f in fields(self)):
+            value = getattr(self, name)
+            if name in ("motion", "friction") or value is None:
+                continue
+            value = number(value, name)
+            if not 0.0 < value < math.inf:
+                raise _wrong(name, f"{value} is not above zero and finite", "correct the value")
+            object.__setattr__(self, name, value)
+        self._check_constants()
+        other = "mass_kg" if self.motion == "rotary" else "inertia_kg_m2"
+        strangers = (other, "pitch_m") if self.motion == "rotary" else (other,)
+        for name in strangers:
+            if getattr(self, name) is not None:
+                raise _wrong(name, f"means nothing of a {self.motion} drive", "drop it")
+        if self.motion == "linear" and self.pitch_m is None:
+            turning = self.friction == "torque" or self._of_motor is not None
+            if turning or self.gear_ratio != 1.0:
+                problem = "is missing, and turns a motor's torque into a force"
+                mend = "write how far the drive moves in one turn of its screw, m"
+                raise _wrong("pitch_m", problem, mend)
+
+    def _check_constants(self) -> None:
+        wanted = _CONSTANTS[self.motion, self.friction]
+        given = [name for name in _ALL_CONSTANTS if getattr(self, name) is not None]
+        for name in given:
+            if name not in wanted:
+                problem = (
+                    f'is not used where a {self.motion} drive has friction = "{self.friction}"'
+                )
+                raise _wrong(name, problem, "drop it, or correct friction")
+        if wanted and len(given) != 1:
+            problem = "both stand there" if given else "is missing"
+            mend = "keep one of them" if given else f'friction = "{self.friction}" needs it'
+            raise _wrong(" or ".join(wanted), problem, mend)
+
+    @property
+    def _of_motor(self) -> float | None:
+        """Torque of the motor for one unit of the reading; None of a force or a linear motor."""
+        if self.torque_constant_n_m_a is not None:
+            return self.torque_constant_n_m_a
+        return None if self.rated_torque_n_m is None else self.rated_torque_n_m / 100.0
+
+    @property
+    def motor_rad(self) -> float | None:
+        """Radians of the motor for a unit of way (rad or m); None where no turn is known."""
+        if self.motion == "rotary":
+            return self.gear_ratio
+        return None if self.pitch_m is None else self.gear_ratio * 2.0 * math.pi / self.pitch_m
+
+    @property
+    def unit_n(self) -> float:
+        """What one ampere or one percent is where the drive moves, N or N m."""
+        if self.force_constant_n_a is not None:
+            return self.force_constant_n_a
+        if self.rated_force_n is not None:
+            return self.rated_force_n / 100.0
+        assert self._of_motor is not None
+        assert self.motor_rad is not None
+        return self._of_motor * self.motor_rad
+
+    @property
+    def quantities(self) -> Quantities:
+        """The units and words of its answers."""
+        kind = ROTARY if self.motion == "rotary" else LINEAR
+        return kind.read_by(_SENSORS[self.friction])
+
+    @classmethod
+    def from_mapping(cls, content: object, prefix: str) -> Drive:
+        """A drive from its section; an InputError names the key, after `prefix`."""
+        known = [f.name for f in fields(cls)]
+        section: Mapping[str, Any] = table(content, prefix)
+        refuse_unknown(section, known, f"{prefix}.")
+        for key in ("motion", "friction"):
+            if key not in section:
+                raise _wrong(f"{prefix}.{key}", "is missing", f"add it to [{prefix}]")
+        try:
+            return cls(**section)
+        except InputError as error:
+            raise error.within(key_prefix=f"{prefix}.") from None
+
+
+def _check_word(key: str, word: object, words: Sequence[str], of: str = "") -> None:
+    if word not in words:
+        shown = quoted(word) if isinstance(word, str) else f"a {type(word).__name__}"
+        raise _wrong(key, f"{shown} is no {key}{of}", did_you_mean(word, words))
+
+
+def _wrong(key: str, problem: str, mend: str) -> InputError:
+    return InputError(key=key, problem=problem, mend=mend)

@@ -1,0 +1,183 @@
+"""The columns of a drive's file, and what they are where the drive moves, converted on reading.
+
+Columns that begin with `motor_`, the current and the percentages are the motor's; `gear_ratio` and
+`pitch_m` carry them to the joint or the slide. Of several columns for one quantity the first in the
+lists below is read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.records.checks import frozen
+from jbf.records.drive import Drive
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+ALWAYS = ("time_s", "load_n", "temperature_c")
+RPM = 2.0 * math.pi / 60.0
+"""Radians a second of one turn a minute."""
+ALIASES = {
+    "torque": "torque_n_m",
+    "torque_nm": "torque_n_m",
+    "motor_torque": "motor_torque_n_m",
+    "current": "current_a",
+    "iq": "current_a",
+    "i_a": "current_a",
+    "torque_pct": "torque_percent",
+    "force_pct": "force_percent",
+    "angle": "angle_rad",
+    "position_rad": "angle_rad",
+    "omega": "velocity_rad_s",
+    "speed_rad_s": "velocity_rad_s",
+    "rpm": "speed_rpm",
+    "motor_rpm": "motor_speed_rpm",
+    "position": "position_m",
+    "velocity": "velocity_m_s",
+    "force_n": "friction_n",
+}
+"""Other names that people give a drive's columns, for the suggestion only."""
+_ENDS = {
+    "_n_m": "1 N m",
+    "_a": "1 A",
+    "_percent": "1 %",
+    "_rpm": "1 turn a minute",
+    "_rad_s": "1 rad/s",
+    "_rad": "1 rad",
+}
+"""What one unit of a column is, by the end of its name."""
+_TURNED = ("angle_rad", "motor_angle_rad")
+
+
+@dataclass(frozen=True)
+class DriveColumns:
+    """What a rig's drive has read: for each quantity its columns, and the size of one unit of each
+    where the drive moves."""
+
+    drive: Drive
+    friction: dict[str, float]
+    speed: dict[str, float]
+    place: dict[str, float]
+
+    @classmethod
+    def of(cls, drive: Drive) -> DriveColumns:
+        """The columns that a drive of this kind may have."""
+        motor = drive.motor_rad
+        if drive.motion == "rotary":
+            speed, place = {"velocity_rad_s": 1.0, "speed_rpm": RPM}, {"angle_rad": 1.0}
+        else:
+            speed, place = {"velocity_m_s": 1.0}, {"position_m": 1.0}
+        if motor is not None:
+            speed |= {"motor_velocity_rad_s": 1.0 / motor, "motor_speed_rpm": RPM / motor}
+            place |= {"motor_angle_rad": 1.0 / motor}
+        return cls(drive, _friction(drive), speed, place)
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """Every column with a meaning here."""
+        return (*ALWAYS, *self.friction, *self.speed, *self.place)
+
+    def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
+        """What must be there: the time, a motion, a friction; of each the one in the header, or
+        else the first."""
+
+        def one(names: Sequence[str]) -> str:
+            return next((name for name in names if name in header), names[0])
+
+        found = ["time_s", one([*self.speed, *self.place])]
+        return found + ([one([*self.friction])] if need_friction else [])
+
+    def refuse_strangers(self, path: Path, row: int, header: Sequence[str]) -> None:
+        """An InputError where a column of another kind of machine stands in the file."""
+        section = f"the rig's [drive] has motion = {self.drive.motion!r}".replace("'", '"')
+        for name, mend in _strangers(self).items():
+            if name in header:
+                problem = f"does not go with the rig: {section}"
+                if name in ("friction_n", "velocity_m_s", "position_m"):
+                    problem += f', friction = "{self.drive.friction}"'
+                raise InputError(file=path, row=row, column=name, problem=problem, mend=mend)
+
+    def converted(
+        self, name: str, columns: Mapping[str, Array]
+    ) -> tuple[dict[str, Array], tuple[Finding, ...]]:
+        """The columns as every run has them, and what was done to them, as findings."""
+        kept = dict(columns)
+        found: list[Finding] = []
+        unit = self.drive.quantities
+        place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
+        for target, sizes, si in (
+            ("friction_n", self.friction, unit.force),
+            ("velocity_m_s", self.speed, unit.speed),
+            (place, self.place, unit.length),
+        ):
+            there = [column for column in sizes if column in columns]
+            if not there:
+                continue
+            column, *others = there
+            size = sizes[column]
+            values = kept.pop(column)
+            if column in _TURNED and size != 1.0:
+                values = _whole(values)
+            kept[target] = values if size == 1.0 else frozen(values * size)
+            if size != 1.0:
+                found.append(_conversion(name, target, column, size, si))
+            found += [_not_read(name, target, other, column) for other in others]
+        return kept, tuple(found)
+
+
+def _friction(drive: Drive) -> dict[str, float]:
+    if drive.friction == "force":
+        return {"friction_n": 1.0}
+    if drive.friction == "torque":
+        assert drive.motor_rad is not None
+        of_joint = {"torque_n_m": 1.0} if drive.motion == "rotary" else {}
+        return of_joint | {"motor_torque_n_m": drive.motor_rad}
+    if drive.friction == "current":
+        return {"current_a": drive.unit_n}
+    return {"torque_percent" if drive.rated_force_n is None else "force_percent": drive.unit_n}
+
+
+def _strangers(columns: DriveColumns) -> dict[str, str]:
+    """Columns that this drive cannot have, and what to do about each."""
+    first = next(iter(columns.friction))
+    found = {}
+    if first != "friction_n":
+        found["friction_n"] = f"keep {first} and drop it, or correct [drive]"
+    if columns.drive.motion == "rotary":
+        for name, own in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):
+            found[name] = f"give {own}, or correct [drive]"
+        return found
+    found["angle_rad"] = "is it the motor's? then rename it to motor_angle_rad, else drop it"
+    for name in ("velocity_rad_s", "speed_rpm"):
+        found[name] = f"is it the motor's? then rename it to motor_{name}, else drop it"
+    if columns.drive.pitch_m is None:
+        for name in ("motor_angle_rad", "motor_velocity_rad_s", "motor_speed_rpm"):
+            found[name] = "give [drive] its pitch_m (way for one turn), or rename the column"
+    if columns.drive.friction == "torque":
+        found["torque_n_m"] = "rename it to motor_torque_n_m if it is the motor's"
+    return found
+
+
+def _whole(angle: Array) -> Array:
+    """An angle that does not start again at each turn; one of many turns stays as it is."""
+    wraps = float(np.ptp(angle)) <= 2.0 * math.pi * (1.0 + 1e-9)
+    return np.unwrap(angle) if wraps else angle
+
+
+def _conversion(name: str, target: str, column: str, size: float, si: str) -> Finding:
+    one = next(unit for end, unit in _ENDS.items() if column.endswith(end))
+    words = f"{column} was read as {si}: {one} is {size:.5g} {si} where the drive moves"
+    return Finding("converted", target, name, size, si, "once, on reading", words)
+
+
+def _not_read(name: str, target: str, other: str, column: str) -> Finding:
+    words = f"{other} is there, too; {column} was read"
+    return Finding("second_column", target, name, 0.0, "1", "kept, not used", words)

@@ -1,0 +1,76 @@
+"""What effects are on a machine without bearings and a load cell: a drive's own words for them."""
+
+from __future__ import annotations
+
+from jbf.models.catalogue import Effect, find_effect
+from jbf.models.model import Model
+from jbf.models.parameter_units import shown
+from jbf.records.quantities import Quantities
+from jbf.reporting.paragraphs import hanging
+from jbf.reporting.words import number, value_and_error
+
+
+def summary_of(effect: Effect, said: Quantities) -> str:
+    """One clause: what the effect is on a machine of this kind."""
+    if said.motion == "bearing":
+        return effect.summary
+    inertia = "inertia" if said.motion == "rotary" else "mass"
+    own = {
+        "sensor_offset": f"the zero of {said.sensor} is off, or a constant {said.noun} is there "
+        "(gravity on an inclined axis, a spring, a counterweight)",
+        "sensor_drift": f"the zero of {said.sensor} wanders steadily during a run",
+        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} late",
+        "inertia_leak": f"the {inertia} that the drive accelerates, in what {said.sensor} reads",
+        "drive_compliance": "a belt, coupling or shaft twists between the position sensor and what "
+        "is driven",
+        "cogging": f"a motor's {said.noun} that rises and falls with every pitch of the way, at "
+        "rest too",
+    }
+    return own.get(effect.name) or _here(effect.summary, said)
+
+
+def limits_of(effect: Effect, said: Quantities) -> str:
+    """What the effect does not cover, in the same words."""
+    if said.motion == "bearing":
+        return effect.limits
+    return _here(effect.limits, said)
+
+
+def _here(words: str, said: Quantities) -> str:
+    """The catalogue's words without what a bearing's rig has."""
+    for of_bearing, here in (
+        ("the cell", said.sensor),
+        ("the journal", "what is driven"),
+        ("which gamma takes up", "which the law's viscous friction takes up"),
+    ):
+        words = words.replace(of_bearing, here)
+    return words
+
+
+def effect_lines(model: Model) -> list[str]:
+    """What each effect of a model is on its drive; nothing of a rig without [drive]."""
+    if model.rig.drive is None or not model.effects:
+        return []
+    said = model.rig.quantities
+    lines = ["", "What these effects are here"]
+    for name in model.effects:
+        lines += hanging(
+            f"{name}: ", summary_of(find_effect(name), said) + known_mass(model, name), 4
+        )
+    return lines
+
+
+def known_mass(model: Model, effect: str) -> str:
+    """The mass or inertia that was found beside the one that the rig tells; empty where it tells
+    none."""
+    drive = model.rig.drive
+    if effect != "inertia_leak" or drive is None:
+        return ""
+    known = drive.inertia_kg_m2 if drive.motion == "rotary" else drive.mass_kg
+    if known is None:
+        return ""
+    name = "inertia_leak.m_e_kg"
+    unit = shown(model.law, model.effects, model.rig.quantities)[name][1]
+    value, error = value_and_error(model.parameters[name])
+    found = f"{value} +/- {error}" if error else value
+    return f"; {found} {unit} where the rig's file says {number(known, 4)}"

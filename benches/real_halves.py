@@ -94,6 +94,23 @@ def cycles(path: Path) -> Halves:
     return runs[0::2], runs[1::2]
 
 
+def steady(folder: Path) -> Halves:
+    """Every other pair of steady strokes of a cylinder, a run for each valve voltage, and the
+    others: away from the ends of its way, where what is measured is the force of the stop."""
+    fitted: list[jbf.Run] = []
+    left: list[jbf.Run] = []
+    for path in sorted(folder.glob("valve*V.csv")):
+        c = columns(path)
+        place, v = c["position_m"], c["velocity_m_s"]
+        at = np.flatnonzero((np.abs(v) > 0.01) & (place > 0.01) & (place < 0.19))
+        cuts = (np.diff(at) > 1) | (np.diff(np.sign(v[at])) != 0.0)
+        parts = [p for p in np.split(at, np.flatnonzero(cuts) + 1) if len(p) > 50]
+        for into, which in ((fitted, (0, 1)), (left, (2, 3))):
+            chosen = np.concatenate([p for i, p in enumerate(parts) if i % 4 in which])
+            into.append(part(c, chosen, path.stem))
+    return fitted, left
+
+
 def halved(path: Path) -> Halves:
     """The first half, and the second."""
     c = columns(path)
@@ -131,13 +148,15 @@ def main() -> int:
     plan += [("emps/run.csv", halved)]
     plan += [(f"ur10e_joints/joint{k}.csv", halved) for k in (1, 2, 3, 4, 5)]
     plan += [("tribometer/run.csv", cycles)]
+    plan += [(f"openarm_joints/joint{k}.csv", halved) for k in (3, 5, 6, 7)]
+    plan += [("hydraulic_cylinder", steady)]
     print("| recording | law | left-out RMS, N (drives: %) | verdict | named | findings | CPU s |")
     print("|---|---|---|---|---|---|---|")
     for name, cut in plan:
         path = asked.folder / name
         if asked.only not in name:
             continue
-        if not path.is_file():
+        if not path.exists():
             print(f"skipped: there is no {path}")
             continue
         row(name, cut(path), asked.law)

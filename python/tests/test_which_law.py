@@ -83,11 +83,11 @@ def test_a_stribeck_record_gets_its_law_and_no_effect(tmp_path: Path) -> None:
     assert by_name["coulomb"].left_out_rms_n > 3.0 * NOISE_N
     text = found.summary()
     assert "The data chose the law stribeck" in text
-    assert "Which law, each alone" in text
+    assert "Which law, each beside a zero" in text
     assert found.to_dict()["laws"][0]["law"] == "stribeck"
     page = tmp_path / "d.html"
     found.save_html(page)
-    assert "Which law, each alone" in page.read_text()
+    assert "Which law, each beside a zero" in page.read_text()
 
 
 def test_where_another_law_alone_does_better_that_is_said() -> None:
@@ -96,10 +96,17 @@ def test_where_another_law_alone_does_better_that_is_said() -> None:
     assert found.simpler_law is not None
     assert found.simpler_law.law == "stribeck"
     words = " ".join(found.summary().split())
-    assert "Another law may be the right one: stribeck alone" in words
+    assert "Another law may be the right one: stribeck, which needs no other friction" in words
     # One effect that says it all is not worth a search.
     found = diagnose(Rig(), runs(), law="coulomb")
     assert (found.effects, found.simpler_law) == (("stribeck_excess",), None)
+
+
+def test_a_zero_does_not_choose_the_law() -> None:
+    # Beside an offset that no law can say, the smallest differences would.
+    found = diagnose(Rig(), runs(zero_n=20.0), law="auto")
+    assert (found.model.law, found.effects) == ("stribeck", ("sensor_offset",))
+    assert found.laws[0].left_out_rms_n == pytest.approx(NOISE_N, rel=0.05)
 
 
 def test_the_winner_is_diagnosed() -> None:

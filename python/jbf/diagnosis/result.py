@@ -59,8 +59,9 @@ class Diagnosis(Result):
     laws
         Where the data chose the law: those that the rig allows, the one taken first.
     simpler_law
-        Another law that alone predicts runs left out no worse than the final model; None where
-        there is none, or nothing made it worth a search.
+        Another law that predicts runs left out no worse than the final model, with no more
+        parameters and only those effects that are no friction (a zero, a mass, a weight); None
+        where there is none, or nothing made it worth a search.
     """
 
     verdict: Verdict

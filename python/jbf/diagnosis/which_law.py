@@ -1,9 +1,9 @@
-"""Which law at all: every law that a rig allows, without effects, by the runs that it was not
-fitted to.
+"""Which law at all: every law that a rig allows, by the runs that it was not fitted to.
 
-The left-out error charges a parameter what it costs. Laws that predict equally well, as far as the
-scatter between stretches of the records tells, are tied; of these the one with fewest parameters is
-taken.
+Beside each stand the nuisances of any machine, a zero, the mass that is moved and a weight: they
+are no friction, and a law that has to make up for them is not the law. The left-out error charges a
+parameter what it costs. Laws that predict equally well, as far as the scatter between stretches of
+the records tells, are tied; of these the one with fewest parameters is taken.
 """
 
 from __future__ import annotations
@@ -29,13 +29,15 @@ from jbf.records.rig import Rig
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+NUISANCES = ("sensor_offset", "inertia_leak", "gravity")
+"""Effects that are no friction, and that no law can say."""
 STRETCHES = 40
 """Parts of a campaign whose mean squares are compared."""
 
 
 @dataclass(frozen=True)
 class LawTried:
-    """A law without effects, as far as it predicts.
+    """A law, as far as it predicts beside what is no friction.
 
     Attributes
     ----------
@@ -83,7 +85,9 @@ def which_law(
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
-        left.append(left_out(Candidates(settled_campaign(campaign, name, clock), name, clock), ()))
+        candidates = Candidates(settled_campaign(campaign, name, clock), name, clock)
+        beside = tuple(effect for effect in NUISANCES if effect in candidates.names)
+        left.append(left_out(candidates, beside))
     tried = compared(names, [len(find_law(n).parameters) for n in names], left, policy)
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first))
@@ -125,24 +129,23 @@ def compared(
 
 
 def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
-    """Another law that alone predicts no worse than a model with effects, and has no more
-    parameters; None where there is none. What several effects mend, one law may say."""
+    """Another law that predicts no worse than a model with effects, and has no more parameters;
+    None where there is none. What several effects mend, one law may say; those that are no friction
+    stay beside it."""
     policy, whole = candidates.policy, candidates.campaign
+    kept = tuple(effect for effect in effects if effect in NUISANCES)
     most = len(candidates.fitted(effects).problem.names)
-    others = [
-        name
-        for name in allowed(whole.rig)
-        if name != candidates.law and len(find_law(name).parameters) <= most
-    ]
-    left = [left_out(candidates, effects)]
-    names, counts = [""], [most]
-    for name in others:
+    left, names, counts = [left_out(candidates, effects)], [""], [most]
+    for name in allowed(whole.rig):
         other = Candidates(whole, name, clock, policy)
+        count = len(other.fitted(kept).problem.names)
+        if name == candidates.law or count > most:
+            continue
         # Far off in the fit is far off elsewhere.
-        if other.converge(()).rms_n < policy.leader_rms * candidates.converge(effects).rms_n:
-            left.append(left_out(other, ()))
+        if other.converge(kept).rms_n < policy.leader_rms * candidates.converge(effects).rms_n:
+            left.append(left_out(other, kept))
             names.append(name)
-            counts.append(len(find_law(name).parameters))
+            counts.append(count)
     tried = compared(names, counts, left, policy)
     here = next(t for t in tried if t.law == "")
     better = [t for t in tried if t.law and t.left_out_rms_n <= here.left_out_rms_n and t.tied]

@@ -50,7 +50,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     if diagnosis.next_experiment:
         lines += hanging("Next experiment: ", diagnosis.next_experiment)
     if diagnosis.laws:
-        lines += ["", "Which law, each alone"]
+        lines += ["", "Which law, each beside a zero, a mass and a weight of its own"]
         names = ("law", "parameters", f"held out ({unit})", "")
         lines += columns([names, *law_rows(diagnosis)], "<>><", 4)
     lines += [

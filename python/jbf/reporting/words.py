@@ -120,7 +120,8 @@ def _law_sentence(diagnosis: Diagnosis) -> str:
         return ""
     here, unit = diagnosis.steps[-1].holdout_rms_n, diagnosis.model.rig.quantities.force
     return (
-        f" Another law may be the right one: {other.law} alone predicts runs left out to within "
+        f" Another law may be the right one: {other.law}, which needs no other friction beside it, "
+        f"predicts runs left out to within "
         f"{number(other.left_out_rms_n)} {unit}, {diagnosis.model.law} with all of this to "
         f"{number(here)} {unit}; --law auto compares them all."
     )

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from jbf import Rig
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import Samples
@@ -80,7 +81,9 @@ class MadeUp:
     policy: Policy = DEFAULT
     asked: list[tuple[str, Set]] = field(default_factory=list)
     campaign: Any = field(
-        default_factory=lambda: SimpleNamespace(samples=SAMPLES, steps_rms_n=lambda rms_n: 0.0)
+        default_factory=lambda: SimpleNamespace(
+            samples=SAMPLES, steps_rms_n=lambda rms_n: 0.0, rig=Rig()
+        )
     )
 
     def _gain(self, effects: Iterable[str]) -> float:

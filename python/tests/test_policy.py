@@ -32,6 +32,7 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.records.findings.finding import Finding
+from jbf.records.quantities import OF_BEARING
 from made_up import MadeUp, N, sets
 from policy_gates import GATES, linear, looked_at
 from scipy import stats
@@ -163,7 +164,7 @@ def disagreed(gain: float, degrees: int) -> Callable[[Policy], object]:
 def bursts(count: int, size: float, rest: Array) -> Callable[[Policy], object]:
     """Threes of large innovations among others whose median size makes one standard deviation."""
     time = 0.02 * np.arange(len(rest))
-    prepared = [SimpleNamespace(run=SimpleNamespace(time_s=time, name="a"))]
+    prepared = [SimpleNamespace(run=SimpleNamespace(time_s=time, name="a", quantities=OF_BEARING))]
     every = np.ones(len(rest), dtype=bool)
     samples = Samples(("a",), (0.02,), (every,), (every.astype(float),))
 

@@ -105,6 +105,14 @@ def test_level_and_zero_that_grow_with_the_load_are_found_together() -> None:
     assert set(found.effects) == both
 
 
+def test_a_zero_that_grows_with_the_load_is_no_scatter_of_the_runs() -> None:
+    records, truth = axis_campaign(101008, ("zero_load_dependence",), runs=8)
+    found = diagnose(Rig(), joints(records[:6]), **COULOMB)
+    assert (found.verdict, found.effects) == ("missing", ("zero_load_dependence",))
+    assert not [f for f in found.findings if f.kind == "level_by_run"]
+    assert found.steps[-1].rms_n == pytest.approx(truth["noise_n"], rel=0.05)
+
+
 def test_a_weight_alone_is_not_taken_for_what_a_gear_loses() -> None:
     records, _ = axis_campaign(14, ("gravity",), swing=SWING)
     found = diagnose(Rig(), joints(records), **COULOMB)

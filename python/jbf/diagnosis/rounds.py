@@ -68,7 +68,16 @@ def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campai
         (t.evidence for t in found.trials if t.evidence > 0.0), default=0.0
     )
     differ = deviation(problem, solution, campaign.samples, policy, least)
-    return None if differ is None else allowing_for(campaign, differ)
+    if differ is None:
+        return None
+    allowed = allowing_for(campaign, differ)
+    if found.leader is not None:
+        # One number that says of all runs what each would say of itself.
+        leads = candidates.converge((*present, found.leader))
+        apart = allowed.samples.without_deviations(solution.residuals, solution.noise)
+        if leads.rms_n <= policy.no_worse * solution.samples.rms(apart):
+            return None
+    return allowed
 
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:

@@ -304,6 +304,11 @@ def test_a_slow_reversal_is_no_rest() -> None:
     at_rest = np.where(np.abs(time - 1.0) < 0.8, 0.0, 1e-15 * np.sign(time - 1.0))
     at_rest[-1] = 1.0
     assert still_samples(time, np.zeros(400), at_rest, step)[45:355].all()
+    # A stop on the way is one, as fast before as after.
+    way = np.where(np.abs(time - 1.0) < 0.4, 0.0, 0.01)
+    path = step * np.round(np.cumsum(way) * 5e-3 / step)
+    way[-1] = 0.2
+    assert still_samples(time, path, way, step)[140:260].all()
     # As long a rest between the same speeds is one.
     still = np.where(np.abs(time - 1.0) < 0.4, 0.0, v)
     path = step * np.round(np.cumsum(still) * 5e-3 / step)

@@ -28,6 +28,7 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
             r.friction_n,
             angle_rad=r.angle_rad,
             load_n=r.load_n,
+            temperature_c=r.temperature_c,
             name=name,
         )
         for name, r in records.items()

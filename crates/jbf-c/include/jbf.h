@@ -46,19 +46,20 @@ typedef struct {
   uint32_t count; /* bearings on the shaft */
 } jbf_bearing;
 
-/* An imposed motion at one instant; on a linear axis angle_rad is the place in m. */
+/* An imposed motion at one instant; on a linear axis angle_rad is the place in m. A temperature is
+ * what effects of temperature ask for: NAN where none is measured, which is as at their reference. */
 typedef struct {
-  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n;
+  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
 } jbf_motion_f32;
 
 typedef struct {
-  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n;
+  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
 } jbf_motion_f64;
 
-/* A whole run: five columns, each of so many samples. */
+/* A whole run: columns, each of so many samples; temperature_c may be null. */
 typedef struct {
   size_t samples;
-  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n;
+  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n, *temperature_c;
 } jbf_record;
 
 /* Which parameter, which rule, which value; texts end with a zero. */

@@ -169,11 +169,12 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
 
     /// The longest step of the law under the lightest and the heaviest load of a run, s.
     pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
-        let mut longest = self.law.longest_step_s(top_m_s);
         let Some(first) = record.motion(0) else {
-            return longest;
+            return self.law.longest_step_s(top_m_s);
         };
         let mut states = self.effects.start(&first, &self.rig);
+        let top_m_s = top_m_s * self.thickest(&states, record, &first);
+        let mut longest = self.law.longest_step_s(top_m_s);
         let loads = record.load_n.iter();
         let (light, heavy) = loads.fold((f64::INFINITY, 0.0_f64), |(low, high), &n| {
             (low.min(n), high.max(n))
@@ -184,6 +185,26 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             }
         }
         longest
+    }
+
+    /// The largest factor, at least one, that the lubricant makes of a speed at the coldest and the
+    /// warmest of a run.
+    fn thickest(&self, states: &E::State, record: &Record<'_>, first: &Motion<T>) -> f64 {
+        let Some(all) = record.temperature_c else {
+            return 1.0;
+        };
+        let ends = all
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &c| {
+                [low.min(c), high.max(c)]
+            });
+        ends.iter().fold(1.0, |most: f64, &c| {
+            let rest = first.with_velocity_m_s(T::ZERO);
+            let journal = JournalMotion::from(&rest.with_temperature_c(T::of(c)));
+            let mut factor = T::ONE;
+            self.effects.lubricant(states, &journal, &mut factor);
+            most.max(factor.value())
+        })
     }
 
     /// The law as it is under this load, where an effect makes it another.

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
-from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
+from jbf.records.checks import COLUMNS, MOTION, SLOW, check_columns, frozen, listed
 from jbf.records.counts import count_of
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
@@ -224,6 +224,10 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         )
     columns: dict[str, Array] = {}
     for name, cells in zip(header, zip(*rows, strict=True), strict=True):
+        if name == SLOW:
+            cells = tuple(cell if cell.strip() else "nan" for cell in cells)
+            if all(cell == "nan" for cell in cells):
+                continue
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
@@ -238,6 +242,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         return Run.of_columns(path.stem, columns, path)
     columns, findings = of_drive.converted(path.stem, columns)
     run = Run.of_columns(path.stem, columns, path)
+    findings = (*findings, *run.reading)
     return replace(run, quantities=of_drive.drive.quantities, reading=findings)
 
 

@@ -117,6 +117,10 @@ class Chain:
         speed = abs(v)
         ub = self._film_speed(y, speed)
         out = list(self.film.rates(y[0], y[1], ub))
+        if self.time_at >= 0:
+            # Thin oil leaves the gap sooner: the squeeze goes with 1/mu.
+            thick = self.lubricant.thickness(y[self.time_at])
+            out = [rate / thick for rate in out]
         if self.size == 2:
             return out
         if self.heat_at >= 0:

@@ -36,11 +36,16 @@ class Lubricant:
         ub = speed * self._scale
         if self.shear_speed > 0.0:
             ub /= 1.0 + (speed / self.shear_speed) ** self.shear_power
-        if self.warmth is not None:
-            ub *= thinner(self.b_k, self.warmth.at(time_s))
+        ub *= self.thickness(time_s)
         if self.heats:
             ub *= math.exp(-heat)
         return ub
+
+    def thickness(self, time_s: float) -> float:
+        """Viscosity over that at the reference temperature at a time (s)."""
+        if self.warmth is None:
+            return 1.0
+        return thinner(self.b_k, self.warmth.at(time_s))
 
     def heat_rate(self, power_w: float, heat: float) -> float:
         """d(beta T)/dt (1/s) at friction power `power_w` (W) of one bearing."""

@@ -161,12 +161,12 @@ def test_wrong_names_are_refused():
 
 
 def test_a_warm_film_is_that_of_a_thinner_oil():
-    """At a steady temperature: other oil and transition speed, on a clock that runs as before."""
+    """At a steady temperature: another oil, and with it another transition speed."""
     thin = math.exp(800.0 / (45.0 + 95.0) - 800.0 / (25.0 + 95.0))
     oil = replace(BASE.bearing, viscosity_pa_s=BASE.bearing.viscosity_pa_s * thin)
     other = replace(BASE, U_tr=BASE.U_tr / thin, bearing=oil)
     warm = force({"vogel_viscosity": {"B": 800.0}}, warmth=Warmth(45.0))
-    thinner = simulate_run(other, {"film_memory": {"factor": thin}}, SWING).friction_n
+    thinner = simulate_run(other, {}, SWING).friction_n
     np.testing.assert_allclose(warm, thinner, atol=1e-5)
     assert np.max(np.abs(warm - force({}))) > 0.5
 

@@ -142,8 +142,9 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         self.load.scales(&mut s.load, share, scales);
     }
     #[inline(always)]
-    fn film_rate(&self, s: &States<T>, rate: &mut T) {
-        self.film.film_rate(&s.film, rate);
+    fn film_rate(&self, s: &States<T>, journal: &JournalMotion<T>, rate: &mut T) {
+        self.lubricant.film_rate(&s.lubricant, journal, rate);
+        self.film.film_rate(&s.film, journal, rate);
     }
     #[inline]
     fn fastest_film(&self) -> f64 {

@@ -5,15 +5,16 @@
 //! ```
 //!
 //! Source: Vogel (1921), Fulcher (1925), Tammann & Hesse (1926). B tells how steeply an oil thins, C
-//! at which temperature it would freeze to a glass; for lubricating oils of every grade C = -95 C
-//! serves (DIN 31652-2, on hydrodynamic plain bearings), which leaves one parameter. Over 20 to 30 K a
-//! record does not tell C from B: a C that is off by 15 K changes the viscosity by less than 2 % there
-//! once B is found with it.
+//! at which temperature it would set. For mineral oils of every grade C = -95 C serves (Crouch &
+//! Cameron 1961), which leaves one parameter. Over 20 to 30 K a record does not tell C from B: a C that
+//! is off by 15 K changes the viscosity by less than 2 % there once B is found with it. Walther's
+//! relation (ASTM D341) has two parameters of an oil, too, and no reason to be preferred between 0 and
+//! 100 C: the tests compare the two.
 
 use crate::page::{Parameter, Start};
 use crate::real::Real;
 
-/// The C of lubricating oils, C.
+/// The C of mineral oils, C.
 const OILS_C: f64 = -95.0;
 /// So close to C, K, the relation is followed: oil sets long before.
 const NEAREST_K: f64 = 20.0;
@@ -36,7 +37,7 @@ pub(super) const REFERENCE: Parameter = Parameter::new(
 pub(super) const C: Parameter = Parameter::new(
     "C_c",
     "C",
-    "Vogel's C: of lubricating oils -95",
+    "Vogel's C: of mineral oils -95",
     [-250.0, -60.0],
     &[OILS_C],
 )

@@ -1,8 +1,11 @@
-//! `Ub -> Ub exp(B/(T - C) - B/(T_0 - C))`: oil that thins with the recorded temperature.
+//! `Ub -> Ub m`, `t -> t/m`, `m = exp(B/(T - C) - B/(T_0 - C))`: oil that thins with the recorded
+//! temperature.
 //!
 //! Source: Vogel (1921); see `vogel.rs` for the relation and its C. Viscosity and transition speed
 //! go together (mu U_tr = const), so Fb and eps_tr stay, as in `thermal_thinning`, whose temperature
-//! nobody recorded. Two oils, or two days, are then one model.
+//! nobody recorded. The film's clock, U_tr/R, goes with 1/mu: thin oil is squeezed out sooner. On the
+//! journal's clock the law of another oil is then this one at another temperature: two oils, or two
+//! days, are one model.
 
 use super::vogel::{Vogel, C, REFERENCE};
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
@@ -19,9 +22,17 @@ pub struct VogelViscosity<T> {
 impl<T: Real> Effect<T> for VogelViscosity<T> {
     const INFO: Info = Info::new("vogel_viscosity", Stage::Lubricant)
         .summary("oil that thins as the recorded temperature rises")
-        .equation("Ub -> Ub exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature")
-        .source("Vogel 1921; DIN 31652-2 for C; Cohn 1998, section 4.2, for mu U_tr = const")
-        .limits("the film as warm as the thermometer; C as of a usual oil, unless it is told")
+        .equation(
+            "Ub -> Ub m, t -> t/m, m = exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature",
+        )
+        .source(
+            "Vogel 1921; Crouch & Cameron 1961 for C; Cohn 1998, section 4.2, for mu U_tr = const",
+        )
+        .limits(
+            "the film as warm as the thermometer; C as of a usual oil, unless it is told; the \
+             journal's inertia as at T_0; without the temperature of the rig's viscosity that \
+             viscosity is taken to hold at the mean on record",
+        )
         .parameters(&[
             Parameter::new(
                 "B_k",
@@ -54,5 +65,10 @@ impl<T: Real> Lubricant<T> for VogelViscosity<T> {
     #[inline(always)]
     fn factor(&self, _state: &(), journal: &JournalMotion<T>) -> T {
         self.relation.factor(journal.temperature_c)
+    }
+
+    #[inline(always)]
+    fn rate(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        T::ONE / self.relation.factor(journal.temperature_c)
     }
 }

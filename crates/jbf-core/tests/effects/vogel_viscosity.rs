@@ -61,10 +61,8 @@ fn two_oils_are_one_model() {
         ..table
     };
     let bearing = Bearing::THESIS.with_viscosity_pa_s(Bearing::THESIS.viscosity_pa_s * thin);
-    // The journal's clock runs with U_tr, the thesis's with the second: that of a film that is the
-    // same but for its oil.
     let law = |bearing: &Bearing, p: &Parameters<f64>| {
-        Journal::new(bearing, LOAD_N, p, Clock::Thesis).expect("valid")
+        Journal::new(bearing, LOAD_N, p, Clock::Journal).expect("valid")
     };
     let sines = Sines::two_way(1.0);
     let at = |t: f64| -> Motion<f64> { sines.at(t).with_temperature_c(warm) };

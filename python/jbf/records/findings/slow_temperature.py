@@ -18,8 +18,8 @@ HELD = 0.5
 """A reading that repeats the one before at more than this share of the samples is held."""
 SMOOTH_S = 2.0
 """Seconds over which a noisy reading is averaged."""
-NOISE_K = 0.05
-"""Noise below this, K, changes no friction by as much as it is known."""
+NOISE_K = 0.1
+"""Noise below this, K, changes an oil by half a percent: nothing is done about it."""
 
 
 def recorded_temperature(run: Run) -> Array | None:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.records.channels import Channels, filled, side_by_side
 from jbf.records.checks import COLUMNS, MOTION, SLOW, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
 from jbf.records.quantities import OF_BEARING, Quantities
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 PathLike = str | os.PathLike[str]
 
 
@@ -58,6 +60,9 @@ class Run:
         Units and words; those of a rotary drive have N m in the place of N and rad in that of m.
     reading : tuple of Finding
         What was converted when the run was read.
+    read : dict of str to ndarray
+        Where a channel with a clock of its own was read, bool of shape (N,); between its readings
+        its array is a straight line. A column that is not here was read at every instant.
     """
 
     name: str
@@ -73,6 +78,7 @@ class Run:
     speed_recorded: bool = True
     quantities: Quantities = OF_BEARING
     reading: tuple[Finding, ...] = ()
+    read: dict[str, Mask] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         there = ", ".join(self._called())
@@ -133,7 +139,9 @@ class Run:
                 )
         kept = {name: frozen(a[index]) for name, a in self._arrays().items()}
         extra = {name: kept.pop(name) for name in self.extra}
-        return replace(self, **kept, extra=extra)  # type: ignore[arg-type]
+        read = {name: there[index] for name, there in self.read.items()}
+        read = {name: there for name, there in read.items() if not there.all()}
+        return replace(self, **kept, extra=extra, read=read)  # type: ignore[arg-type]
 
     @classmethod
     def from_arrays(
@@ -193,6 +201,28 @@ class Run:
         return cls.of_columns(name, columns, None if path is None else Path(path))
 
     @classmethod
+    def from_channels(
+        cls, channels: Channels, *, name: str = "run", path: PathLike | None = None
+    ) -> Run:
+        """A run of channels that were read by clocks of their own: nothing is resampled.
+
+        Parameters
+        ----------
+        channels
+            Column name (``friction_n``, ``angle_rad``, ..., or any other) to its instants, s, and
+            its values there, each of shape (n,); n and the instants may differ.
+
+        Raises
+        ------
+        InputError
+            A channel is not finite numbers at increasing instants, or nothing tells the motion.
+        """
+        columns, read = side_by_side(channels, name)
+        check_columns(name, columns, None, None)
+        run = cls.of_columns(name, columns, None if path is None else Path(path))
+        return replace(run, read=read)
+
+    @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
         """A run of columns that have been checked."""
         recorded = "velocity_m_s" in columns
@@ -200,7 +230,7 @@ class Run:
             columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
         reading: tuple[Finding, ...] = ()
         if SLOW in columns:
-            whole, reading = filled(name, columns["time_s"], columns[SLOW])
+            whole, reading = _whole(name, columns["time_s"], columns[SLOW])
             columns = dict(columns) | {SLOW: whole}
         known: dict[str, Any] = {c: values for c, values in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
@@ -228,6 +258,7 @@ class Run:
             friction_n=frozen(friction_n),
             **others,  # type: ignore[arg-type]
             extra=extra,
+            read={},
         )
 
     def write_csv(self, path: PathLike) -> None:
@@ -247,20 +278,25 @@ class Run:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
         # repr of a float is the shortest text that reads back to the same bits.
-        writer.writerows(zip(*(map(repr, a.tolist()) for a in columns.values()), strict=True))
+        cells = [list(map(repr, a.tolist())) for a in columns.values()]
+        for own, of_column in zip(self.columns(), cells, strict=True):
+            # An empty cell is an instant at which the channel was not read.
+            for i in np.flatnonzero(~self.read[own]).tolist() if own in self.read else ():
+                of_column[i] = ""
+        writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
 
 
-def filled(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
+def _whole(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
     """A temperature, C, with straight lines over its gaps, and what is said of them."""
     there = np.isfinite(celsius)
     if there.all():
         return celsius, ()
-    gaps = np.diff(time_s[there])
-    longest = max(float(np.max(gaps, initial=0.0)), float(time_s[-1] - time_s[0]) / len(celsius))
+    ends = np.concatenate((time_s[:1], time_s[there], time_s[-1:]))
+    longest_s = float(np.max(np.diff(ends)))
     words = f"the temperature was read at {there.sum()} of {len(celsius)} samples"
-    told = Finding("gaps", SLOW, name, longest, "s", "straight lines between", words)
-    return frozen(np.interp(time_s, time_s[there], celsius[there])), (told,)
+    told = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
+    return filled(time_s, celsius, there), (told,)
 
 
 def _made_speed(columns: Mapping[str, Array]) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
+from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -53,11 +54,10 @@ def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:
     """The temperature of the body, C; how long its readings are held, s; their noise, K. Each is
     zero where nothing was done."""
     drawn, held_s = _through_jumps(time, celsius)
-    smooth = _averaged(time, drawn)
-    noise_k = float(np.std(drawn - smooth))
+    noise_k = noise_of(drawn)
     if noise_k < NOISE_K:
         return drawn, held_s, 0.0
-    return smooth, held_s, noise_k
+    return _averaged(time, drawn), held_s, noise_k
 
 
 def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:

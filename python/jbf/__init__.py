@@ -16,6 +16,7 @@ from jbf.models.batch import batch
 from jbf.models.catalogue import Parameter, effects, laws
 from jbf.models.model import Model
 from jbf.models.own_effects import forget_effect, load_effects, register_effect
+from jbf.models.own_laws import forget_law, register_law
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Trajectory, trajectories, trajectory
 from jbf.records.csv_file import read_run
@@ -82,12 +83,14 @@ __all__ = [
     "fit",
     "fit_trajectories",
     "forget_effect",
+    "forget_law",
     "laws",
     "load_effects",
     "read_rig",
     "read_run",
     "read_runs",
     "register_effect",
+    "register_law",
     "trajectories",
     "trajectory",
 ]

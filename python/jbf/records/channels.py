@@ -63,6 +63,15 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
     return columns, read
 
 
+def with_own_clock(time_s: Array, values: Array) -> tuple[Array, Array]:
+    """The instants and readings of a column, without what is missing where that is a clock's; a
+    few missing ones are left to be refused."""
+    there = np.isfinite(values)
+    if there.all() or np.count_nonzero(~there) < max(MIN_SAMPLES, OWN_CLOCK * len(values)):
+        return time_s, values
+    return time_s[there], values[there]
+
+
 def filled(time_s: Array, values: Array, there: Mask) -> Array:
     """A column with straight lines where it was not read."""
     return frozen(np.interp(time_s, time_s[there], values[there]))

@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.records.channels import Channels, filled, side_by_side
+from jbf.records.channels import Channels, filled, side_by_side, with_own_clock
 from jbf.records.checks import COLUMNS, MOTION, SLOW, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
+from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.text_files import write_text
 
@@ -221,6 +222,33 @@ class Run:
         check_columns(name, columns, None, None)
         run = cls.of_columns(name, columns, None if path is None else Path(path))
         return replace(run, read=read)
+
+    @classmethod
+    def from_frame(cls, frame: object, *, name: str = "run", path: PathLike | None = None) -> Run:
+        """A run of a data frame (pandas, polars), an Arrow table or a mapping of arrays whose
+        columns are called as in a file; columns that hold no numbers are ignored.
+
+        A column of which a twentieth or more is missing (nan, null) has a clock of its own.
+
+        Raises
+        ------
+        InputError
+            As `from_arrays`; `time_s` is missing.
+        """
+        columns = columns_of(frame, name)
+        time_s = columns.pop("time_s", None)
+        if time_s is None:
+            raise InputError(
+                file=name,
+                column="time_s",
+                problem="is missing",
+                mend=f"call a column so (it has {listed(columns)})",
+            )
+        own = {column: with_own_clock(time_s, values) for column, values in columns.items()}
+        if any(len(clock) < len(time_s) for clock, _ in own.values()):
+            return cls.from_channels(own, name=name, path=path)
+        known: dict[str, Any] = {c: columns.pop(c) for c in COLUMNS if c in columns}
+        return cls.from_arrays(time_s, **known, extra=columns, name=name, path=path)
 
     @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:

@@ -210,6 +210,7 @@ def test_what_is_stated_is_said_to_be_and_costs_nothing() -> None:
 # ---- what follows it ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_two_at_once_are_found_together() -> None:
     found = diagnose(Rig(), drive(32, DRY, VISCOUS, thermometer="coarse"), **COULOMB)
     assert (found.verdict, set(found.effects)) == ("missing", {DRY, VISCOUS})

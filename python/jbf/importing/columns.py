@@ -136,7 +136,8 @@ class Header:
 
 def split_unit(text: str) -> tuple[str, str]:
     """A header's name and the unit that it states, empty where it states none."""
-    shown = " ".join(text.split())
+    # What stands twice in a file is numbered.
+    shown = re.sub(r" #\d+$", "", " ".join(text.split()))
     loose: list[tuple[str, str]] = []
     for number, pattern in enumerate(_STATED):
         match = pattern.match(shown)
@@ -145,6 +146,8 @@ def split_unit(text: str) -> tuple[str, str]:
         name, unit = match["name"].strip(), match["unit"].strip()
         if not name or not unit or (number > 0 and parse_unit(unit) is None):
             continue
+        if unit.isdigit():
+            continue  # the place of an element
         # In square brackets stands a unit, known or not; the other ways are words as well.
         if number < _IN_BRACKETS:
             return name, unit

@@ -11,7 +11,7 @@ from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
 from jbf.importing.formats.table import Column, Source, Table, Values
 from jbf.importing.guess_rig import guess_rig
-from jbf.importing.guess_time import guess_time
+from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
 from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
@@ -21,6 +21,7 @@ from jbf.importing.units import parse_unit
 
 NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
 """Quantities that make no column of a run."""
+_TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
 _BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
 
 
@@ -57,6 +58,7 @@ def guess(source: Source) -> Guess:
     """
     entries: dict[str, Entry] = {}
     ignored: dict[str, str] = {}
+    clocks: dict[str, str] = {}
     questions: list[Question] = []
     heads: dict[str, Values] = {}
     several = len(source.tables) > 1
@@ -73,6 +75,8 @@ def guess(source: Source) -> Guess:
         # Of several groups each has its own clock, and no line of the map names them all.
         own_clock = several and table.clock is not None
         time, open_ = (None, []) if own_clock else guess_time(table, head)
+        if time is not None and several:
+            time = replace(time, expression=_qualified(time.expression, table, whole))
         taken = {} if time is None else {time.key: time}
         for key in dict.fromkeys(c.key for c in found):
             rivals = [c for c in found if c.key == key]
@@ -84,11 +88,14 @@ def guess(source: Source) -> Guess:
             taken[key] = entry
             ignored |= dict.fromkeys(rest, f"{key} is made of another")
             questions += asked
-        if len(taken) > (0 if time is None else 1):
+        if not several or len(taken) > (0 if time is None else 1):
             questions += open_
             for key, entry in taken.items():
                 if key not in entries:
                     entries[key] = entry
+                    other = time is not None and time is not entries.get("time_s")
+                    if other and key != "time_s" and time is not None:
+                        clocks[key] = time.expression
                 elif key != "time_s":
                     ask = f"is in [{table.name}], too; say table under [file], or write it out"
                     questions.append(Question(key, ask))
@@ -97,7 +104,11 @@ def guess(source: Source) -> Guess:
     questions += _missing(entries, source)
     sections, about_rig = guess_rig(set(entries))
     questions += about_rig
-    questions += contradictions(entries.values(), source.tables, heads)
+    by_motion = time_by_motion(entries, source.tables, heads)
+    if by_motion is not None:
+        questions = [q for q in questions if q.place not in entries["time_s"].expression]
+        entries["time_s"] = by_motion
+    questions += contradictions(entries, source.tables, heads)
     ordered = sorted(entries.values(), key=lambda e: _order(e.key))
     return Guess(
         source.path,
@@ -107,7 +118,18 @@ def guess(source: Source) -> Guess:
         ignored,
         sections,
         tuple(dict.fromkeys(questions)),
+        clocks,
     )
+
+
+def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
+    """A time's expression with its table's name, where another has a column of that name."""
+    for column in table.columns:
+        if whole[column.name] > 1:
+            expression = expression.replace(
+                written(column.name), written(qualified(table, column.name, whole))
+            )
+    return expression
 
 
 def _order(key: str) -> int:
@@ -129,7 +151,7 @@ def _candidate(column: Column) -> Candidate | None:
             return Candidate(column.name, column, header, False, "its name", ask)
         return Candidate(column.name, column, header, True, "its name is jbf's own")
     header = understood(column.name, column.unit)
-    if header.setpoint or header.kind in NEVER:
+    if header.setpoint or header.kind in NEVER or is_doubtful_time(header):
         return None
     unit = None if header.unit in ASK else parse_unit(header.unit)
     kind, why = header.kind, "its name"
@@ -174,7 +196,7 @@ def _key(kind: str, header: Header) -> str:
     if kind == "speed":
         if size == SPEED or (unit is None and not header.turning and not header.motor):
             return "velocity_m_s"
-        turns = header.unit in ASK or unit is None or abs(unit.in_si - 1.0) > 1e-9
+        turns = header.unit in ASK or unit is None or unit.in_si in _TURNS
         return f"{motor}speed_rpm" if turns else f"{motor}velocity_rad_s"
     if kind == "torque":
         if unit is not None and size != TORQUE:
@@ -202,6 +224,11 @@ def _one(rivals: list[Candidate], key: str) -> bool:
 def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
     """The column that makes `key`, those that do not, and what must be asked."""
     sure = [c for c in rivals if c.sure]
+    named = [c for c in rivals if c.why != "its unit alone"]
+    if named and len(named) < len(rivals):
+        # A unit alone is no rival to a name.
+        entry, rest, asked = _chosen(key, named)
+        return entry, [*rest, *(c.called for c in rivals if c not in named)], asked
     own = [c for c in rivals if c.column.name == key]
     if own or len(sure) == 1 or len(rivals) == 1:
         best = (own or sure or rivals)[0]
@@ -247,7 +274,11 @@ def _left_over(table: Table, found: list[Candidate], time: Entry | None) -> dict
     used = {c.column.name for c in found}
     left = {}
     for column in table.columns:
-        if column.name in used or (time is not None and written(column.name) in time.expression):
+        if (
+            column.name in used
+            or column.name == table.clock
+            or (time is not None and written(column.name) in time.expression)
+        ):
             continue
         header = understood(column.name, column.unit)
         if column.kind == "word":

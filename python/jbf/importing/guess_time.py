@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from jbf.importing.columns import understood
+from jbf.importing.columns import Header, understood
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.table import Column, Table, Values
 from jbf.importing.guessed import Entry, Question
+from jbf.importing.plausible import OFF, PAIRS, speed_ratio
 from jbf.importing.unit_table import TIME
 from jbf.importing.units import parse_unit
 
@@ -47,6 +49,33 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     return None, [Question("time_s", ask)]
 
 
+def time_by_motion(
+    entries: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
+) -> Entry | None:
+    """The time whose unit is open, in the one unit in which speed and change of place agree."""
+    time = entries.get("time_s")
+    if time is None or time.sure or not time.expression.endswith(f"[{OPEN}]"):
+        return None
+    fitting = {}
+    for pair in PAIRS:
+        if not all(key in entries and entries[key].sure for key in pair):
+            continue
+        for unit in ("s", "ms", "us", "min"):
+            text = time.expression.replace(OPEN, unit)
+            tried = replace(
+                time, expression=text, why=f"in {unit} speed and place agree", sure=True
+            )
+            ratio = speed_ratio({**entries, "time_s": tried}, pair, tables, heads)
+            if ratio is not None and 1.0 / OFF < ratio < OFF:
+                fitting[unit] = tried
+    return fitting.popitem()[1] if len(fitting) == 1 else None
+
+
+def is_doubtful_time(header: Header) -> bool:
+    """A time in `m`: minutes or milliseconds, and no place."""
+    return header.kind == "time" and header.unit == "m"
+
+
 def _is_time(column: Column) -> bool:
     if column.kind != "number":
         return False
@@ -54,6 +83,8 @@ def _is_time(column: Column) -> bool:
     unit = parse_unit(header.unit)
     if header.setpoint:
         return False
+    if is_doubtful_time(header):
+        return True
     if header.kind == "time":
         return unit is None or unit.dimensions == TIME or header.sure
     return header.kind is None and unit is not None and unit.dimensions == TIME

@@ -70,6 +70,8 @@ class Guess:
         Sections of the rig; `?` where a value is open.
     questions
         What must be answered before it can be imported.
+    clocks
+        Columns with a time of their own.
     """
 
     path: Path
@@ -79,6 +81,7 @@ class Guess:
     ignored: Mapping[str, str] = field(default_factory=dict)
     rig: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     questions: tuple[Question, ...] = ()
+    clocks: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def sure(self) -> bool:
@@ -87,4 +90,5 @@ class Guess:
 
     def map(self) -> Map:
         """The guess as a map."""
-        return Map(columns={entry.key: entry.expression for entry in self.entries}, rig=self.rig)
+        columns = {entry.key: entry.expression for entry in self.entries}
+        return Map(columns=columns, clocks=self.clocks, rig=self.rig)

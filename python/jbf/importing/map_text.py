@@ -42,6 +42,9 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     )
     lines += [f"# not taken: {name} ({why})" for name, why in guess.ignored.items()]
     parts.append("\n".join(lines) + "\n")
+    if guess.clocks:
+        own = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
+        parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
     parts.append(_CUT + _cut_column(guess))
     for section, content in guess.rig.items():
         table = tomlkit.dumps({section: dict(content)}).rstrip("\n")

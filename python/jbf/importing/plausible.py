@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -16,41 +16,43 @@ from jbf.importing.targets import wanted_unit
 
 _ALIKE = 0.9
 """Correlation of speed and change of place above which their ratio means something."""
-_OFF = 1.25
-_PAIRS = (
+OFF = 1.25
+"""A ratio that is no ratio of units."""
+PAIRS = (
     ("position_m", "velocity_m_s"),
     ("angle_rad", "velocity_rad_s"),
     ("angle_rad", "speed_rpm"),
     ("motor_angle_rad", "motor_speed_rpm"),
 )
+"""A place and its speed."""
 _LEAST = 20
 
 
 def contradictions(
-    entries: Iterable[Entry], tables: Sequence[Table], heads: Mapping[str, Values]
+    by_key: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> list[Question]:
     """A question where a speed is not the change of its place."""
-    by_key = {entry.key: entry for entry in entries}
     found = []
-    for place, speed in _PAIRS:
+    for place, speed in PAIRS:
         if not {place, speed, "time_s"} <= by_key.keys():
             continue
         if not all(by_key[key].sure for key in (place, speed, "time_s")):
             continue
-        ratio = _ratio(by_key, (place, speed), tables, heads)
-        if ratio is not None and not 1.0 / _OFF < ratio < _OFF:
+        ratio = speed_ratio(by_key, (place, speed), tables, heads)
+        if ratio is not None and not 1.0 / OFF < ratio < OFF:
             of = f"{by_key[speed].expression} is {ratio:.4g} times the change of"
             ask = f"{of} {by_key[place].expression}: a unit, of these or of the time, is wrong"
             found.append(Question(speed, f"{ask}; write the right one behind the column"))
     return found
 
 
-def _ratio(
+def speed_ratio(
     entries: Mapping[str, Entry],
     pair: tuple[str, str],
     tables: Sequence[Table],
     heads: Mapping[str, Values],
 ) -> float | None:
+    """The speed over the change of the place; None where they do not go together at all."""
     names, units = column_names(tables), column_units(tables)
     values = []
     try:

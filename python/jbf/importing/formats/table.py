@@ -169,11 +169,9 @@ def unique(names: Sequence[str]) -> list[str]:
     """Names, each once: what stands twice is told apart by its place."""
     found: list[str] = []
     for at, name in enumerate(names, 1):
-        name = name or f"column {at}"
-        count = names.count(name)
-        if count > 1:
-            name = f"{name} ({names[:at].count(name)})"
-        found.append(name)
+        if names.count(name) > 1 and name:
+            name = f"{name} #{names[:at].count(name)}"
+        found.append(name or f"column {at}")
     return found
 
 

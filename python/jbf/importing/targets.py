@@ -19,6 +19,7 @@ TURNING = (
 )  # fmt: skip
 MOTION = (*LINEAR, *TURNING)
 _ALIKE = 0.8
+_STEMS = {found[0]: key for key in reversed(KNOWN) if (found := unit_of_name(key)) is not None}
 
 
 def wanted_unit(key: str) -> Unit:
@@ -31,6 +32,10 @@ def wanted_unit(key: str) -> Unit:
     """
     if key not in KNOWN:
         near = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
+        found = unit_of_name(key)
+        if near is None and found is not None:
+            # Of a known quantity: units are converted, and the name must not say another.
+            near = _STEMS.get(found[0])
         if near is not None:
             raise InputError(
                 key=f"columns.{key}", problem="is not known", mend=f"did you mean {quoted(near)}?"

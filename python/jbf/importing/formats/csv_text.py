@@ -95,7 +95,7 @@ class TextSource(Source):
         if self.dialect.question:
             questions.append(self.dialect.question)
         for at, (name, unit) in enumerate(zip(self.layout.names, self.layout.units, strict=True)):
-            cells = [c for _, row in first if not is_empty(c := row[at], self.empty)]
+            cells = [c for _, row in first if not is_empty(c := row[at].strip(), self.empty)]
             column = Column(name, unit)
             if cells and not any(map(self.dialect.is_number, cells)):
                 dated = sum(map(is_instant, cells)) > 0.9 * len(cells)
@@ -123,12 +123,13 @@ class TextSource(Source):
     def _holds_something(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
         """A nameless column without a value is a delimiter at the end of each line."""
         at = self.layout.names.index(column.name)
-        return not column.name.startswith("column ") or any(row[at] for _, row in rows)
+        return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
 
     def _rows(self) -> Iterator[tuple[int, list[str]]]:
         """Every row of samples with its number, as many cells as there are names."""
-        width = len(self.layout.names)
-        cells_of = self.dialect.cells
+        names = self.layout.names
+        width, first_name = len(names), names[0]
+        split = self.dialect.split
         short: tuple[int, int] | None = None
         for number, line in self._lines():
             if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
@@ -140,7 +141,7 @@ class TextSource(Source):
                     problem=f"has {short[1]} cells where the header has {width}",
                     mend="correct the row or drop it",
                 )
-            cells = cells_of(line.rstrip("\n"))
+            cells = split(line.rstrip("\n"))
             if len(cells) < width:
                 # Empty cells at the end may be left out; the last row may be cut off.
                 if self.dialect.delimiter == " " or len(cells) < width // 2:
@@ -154,9 +155,9 @@ class TextSource(Source):
                     problem=f"has {len(cells)} cells where the header has {width}",
                     mend="correct the row, or say delimiter and decimal under [file]",
                 )
-            if tuple(cells[:width]) == self.layout.names:
+            if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
                 continue  # a logger that was started anew writes its header again
-            yield number, cells[:width]
+            yield number, cells if len(cells) == width else cells[:width]
 
     def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of lines."""
@@ -175,7 +176,7 @@ class TextSource(Source):
             for name, at, kind in zip(names, places, kinds, strict=True):
                 cells = turned[at]
                 if kind == "word":
-                    found[name] = np.array(cells, dtype=object)
+                    found[name] = np.array([cell.strip() for cell in cells], dtype=object)
                 elif kind == "instant":
                     found[name] = self._instants(name, cells, numbers, readers[name])
                 else:
@@ -193,7 +194,7 @@ class TextSource(Source):
         except ValueError:
             pass
         found = np.full(len(cells), np.nan)
-        for at, cell in enumerate(cells):
+        for at, cell in enumerate(map(str.strip, cells)):
             if is_empty(cell, self.empty):
                 continue
             if not dialect.is_number(cell):

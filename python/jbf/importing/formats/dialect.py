@@ -65,12 +65,15 @@ class Dialect:
 
     def cells(self, line: str) -> list[str]:
         """A line's cells, without blanks around them."""
+        return [cell.strip() for cell in self.split(line)]
+
+    def split(self, line: str) -> list[str]:
+        """A line's cells as they stand."""
         if self.delimiter == " ":
             return line.split()
         if '"' not in line:
-            return [cell.strip() for cell in line.split(self.delimiter)]
-        row = next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
-        return [cell.strip() for cell in row]
+            return line.split(self.delimiter)
+        return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
 
     def is_number(self, cell: str) -> bool:
         """Whether a cell holds a number."""

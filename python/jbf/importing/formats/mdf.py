@@ -67,10 +67,9 @@ class MdfSource(Source):
         return Table(name, tuple(columns), CLOCK if master is not None else None, rows, start=shown)
 
     def _values(self, group: int, index: int, first: int, count: int) -> Any:
-        signal = self._file.get(
-            group=group, index=index, record_offset=first, record_count=count, samples_only=True
-        )
-        return np.asarray(signal[0])
+        # Without its times, a part of a channel is more than some versions can read.
+        signal = self._file.get(group=group, index=index, record_offset=first, record_count=count)
+        return np.asarray(signal.samples)
 
     def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of records."""

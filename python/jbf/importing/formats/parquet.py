@@ -21,7 +21,8 @@ class ParquetSource(Source):
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self._file = pq.ParquetFile(path)
+            # Read ahead, a gigabyte stays in memory.
+            self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
         except (OSError, pa.ArrowException) as error:
             problem = f"is no whole Parquet file ({str(error).splitlines()[0]})"
             raise InputError(file=path, problem=problem, mend="save it anew") from None

@@ -85,7 +85,8 @@ def _channels(source: Source, mapping: Map) -> list[Channel]:
             problem = "takes columns with different clocks" if tables_of else "takes no column"
             mend = "take columns of one group; nothing is resampled here"
             raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
-        table = next(t for t in tables if t.name == tables_of.pop())
+        (of,) = tables_of
+        table = next(t for t in tables if t.name == of)
         clock = _clock(key, table, tables, mapping, names, places)
         unit = ONE if key == CUT_COLUMN else wanted_unit(key)
         found.append(Channel(key, text, node, table, clock, unit))

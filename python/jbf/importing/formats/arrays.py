@@ -49,7 +49,7 @@ class ArraySource(Source):
         self._columns[name] = {c.name: columns[c.name][0] for c in kept}
         self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, start=start))
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in slices."""
         readers = {name: self._columns[table.name][table.column(name).name] for name in names}
         kinds = {name: table.column(name).kind for name in names}
@@ -58,13 +58,7 @@ class ArraySource(Source):
         for first in range(0, table.rows, BLOCK):
             found = {}
             for name, read in readers.items():
-                try:
-                    values = np.asarray(read(first, min(first + BLOCK, table.rows)))
-                except (OSError, ValueError) as error:
-                    problem = f"cannot be read ({str(error).splitlines()[0]})"
-                    raise InputError(
-                        file=self.path, column=name, problem=problem, mend="save it anew"
-                    ) from None
+                values = np.asarray(read(first, min(first + BLOCK, table.rows)))
                 if kinds[name] == "instant":
                     origin = origins.setdefault(name, values[0].astype("datetime64[ns]"))
                     found[name] = seconds(values, origin)

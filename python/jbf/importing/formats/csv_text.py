@@ -159,7 +159,7 @@ class TextSource(Source):
                 continue  # a logger that was started anew writes its header again
             yield number, cells if len(cells) == width else cells[:width]
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of lines."""
         places = [self.layout.names.index(table.column(name).name) for name in names]
         kinds = [table.column(name).kind for name in names]

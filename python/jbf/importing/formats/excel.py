@@ -7,11 +7,9 @@ from datetime import date, datetime, time, timedelta
 from itertools import islice
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 import openpyxl
-from openpyxl.utils.exceptions import InvalidFileException
 
 from jbf.errors import InputError, quoted
 from jbf.importing.formats.dialect import Dialect, is_empty, sniff
@@ -28,11 +26,7 @@ class ExcelSource(Source):
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
         self.options = options
-        try:
-            self._book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        except (OSError, BadZipFile, InvalidFileException, KeyError, ValueError) as error:
-            problem = f"is no whole workbook ({str(error).splitlines()[0]})"
-            raise InputError(file=path, problem=problem, mend="save it anew") from None
+        self._book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         self._layouts: dict[str, tuple[Layout, Dialect]] = {}
         self._origins: dict[tuple[str, str], float] = {}
         tables = [t for name in self._book.sheetnames if (t := self._table(name)) is not None]
@@ -73,7 +67,7 @@ class ExcelSource(Source):
     def _cells(self, name: str) -> Iterator[tuple[int, Sequence[Any]]]:
         yield from enumerate(self._book[name].iter_rows(values_only=True), 1)
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of rows."""
         layout, dialect = self._layouts[table.name]
         places = {name: layout.names.index(name) for name in names}

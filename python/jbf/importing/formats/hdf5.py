@@ -17,24 +17,9 @@ _NAMES = ("columns", "names", "column_names", "channels")
 _WIDEST = 64
 
 
-def opened(path: Path) -> Any:
-    """The file, open to read.
-
-    Raises
-    ------
-    InputError
-        It is no whole HDF5 file.
-    """
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        problem = f"is no whole HDF5 file ({str(error).splitlines()[0]})"
-        raise InputError(file=path, problem=problem, mend="save it anew") from None
-
-
 def open_hdf5(path: Path, options: Options) -> Source:
     """Open an HDF5 file."""
-    file = opened(path)
+    file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
     found: dict[tuple[str, int], dict[str, tuple[Slice, str]]] = {}
 

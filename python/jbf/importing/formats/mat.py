@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, add_by_length, vectors_of
 from jbf.importing.formats.matlab_tables import add_tables
 from jbf.importing.formats.table import Options, Source
@@ -16,13 +15,9 @@ from jbf.importing.formats.table import Options, Source
 def open_mat(path: Path, options: Options) -> Source:
     """Open a MAT file: vectors, columns of matrices, fields of structures."""
     from scipy.io import loadmat
-    from scipy.io.matlab import MatlabOpaque, MatReadError
+    from scipy.io.matlab import MatlabOpaque
 
-    try:
-        content = loadmat(path, struct_as_record=False, squeeze_me=False)
-    except (OSError, ValueError, TypeError, MatReadError, NotImplementedError) as error:
-        problem = f"is no whole MAT file ({str(error).splitlines()[0]})"
-        raise InputError(file=path, problem=problem, mend="save it anew") from None
+    content = loadmat(path, struct_as_record=False, squeeze_me=False)
     vectors: dict[str, tuple[Any, str]] = {}
     opaque = False
     for name, value in content.items():

@@ -9,14 +9,13 @@ import h5py
 
 from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, Slice
-from jbf.importing.formats.hdf5 import opened
 from jbf.importing.formats.matlab_tables import add_tables
 from jbf.importing.formats.table import Options, Source
 
 
 def open_mat73(path: Path, options: Options) -> Source:
     """Open a MAT file: vectors, columns of matrices, fields of structures."""
-    file = opened(path)
+    file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
     found: dict[int, dict[str, tuple[Slice, str]]] = {}
     opaque = _collect(file, "", found)

@@ -9,6 +9,7 @@ import numpy as np
 
 from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, slices
+from jbf.importing.formats.table import library_errors
 
 
 def add_tables(source: ArraySource, path: Path) -> None:
@@ -28,14 +29,8 @@ def add_tables(source: ArraySource, path: Path) -> None:
             "installed",
             mend="pip install 'jbf[timetable]', or save plain vectors",
         ) from None
-    try:
+    with library_errors(path, "cannot be read by mat-io"):
         content = load_from_mat(str(path))
-    except Exception as error:
-        # Whatever a broken file makes a library raise.
-        problem = (
-            f"cannot be read by mat-io ({str(error).splitlines()[0] if str(error) else error!r})"
-        )
-        raise InputError(file=path, problem=problem, mend="save plain vectors") from None
     for name, value in content.items():
         if hasattr(value, "columns") and hasattr(value, "index"):
             _add_frame(source, name, value)

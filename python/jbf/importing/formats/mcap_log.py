@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from mcap.decoder import DecoderFactory
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory as Ros2Decoder
 
@@ -30,26 +29,16 @@ class McapSource(MessageSource):
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self._file = path.open("rb")
-        try:
-            summary = make_reader(self._file).get_summary()
-            if summary is None:
-                problem, mend = "has no summary", "recover it: mcap recover FILE"
-                raise InputError(file=path, problem=problem, mend=mend)
-            counts = summary.statistics.channel_message_counts if summary.statistics else {}
-            self._others = sorted(
-                {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
-            )
-            for number, channel in summary.channels.items():
-                if channel.message_encoding in ("cdr", "json"):
-                    self.add_topic(channel.topic, counts.get(number))
-        except (McapError, ValueError, EOFError) as error:
-            self._file.close()
-            if isinstance(error, InputError):
-                raise
-            problem = f"is no whole MCAP file ({str(error).splitlines()[0]})"
-            raise InputError(file=path, problem=problem, mend="recover it: mcap recover") from None
+        summary = make_reader(self._file).get_summary()
+        if summary is None:
+            raise InputError(file=path, problem="has no summary", mend="mcap recover FILE")
+        counts = summary.statistics.channel_message_counts if summary.statistics else {}
+        others = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
+        for number, channel in summary.channels.items():
+            if channel.message_encoding in ("cdr", "json"):
+                self.add_topic(channel.topic, counts.get(number))
         if not self.tables:
-            held = f" (it holds {', '.join(self._others)})" if self._others else ""
+            held = f" (it holds {', '.join(sorted(others))})" if others else ""
             problem = f"holds no messages of ROS 2 or JSON with numbers{held}"
             raise InputError(file=path, problem=problem, mend="name another file")
 
@@ -57,14 +46,8 @@ class McapSource(MessageSource):
         """The messages of a topic."""
         self._file.seek(0)
         reader = make_reader(self._file, decoder_factories=[Ros2Decoder(), _JsonDecoder()])
-        try:
-            for _, _, message, decoded in reader.iter_decoded_messages(topics=[topic]):
-                yield message.log_time, decoded
-        except (McapError, ValueError, EOFError) as error:
-            problem = f"cannot be read ({str(error).splitlines()[0]})"
-            raise InputError(
-                file=self.path, problem=problem, mend="recover it: mcap recover"
-            ) from None
+        for _, _, message, decoded in reader.iter_decoded_messages(topics=[topic]):
+            yield message.log_time, decoded
 
     def close(self) -> None:
         """Let the file go."""

@@ -23,14 +23,7 @@ class MdfSource(Source):
         self.path = path
         # It says to the log what it then raises.
         logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-        try:
-            self._file = MDF(path, use_display_names=False)
-        except Exception as error:
-            # Whatever a broken file makes a library raise.
-            said = str(error).splitlines()[0] if str(error) else repr(error)
-            raise InputError(
-                file=path, problem=f"is no whole MDF file ({said})", mend="save it anew"
-            ) from None
+        self._file = MDF(path, use_display_names=False)
         self._places: dict[str, tuple[int, dict[str, int]]] = {}
         tables = []
         groups = list(enumerate(self._file.groups))
@@ -71,27 +64,19 @@ class MdfSource(Source):
         signal = self._file.get(group=group, index=index, record_offset=first, record_count=count)
         return np.asarray(signal.samples)
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of records."""
         group, places = self._places[table.name]
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
             count = min(BLOCK, table.rows - first)
             found: dict[str, Values] = {}
-            try:
-                for name in names:
-                    if name == CLOCK and name not in places:
-                        values = self._file.get_master(
-                            group, record_offset=first, record_count=count
-                        )
-                    else:
-                        values = self._values(group, places[name], first, count)
-                    found[name] = as_numbers(values)
-            except Exception as error:
-                said = str(error).splitlines()[0] if str(error) else repr(error)
-                raise InputError(
-                    file=self.path, problem=f"cannot be read ({said})", mend="save it anew"
-                ) from None
+            for name in names:
+                if name == CLOCK and name not in places:
+                    values = self._file.get_master(group, record_offset=first, record_count=count)
+                else:
+                    values = self._values(group, places[name], first, count)
+                found[name] = as_numbers(values)
             yield found
 
     def close(self) -> None:

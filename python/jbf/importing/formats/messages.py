@@ -58,7 +58,7 @@ class MessageSource(Source):
         start = as_date(self._origins[topic, clock])
         self.tables = (*self.tables, Table(topic, tuple(columns), clock, count, start=start))
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of messages; a field that a message lacks is no sample."""
         paths = {name: path_of(name) for name in names}
         messages = iter(self.messages(table.name))

@@ -7,21 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, add_by_length, vectors_of
 from jbf.importing.formats.table import Options, Source
 
 
 def open_arrays(path: Path, options: Options) -> Source:
     """Open a file of arrays; nothing in it is run (no pickles)."""
-    try:
-        # A single array stays on the disk until it is asked for.
-        mode: Any = "r" if path.suffix.lower() == ".npy" else None
-        content = np.load(path, mmap_mode=mode, allow_pickle=False)
-        arrays = {"": content} if isinstance(content, np.ndarray) else dict(content)
-    except (OSError, ValueError, EOFError) as error:
-        problem = f"is no whole file of arrays ({str(error).splitlines()[0]})"
-        raise InputError(file=path, problem=problem, mend="save it anew") from None
+    with path.open("rb") as file:
+        alone = file.read(6) == b"\x93NUMPY"
+    # A single array stays on the disk until it is asked for.
+    content: Any = np.load(path, mmap_mode="r" if alone else None, allow_pickle=False)
+    arrays = {"": content} if alone else dict(content)
     source = ArraySource(path)
     vectors: dict[str, tuple[Any, str]] = {}
     for name, values in arrays.items():

@@ -10,7 +10,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from jbf.errors import InputError
 from jbf.importing.formats.arrays import seconds
 from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values, as_numbers
 
@@ -20,37 +19,29 @@ class ParquetSource(Source):
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            # Read ahead, a gigabyte stays in memory.
-            self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
-        except (OSError, pa.ArrowException) as error:
-            problem = f"is no whole Parquet file ({str(error).splitlines()[0]})"
-            raise InputError(file=path, problem=problem, mend="save it anew") from None
+        # Read ahead, a gigabyte stays in memory.
+        self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
         schema = self._file.schema_arrow
         columns = [c for field in schema if (c := _column(field)) is not None]
         self.tables = (Table("", tuple(columns), rows=self._file.metadata.num_rows),)
 
-    def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in batches."""
         kinds = {name: table.column(name).kind for name in names}
         origins: dict[str, np.datetime64] = {}
-        try:
-            for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
-                found: dict[str, Values] = {}
-                for name in names:
-                    column = batch.column(name)
-                    if kinds[name] == "instant":
-                        values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
-                        found[name] = seconds(values, origins.setdefault(name, values[0]))
-                    elif kinds[name] == "word":
-                        found[name] = np.array(column.to_pylist(), dtype=object)
-                    else:
-                        numbers = column.cast(pa.float64(), safe=False)
-                        found[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
-                yield found
-        except (OSError, pa.ArrowException) as error:
-            problem = f"cannot be read ({str(error).splitlines()[0]})"
-            raise InputError(file=self.path, problem=problem, mend="save it anew") from None
+        for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
+            found: dict[str, Values] = {}
+            for name in names:
+                column = batch.column(name)
+                if kinds[name] == "instant":
+                    values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
+                    found[name] = seconds(values, origins.setdefault(name, values[0]))
+                elif kinds[name] == "word":
+                    found[name] = np.array(column.to_pylist(), dtype=object)
+                else:
+                    numbers = column.cast(pa.float64(), safe=False)
+                    found[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
+            yield found
 
     def close(self) -> None:
         """Let the file go."""

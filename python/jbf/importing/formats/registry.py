@@ -12,7 +12,7 @@ from importlib import import_module
 from pathlib import Path
 
 from jbf.errors import InputError
-from jbf.importing.formats.table import Options, Source
+from jbf.importing.formats.table import Options, Source, library_errors
 from jbf.text_files import path_of
 
 
@@ -48,7 +48,8 @@ class Format:
             opener: Callable[[Path, Options], Source] = getattr(
                 import_module(f"jbf.importing.formats.{module}"), function
             )
-            return opener(path, options)
+            with library_errors(path, f"is no whole file of its kind, {self.name}"):
+                return opener(path, options)
         except ModuleNotFoundError as error:
             if not self.extra or (error.name or "").startswith("jbf"):
                 raise

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -123,14 +124,19 @@ class Source(ABC):
     tables: tuple[Table, ...]
 
     @abstractmethod
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+        """What a format does of `blocks`; what its library raises, may leave it."""
+
     def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """The columns of those names, in blocks of rows in the order of the file.
 
         Raises
         ------
         InputError
-            A cell is wrong; names file, row and column.
+            A cell is wrong, or the file is broken there; names file, row and column.
         """
+        with library_errors(self.path, "cannot be read"):
+            yield from self.read_blocks(table, names)
 
     def head(self, table: Table, rows: int = 20_000) -> dict[str, Values]:
         """The first rows of every column."""
@@ -163,6 +169,19 @@ class Source(ABC):
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+@contextmanager
+def library_errors(path: Path, problem: str) -> Iterator[None]:
+    """Whatever a broken file makes a library raise, in one line."""
+    try:
+        yield
+    except (InputError, ModuleNotFoundError, MemoryError):
+        raise
+    except Exception as error:
+        said = str(error).splitlines()[0].strip() if str(error).strip() else type(error).__name__
+        mend = "save it anew, or name another file"
+        raise InputError(file=path, problem=f"{problem} ({said})", mend=mend) from error
 
 
 def unique(names: Sequence[str]) -> list[str]:

@@ -19,12 +19,7 @@ Group = tuple[str, int, float | None, float]
 
 def open_tdms(path: Path, options: Options) -> Source:
     """Open a TDMS file."""
-    try:
-        file = TdmsFile.open(path)
-    except Exception as error:
-        # Whatever a broken file makes a library raise.
-        problem = f"is no whole TDMS file ({str(error).splitlines()[0] if str(error) else error!r})"
-        raise InputError(file=path, problem=problem, mend="save it anew") from None
+    file = TdmsFile.open(path)
     source = ArraySource(path, file.close)
     found: dict[Group, dict[str, tuple[Slice, str]]] = {}
     starts: dict[Group, str | None] = {}

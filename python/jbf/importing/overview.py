@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.importing.formats.table import BLOCK
 from jbf.importing.spool import Recording, Stream
 from jbf.importing.targets import FRICTION, MOTION
 
@@ -56,7 +57,7 @@ def _curve(stream: Stream, key: str, starts: list[float]) -> tuple[Array, Array,
     size = max(stream.rows // _POINTS, 1)
     points: list[tuple[float, float, float]] = []
     for (first, end), start in zip(stream.segments, starts, strict=True):
-        for rows in stream.blocks(first, end, size=size * 200):
+        for rows in stream.blocks(first, end, size=size * max(1, BLOCK // size)):
             for at in range(0, len(rows), size):
                 part = rows[at : at + size]
                 values = part[np.isfinite(part[:, column]), column]

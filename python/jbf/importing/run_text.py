@@ -40,8 +40,11 @@ def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator
     parts = [_Part(stream, piece) for stream in recording.streams]
     places = [[columns.index(k) for k in p.stream.columns if k != CUT_COLUMN] for p in parts]
     taken = [[at for at, key in enumerate(p.stream.columns) if key != CUT_COLUMN] for p in parts]
-    # Every part is filled, not only the first that has rows.
-    while any([part.fill() for part in parts]):
+    while True:
+        # Every part is filled, not only the first that has rows.
+        there = [part.fill() for part in parts]
+        if not any(there):
+            return
         # As far as every clock is known, and no farther.
         horizon = min((p.last for p in parts if p.more), default=np.inf)
         blocks = [part.take(horizon) for part in parts]

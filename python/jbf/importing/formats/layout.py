@@ -80,7 +80,9 @@ def lay_out(
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > header), first))
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > (units or 0)), first))
     above = list(rows[:first])
-    width = max(width, *(len(_trimmed(c)) for _, c in rows[first : first + 20]))
+    # The last columns may begin empty; then only the row of the names tells of them.
+    told = [len(_trimmed(cells)) for _, cells in above[-3:] if len(_trimmed(cells)) > 1]
+    width = max([width, *told])
     rate = _rate(above)
     heads = [row for row in above if _may_be_head(row[1], width)]
     unit_cells = [""] * width

@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -60,20 +59,26 @@ class MessageSource(Source):
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of messages; a field that a message lacks is no sample."""
-        paths = {name: path_of(name) for name in names}
-        messages = iter(self.messages(table.name))
-        while block := list(islice(messages, BLOCK)):
-            found = {}
-            for name in names:
-                origin = self._origins.get((table.name, name), 0)
-                if name == LOG_TIME:
-                    whole = np.array([stamp - origin for stamp, _ in block], dtype=np.int64)
-                    found[name] = whole / 1e9
-                else:
-                    path = paths[name]
-                    values = [value_at(message, path, origin) for _, message in block]
-                    found[name] = np.array(values, dtype=np.float64)
-            yield found
+        paths = [None if name == LOG_TIME else path_of(name) for name in names]
+        origins = [self._origins.get((table.name, name), 0) for name in names]
+        rows: list[list[float]] = []
+        # A message may be far larger than the numbers that are wanted of it: none is kept.
+        for stamp, message in self.messages(table.name):
+            rows.append(
+                [
+                    (stamp - origin) / 1e9 if path is None else value_at(message, path, origin)
+                    for path, origin in zip(paths, origins, strict=True)
+                ]
+            )
+            if len(rows) == BLOCK:
+                yield _columns(names, rows)
+                rows = []
+        if rows:
+            yield _columns(names, rows)
+
+
+def _columns(names: Sequence[str], rows: list[list[float]]) -> dict[str, Values]:
+    return dict(zip(names, np.array(rows, dtype=np.float64).T, strict=True))
 
 
 def leaves_of(message: Any, lead: str = "") -> Iterator[tuple[str, Any]]:

@@ -23,7 +23,13 @@ class MdfSource(Source):
         self.path = path
         # It says to the log what it then raises.
         logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-        self._file = MDF(path, use_display_names=False)
+        # From an open file a part is read where only a part is asked for; by its name, all of it.
+        self._handle = path.open("rb")
+        try:
+            self._file = MDF(self._handle, use_display_names=False)
+        except Exception:
+            self._handle.close()
+            raise
         self._places: dict[str, tuple[int, dict[str, int]]] = {}
         tables = []
         groups = list(enumerate(self._file.groups))
@@ -60,9 +66,10 @@ class MdfSource(Source):
         return Table(name, tuple(columns), CLOCK if master is not None else None, rows, start=shown)
 
     def _values(self, group: int, index: int, first: int, count: int) -> Any:
-        # Without its times, a part of a channel is more than some versions can read.
-        signal = self._file.get(group=group, index=index, record_offset=first, record_count=count)
-        return np.asarray(signal.samples)
+        signal = self._file.get(
+            group=group, index=index, record_offset=first, record_count=count, samples_only=True
+        )
+        return np.asarray(signal[0])
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of records."""
@@ -82,6 +89,7 @@ class MdfSource(Source):
     def close(self) -> None:
         """Let the file go."""
         self._file.close()
+        self._handle.close()
 
 
 def _name(at: int, group: Any) -> str:

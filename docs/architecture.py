@@ -32,7 +32,10 @@ FLOORS: list[list[tuple[str, str]]] = [
     ],
     [("comparison", "record - prediction in;\nwhere it fails out")],
     [("estimation", "model x runs in;\nparameters with errors out")],
-    [("models", "law + effects + parameters in;\nprediction out")],
+    [
+        ("models", "law + effects + parameters in;\nprediction out"),
+        ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
+    ],
     [("records", "files in; runs, rig,\nimposed motion out")],
     [("_core", "crates/jbf-py, jbf-batch, jbf-core: the physics, once, in Rust")],
 ]

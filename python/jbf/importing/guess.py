@@ -285,6 +285,8 @@ def _left_over(table: Table, found: list[Candidate], time: Entry | None) -> dict
             why = "words"
         elif header.setpoint:
             why = "a set point"
+        elif header.kind == "run":
+            why = "numbers the runs: [cut] may go by it"
         elif header.kind is None:
             why = "not known"
         else:

@@ -17,13 +17,13 @@ _HEAD = """\
 _CUT = """\
 # One recording becomes several runs where it is cut. Time that starts again always cuts.
 # [cut]
-# by = "rests"             # or "set_point", "load_step", "motion", "run"; several: ["rests", "run"]
+# by = "{way}"  # one or several of: "rests", "set_point", "load_step", "motion", "run"
 """
 
 
 def map_text(guess: Guess, name: str = "map.toml") -> str:
     """The map, commented."""
-    parts = [_HEAD.format(file=guess.path.name, map=name)]
+    parts = [_HEAD.format(file=guess.path, map=name)]
     if guess.questions:
         asked = "\n".join(f"#   {question}" for question in guess.questions)
         parts.append(f"# Open:\n{asked}\n")
@@ -45,7 +45,7 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     if guess.clocks:
         own = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
         parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
-    parts.append(_CUT + _cut_column(guess))
+    parts.append(_cut(guess))
     for section, content in guess.rig.items():
         table = tomlkit.dumps({section: dict(content)}).rstrip("\n")
         parts.append(table + "\n")
@@ -66,11 +66,12 @@ def _aligned(lines: list[tuple[str, str]]) -> list[str]:
     return [f"{line:<{width}}  # {why}" for line, why in lines]
 
 
-def _cut_column(guess: Guess) -> str:
-    """A column of the file that cutting could go by."""
+def _cut(guess: Guess) -> str:
+    """The section of the cut, with a column of the file that it could go by."""
     for table in guess.tables:
         for column in table.columns:
             header = understood(column.name, column.unit)
             if header.kind == "run" or header.setpoint:
-                return f"# column = {_quoted(f'`{column.name}`')}\n"
-    return ""
+                way = "run" if header.kind == "run" else "set_point"
+                return f"{_CUT.format(way=way)}# column = {_quoted(f'`{column.name}`')}\n"
+    return _CUT.format(way="rests")

@@ -16,9 +16,11 @@ from jbf.models.batch import batch
 from jbf.models.catalogue import Parameter, effects, laws
 from jbf.models.model import Model
 from jbf.models.own_effects import forget_effect, load_effects, register_effect
+from jbf.models.own_laws import forget_law, register_law
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Trajectory, trajectories, trajectory
 from jbf.records.csv_file import read_run
+from jbf.records.drive import Drive
 from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.records.run import Run
 from jbf.records.run_files import read_runs
@@ -65,6 +67,7 @@ __all__ = [
     "Bootstrap",
     "Comparison",
     "Diagnosis",
+    "Drive",
     "Experiment",
     "FilmWarning",
     "Fit",
@@ -94,6 +97,7 @@ __all__ = [
     "fit",
     "fit_trajectories",
     "forget_effect",
+    "forget_law",
     "import_files",
     "laws",
     "load_effects",
@@ -104,6 +108,7 @@ __all__ = [
     "read_run",
     "read_runs",
     "register_effect",
+    "register_law",
     "trajectories",
     "trajectory",
 ]

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jbf.cli import diagnose_many, inputs, outputs
+from jbf.cli import diagnose_many, hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -32,6 +32,7 @@ def add(commands: Commands) -> None:
     add_report(parser)
     add_law(parser, also=f"; {AUTO}: the one that alone predicts best")
     add_own(parser)
+    hold_out.add(parser)
     _add_next_run(parser)
     diagnose_many.add(parser)
 
@@ -50,7 +51,10 @@ def _add_next_run(parser: Parser) -> None:
         help="of the rig (of a rotary drive in rad/s); as recorded",
     )
     group.add_argument(
-        "--max-acceleration-m-s2", metavar="X", type=float, help="of the rig; as recorded"
+        "--max-acceleration-m-s2",
+        metavar="X",
+        type=float,
+        help="of the rig (of a rotary drive in rad/s^2); as recorded",
     )
     group.add_argument("--next-duration-s", metavar="X", type=float, default=60.0, help="60")
     group.add_argument(
@@ -76,6 +80,10 @@ def _limits(arguments: argparse.Namespace) -> Limits:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     if arguments.many is not None:
+        if arguments.hold_out:
+            raise InputError(
+                file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
+            )
         return diagnose_many.run(arguments, _limits(arguments))
     alone = arguments.rig is not None and Path(arguments.rig).is_dir()
     if arguments.rig is None or not (arguments.runs or alone):
@@ -92,6 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         find_law(arguments.law)
     rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
     outputs.check(wanted, [run.path for run in runs if run.path])
+    runs, held = hold_out.split(runs, arguments)
 
     from jbf.diagnosis import diagnose
 
@@ -109,11 +118,12 @@ def run(arguments: argparse.Namespace) -> int:
             from jbf.reporting.diagnosis_page import diagnosis_page
 
             texts[arguments.report] = diagnosis_page(diagnosis)
+    told = hold_out.left(diagnosis.model, held)
     if arguments.json:
-        texts[arguments.json] = json_text(diagnosis.to_dict())
+        texts[arguments.json] = json_text(diagnosis.to_dict() | told)
     if arguments.out:
         texts[arguments.out] = diagnosis.model.to_toml()
-    summary = diagnosis.summary()
+    summary = diagnosis.summary() + hold_out.words(diagnosis.model, told)
     if arguments.next_run and diagnosis.experiment:
         texts[arguments.next_run] = diagnosis.experiment.run.to_csv()
     elif arguments.next_run:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jbf.models.catalogue import Effect, Parameter, built_in, find_law
+from jbf.models.catalogue import Effect, Parameter, built_in, find_law, why_not
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
@@ -37,7 +37,8 @@ def effects_page(
     """
     pages = list(pages)
     if law is not None:
-        refused = {e.name: e.refused[law] for e in pages if law in e.refused}
+        reasons_of = {e.name: why_not(e, law) for e in pages}
+        refused = {name: reason for name, reason in reasons_of.items() if reason is not None}
         said = OF_BEARING if find_law(law).needs_bearing else LINEAR
         there = effects_page([e for e in pages if e.name not in refused], None, said)
         widest = max(map(len, refused), default=0)

@@ -47,6 +47,26 @@ def test_two_clocks_in_one_file(tmp_path: Path) -> None:
     assert rates == {"position_m": 1000.0, "friction_n": 200.0}
 
 
+@pytest.mark.parametrize("slow_hz", [20.0, 7.0, 900.0])
+def test_a_run_of_two_clocks_is_read_as_it_was_recorded(slow_hz: float, tmp_path: Path) -> None:
+    """However seldom the slow channel was read, the quick one is no column with gaps."""
+    fast = np.arange(10_000) / 1000.0
+    slow = 0.0103 + np.arange(int(9.9 * slow_hz)) / slow_hz
+    file = npz(tmp_path, a=fast, x=np.sin(fast), b=slow, f=np.cos(slow))
+    (tmp_path / "map.toml").write_text(
+        '[columns]\ntime_s = "a [s]"\nposition_m = "x [m]"\nfriction_n = "f [N]"\n'
+        f'[clocks]\nfriction_n = "b [s]"\n{DRIVE}'
+    )
+    found = import_files(file, tmp_path / "map.toml")
+    (run,) = found.runs
+    assert run.friction_n is not None
+    assert run.position_m is not None
+    there = run.read["friction_n"]
+    np.testing.assert_array_equal(run.time_s[there], slow)
+    np.testing.assert_array_equal(run.friction_n[there], np.cos(slow))
+    np.testing.assert_array_equal(run.position_m[run.read["position_m"]], np.sin(fast))
+
+
 def test_equal_clocks_need_no_empty_cells(tmp_path: Path) -> None:
     time = np.arange(300) / 100.0
     file = npz(tmp_path, a=time, x=time, b=time, f=time)

@@ -170,7 +170,6 @@ def _read_stream(
             columns.append(np.broadcast_to(_values(channel, values, units, words), (count,)))
         rows = np.column_stack(columns)
         kept = rows[line.keep(rows[:, 0])]
-        stream.holes += int(np.isnan(kept[:, 1:]).any(axis=1).sum())
         _check_load(stream.columns, kept, recording, line)
         stream.append(kept)
         if report is not None:
@@ -182,26 +181,13 @@ def _read_stream(
     if stream.rows == 0:
         raise InputError(problem="holds no samples", mend="name another file, or correct the map")
     recording.dropped += line.dropped()
-    if _few_holes(stream):
-        recording.dropped.append(Dropped(stream.holes, "a value is missing"))
+    if stream.needed:
+        lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
+        recording.dropped.append(Dropped(lacking, "a value is missing"))
     recording.notes += unwrapped(stream)
     recording.streams.append(stream)
     recording.start = recording.start or table.start
     recording.channels += [_described(c, stream, units, rate) for c in channels]
-
-
-FEW = 0.01
-"""Below such a share of its rows a stream's rows without some value are dropped; above, the channel
-has a clock of its own."""
-
-
-def _few_holes(stream: Stream) -> bool:
-    return 0 < stream.holes < FEW * stream.rows
-
-
-def complete_only(stream: Stream) -> bool:
-    """Whether rows that lack a value are left out when the stream is written."""
-    return _few_holes(stream)
 
 
 def _values(

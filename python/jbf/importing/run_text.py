@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
-from jbf.importing.recording import CUT_COLUMN, complete_only
+from jbf.importing.recording import CUT_COLUMN
 from jbf.importing.spool import Recording, Stream
 from jbf.records.checks import COLUMNS
 
@@ -65,7 +65,7 @@ class _Part:
         self.stream = stream
         self.next, self.end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
         self.rows = np.empty((0, len(stream.columns)))
-        self._complete = complete_only(stream)
+        self._needed = bool(stream.needed)
 
     @property
     def more(self) -> bool:
@@ -82,7 +82,7 @@ class _Part:
         while not len(self.rows) and self.more:
             rows = self.stream.read(self.next, min(self.next + BLOCK, self.end))
             self.next += len(rows)
-            self.rows = rows[np.isfinite(rows).all(axis=1)] if self._complete else rows
+            self.rows = rows[self.stream.complete(rows)] if self._needed else rows
         return bool(len(self.rows))
 
     def take(self, horizon: float) -> Array:

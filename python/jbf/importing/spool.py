@@ -13,8 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.importing.formats.table import BLOCK
+from jbf.records.channels import OWN_CLOCK
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 
 @dataclass
@@ -29,18 +31,34 @@ class Stream:
         First row and end of each stretch in which time grows.
     file
         Rows of float64; nan where a column has no sample.
-    holes
-        Rows that lack a value of some column.
+    missing
+        How many rows lack a value of each column.
     """
 
     columns: tuple[str, ...]
     file: Path
     rows: int = 0
     segments: list[tuple[int, int]] = field(default_factory=list)
-    holes: int = 0
+    missing: npt.NDArray[np.int64] | None = None
+
+    @property
+    def needed(self) -> list[int]:
+        """Columns whose few gaps are missing values; one with more has a clock of its own, and its
+        empty cells stay. By the rule that a run is read by."""
+        if self.missing is None:
+            return []
+        few = (self.missing > 0) & (self.missing < OWN_CLOCK * self.rows)
+        return [int(column) for column in np.flatnonzero(few)]
+
+    def complete(self, block: Array) -> Mask:
+        """Rows that have what is needed."""
+        mask: Mask = np.all(np.isfinite(block[:, self.needed]), axis=1)
+        return mask
 
     def append(self, block: Array) -> None:
         """Add rows, shape (n, columns)."""
+        lacking = np.isnan(block).sum(axis=0)
+        self.missing = lacking if self.missing is None else self.missing + lacking
         with self.file.open("ab") as file:
             np.ascontiguousarray(block, dtype=np.float64).tofile(file)
         self.rows += len(block)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -157,3 +158,58 @@ def test_an_angle_goes_on_over_its_turn(tmp_path: Path) -> None:
     assert run.angle_rad is not None
     np.testing.assert_allclose(run.angle_rad, np.radians(angle), atol=1e-9)
     assert "whole turns were added" in found.summary()
+
+
+def test_waveforms_that_were_started_one_after_the_other_keep_their_distance(
+    tmp_path: Path,
+) -> None:
+    nptdms = pytest.importorskip("nptdms")
+    start = np.datetime64("2026-11-22T10:00:00.000000")
+    late = start + np.timedelta64(1_500, "ms")
+
+    def channel(name: str, unit: str, begin: np.datetime64) -> object:
+        told = {"wf_increment": 0.01, "unit_string": unit, "wf_start_time": begin}
+        return nptdms.ChannelObject("log", name, np.sin(np.arange(400.0)), told)
+
+    with nptdms.TdmsWriter(tmp_path / "w.tdms") as writer:
+        writer.write_segment([channel("Force", "N", late), channel("Position", "mm", start)])
+    found = import_files(tmp_path / "w.tdms")
+    rows = rows_of(found.folder, "w")
+    assert next(float(r["time_s"]) for r in rows if r["position_m"]) == 0.0
+    assert next(float(r["time_s"]) for r in rows if r["friction_n"]) == 1.5
+    assert found.ledger["files"][0]["start"].startswith("2026-11-22T10:00:00")
+
+
+def test_topics_of_a_log_keep_their_distance(tmp_path: Path) -> None:
+    writers = pytest.importorskip("mcap.writer")
+    begin = 1_763_800_000 * 10**9
+    with (tmp_path / "l.mcap").open("wb") as file:
+        writer = writers.Writer(file)
+        writer.start()
+        schema = writer.register_schema("s", "jsonschema", b"{}")
+        force = writer.register_channel("/force", "json", schema)
+        place = writer.register_channel("/place", "json", schema)
+        for i in range(200):
+            at = begin + i * 10**7
+            writer.add_message(place, at, b'{"position_m": %d}' % i, at)
+            late = at + 3_000_000
+            writer.add_message(force, late, b'{"friction_n": 1.5}', late)
+        writer.finish()
+    rows = rows_of(import_files(tmp_path / "l.mcap", out=tmp_path / "out").folder, "l")
+    assert [float(r["time_s"]) for r in rows if r["position_m"]][:2] == [0.0, 0.01]
+    assert [float(r["time_s"]) for r in rows if r["friction_n"]][:2] == [0.003, 0.013]
+
+
+def test_sheets_keep_their_distance(tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    begin = datetime(2026, 11, 22, 10, 0, 0)
+    for at, (name, column) in enumerate((("A", "Force [N]"), ("B", "Position [mm]"))):
+        sheet = book.create_sheet(name)
+        sheet.append(["Time", column])
+        for i in range(50):
+            sheet.append([begin + timedelta(seconds=i + 0.5 * at), float(i)])
+    book.save(tmp_path / "b.xlsx")
+    rows = rows_of(import_files(tmp_path / "b.xlsx", out=tmp_path / "out").folder, "b")
+    assert [float(r["time_s"]) for r in rows if r["friction_n"]][:2] == [0.0, 1.0]
+    assert [float(r["time_s"]) for r in rows if r["position_m"]][:2] == [0.5, 1.5]

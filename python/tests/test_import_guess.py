@@ -149,6 +149,17 @@ SURE = {
         text("t / s;F / N;s / mm\n", "t f x", sep=";", decimal=","),
         {"friction_n": "F / N", "position_m": "s / mm"},
     ),
+    "decimal commas in quotes": (
+        text('"t [s]","F [N]","x [mm]"\n', "t f x", sep='","', decimal=",")
+        .replace("\n", '"\n"')
+        .replace('""', '"')
+        .removesuffix('"'),
+        {"friction_n": "F [N]"},
+    ),
+    "a line of words at the end": (
+        text("t [s],F [N],x [mm]\n", "t f x") + "End of data,,\n",
+        {"friction_n": "F [N]"},
+    ),
     "words and counters": (
         text("No,Time [s],Force [N],Pos [mm],State\n", "n t f x word"),
         {"friction_n": "Force [N]"},
@@ -278,6 +289,28 @@ def test_a_day_ends_at_midnight(tmp_path: Path) -> None:
     rows = "".join(f"{s};{i};{i}\n" for i, s in enumerate(stamps))
     run = import_files(written(tmp_path, "Uhrzeit;Kraft [N];Weg [mm]\n" + rows)).runs[0]
     np.testing.assert_array_equal(np.diff(run.time_s), 1.0)
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+def test_times_since_1970_keep_their_steps(unit: str, tmp_path: Path) -> None:
+    size = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}[unit]
+    ticks = [1_763_800_000 * size + i * size // 100 for i in range(50)]
+    stamps = [f"{1_763_800_000 + i / 100:.2f}" for i in range(50)] if size == 1 else ticks
+    rows = "".join(f"{t},{i},{i}\n" for i, t in enumerate(stamps))
+    for header in (f"stamp_{unit}", "timestamp"):
+        path = written(tmp_path, f"{header},F [N],x [mm]\n{rows}")
+        found = import_files(path)
+        wanted = np.arange(50) / 100.0
+        exact = 2e-7 if unit == "s" else (0.0 if size < 10**9 else 3e-7)
+        np.testing.assert_allclose(found.runs[0].time_s, wanted, rtol=0.0, atol=exact)
+        assert found.ledger["files"][0]["start"].startswith("2025-11-22")
+
+
+def test_the_minus_of_books(tmp_path: Path) -> None:
+    content = text("t [s],F [N],x [mm]\n", "t f x").replace("-", "\u2212")
+    friction = import_files(written(tmp_path, content)).runs[0].friction_n
+    assert friction is not None
+    assert friction.min() < 0.0
 
 
 def test_what_is_sure_needs_no_map_and_says_where_it_comes_from(tmp_path: Path) -> None:

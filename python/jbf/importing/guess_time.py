@@ -15,6 +15,8 @@ from jbf.importing.plausible import OFF, PAIRS, speed_ratio
 from jbf.importing.unit_table import TIME
 from jbf.importing.units import parse_unit
 
+_FROM_S, _TO_S = 9.5e8, 4.1e9
+"""Seconds since 1970, from the year 2000 to 2100."""
 Found = tuple[Entry | None, list[Question]]
 
 
@@ -38,7 +40,8 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     if len(instants) == 1 and not with_unit:
         return Entry("time_s", written(instants[0].name), "its cells are dates or times of day"), []
     if len(numbers) == 1:
-        return _of_number(numbers[0], _steps(head[numbers[0].name]))
+        epoch = _since_1970(numbers[0], head[numbers[0].name])
+        return (epoch, []) if epoch else _of_number(numbers[0], _steps(head[numbers[0].name]))
     if numbers:
         names = ", ".join(c.name for c in numbers)
         ask = f"which of these is it: {names}? those of other channels go under [clocks]"
@@ -109,6 +112,19 @@ def _of_number(column: Column, step: float | None = None) -> Found:
             ask += f" (from row to row it grows by {step:.4g})"
     entry = Entry("time_s", f"{written(column.name)} [{OPEN}]", "its name", sure=False)
     return entry, [Question(column.name, ask)]
+
+
+def _since_1970(column: Column, values: Values) -> Entry | None:
+    """A number without a unit that only counts from 1970, in one unit, can be."""
+    known = np.asarray(values, dtype=np.float64)
+    known = known[np.isfinite(known)]
+    if understood(column.name, column.unit).unit or not known.size:
+        return None
+    for unit, size in (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)):
+        if _FROM_S * size < known.min() and known.max() < _TO_S * size:
+            why = f"{unit} since 1970, by its size"
+            return Entry("time_s", f"{written(column.name)} [{unit}]", why)
+    return None
 
 
 def _steps(values: Values) -> float | None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.importing.evaluation import converted, evaluate
+from jbf.importing.evaluation import Quantity, converted, evaluate
 from jbf.importing.expression import Node, Reference, parse_expression, references
+from jbf.importing.formats.dates import as_date
 from jbf.importing.formats.table import Options, Source, Table, Values
 from jbf.importing.mapping import Map
 from jbf.importing.names import column_names, column_units, located
@@ -155,7 +157,6 @@ def _read_stream(
     words = _Words(recording)
     stream = Stream(("time_s", *(c.key for c in channels)), file)
     line = TimeLine(lambda row: source.row_of(table, row))
-    wanted_time = wanted_unit("time_s")
     file.touch()
     for block in source.blocks(table, [places[name][1] for name in used]):
         values: dict[str, Values] = {name: block[places[name][1]] for name in used}
@@ -164,7 +165,7 @@ def _read_stream(
             assert rate is not None
             time = np.arange(line.seen, line.seen + count) / rate
         else:
-            time = converted(evaluate(time_node, values, units), wanted_time, "time_s")
+            time = _seconds(time_node, values, units, recording)
         columns = [np.broadcast_to(time, (count,))]
         for channel in channels:
             columns.append(np.broadcast_to(_values(channel, values, units, words), (count,)))
@@ -180,6 +181,7 @@ def _read_stream(
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
         raise InputError(problem="holds no samples", mend="name another file, or correct the map")
+    recording.dropped += [Dropped(*found) for found in source.left_out()]
     recording.dropped += line.dropped()
     if stream.needed:
         lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
@@ -188,6 +190,33 @@ def _read_stream(
     recording.streams.append(stream)
     recording.start = recording.start or table.start
     recording.channels += [_described(c, stream, units, rate) for c in channels]
+
+
+EPOCH_S = (1e8, 1e10)
+"""Times within are seconds since 1970."""
+
+
+def _seconds(
+    node: Node, values: Mapping[str, Values], units: Mapping[str, str], recording: Recording
+) -> Array:
+    """Times, s; of seconds since 1970 the whole ones before the first are taken off, before
+    anything is rounded."""
+    wanted = wanted_unit("time_s")
+    found = evaluate(node, values, units)
+    time = converted(found, wanted, "time_s")
+    if recording.origin_s is None:
+        known = time[np.isfinite(time)]
+        late = known.size > 0 and EPOCH_S[0] < known[0] < EPOCH_S[1]
+        recording.origin_s = float(np.floor(known[0])) if late else 0.0
+        if late:
+            recording.start = as_date(int(recording.origin_s) * 10**9)
+            recording.notes.append(f"times count from {recording.origin_s:.0f} s after 1970")
+    if not recording.origin_s:
+        return time
+    if isinstance(node, Reference) and found.unit.pi == 0:
+        first = float(Fraction(int(recording.origin_s)) / found.unit.ratio)
+        return converted(Quantity(found.value - first, found.unit), wanted, "time_s")
+    return time - recording.origin_s
 
 
 def _values(

@@ -140,6 +140,8 @@ class Recording:
         The file's stem.
     start
         The first instant as a date, where the file tells.
+    origin_s
+        What was taken off all times, s.
     """
 
     name: str
@@ -150,6 +152,7 @@ class Recording:
     channels: list[dict[str, object]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     start: str | None = None
+    origin_s: float | None = None
     labels: list[str] = field(default_factory=list)
 
     def stream_of(self, *keys: str) -> tuple[Stream, str] | None:

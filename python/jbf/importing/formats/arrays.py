@@ -25,6 +25,7 @@ class ArraySource(Source):
         self.tables = ()
         self._columns: dict[str, dict[str, Slice]] = {}
         self._close = close
+        self._origin: np.datetime64 | None = None
 
     def add(
         self,
@@ -53,15 +54,15 @@ class ArraySource(Source):
         """Columns in slices."""
         readers = {name: self._columns[table.name][table.column(name).name] for name in names}
         kinds = {name: table.column(name).kind for name in names}
-        origins: dict[str, np.datetime64] = {}
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
             found = {}
             for name, read in readers.items():
                 values = np.asarray(read(first, min(first + BLOCK, table.rows)))
                 if kinds[name] == "instant":
-                    origin = origins.setdefault(name, values[0].astype("datetime64[ns]"))
-                    found[name] = seconds(values, origin)
+                    # One for all columns of instants: their clocks are to be compared.
+                    self._origin = self._origin or first_instant(values)
+                    found[name] = seconds(values, self._origin)
                 else:
                     found[name] = as_numbers(values)
             yield found
@@ -72,9 +73,18 @@ class ArraySource(Source):
             self._close()
 
 
-def seconds(instants: Any, origin: np.datetime64) -> Values:
+def first_instant(instants: Any) -> np.datetime64 | None:
+    """The first that is one."""
+    fine = np.asarray(instants).astype("datetime64[ns]")
+    known = fine[~np.isnat(fine)]
+    return known[0] if known.size else None
+
+
+def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
     """Dates as seconds from an origin on; nan where there is none."""
     fine = np.asarray(instants).astype("datetime64[ns]")
+    if origin is None:
+        return np.full(len(fine), np.nan)
     found: Values = (fine - origin).astype(np.int64) / 1e9
     found[np.isnat(fine)] = np.nan
     return found

@@ -38,6 +38,9 @@ class TextSource(Source):
         if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
             raise InputError(file=path, problem="is binary, not text", mend="name another file")
         self.encoding = options.encoding or decode(data)
+        self._words: list[int] = []
+        self._firsts: dict[bool, int] = {}
+        self._origins: dict[str, tuple[int, str | None]] = {}
         self._handle: io.BufferedReader | gzip.GzipFile | None = None
         lines = [line for _, line in islice(self._lines(), _HEAD_LINES)]
         if not any(line.strip() for line in lines):
@@ -60,7 +63,9 @@ class TextSource(Source):
                     mend='write one such as "utf-8" or "latin-1"',
                 ) from None
             try:
-                yield from enumerate(text, 1)
+                for number, line in enumerate(text, 1):
+                    # Some programs write the sign that books print.
+                    yield number, line.replace("\u2212", "-")
             except (OSError, EOFError, UnicodeError) as error:
                 problem = f"cannot be read ({error})"
                 raise InputError(file=self.path, problem=problem, mend="save it anew") from None
@@ -109,7 +114,11 @@ class TextSource(Source):
                     )
                 instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
                 start = as_date(instant) or start
-                self._origins = getattr(self, "_origins", {}) | {name: (instant, order)}
+                # One of dates and one of times of day, for all columns: their clocks are to be
+                # compared.
+                dated = as_date(instant) is not None
+                self._firsts.setdefault(dated, instant)
+                self._origins[name] = (self._firsts[dated], order)
             columns.append(column)
         columns = [c for c in columns if self._holds_something(c, first)]
         return Table(
@@ -131,6 +140,7 @@ class TextSource(Source):
         width, first_name = len(names), names[0]
         split = self.dialect.split
         short: tuple[int, int] | None = None
+        self._words = []
         for number, line in self._lines():
             if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
                 continue
@@ -157,7 +167,18 @@ class TextSource(Source):
                 )
             if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
                 continue  # a logger that was started anew writes its header again
+            if cells[0][:1].isalpha() and not any(map(self._counts, cells)):
+                self._words.append(number)  # "End of data"
+                continue
             yield number, cells if len(cells) == width else cells[:width]
+
+    def _counts(self, cell: str) -> bool:
+        cell = cell.strip()
+        return self.dialect.is_number(cell) or is_instant(cell)
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """Rows of words among the samples."""
+        return [(len(self._words), "there are only words", self._words[0])] if self._words else []
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of lines."""

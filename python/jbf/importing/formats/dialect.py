@@ -123,10 +123,12 @@ def sniff(
     lines = [line for line in lines if line.strip() and not line.lstrip().startswith(("#", "%"))]
     # What matters is where the samples are; titles stand before them.
     sample = lines[len(lines) // 3 :][-200:] or lines
+    # In quotes a number may hold the delimiter.
+    quotes = any('"' in line for line in sample)
     best: tuple[tuple[float, float, int], Dialect] | None = None
     for place, mark in enumerate([delimiter] if delimiter else DELIMITERS):
         for point in [decimal] if decimal else [".", ","]:
-            if mark == point:
+            if mark == point and not quotes:
                 continue
             dialect = Dialect(mark, point, thousands or "")
             score = (*_score(dialect, sample), -place if point == "." else -place - 10)

@@ -28,7 +28,8 @@ class ExcelSource(Source):
         self.options = options
         self._book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         self._layouts: dict[str, tuple[Layout, Dialect]] = {}
-        self._origins: dict[tuple[str, str], float] = {}
+        # One of dates and one of times of day, for all sheets: their clocks are to be compared.
+        self._origins: dict[bool, float] = {}
         tables = [t for name in self._book.sheetnames if (t := self._table(name)) is not None]
         if not tables:
             raise InputError(file=path, problem="holds no rows of numbers", mend="name another")
@@ -57,7 +58,7 @@ class ExcelSource(Source):
             found = Column(column, unit)
             if isinstance(cells[0], datetime | date | time | timedelta):
                 found = Column(column, "", "instant")
-                self._origins[name, column] = _seconds(cells[0])
+                self._origins.setdefault(_is_dated(cells[0]), _seconds(cells[0]))
                 start = cells[0].isoformat() if isinstance(cells[0], datetime) else start
             elif isinstance(cells[0], str) and not dialect.is_number(cells[0].strip()):
                 found = Column(column, "", "word")
@@ -84,10 +85,7 @@ class ExcelSource(Source):
                 if kind == "word":
                     found[name] = np.array([_shown(cell) for _, cell in cells], dtype=object)
                 elif kind == "instant":
-                    origin = self._origins[table.name, name]
-                    found[name] = np.array(
-                        [self._instant(name, n, cell) - origin for n, cell in cells]
-                    ).round(6)
+                    found[name] = np.array([self._instant(name, *cell) for cell in cells])
                 else:
                     found[name] = np.array([self._number(name, n, c, dialect) for n, c in cells])
             yield found
@@ -108,7 +106,7 @@ class ExcelSource(Source):
         if cell is None:
             return float("nan")
         if isinstance(cell, datetime | date | time | timedelta):
-            return _seconds(cell)
+            return round(_seconds(cell) - self._origins.get(_is_dated(cell), 0.0), 6)
         raise self._wrong(name, row, cell, "a date")
 
     def _wrong(self, name: str, row: int, cell: Any, wanted: str) -> InputError:
@@ -124,6 +122,10 @@ class ExcelSource(Source):
     def close(self) -> None:
         """Let the file go."""
         self._book.close()
+
+
+def _is_dated(cell: datetime | date | time | timedelta) -> bool:
+    return isinstance(cell, date)
 
 
 def _seconds(cell: datetime | date | time | timedelta) -> float:

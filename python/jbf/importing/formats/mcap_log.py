@@ -32,6 +32,7 @@ class McapSource(MessageSource):
         summary = make_reader(self._file).get_summary()
         if summary is None:
             raise InputError(file=path, problem="has no summary", mend="mcap recover FILE")
+        self.origin_ns = summary.statistics.message_start_time if summary.statistics else 0
         counts = summary.statistics.channel_message_counts if summary.statistics else {}
         others = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
         for number, channel in summary.channels.items():

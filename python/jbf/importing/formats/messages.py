@@ -28,7 +28,8 @@ class MessageSource(Source):
     def __init__(self, path: Path) -> None:
         self.path = path
         self.tables = ()
-        self._origins: dict[tuple[str, str], int] = {}
+        # One for all topics and stamps: their clocks are to be compared.
+        self.origin_ns = 0
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
         """Log time, ns, and message, in the order of the log."""
@@ -39,35 +40,34 @@ class MessageSource(Source):
         first = next(iter(self.messages(topic)), None)
         if first is None:
             return
-        stamp, message = first
+        _, message = first
         leaves = dict(leaves_of(message))
         if not leaves:
             return
         columns = [Column(LOG_TIME, "s")]
-        self._origins[topic, LOG_TIME] = stamp
         clock = LOG_TIME
         for name, value in leaves.items():
             if _is_stamp(value):
-                self._origins[topic, name] = nanoseconds(value)
                 columns.append(Column(name, "s"))
                 if name == "header.stamp" and nanoseconds(value) > 0:
                     clock = name
             else:
                 columns.append(Column(name))
-        start = as_date(self._origins[topic, clock])
+        start = as_date(self.origin_ns)
         self.tables = (*self.tables, Table(topic, tuple(columns), clock, count, start=start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of messages; a field that a message lacks is no sample."""
         paths = [None if name == LOG_TIME else path_of(name) for name in names]
-        origins = [self._origins.get((table.name, name), 0) for name in names]
         rows: list[list[float]] = []
         # A message may be far larger than the numbers that are wanted of it: none is kept.
         for stamp, message in self.messages(table.name):
             rows.append(
                 [
-                    (stamp - origin) / 1e9 if path is None else value_at(message, path, origin)
-                    for path, origin in zip(paths, origins, strict=True)
+                    (stamp - self.origin_ns) / 1e9
+                    if path is None
+                    else value_at(message, path, self.origin_ns)
+                    for path in paths
                 ]
             )
             if len(rows) == BLOCK:

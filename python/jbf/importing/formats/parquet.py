@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from jbf.importing.formats.arrays import seconds
+from jbf.importing.formats.arrays import first_instant, seconds
 from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values, as_numbers
 
 
@@ -19,6 +19,7 @@ class ParquetSource(Source):
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._origin: np.datetime64 | None = None
         # Read ahead, a gigabyte stays in memory.
         self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
         schema = self._file.schema_arrow
@@ -28,14 +29,15 @@ class ParquetSource(Source):
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in batches."""
         kinds = {name: table.column(name).kind for name in names}
-        origins: dict[str, np.datetime64] = {}
         for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
             found: dict[str, Values] = {}
             for name in names:
                 column = batch.column(name)
                 if kinds[name] == "instant":
                     values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
-                    found[name] = seconds(values, origins.setdefault(name, values[0]))
+                    # One for all columns of instants: their clocks are to be compared.
+                    self._origin = self._origin or first_instant(values)
+                    found[name] = seconds(values, self._origin)
                 elif kinds[name] == "word":
                     found[name] = np.array(column.to_pylist(), dtype=object)
                 else:

@@ -24,6 +24,7 @@ class BagSource(MessageSource):
         store = get_typestore(Stores.ROS2_HUMBLE)
         self._reader = AnyReader([bag], default_typestore=store)
         self._reader.open()
+        self.origin_ns = self._reader.start_time
         for topic, info in self._reader.topics.items():
             if info.msgcount:
                 self.add_topic(topic, info.msgcount)

@@ -157,6 +157,10 @@ class Source(ABC):
         rows have no numbers that a person could go to."""
         return None
 
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """How many rows the last reading passed over, why, and the first of them."""
+        return []
+
     def read_bytes(self) -> tuple[int, int]:
         """How much of the file has been read, and its size; noughts where that is not known."""
         return 0, 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import shlex
 from pathlib import Path
 
@@ -232,6 +233,14 @@ def test_a_bad_command_is_one_line(
     assert line.count("\n") == 1
     assert BAD_COMMANDS[command] in line
     assert files(folder) == before
+
+
+def test_open_questions_travel_between_processes(folder: Path) -> None:
+    (folder / "log.csv").write_text("time,speed_rpm,torque_pct\n" + "1,2,3\n2,3,4\n" * 20)
+    with pytest.raises(jbf.InputError) as refused:
+        jbf.import_files("log.csv")
+    assert "(and 1 more)" in str(refused.value)
+    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
 
 
 def test_from_python_it_is_one_call(folder: Path) -> None:

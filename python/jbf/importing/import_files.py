@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -49,7 +50,7 @@ class OpenQuestions(InputError):
         super().__init__(file=guessed.path, problem=problem, mend="give a map: jbf import FILE")
 
     def __reduce__(self) -> tuple[object, ...]:
-        return InputError, (), {}
+        return partial(InputError, **self._fields()), ()
 
 
 def look(path: PathLike) -> Guess:

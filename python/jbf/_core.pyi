@@ -24,6 +24,7 @@ class ParameterPage(TypedDict):
     period: float | None
     start: str
     bound: str
+    stated: bool
 
 class EffectPage(TypedDict):
     name: str
@@ -70,6 +71,7 @@ class Motion:
         acceleration_m_s2: Array,
         angle_rad: Array,
         load_n: Array,
+        temperature_c: Array | None = None,
     ) -> None: ...
     def __len__(self) -> int: ...
 

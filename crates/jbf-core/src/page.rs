@@ -44,6 +44,8 @@ pub enum Start {
     RipplePitch,
     /// A share of a usual run's time.
     RunTime,
+    /// The temperature at which a rig's viscosity holds, or else the mean of those on record, C.
+    ReferenceTemperature,
     /// On a linear axis: a drive that gives by a small share of a stroke.
     DriveStiffness,
     /// On a linear axis: a drive that rings fast against a stroke.
@@ -69,6 +71,7 @@ impl Start {
             Start::Pitch => "pitch",
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",
+            Start::ReferenceTemperature => "reference_temperature",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",
             Start::DriveDamping => "drive_damping",
@@ -132,6 +135,10 @@ pub struct Parameter {
     pub start: Start,
     /// What bounds it from above in a fit.
     pub bound: Bound,
+    /// True of a number that is stated, not found: a fit holds it where it starts, or where it is
+    /// told to. It says in what terms the others are meant (a reference), or stands in a form with
+    /// one parameter more than records tell.
+    pub stated: bool,
 }
 
 impl Parameter {
@@ -156,6 +163,7 @@ impl Parameter {
             mirror: Mirror::Same,
             start: Start::Catalogue,
             bound: Bound::Catalogue,
+            stated: false,
         }
     }
 
@@ -186,6 +194,12 @@ impl Parameter {
     /// What in the data it is about the size of.
     pub const fn start(mut self, start: Start) -> Self {
         self.start = start;
+        self
+    }
+
+    /// A number that is stated, not found.
+    pub const fn stated(mut self) -> Self {
+        self.stated = true;
         self
     }
 

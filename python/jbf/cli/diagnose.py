@@ -64,6 +64,13 @@ def _add_next_run(parser: Parser) -> None:
         type=float,
         help="loads that the rig can be put under; as recorded",
     )
+    group.add_argument(
+        "--temperatures-c",
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        type=float,
+        help="temperatures that it can be recorded at; as recorded",
+    )
 
 
 def _limits(arguments: argparse.Namespace) -> Limits:
@@ -74,6 +81,9 @@ def _limits(arguments: argparse.Namespace) -> Limits:
         acceleration_m_s2=arguments.max_acceleration_m_s2,
         duration_s=arguments.next_duration_s,
         load_n=None if arguments.loads_n is None else tuple(arguments.loads_n),
+        temperature_c=(
+            None if arguments.temperatures_c is None else tuple(arguments.temperatures_c)
+        ),
     )
 
 

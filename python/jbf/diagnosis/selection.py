@@ -152,7 +152,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
             if first[name] > line and promised > 0.0:
                 solution = candidates.converge(effects)
         # At its null an effect leaves the model as it was: no candidate is worse than that.
-        more = len(candidates.fitted(effects).problem.names) - base.free
+        more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
         found.append(Ranked(gain, name, solution))
     found.sort(key=lambda r: -r.evidence)

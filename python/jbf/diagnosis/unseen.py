@@ -48,7 +48,7 @@ def unseen(candidates: Candidates, present: Names) -> Names:
             continue
         gap, _ = base.samples.stacked(gaps, base.jacobian, base.noise)
         evidence = unexplained_square(slopes, gap) / level
-        if evidence < price_of(candidates, len(richer.names) - base.free):
+        if evidence < price_of(candidates, len(richer.open) - base.free):
             found.append(name)
     return tuple(found)
 
@@ -62,7 +62,7 @@ def propose_to_see(
     base = Rival(candidates.fitted(present))
     richer = {name: _with_usual(candidates, present, name) for name in hidden}
     prices = {
-        name: price_of(candidates, len(problem.names) - base.solution.free)
+        name: price_of(candidates, len(problem.open) - base.solution.free)
         for name, (problem, _) in richer.items()
     }
     best: tuple[float, float] = (0.0, 0.0)

@@ -16,6 +16,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.pitches import pitches
 from jbf.estimation.scales import Scales, scales
 from jbf.models.catalogue import Parameter
+from jbf.records.findings.slow_temperature import recorded_temperature
 
 Starts = tuple[float, ...]
 FASTEST_FILM = 5.0
@@ -61,12 +62,27 @@ def _run_time(campaign: Campaign) -> Starts:
     return (0.3 * usual, 0.1 * usual)
 
 
+def _reference_temperature(campaign: Campaign) -> Starts:
+    """The temperature at which the lubricant's viscosity holds, or else the mean of those on
+    record, to a degree, C."""
+    lubricant = campaign.rig.lubricant
+    if lubricant is not None and lubricant.temperature_c is not None:
+        return (lubricant.temperature_c,)
+    every = [recorded_temperature(p.run) for p in campaign.prepared]
+    means = [float(np.mean(celsius)) for celsius in every if celsius is not None]
+    return (float(np.round(np.mean(means))),) if means else ()
+
+
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "pitch": lambda c: pitches(c, along=False),
     "ripple_pitch": lambda c: pitches(c, along=True),
     "run_time": _run_time,
 }
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
+RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
+    "reference_temperature": _reference_temperature,
+}
+"""What asks for no newtons."""
 
 
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
@@ -103,5 +119,7 @@ def with_starts(
             page = _inside(page, rules[page.start](sizes))
         if in_newtons and page.start in CAMPAIGN_RULES:
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
+        if page.start in RULES_OF_ANY_LAW:
+            page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
         found[name] = page
     return found

@@ -56,6 +56,8 @@ class Parameter:
     bound
         What in the data bounds it from above: "transition_speed" the fastest speed on record,
         "catalogue" nothing.
+    stated
+        True of a number that no fit finds: it is held where it starts, or is fixed elsewhere.
     """
 
     name: str
@@ -69,6 +71,7 @@ class Parameter:
     period: float | None = None
     start: str = "catalogue"
     bound: str = "catalogue"
+    stated: bool = False
 
 
 class Pages(dict[str, Page]):

@@ -26,6 +26,7 @@ from jbf.models.own_laws import OwnLaw
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
+from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.recorded_load import recorded_load
@@ -179,6 +180,9 @@ def core_motion(
         "angle_rad": motion.angle_rad,
         "load_n": load,
     }
+    celsius = recorded_temperature(run)
+    if celsius is not None:
+        columns["temperature_c"] = celsius
     kept = None
     if before is not None:
         count, columns = _with_motion_before(columns, rig, *before)
@@ -190,6 +194,7 @@ def core_motion(
             np.ascontiguousarray(columns["acceleration_m_s2"]),
             np.ascontiguousarray(columns["angle_rad"]),
             np.ascontiguousarray(columns["load_n"]),
+            None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
         )
     # What effects of one's own see: the record, its motion as the models are driven with it.
     made.columns = columns

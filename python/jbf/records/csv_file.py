@@ -19,7 +19,15 @@ import numpy.typing as npt
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
 from jbf.records.channels import OWN_CLOCK, filled
-from jbf.records.checks import COLUMNS, MIN_SAMPLES, MOTION, check_columns, frozen, listed
+from jbf.records.checks import (
+    COLUMNS,
+    MIN_SAMPLES,
+    MOTION,
+    SLOW,
+    check_columns,
+    frozen,
+    listed,
+)
 from jbf.records.counts import count_of
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
@@ -229,6 +237,10 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     gaps: dict[str, Mask] = {}
     turned = list(zip(*rows, strict=True))
     for name, cells in zip(header, turned, strict=True):
+        if name == SLOW:
+            cells = tuple(cell if cell.strip() else "nan" for cell in cells)
+            if all(cell == "nan" for cell in cells):
+                continue
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
@@ -249,6 +261,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     called = of_drive.called(columns)
     columns, findings = of_drive.converted(path.stem, columns)
     run = Run.of_columns(path.stem, columns, path)
+    findings = (*findings, *run.reading)
     read = {called.get(name, name): there for name, there in gaps.items()}
     read = {name: there for name, there in read.items() if name in columns}
     return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)

@@ -14,6 +14,7 @@ NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "position": "the column angle_rad or position_m in every run",
+    "temperatures": "the column temperature_c in every run, and temperatures that differ",
     "loads": "runs under several loads (load_n, or pressure_pa on an axis without a bearing)",
 }
 
@@ -82,4 +83,9 @@ def effect_page(effect: Effect) -> str:
 
 def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
     null = "" if p.null is None else f"{p.null:g}"
-    return p.name, p.unit, f"{p.lower:g}", f"{p.upper:g}", null, p.meaning
+    return p.name, p.unit, f"{p.lower:g}", f"{p.upper:g}", null, meaning_of(p)
+
+
+def meaning_of(p: Parameter) -> str:
+    """What a parameter is, and that no fit finds it where none does."""
+    return f"{p.meaning} (stated, not fitted)" if p.stated else p.meaning

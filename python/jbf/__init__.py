@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
     from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
+    from jbf.importing.guessed import Guess
+    from jbf.importing.import_files import import_files, look, read_recording
+    from jbf.importing.mapping import Map, read_map
+    from jbf.importing.result import Import
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.
@@ -49,6 +53,13 @@ _LATER = {
     "fit": "jbf.estimation.fit",
     "TrajectoryFit": "jbf.estimation.trajectory_fit",
     "fit_trajectories": "jbf.estimation.trajectory_fit",
+    "Guess": "jbf.importing.guessed",
+    "Import": "jbf.importing.result",
+    "Map": "jbf.importing.mapping",
+    "import_files": "jbf.importing.import_files",
+    "look": "jbf.importing.import_files",
+    "read_map": "jbf.importing.mapping",
+    "read_recording": "jbf.importing.import_files",
 }
 
 __all__ = [
@@ -60,11 +71,14 @@ __all__ = [
     "Experiment",
     "FilmWarning",
     "Fit",
+    "Guess",
+    "Import",
     "InputError",
     "JbfError",
     "Limits",
     "Load",
     "Lubricant",
+    "Map",
     "Model",
     "Parameter",
     "ParameterValue",
@@ -84,8 +98,12 @@ __all__ = [
     "fit_trajectories",
     "forget_effect",
     "forget_law",
+    "import_files",
     "laws",
     "load_effects",
+    "look",
+    "read_map",
+    "read_recording",
     "read_rig",
     "read_run",
     "read_runs",

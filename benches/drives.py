@@ -22,7 +22,11 @@ from rigsim import AXIS_EFFECTS, AxisRun, axis_campaign
 from rigsim.foreign import FOREIGN, draw_foreign
 
 KINDS = ("none", "single", "pair", "foreign")
-COMPANY = {"torque_proportional": ("gravity",)}
+COMPANY = {
+    "torque_proportional": ("gravity",),
+    "cogging_2": ("cogging",),
+    "pitch_ripple_2": ("pitch_ripple",),
+}
 """What must be hidden beside an effect for it to show."""
 SWING = 8.0
 """A joint whose weight is carried swings so much wider than a slide."""
@@ -58,7 +62,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
     together = [
         tuple(sorted(pair))
         for pair in itertools.combinations(AXIS_EFFECTS, 2)
-        if not {"torque_proportional"} & set(pair)
+        if not set(COMPANY) & set(pair)
     ]
     for number in rounds:
         rng = np.random.default_rng([number, 15])

@@ -24,6 +24,7 @@ class ParameterPage(TypedDict):
     period: float | None
     start: str
     bound: str
+    constant: bool
 
 class EffectPage(TypedDict):
     name: str
@@ -37,6 +38,7 @@ class EffectPage(TypedDict):
     moves_jumps: bool
     peaks: str | None
     longest_step_s: float
+    further_of: str | None
     rust_place: str
     rust_type: str
     parameters: list[ParameterPage]

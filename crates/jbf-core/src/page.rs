@@ -44,6 +44,10 @@ pub enum Start {
     RipplePitch,
     /// A share of a usual run's time.
     RunTime,
+    /// The middle of the way that the runs cover.
+    StrokeMiddle,
+    /// Half of that way.
+    StrokeHalf,
     /// On a linear axis: a drive that gives by a small share of a stroke.
     DriveStiffness,
     /// On a linear axis: a drive that rings fast against a stroke.
@@ -69,6 +73,8 @@ impl Start {
             Start::Pitch => "pitch",
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",
+            Start::StrokeMiddle => "stroke_middle",
+            Start::StrokeHalf => "stroke_half",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",
             Start::DriveDamping => "drive_damping",
@@ -132,6 +138,8 @@ pub struct Parameter {
     pub start: Start,
     /// What bounds it from above in a fit.
     pub bound: Bound,
+    /// True of a constant of the machine, which no fit moves: it stays where it starts.
+    pub constant: bool,
 }
 
 impl Parameter {
@@ -156,6 +164,7 @@ impl Parameter {
             mirror: Mirror::Same,
             start: Start::Catalogue,
             bound: Bound::Catalogue,
+            constant: false,
         }
     }
 
@@ -186,6 +195,12 @@ impl Parameter {
     /// What in the data it is about the size of.
     pub const fn start(mut self, start: Start) -> Self {
         self.start = start;
+        self
+    }
+
+    /// A constant of the machine, which no fit moves.
+    pub const fn constant(mut self) -> Self {
+        self.constant = true;
         self
     }
 

@@ -15,6 +15,7 @@ import numpy as np
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.pitches import pitches
 from jbf.estimation.scales import Scales, scales
+from jbf.estimation.stroke import stroke
 from jbf.models.catalogue import Parameter
 
 Starts = tuple[float, ...]
@@ -65,6 +66,8 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "pitch": lambda c: pitches(c, along=False),
     "ripple_pitch": lambda c: pitches(c, along=True),
     "run_time": _run_time,
+    "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
+    "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
 }
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 

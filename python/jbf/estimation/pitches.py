@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import moving_samples
+from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
 
@@ -50,6 +51,19 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     if along not in found:
         found[along] = _pitches(campaign, along)
     return found[along]
+
+
+def known_pitches(rig: Rig) -> tuple[float, ...]:
+    """The ways of one turn of the screw and of the motor, m (of a joint rad), where the rig's
+    [drive] tells them."""
+    drive = rig.drive
+    if drive is None:
+        return ()
+    turn = 2.0 * np.pi if drive.motion == "rotary" else drive.pitch_m
+    if turn is None or (drive.motion == "rotary" and drive.gear_ratio == 1.0):
+        return ()
+    turns = (turn,) if drive.motion == "linear" else ()
+    return tuple(dict.fromkeys((*turns, turn / drive.gear_ratio)))
 
 
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import pitches
+from jbf.estimation.pitches import known_pitches, pitches
 from jbf.estimation.scales import Scales, scales
 from jbf.estimation.stroke import stroke
 from jbf.models.catalogue import Parameter
@@ -63,8 +63,8 @@ def _run_time(campaign: Campaign) -> Starts:
 
 
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
-    "pitch": lambda c: pitches(c, along=False),
-    "ripple_pitch": lambda c: pitches(c, along=True),
+    "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
+    "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
     "run_time": _run_time,
     "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
     "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),

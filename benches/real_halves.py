@@ -118,9 +118,11 @@ def halved(path: Path) -> Halves:
     return [part(c, at[: len(at) // 2], "first")], [part(c, at[len(at) // 2 :], "second")]
 
 
-def row(title: str, halves: Halves, law: str) -> None:
-    """Print what is found in one half, and the RMS in the other."""
+def row(title: str, halves: Halves, law: str, whole: bool = False) -> None:
+    """Print what is found in one half, and the RMS in the other; or in all, and of all."""
     fitted, left = halves
+    if whole:
+        fitted = left = [*fitted, *left]
     begun = time.process_time()
     found = jbf.diagnose(jbf.Rig(), fitted, law=law)
     took = time.process_time() - begun
@@ -139,6 +141,9 @@ def main() -> int:
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--law", default="stribeck", help="base law; stribeck")
     parser.add_argument("--only", default="", help="recordings whose path holds this")
+    parser.add_argument(
+        "--whole", action="store_true", help="fit all and judge by all, as most fits by hand do"
+    )
     asked = parser.parse_args()
     if asked.folder is None:
         print("skipped: name the folder of the recordings: python benches/real_halves.py FOLDER")
@@ -150,7 +155,8 @@ def main() -> int:
     plan += [("tribometer/run.csv", cycles)]
     plan += [(f"openarm_joints/joint{k}.csv", halved) for k in (3, 5, 6, 7)]
     plan += [("hydraulic_cylinder", steady)]
-    print("| recording | law | left-out RMS, N (drives: %) | verdict | named | findings | CPU s |")
+    of = "" if asked.whole else "left-out "
+    print(f"| recording | law | {of}RMS, N (drives: %) | verdict | named | findings | CPU s |")
     print("|---|---|---|---|---|---|---|")
     for name, cut in plan:
         path = asked.folder / name
@@ -159,10 +165,10 @@ def main() -> int:
         if not path.exists():
             print(f"skipped: there is no {path}")
             continue
-        row(name, cut(path), asked.law)
+        row(name, cut(path), asked.law, asked.whole)
     seals = [asked.folder / f"seal/NAP310_{bar}bar.csv" for bar in (1, 3, 5, 7)]
     if asked.only in "seal/all" and all(path.is_file() for path in seals):
-        row("seal/all", all_strokes(seals), asked.law)
+        row("seal/all", all_strokes(seals), asked.law, asked.whole)
     return 0
 
 

@@ -10,11 +10,11 @@ FAIR = {"skew": {"time_delay"}}
 """Names that are true of an artefact: a late force is late, whoever made it so."""
 
 FOUND_AS: dict[str, set[str]] = {
-    "backward_velocity": {"coarse_speed", "filtered_speed", "late_channel"},
-    "coarse_velocity": {"coarse_speed", "filtered_speed"},
+    "backward_velocity": {"coarse_speed", "filtered_speed", "late_speed", "late_channel"},
+    "coarse_velocity": {"coarse_speed", "filtered_speed", "late_speed"},
     "drifting_clock": {"drifting_clock", "late_channel"},
     "dropout": {"held_samples"},
-    "filtered_velocity": {"filtered_speed", "late_channel"},
+    "filtered_velocity": {"filtered_speed", "late_speed", "late_channel"},
     "gain_by_run": {"gain_by_run"},
     "gaps": {"gaps"},
     "heavy_tails": {"heavy_tails", "glitches"},

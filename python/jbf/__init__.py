@@ -19,6 +19,7 @@ from jbf.models.own_effects import forget_effect, load_effects, register_effect
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Trajectory, trajectories, trajectory
 from jbf.records.csv_file import read_run
+from jbf.records.drive import Drive
 from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
 from jbf.records.run import Run
 from jbf.records.run_files import read_runs
@@ -54,6 +55,7 @@ __all__ = [
     "Bootstrap",
     "Comparison",
     "Diagnosis",
+    "Drive",
     "Experiment",
     "FilmWarning",
     "Fit",

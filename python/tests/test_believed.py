@@ -152,6 +152,9 @@ def test_a_late_speed_is_as_late_as_it_is(share: float) -> None:
     late_s = share * STEP_S
     m = imposed(measured(true("usual", TIME - late_s)[0], 7, 1e-5), counted(true()[1]))
     assert only(m).size == pytest.approx(late_s, rel=0.15)
+    # One that is late by less than a sample has lost nothing else.
+    assert only(m).kind == ("late_speed" if share < 0.4 else "filtered_speed")
+    assert error(m, true()[0]) < (5e-5 if share < 0.4 else 2e-4)
 
 
 # ---- a speed made of the path --------------------------------------------------------------------
@@ -183,18 +186,20 @@ def test_a_difference_of_counts_is_left_aside(counts: int, before: int, after: i
     ("factor", "said"),
     [(1e3, "in mm"), (1e2, "in cm"), (-1e3, "the other way"), (7.7, "times as fast")],
 )
-def test_a_position_in_another_unit_is_not_believed(motion: str, factor: float, said: str) -> None:
+def test_a_position_in_another_unit_is_converted(motion: str, factor: float, said: str) -> None:
     v, x = true(motion)
     m = impose(Run.from_arrays(TIME, measured(v), position_m=factor * np.round(x, 6)), None)
     found = only(m)
     assert (found.kind, found.channel) == ("units", "position_m")
     assert found.size == pytest.approx(factor, rel=0.02)
     assert said in found.words
-    assert error(m, v) < TACHOMETER_M_S
+    assert found.done.startswith("divided by ")
+    # Once converted it tells as much as one in metres.
+    assert error(m, v) < 0.5 * TACHOMETER_M_S
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(180.0 / np.pi, "degrees"), (0.5 / np.pi, "turns")])
-def test_an_angle_in_another_unit_is_not_believed(factor: float, unit: str) -> None:
+def test_an_angle_in_another_unit_is_converted(factor: float, unit: str) -> None:
     v, x = true()
     # Slow enough for degrees not to jump by half a turn of radians between samples.
     v, x = 0.1 * v, 0.1 * x
@@ -207,7 +212,7 @@ def test_an_angle_in_another_unit_is_not_believed(factor: float, unit: str) -> N
     ("factor", "unit"),
     [(1e3, "mm/s"), (1.0 / RADIUS_M, "rad/s"), (30.0 / np.pi / RADIUS_M, "minute")],
 )
-def test_a_speed_in_another_unit_is_not_believed(factor: float, unit: str) -> None:
+def test_a_speed_in_another_unit_is_converted(factor: float, unit: str) -> None:
     v, x = true()
     m = imposed(factor * measured(v), counted(x))
     found = only(m)
@@ -216,11 +221,59 @@ def test_a_speed_in_another_unit_is_not_believed(factor: float, unit: str) -> No
     assert error(m, v) < 1e-3
 
 
-def test_a_path_with_its_sign_turned_is_not_believed() -> None:
+def test_a_path_with_its_sign_turned_is_turned() -> None:
     v, x = true("triangle")
     m = imposed(measured(v), -counted(x))
     assert only(m).kind == "sign"
     assert error(m, v) < 2.0 * TACHOMETER_M_S
+    assert m.angle_rad[-1] * RADIUS_M == pytest.approx(x[-1] - x[0], abs=1e-4)
+
+
+@pytest.mark.parametrize("radius_m", [1.0, 0.31, RADIUS_M])
+def test_an_angle_without_a_radius_tells_the_motion_by_its_speed(radius_m: float) -> None:
+    """The way for a radian is what the speed says, and nothing is a contradiction."""
+    v, x = true()
+    angle = np.round(x / radius_m, 5)
+    m = impose(Run.from_arrays(TIME, measured(v), angle_rad=angle), None)
+    assert m.findings == ()
+    assert error(m, v) < 0.5 * TACHOMETER_M_S
+    assert np.max(np.abs(np.diff(m.angle_rad - angle))) < 1e-4
+    # An angle that is another shaft's tells nothing of this one.
+    other = impose(Run.from_arrays(TIME, measured(v), angle_rad=np.sin(3.0 * TIME)), None)
+    assert other.angle_rad == pytest.approx(np.sin(3.0 * TIME))
+    assert error(other, v) < 1.5 * TACHOMETER_M_S
+
+
+# ---- a speed's zero ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("zero", [-2e-3, 5e-4])
+@pytest.mark.parametrize("count_m_s", [0.0, 4e-3])
+def test_a_speed_off_its_zero_rests_where_the_position_does(zero: float, count_m_s: float) -> None:
+    """A tachometer's offset; counts round zero and none on it, which never read zero."""
+    v, x = true("stops")
+    rest = v == 0.0
+    speed = v + 1e-5 * np.random.default_rng(3).standard_normal(len(v))
+    speed += zero
+    if count_m_s:
+        zero = float(np.copysign(0.5 * count_m_s, zero))
+        speed = zero + count_m_s * np.round(v / count_m_s)
+    m = imposed(speed, counted(x))
+    found = only(m)
+    assert (found.kind, found.done) == ("speed_zero", "taken off")
+    assert found.size == pytest.approx(zero, abs=2e-5)
+    assert m.resting[rest].mean() > 0.9
+    assert not m.resting[np.abs(v) > 0.02].any()
+    assert error(m, v) < max(1e-4, 0.3 * count_m_s)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_a_creep_is_no_zero(motion: str) -> None:
+    """A slow drive goes on, and its position with it."""
+    v, x = true(motion)
+    creep = 5e-4
+    m = imposed(measured(v + creep), counted(x + creep * TIME))
+    assert [f for f in m.findings if f.kind == "speed_zero"] == []
 
 
 # ---- clocks --------------------------------------------------------------------------------------

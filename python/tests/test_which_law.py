@@ -102,6 +102,15 @@ def test_where_another_law_alone_does_better_that_is_said() -> None:
     assert (found.effects, found.simpler_law) == (("stribeck_excess",), None)
 
 
+def test_what_is_no_friction_stays_beside_another_law() -> None:
+    """Two effects that one law says, but for the zero that no law can say."""
+    found = diagnose(Rig(), runs(zero_n=20.0), law="coulomb")
+    assert found.effects == ("sensor_offset", "stribeck_excess")
+    assert found.simpler_law is not None
+    assert found.simpler_law.law == "stribeck"
+    assert found.simpler_law.left_out_rms_n == pytest.approx(NOISE_N, rel=0.05)
+
+
 def test_a_zero_does_not_choose_the_law() -> None:
     # Beside an offset that no law can say, the smallest differences would.
     found = diagnose(Rig(), runs(zero_n=20.0), law="auto")

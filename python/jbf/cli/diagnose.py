@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from jbf.cli import diagnose_many, inputs, outputs
+from jbf.cli import diagnose_many, hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -29,6 +29,7 @@ def add(commands: Commands) -> None:
     add_report(parser)
     add_law(parser, also=f"; {AUTO}: the one that alone predicts best")
     add_own(parser)
+    hold_out.add(parser)
     _add_next_run(parser)
     diagnose_many.add(parser)
 
@@ -47,7 +48,10 @@ def _add_next_run(parser: Parser) -> None:
         help="of the rig (of a rotary drive in rad/s); as recorded",
     )
     group.add_argument(
-        "--max-acceleration-m-s2", metavar="X", type=float, help="of the rig; as recorded"
+        "--max-acceleration-m-s2",
+        metavar="X",
+        type=float,
+        help="of the rig (of a rotary drive in rad/s^2); as recorded",
     )
     group.add_argument("--next-duration-s", metavar="X", type=float, default=60.0, help="60")
     group.add_argument(
@@ -73,6 +77,10 @@ def _limits(arguments: argparse.Namespace) -> Limits:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     if arguments.many is not None:
+        if arguments.hold_out:
+            raise InputError(
+                file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
+            )
         return diagnose_many.run(arguments, _limits(arguments))
     if arguments.rig is None or not arguments.runs:
         raise InputError(
@@ -89,6 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
     rig = inputs.rig(arguments.rig, arguments.law)
     runs = inputs.runs(arguments.runs, rig, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
+    runs, held = hold_out.split(runs, arguments)
 
     from jbf.diagnosis import diagnose
 
@@ -106,11 +115,12 @@ def run(arguments: argparse.Namespace) -> int:
             from jbf.reporting.diagnosis_page import diagnosis_page
 
             texts[arguments.report] = diagnosis_page(diagnosis)
+    told = hold_out.left(diagnosis.model, held)
     if arguments.json:
-        texts[arguments.json] = json_text(diagnosis.to_dict())
+        texts[arguments.json] = json_text(diagnosis.to_dict() | told)
     if arguments.out:
         texts[arguments.out] = diagnosis.model.to_toml()
-    summary = diagnosis.summary()
+    summary = diagnosis.summary() + hold_out.words(diagnosis.model, told)
     if arguments.next_run and diagnosis.experiment:
         texts[arguments.next_run] = diagnosis.experiment.run.to_csv()
     elif arguments.next_run:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from jbf.cli import inputs, outputs
+from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError, quoted
@@ -38,6 +38,7 @@ def add(commands: Commands) -> None:
         help="take the errors from N fits of simulated records of the same runs (19 or more; "
         "takes N times as long)",
     )
+    hold_out.add(parser)
     parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
     add_own(parser)
 
@@ -52,6 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     rig = inputs.rig(arguments.rig, arguments.law)
     runs = inputs.runs(arguments.runs, rig, first="RIG")
     outputs.check(wanted, [run.path for run in runs if run.path])
+    runs, held = hold_out.split(runs, arguments)
 
     from jbf.estimation.fit import fit
 
@@ -66,8 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
             from jbf.estimation.bootstrap import bootstrap
 
             fitted = bootstrap(fitted, runs, repeats=repeats, progress=report).fit
+    told = hold_out.left(fitted.model, held)
     outputs.write({arguments.out: fitted.model.to_toml()})
-    outputs.say(fitted.report(), wanted)
+    outputs.say(fitted.report() + hold_out.words(fitted.model, told), wanted)
     return 0
 
 

@@ -11,13 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.models.chain import imposed
+from jbf.models.chain import imposed_as_read
 from jbf.models.driven import Driven
 from jbf.models.driven_motion import driven_motion
 from jbf.records.checks import frozen
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import find_noisy_load, steady_load
+from jbf.records.findings.own_clock import own_clock
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
@@ -57,14 +58,22 @@ class Prepared:
         """
         run = run_on(rig, run)
         require(run, "friction_n", "a comparison with the model")
-        motion = imposed(rig, run)
-        assert run.friction_n is not None
+        instants, motion = imposed_as_read(rig, run)
         recorded = None
+        own = own_clock(run)
+        if run.read:
+            # The model is compared at the readings of the force, and at no others.
+            recorded = (instants, motion)
+            there = run.read.get("friction_n", np.ones(len(run), dtype=bool))
+            moving = (run.time_s >= instants[0]) & (run.time_s <= instants[-1])
+            run = replace(run.select(there & moving), read={})
+            motion = motion.at(instants, run.time_s)
+        assert run.friction_n is not None
         examined = examine(run, motion.velocity_m_s)
         if examined.native is not None:
             native = examined.native
-            recorded = (run.time_s, motion)
-            motion = motion.at(run.time_s, native.time_s)
+            instants, motion = recorded = recorded or (run.time_s, motion)
+            motion = motion.at(instants, native.time_s)
             run = run.at(native.time_s, native.values)
             of_readings = examine_readings(run, motion.velocity_m_s)
             examined = Examined((*examined.findings, *of_readings.findings), of_readings.usable)
@@ -76,6 +85,7 @@ class Prepared:
             )
         more = (
             *run.reading,
+            *own,
             *motion.findings,
             *find_pushing(run, motion, examined.usable),
             *find_noisy_load(run.name, run.load_n),

@@ -22,6 +22,7 @@ from jbf.models.driven import Driven, DrivenChain
 from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
 from jbf.records.arguments import one_run, the_rig
+from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
@@ -131,7 +132,18 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
     """The motion that a run imposed on the rig's journal or slider."""
-    return impose(run_on(rig, one_run(run)), rig.radius_m)
+    instants, motion = imposed_as_read(rig, run)
+    return motion if len(instants) == len(run) else motion.at(instants, run.time_s)
+
+
+def imposed_as_read(rig: Rig, run: Run) -> tuple[Array, ImposedMotion]:
+    """The motion, and the instants at which it was read, s: those of a clock of its own, where it
+    has one."""
+    run = run_on(rig, one_run(run))
+    there = of_motion(run.read)
+    if there is not None:
+        run = run.select(there)
+    return run.time_s, impose(run, rig.radius_m)
 
 
 def core_motion(

@@ -45,6 +45,13 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"
         )
 
+    if np.ma.is_masked(values):
+        raise InputError(
+            file=name,
+            column=column,
+            problem="has masked samples",
+            mend="leave them out, or give Run.from_channels the readings with their instants",
+        )
     try:
         array = np.asarray(values)
         # Text, dates and complex numbers would convert to something nobody meant.

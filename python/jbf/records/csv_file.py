@@ -18,7 +18,8 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
-from jbf.records.checks import COLUMNS, MOTION, check_columns, frozen, listed
+from jbf.records.channels import OWN_CLOCK, filled
+from jbf.records.checks import COLUMNS, MIN_SAMPLES, MOTION, check_columns, frozen, listed
 from jbf.records.counts import count_of
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
@@ -27,6 +28,7 @@ from jbf.records.run import PathLike, Run
 from jbf.text_files import path_of, read_text
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 OF_DRIVES = (
     "torque_n_m",
@@ -183,8 +185,9 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     The header names the columns; ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
     ``position_m``, or ``angle_rad`` and a rig with a bearing) must be there, the other `COLUMNS`
     may be. Any further column whose cells are all finite numbers is kept in
-    `Run.extra`, any other is ignored. Comma, semicolon or tab part the cells; blank lines, and
-    lines before the header that start with ``#``, are skipped.
+    `Run.extra`, any other is ignored. Empty cells, of a column that has many, are instants at which
+    it was not read: it has a clock of its own. Comma, semicolon or tab part the cells; blank
+    lines, and lines before the header that start with ``#``, are skipped.
 
     Parameters
     ----------
@@ -223,22 +226,46 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             mend="give every row one cell a column, numbers with a decimal point",
         )
     columns: dict[str, Array] = {}
+    gaps: dict[str, Mask] = {}
     for name, cells in zip(header, zip(*rows, strict=True), strict=True):
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
-            if name in known:
+            own = None if name == "time_s" else _by_its_own_clock(cells)
+            if own is not None and name:
+                columns[name], gaps[name] = own
+            elif name in known:
                 at = next(i for i, cell in enumerate(cells) if not _is_number(cell))
                 raise _bad_cell(path, numbers[at], name, cells[at]) from None
             continue
         if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
     check_columns(path.stem, columns, path, numbers)
+    for name, there in gaps.items():
+        columns[name] = filled(columns["time_s"], columns[name], there)
     if of_drive is None:
-        return Run.of_columns(path.stem, columns, path)
+        return replace(Run.of_columns(path.stem, columns, path), read=gaps)
+    called = of_drive.called(columns)
     columns, findings = of_drive.converted(path.stem, columns)
     run = Run.of_columns(path.stem, columns, path)
-    return replace(run, quantities=of_drive.drive.quantities, reading=findings)
+    read = {called.get(name, name): there for name, there in gaps.items()}
+    read = {name: there for name, there in read.items() if name in columns}
+    return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
+
+
+def _by_its_own_clock(cells: Sequence[str]) -> tuple[Array, Mask] | None:
+    """The readings of a channel with a clock of its own, and where it was read; None where a cell
+    is no number, or so few are empty that they are gaps."""
+    there = np.array([bool(cell.strip()) for cell in cells])
+    if not there.any() or np.count_nonzero(~there) < max(MIN_SAMPLES, OWN_CLOCK * len(cells)):
+        return None
+    try:
+        read = [float(cell) for cell in cells if cell.strip()]
+    except ValueError:
+        return None
+    values = np.zeros(len(cells))
+    values[there] = read
+    return frozen(values), there
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:

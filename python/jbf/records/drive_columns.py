@@ -111,13 +111,7 @@ class DriveColumns:
         """The columns as every run has them, and what was done to them, as findings."""
         kept = dict(columns)
         found: list[Finding] = []
-        unit = self.drive.quantities
-        place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
-        for target, sizes, si in (
-            ("friction_n", self.friction, unit.force),
-            ("velocity_m_s", self.speed, unit.speed),
-            (place, self.place, unit.length),
-        ):
+        for target, sizes, si in self._targets():
             there = [column for column in sizes if column in columns]
             if not there:
                 continue
@@ -131,6 +125,23 @@ class DriveColumns:
                 found.append(_conversion(name, target, column, size, si))
             found += [_not_read(name, target, other, column) for other in others]
         return kept, tuple(found)
+
+    def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
+        """What each column that is read is called in a run."""
+        read = (
+            (next((c for c in sizes if c in columns), ""), t) for t, sizes, _ in self._targets()
+        )
+        return {column: target for column, target in read if column}
+
+    def _targets(self) -> tuple[tuple[str, Mapping[str, float], str], ...]:
+        """Column of a run, the file's columns for it with their sizes, its unit."""
+        unit = self.drive.quantities
+        place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
+        return (
+            ("friction_n", self.friction, unit.force),
+            ("velocity_m_s", self.speed, unit.speed),
+            (place, self.place, unit.length),
+        )
 
 
 def _friction(drive: Drive) -> dict[str, float]:

@@ -14,8 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.records.channels import Channels, side_by_side, with_own_clock
 from jbf.records.checks import COLUMNS, MOTION, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
+from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.text_files import write_text
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 PathLike = str | os.PathLike[str]
 
 
@@ -58,6 +61,9 @@ class Run:
         Units and words; those of a rotary drive have N m in the place of N and rad in that of m.
     reading : tuple of Finding
         What was converted when the run was read.
+    read : dict of str to ndarray
+        Where a channel with a clock of its own was read, bool of shape (N,); between its readings
+        its array is a straight line. A column that is not here was read at every instant.
     """
 
     name: str
@@ -73,6 +79,7 @@ class Run:
     speed_recorded: bool = True
     quantities: Quantities = OF_BEARING
     reading: tuple[Finding, ...] = ()
+    read: dict[str, Mask] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         there = ", ".join(self._called())
@@ -133,7 +140,9 @@ class Run:
                 )
         kept = {name: frozen(a[index]) for name, a in self._arrays().items()}
         extra = {name: kept.pop(name) for name in self.extra}
-        return replace(self, **kept, extra=extra)  # type: ignore[arg-type]
+        read = {name: there[index] for name, there in self.read.items()}
+        read = {name: there for name, there in read.items() if not there.all()}
+        return replace(self, **kept, extra=extra, read=read)  # type: ignore[arg-type]
 
     @classmethod
     def from_arrays(
@@ -193,6 +202,55 @@ class Run:
         return cls.of_columns(name, columns, None if path is None else Path(path))
 
     @classmethod
+    def from_channels(
+        cls, channels: Channels, *, name: str = "run", path: PathLike | None = None
+    ) -> Run:
+        """A run of channels that were read by clocks of their own: nothing is resampled.
+
+        Parameters
+        ----------
+        channels
+            Column name (``friction_n``, ``angle_rad``, ..., or any other) to its instants, s, and
+            its values there, each of shape (n,); n and the instants may differ.
+
+        Raises
+        ------
+        InputError
+            A channel is not finite numbers at increasing instants, or nothing tells the motion.
+        """
+        columns, read = side_by_side(channels, name)
+        check_columns(name, columns, None, None)
+        run = cls.of_columns(name, columns, None if path is None else Path(path))
+        return replace(run, read=read)
+
+    @classmethod
+    def from_frame(cls, frame: object, *, name: str = "run", path: PathLike | None = None) -> Run:
+        """A run of a data frame (pandas, polars), an Arrow table or a mapping of arrays whose
+        columns are called as in a file; columns that hold no numbers are ignored.
+
+        A column of which a twentieth or more is missing (nan, null) has a clock of its own.
+
+        Raises
+        ------
+        InputError
+            As `from_arrays`; `time_s` is missing.
+        """
+        columns = columns_of(frame, name)
+        time_s = columns.pop("time_s", None)
+        if time_s is None:
+            raise InputError(
+                file=name,
+                column="time_s",
+                problem="is missing",
+                mend=f"call a column so (it has {listed(columns)})",
+            )
+        own = {column: with_own_clock(time_s, values) for column, values in columns.items()}
+        if any(len(clock) < len(time_s) for clock, _ in own.values()):
+            return cls.from_channels(own, name=name, path=path)
+        known: dict[str, Any] = {c: columns.pop(c) for c in COLUMNS if c in columns}
+        return cls.from_arrays(time_s, **known, extra=columns, name=name, path=path)
+
+    @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
         """A run of columns that have been checked."""
         recorded = "velocity_m_s" in columns
@@ -217,6 +275,7 @@ class Run:
             friction_n=frozen(friction_n),
             **others,  # type: ignore[arg-type]
             extra=extra,
+            read={},
         )
 
     def write_csv(self, path: PathLike) -> None:
@@ -236,7 +295,12 @@ class Run:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
         # repr of a float is the shortest text that reads back to the same bits.
-        writer.writerows(zip(*(map(repr, a.tolist()) for a in columns.values()), strict=True))
+        cells = [list(map(repr, a.tolist())) for a in columns.values()]
+        for own, of_column in zip(self.columns(), cells, strict=True):
+            # An empty cell is an instant at which the channel was not read.
+            for i in np.flatnonzero(~self.read[own]).tolist() if own in self.read else ():
+                of_column[i] = ""
+        writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,16 +13,25 @@ from jbf.records.motion.derived_speed import centred_speed, derived_speed
 from jbf.records.motion.glitches import mend_position, mend_speed
 from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
-from jbf.records.motion.lateness import late_speed
+from jbf.records.motion.lateness import earlier, late_speed
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.roughness import step_of
+from jbf.records.motion.speed_zero import speed_zero
 from jbf.records.motion.units import wrong_unit
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 
-LEFT_ASIDE = ("units", "sign", "coarse_speed", "filtered_speed", "no_speed")
-"""Kinds of finding of a motion that leave their column aside as a whole."""
+NOT_AS_RECORDED = (
+    "units",
+    "sign",
+    "speed_zero",
+    "late_speed",
+    "coarse_speed",
+    "filtered_speed",
+    "no_speed",
+)
+"""Kinds of finding of a motion whose column is left aside as a whole, or converted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +50,10 @@ class Believed:
         False where the speed is but a difference of the path, and tells nothing besides.
     findings
         What was found, and what was done about it.
+    arm_m
+        Metres of path for a unit of the position's column.
+    hum
+        A speed that is one of a rest, m/s.
     """
 
     path: Array | None
@@ -48,6 +61,8 @@ class Believed:
     speed: Array
     speed_measured: bool
     findings: tuple[Finding, ...]
+    arm_m: float = 1.0
+    hum: float = 0.0
 
 
 def believed(run: Run, radius_m: float | None) -> Believed:
@@ -74,23 +89,30 @@ def believed(run: Run, radius_m: float | None) -> Believed:
     position, astray = mend_position(name, time, position)
     if not run.speed_recorded:
         found = _there(astray, stamps)
-        return _path_alone(name, time, position.path_m, step, found, said.speed)
+        alone = _path_alone(name, time, position.path_m, step, found, said.speed)
+        return replace(alone, arm_m=position.arm_m)
+    speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
     unit = wrong_unit(name, time, position, speed, said)
-    if unit is not None and unit.channel != "velocity_m_s":
-        speed, odd = mend_speed(name, time, speed, None, said.speed)
-        return Believed(None, 0.0, speed, True, _there(astray, unit, odd, stamps))
+    if unit is not None and unit.of_speed:
+        speed, hum = speed * unit.factor, hum * abs(unit.factor)
+    elif unit is not None:
+        position, step = position.along(position.path_m / unit.factor), step / abs(unit.factor)
     path = position.path_m
-    aside = unit or derived_speed(name, time, path, speed) or late_speed(name, time, path, speed)
+    aside = derived_speed(name, time, path, speed) or late_speed(name, time, path, speed)
     odd = held = None
-    if aside is None:
+    measured = aside is None or aside.kind == "late_speed"
+    if aside is not None and measured:
+        speed = earlier(time, speed, aside.size)
+    if measured:
         speed, odd = mend_speed(name, time, speed, path, said.speed)
         position, held = mend_held(name, time, position, speed, said.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
     shaken = stamps or shaken_path(name, time, path, speed)
-    findings = _there(astray, aside, odd, held, shaken)
-    return Believed(path, step, speed, aside is None, findings)
+    scale = None if unit is None else unit.finding
+    findings = _there(astray, zero, scale, aside, odd, held, shaken)
+    return Believed(path, step, speed, measured, findings, position.arm_m, hum)
 
 
 def _path_alone(

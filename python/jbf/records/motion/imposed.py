@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
-from jbf.records.motion.believed import LEFT_ASIDE, believed
+from jbf.records.motion.believed import NOT_AS_RECORDED, believed
 from jbf.records.motion.rests import (
     place_rests,
     rest_edges,
@@ -72,8 +72,8 @@ class ImposedMotion:
 
     @property
     def aside(self) -> set[str]:
-        """Columns that were left aside as a whole."""
-        return {finding.channel for finding in self.findings if finding.kind in LEFT_ASIDE}
+        """Columns that were left aside as a whole, or converted."""
+        return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
         """The motion at other instants within it: on cubics through speed and acceleration.
@@ -133,7 +133,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     n = len(time)
     rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
     if path is not None:
-        rest |= still_samples(time, path, speed, step)
+        rest |= still_samples(time, path, speed, step, records.hum)
     moving = ~rest
     if path is None:
         steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
@@ -182,8 +182,8 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and not sign_known[0]:
         velocity[0] = 0.0
-    angle = smooth_path / (radius_m or 1.0)
-    if radius_m is None and run.position_m is None and run.angle_rad is not None:
+    angle = smooth_path / (radius_m or records.arm_m)
+    if records.path is None and radius_m is None and run.angle_rad is not None:
         angle = np.unwrap(run.angle_rad)
     return ImposedMotion(
         velocity,

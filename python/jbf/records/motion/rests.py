@@ -33,7 +33,9 @@ def resting_samples(velocity_m_s: Array) -> Mask:
     return rest
 
 
-def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) -> Mask:
+def still_samples(
+    time_s: Array, path: Array, velocity_m_s: Array, step: float, hum: float = 0.0
+) -> Mask:
     """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
     and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
 
@@ -45,9 +47,12 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
         Recorded path, m.
     step
         The encoder's step, m.
+    hum
+        A speed, m/s, that is one of a rest, too.
     """
     n = len(path)
-    slow = np.abs(velocity_m_s) <= STILL_SHARE * np.max(np.abs(velocity_m_s), initial=0.0)
+    top = float(np.max(np.abs(velocity_m_s), initial=0.0))
+    slow = np.abs(velocity_m_s) <= max(STILL_SHARE * top, hum)
     if n < STILL_SAMPLES or not slow.any():
         return np.zeros(n, dtype=bool)
     windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
@@ -63,9 +68,9 @@ def still_samples(time_s: Array, path: Array, velocity_m_s: Array, step: float) 
             continue
         # A speed that stands out of the rest's own hum where it ends is the motion's.
         speed = np.abs(velocity_m_s[first:end])
-        hum = np.flatnonzero(speed <= STANDS_OUT * np.median(speed))
-        resting[first : first + hum[0]] = False
-        resting[first + hum[-1] + 1 : end] = False
+        calm_at = np.flatnonzero(speed <= max(STANDS_OUT * float(np.median(speed)), hum))
+        resting[first : first + calm_at[0]] = False
+        resting[first + calm_at[-1] + 1 : end] = False
     return resting
 
 

@@ -3,27 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.compared import Compared, compared
 from jbf.records.motion.position import Position
+from jbf.records.motion.ratio import OFF, factor_between, slope_near
 from jbf.records.quantities import OF_BEARING, Quantities
 
 Array = npt.NDArray[np.float64]
 
-FAST = 0.3
-"""Share of the top speed above which a ratio tells something."""
-OFF = 0.2
-"""Path and speed whose ratio is further off one contradict one another,"""
-SPREADS = 4.0
-"""where that is so many times its spread (half the range of its middle half),"""
-STEADY = 0.15
-"""and its spread is less than this share: a factor is the same all the time."""
 NEAR = 0.06
 """A ratio is a unit's where it is so near to its factor."""
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """A path and a speed that differ by a factor.
+
+    Attributes
+    ----------
+    finding
+        What to say; its channel is the column that is taken to be in the wrong.
+    factor
+        What the path's changes are to be divided by, or the speed multiplied with.
+    """
+
+    finding: Finding
+    factor: float
+
+    @property
+    def of_speed(self) -> bool:
+        """Whether it is the speed's unit that is wrong."""
+        return self.finding.channel == "velocity_m_s"
 
 
 def wrong_unit(
@@ -32,49 +46,32 @@ def wrong_unit(
     position: Position,
     speed: Array,
     quantities: Quantities = OF_BEARING,
-) -> Finding | None:
-    """A finding where path and speed differ by a factor; its channel is the one not to be believed:
-    the speed where the factor is one of a speed's units, else the path."""
+) -> Mismatch | None:
+    """Whether path and speed differ by a factor: the speed is in the wrong where the factor is one
+    of its units, else the path. The shape of a motion is in both, whatever its scale."""
     called = quantities.speed_column
-    ratio = _ratio(time, position.path_m, speed)
+    ratio = factor_between(time, position.path_m, speed)
     if ratio is None:
         return None
     if abs(ratio + 1.0) < OFF:
         words = f"{position.column} falls where {called} says that it rises: one has its sign"
-        done = "left aside; the speed alone tells the motion"
-        return Finding("sign", position.column, name, ratio, "1", done, f"{words} turned")
-    column, unit = position.column, ""
+        done = f"{position.column} is turned to the speed's sign"
+        return Mismatch(
+            Finding("sign", position.column, name, ratio, "1", done, words + " turned"), -1
+        )
+    column, unit, by = position.column, "", slope_near(time, position.path_m, speed, ratio)
     for which, guess, factor in _units(position, turns=quantities.motion == "rotary"):
         if abs(abs(ratio) / factor - 1.0) < NEAR:
             said = called if which == "velocity_m_s" else which
-            column, unit = which, f": is {said} in {guess}?"
+            column, unit, by = which, f": is {said} in {guess}?", float(np.copysign(factor, ratio))
             break
-    other = "path" if column == "velocity_m_s" else "speed"
     turned = ", and the other way" if ratio < 0.0 else ""
     hint = unit or (": is the radius of the journal right?" if position.arm_m != 1.0 else "")
     words = f"{position.column} changes {abs(ratio):.4g} times as fast as {called} says{turned}"
-    done = f"left aside; the {other} alone tells the motion"
-    return Finding("units", column, name, ratio, "1", done, words + hint)
-
-
-def _ratio(time: Array, path: Array, speed: Array) -> float | None:
-    """How many times as fast the path changes as the speed says; None where they agree, or where
-    they are no multiples of one another."""
-    for c in compared(time, path, speed):
-        ratio, spread = _middle(c)
-        if spread < STEADY * abs(ratio) and abs(ratio - 1.0) > max(OFF, SPREADS * spread):
-            return ratio
-    return None
-
-
-def _middle(c: Compared) -> tuple[float, float]:
-    fast = np.abs(c.by_speed) > FAST * np.quantile(np.abs(c.by_speed), 0.95)
-    if fast.sum() < 20:
-        return 1.0, np.inf
-    low, middle, high = np.quantile(c.by_path[fast] / c.by_speed[fast], [0.25, 0.5, 0.75])
-    # A steady speed spreads by nothing, however coarse the counts are.
-    coarse = c.count / float(np.median(np.abs(c.by_speed[fast])))
-    return float(middle), float(0.5 * (high - low)) + coarse
+    done = f"divided by {by:.4g}, to agree with the speed"
+    if column == "velocity_m_s":
+        done = f"multiplied by {by:.4g}, to agree with the path"
+    return Mismatch(Finding("units", column, name, ratio, "1", done, words + hint), by)
 
 
 def _units(position: Position, *, turns: bool) -> Iterator[tuple[str, str, float]]:

@@ -1,0 +1,24 @@
+"""Force and motion that were read by clocks of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.records.channels import of_motion
+from jbf.records.findings.finding import Finding
+from jbf.records.run import Run
+
+
+def own_clock(run: Run) -> list[Finding]:
+    """A finding where the force was not read at the instants of the motion."""
+    force, motion = run.read.get("friction_n"), of_motion(run.read)
+    if force is None and motion is None:
+        return []
+    rates = [
+        1.0 / float(np.median(np.diff(run.time_s if there is None else run.time_s[there])))
+        for there in (force, motion)
+    ]
+    noun = run.quantities.noun
+    words = f"the {noun} was read at {rates[0]:.4g} Hz and the motion at {rates[1]:.4g} Hz"
+    done = "compared at its own readings"
+    return [Finding("own_clock", "friction_n", run.name, rates[0], "Hz", done, words)]

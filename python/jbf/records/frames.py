@@ -1,0 +1,84 @@
+"""Columns of a data frame or a table, by name, without asking for the library that made it."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+
+def columns_of(frame: object, name: str) -> dict[str, Array]:
+    """The numeric columns of a frame (pandas, polars), an Arrow table, anything that exports itself
+    by Arrow's C stream where pyarrow is there, or a mapping of arrays; an index that is called
+    `time_s` is a column, too. What is missing in a column is nan.
+
+    Raises
+    ------
+    InputError
+        It is nothing of the kind.
+    """
+    names = _names(frame)
+    if names is None and hasattr(frame, "__arrow_c_stream__"):
+        frame = _by_arrow(frame, name)
+        names = _names(frame)
+    if names is None:
+        raise InputError(
+            file=name,
+            problem=f"{type(frame).__name__} has no columns by name",
+            mend="give a pandas or polars frame, an Arrow table or a dict of arrays",
+        )
+    there: Any = frame
+    found = {column: _numbers(there[column]) for column in names}
+    index = getattr(frame, "index", None)
+    if "time_s" not in found and getattr(index, "name", None) == "time_s":
+        found = {"time_s": _numbers(index)} | found
+    return {column: values for column, values in found.items() if values is not None}
+
+
+def _names(frame: object) -> list[str] | None:
+    if isinstance(frame, Mapping):
+        return [str(name) for name in frame]
+    for attribute in ("column_names", "columns"):
+        names = getattr(frame, attribute, None)
+        # pyarrow's `columns` are the columns themselves.
+        if names is not None and not callable(names):
+            given = list(names)
+            if all(isinstance(column, str) for column in given) and hasattr(frame, "__getitem__"):
+                return given
+    return None
+
+
+def _by_arrow(frame: object, name: str) -> Any:
+    try:
+        pyarrow = importlib.import_module("pyarrow")
+    except ImportError:
+        raise InputError(
+            file=name,
+            problem=f"{type(frame).__name__} exports itself by Arrow alone, and pyarrow is missing",
+            mend="pip install pyarrow, or give a frame or a dict of arrays",
+        ) from None
+    return pyarrow.table(frame)
+
+
+def _numbers(column: Any) -> Array | None:
+    """A column as numbers; None where it holds something else."""
+    if hasattr(column, "to_numpy") and not hasattr(column, "__array__"):
+        column = column.to_numpy()
+    values = np.asarray(column)
+    if values.dtype.kind == "O":
+        # Nulls among numbers; text and dates stay what they are.
+        try:
+            values = np.array([np.nan if v is None else v for v in values.tolist()])
+        except (TypeError, ValueError):
+            return None
+    if values.dtype.kind not in "biuf":
+        return None
+    found: Array = values.astype(np.float64)
+    return found

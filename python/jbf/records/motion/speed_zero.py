@@ -1,0 +1,74 @@
+"""A speed that is not zero while the position stands still: its zero is off.
+
+Counts of a speed whose steps lie round zero, and not on it, never read zero; a tachometer has an
+offset. A rest then looks like a creep, and the friction of a rest like that of sliding.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.rests import STILL_SAMPLES, STILL_STEPS
+from jbf.records.motion.roughness import step_of
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+LEAST = 3 * STILL_SAMPLES
+"""Samples at a standstill that tell a zero."""
+GONE = 4.0
+"""Steps of the encoder that the speed says the drive to have gone in a standstill,"""
+ERRORS = 5.0
+"""and standard errors of the zero, before it is off."""
+
+
+def speed_zero(
+    name: str, time: Array, path: Array, speed: Array, step: float, unit: str
+) -> tuple[Array, float, Finding | None]:
+    """The speed from its own zero, what one of its counts is, m/s, and a finding where the zero
+    was off.
+
+    Parameters
+    ----------
+    path
+        Recorded path, m.
+    step
+        The encoder's step, m.
+    unit
+        Of the speed, for the finding.
+    """
+    still = _still(path, step)
+    if step <= 0.0 or still.sum() < LEAST:
+        return speed, 0.0, None
+    at_rest = speed[still]
+    # Counts make a median that is a count; the mean of the middle is between them.
+    low, high = np.quantile(at_rest, [0.1, 0.9])
+    inner = at_rest[(at_rest >= low) & (at_rest <= high)]
+    zero = float(np.mean(inner))
+    error = float(np.std(inner)) / np.sqrt(len(inner) / STILL_SAMPLES)
+    if abs(zero) < ERRORS * error or abs(zero) * _longest(time, still) < GONE * step:
+        return speed, 0.0, None
+    words = f"the speed reads {zero:.3g} {unit} while the position stands still"
+    found = Finding("speed_zero", "velocity_m_s", name, zero, unit, "taken off", words)
+    return speed - zero, step_of(speed), found
+
+
+def _still(path: Array, step: float) -> Mask:
+    """True in stretches of at least `STILL_SAMPLES` within which the path stays in its step."""
+    n = len(path)
+    still = np.zeros(n, dtype=bool)
+    if n < STILL_SAMPLES:
+        return still
+    windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
+    for first in np.flatnonzero(np.ptp(windows, axis=1) <= STILL_STEPS * step):
+        still[first : first + STILL_SAMPLES] = True
+    return still
+
+
+def _longest(time: Array, still: Mask) -> float:
+    """Length of the longest standstill, s."""
+    edges = np.diff(np.concatenate(([0], still.astype(np.int8), [0])))
+    firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    return float(np.max(time[ends - 1] - time[firsts]))

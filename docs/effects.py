@@ -56,7 +56,16 @@ SHOWN = {
     "dry_asymmetry": Shown({"a": 0.25}),
     "stribeck_asymmetry": Shown({"c": 4.0, "v_s": 0.02, "n": 1.0}),
     "stroke_dependence": Shown(
-        {"a_1": 0.2, "a_2": -0.15, "a_3": 0.05, "a_4": 0.05, "a_5": 0.0, "x_0": 0.127, "h": 0.127}
+        {
+            "a_1": 0.2,
+            "a_2": -0.15,
+            "a_3": 0.05,
+            "a_4": 0.05,
+            "a_5": 0.0,
+            "a_6": 0.0,
+            "x_0": 0.127,
+            "h": 0.127,
+        }
     ),
     "pitch_ripple": Shown({"a": 0.3, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
     "pitch_ripple_2": Shown(

@@ -34,7 +34,7 @@ def slide(dry, push=lambda x: 0.0 * x, seed: int = 4130) -> list[Run]:  # type: 
 
 def test_a_tight_spot_is_friction_along_the_stroke() -> None:
     """Not one of the waves that the effect is made of: a bump, and a slope."""
-    some = slide(lambda x: 6.0 + 1.5 * np.exp(-(((x - 0.3) / 0.06) ** 2)) - 2.0 * (x - 0.2))
+    some = slide(lambda x: 6.0 + 1.5 * np.exp(-(((x - 0.3) / 0.08) ** 2)) - 2.0 * (x - 0.2))
     found = diagnose(Rig(), some, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", (STROKE,))
     assert found.steps[-1].rms_n == pytest.approx(NOISE_N, rel=0.05)
@@ -56,7 +56,9 @@ def test_the_ends_are_those_of_the_runs_and_no_fit_moves_them(tmp_path: Path) ->
     some = slide(lambda x: 6.0 + 2.0 * x)
     low, high = stroke(Campaign.prepare(Rig(), some))
     places = np.concatenate([r.position_m for r in some])
-    assert (low, high) == pytest.approx((places.min(), places.max()), abs=2e-3)
+    tenth = 0.1 * np.ptp(places)
+    assert low == pytest.approx(places.min() - tenth, abs=2e-3)
+    assert high == pytest.approx(places.max() + tenth, abs=2e-3)
     found = fit(Rig(), some, [STROKE], law="coulomb")
     for name, value in (("x_0_m", 0.5 * (low + high)), ("h_m", 0.5 * (high - low))):
         p = found[f"{STROKE}.{name}"]
@@ -80,7 +82,7 @@ def test_ends_that_are_given_are_kept() -> None:
 def test_only_what_is_fitted_has_a_price() -> None:
     campaign = Campaign.prepare(Rig(), slide(lambda x: 6.0 + 0.0 * x))
     bare, with_it = (Problem(campaign, "coulomb", "journal", e) for e in ((), (STROKE,)))
-    assert len(with_it.open) - len(bare.open) == 5
+    assert len(with_it.open) - len(bare.open) == 6
 
 
 def wave(x, pitch_m: float, phase: float):  # type: ignore[no-untyped-def]
@@ -103,6 +105,13 @@ def test_one_wave_alone_has_no_second() -> None:
     found = diagnose(Rig(), some, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", ("cogging",))
     assert found.alternatives == {"cogging": ()}
+
+
+def test_a_pitch_comes_again_on_the_way() -> None:
+    campaign = Campaign.prepare(Rig(), slide(lambda x: 6.0 + 0.0 * x))
+    page = Problem(campaign, "coulomb", "journal", ("cogging",)).parameters["cogging.pitch_m"]
+    span = float(np.ptp(np.concatenate([p.run.position_m for p in campaign.prepared])))
+    assert page.upper == pytest.approx(span / 4.0, rel=0.02)
 
 
 def test_a_further_effect_comes_after_the_first_and_goes_before_it() -> None:

@@ -55,6 +55,7 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
         "a_3": Spread(0.01, 0.05, "-", 1.0, signed=True),
         "a_4": Spread(0.01, 0.05, "-", 1.0, signed=True),
         "a_5": Spread(0.01, 0.05, "-", 1.0, signed=True),
+        "a_6": Spread(0.01, 0.03, "-", 1.0, signed=True),
         "x_0": Spread(0.0, 0.03, "m", signed=True),
         "h": Spread(0.2, 0.4, "m"),
     },
@@ -190,7 +191,7 @@ def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vect
         return np.ones(len(path))
     share = np.clip((path - own["x_0"]) / own["h"], -1.0, 1.0)
     # From the upper end down: cos(k t), t from 0 to pi; odd ones change their sign in turn.
-    sizes = [0.0, own["a_1"], -own["a_2"], -own["a_3"], own["a_4"], own["a_5"]]
+    sizes = [0.0, own["a_1"], -own["a_2"], -own["a_3"], own["a_4"], own["a_5"], -own["a_6"]]
     whole: Vector = 1.0 + np.polynomial.chebyshev.chebval(
         np.cos(0.5 * math.pi * (1.0 - share)), sizes
     )

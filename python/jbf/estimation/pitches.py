@@ -25,8 +25,9 @@ Array = npt.NDArray[np.float64]
 
 LINES = 3
 """Highest lines of a spectrum that are tried, each of what the higher ones leave."""
-LEAST_PERIODS = 3.0
-"""Periods that the way must hold: what is longer is a slope, or once a turn."""
+LEAST_PERIODS = 4.0
+"""Periods that the way must hold: what is longer varies along the stroke, whose shortest wave comes
+two and a half times in it, or is once a turn."""
 BINS_A_PITCH = 4.0
 """Bins of the place in the shortest pitch that is looked for."""
 MOST_BINS = 2**15
@@ -51,6 +52,16 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     if along not in found:
         found[along] = _pitches(campaign, along)
     return found[along]
+
+
+def longest_pitch(campaign: Campaign) -> float:
+    """The longest pitch that the way of a campaign's runs holds often enough, m; infinite where it
+    has no way to speak of."""
+    pairs = zip(campaign.prepared, moving_samples(campaign), strict=True)
+    places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
+    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
+    span = float(np.ptp(places)) * arm if len(places) else 0.0
+    return span / LEAST_PERIODS if span > 0.0 else np.inf
 
 
 def known_pitches(rig: Rig) -> tuple[float, ...]:

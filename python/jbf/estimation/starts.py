@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import known_pitches, pitches
+from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
 from jbf.estimation.scales import Scales, scales
 from jbf.estimation.stroke import stroke
 from jbf.models.catalogue import Parameter
@@ -72,12 +72,21 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 
 
+PITCHES = ("pitch", "ripple_pitch")
+
+
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     """A transition speed as the data bound it: a film that carries the load only at several times
     the fastest speed on record never shows, and its equations grow stiff."""
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
     upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
     return replace(page, upper=upper)
+
+
+def _within_the_way(page: Parameter, campaign: Campaign) -> Parameter:
+    """A pitch as the way bounds it: what comes again too seldom on it is no ripple."""
+    upper = min(page.upper, longest_pitch(campaign))
+    return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
 def _inside(page: Parameter, starts: Starts) -> Parameter:
@@ -105,6 +114,8 @@ def with_starts(
         if sizes is not None and page.start in rules:
             page = _inside(page, rules[page.start](sizes))
         if in_newtons and page.start in CAMPAIGN_RULES:
+            if page.start in PITCHES:
+                page = _within_the_way(page, campaign)
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
         found[name] = page
     return found

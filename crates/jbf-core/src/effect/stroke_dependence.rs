@@ -4,10 +4,12 @@
 //! mostly works: what presses changes slowly from place to place, and dry friction with it. What comes
 //! again with a pitch is `pitch_ripple`'s.
 //!
-//! With `u` from -1 to 1 over the stroke, `s` is the sum of the first five waves whose slope vanishes
-//! at both ends, `sin(pi u/2)`, `cos(pi u)`, `sin(3 pi u/2)`, `cos(2 pi u)`, `sin(5 pi u/2)`: each has the mean zero over
+//! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope vanishes
+//! at both ends, `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`: each has the mean zero over
 //! the stroke, and none does another's work or the dry level's. Beyond the ends friction stays as it is
-//! there. The shortest wave comes two and a half times in the stroke: what comes more often has a pitch.
+//! there. A fit puts the ends a little beyond where its runs go, for friction need not level off where
+//! a recording ends; the shortest wave then comes two and a half times in what they cover. What comes
+//! more often has a pitch.
 //!
 //! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has friction of its own at each place of its
 //! joints; Popovic & Goldenberg (1998), who model it by its Fourier series.
@@ -23,7 +25,7 @@ use core::f64::consts::FRAC_PI_2;
 /// Dry friction over the place.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokeDependence<T> {
-    sizes: [T; 5],
+    sizes: [T; 6],
     middle_m: T,
     inverse_half_1_m: T,
 }
@@ -52,6 +54,7 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
             wave("a_3", "one wave and a half").signed(),
             wave("a_4", "two waves: the middle and the ends above what is between"),
             wave("a_5", "two waves and a half").signed(),
+            wave("a_6", "three waves"),
             Parameter::new("x_0_m", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
                 .signed()
                 .start(Start::StrokeMiddle)
@@ -74,9 +77,10 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
                 parameters[2],
                 parameters[3],
                 parameters[4],
+                parameters[5],
             ],
-            middle_m: parameters[5],
-            inverse_half_1_m: T::ONE / parameters[6],
+            middle_m: parameters[6],
+            inverse_half_1_m: T::ONE / parameters[7],
         })
     }
 
@@ -90,14 +94,15 @@ impl<T: Real> Contact<T> for StrokeDependence<T> {
     fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let u = (journal.angle_rad * *radius_m - self.middle_m) * self.inverse_half_1_m;
         let u = u.max(-T::ONE).min(T::ONE);
-        // The longer angles by one sine: of cos 2q, sin 3q, cos 4q and sin 5q sin q is all.
+        // cos 2q to cos 6q of one sine.
         let sine = (u * T::of(FRAC_PI_2)).sin();
         let square = sine * sine;
         let whole = T::ONE - T::of(2.0) * square;
         let third = sine * (T::of(3.0) - T::of(4.0) * square);
         let twice = T::of(2.0) * whole * whole - T::ONE;
         let fifth = T::of(2.0) * whole * third - sine;
-        let waves = [sine, whole, third, twice, fifth];
+        let sixth = whole * (T::of(2.0) * twice - T::ONE);
+        let waves = [sine, whole, third, twice, fifth, sixth];
         let mut factor = T::ONE;
         for (size, wave) in self.sizes.iter().zip(waves) {
             factor += *size * wave;

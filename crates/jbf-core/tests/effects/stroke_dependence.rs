@@ -11,7 +11,7 @@ const MIDDLE_M: f64 = 0.1;
 const HALF_M: f64 = 0.1;
 
 /// The dry level over its mean, at `x` m.
-fn share(a: [f64; 5], x: f64) -> f64 {
+fn share(a: [f64; 6], x: f64) -> f64 {
     let u = ((x - MIDDLE_M) / HALF_M).clamp(-1.0, 1.0);
     let waves = [
         (0.5 * PI * u).sin(),
@@ -19,19 +19,23 @@ fn share(a: [f64; 5], x: f64) -> f64 {
         (1.5 * PI * u).sin(),
         (2.0 * PI * u).cos(),
         (2.5 * PI * u).sin(),
+        (3.0 * PI * u).cos(),
     ];
     1.0 + a.iter().zip(waves).map(|(a, w)| a * w).sum::<f64>()
 }
 
-fn values(a: [f64; 5]) -> [f64; 7] {
-    [a[0], a[1], a[2], a[3], a[4], MIDDLE_M, HALF_M]
+fn values(a: [f64; 6]) -> [f64; 8] {
+    [a[0], a[1], a[2], a[3], a[4], a[5], MIDDLE_M, HALF_M]
 }
 
 #[test]
 fn scales_the_dry_level_with_the_place_and_nothing_else() {
     // From 0 to 0.254 m: beyond the upper end of the stroke, too.
     let sines = Sines::two_way(1.0);
-    for a in [[0.3, -0.2, 0.05, 0.1, -0.07], [-0.1, 0.4, 0.1, -0.1, 0.1]] {
+    for a in [
+        [0.3, -0.2, 0.05, 0.1, -0.07, 0.04],
+        [-0.1, 0.4, 0.1, -0.1, 0.1, -0.05],
+    ] {
         let law = newtons(F_C_N, F_V_N_S_M);
         let chain = chain_round(law, &[("stroke_dependence", &values(a))]);
         let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
@@ -45,7 +49,7 @@ fn scales_the_dry_level_with_the_place_and_nothing_else() {
 }
 
 /// The level that holds a drive at rest at a place, N.
-fn level_n(a: [f64; 5], x: f64) -> f64 {
+fn level_n(a: [f64; 6], x: f64) -> f64 {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("stroke_dependence", &values(a))]);
     let state = chain.start(&held::<f64>(x / Bearing::THESIS.radius_m, 0.0));
     chain.felt(&state).jump
@@ -60,7 +64,7 @@ fn the_waves_have_no_mean_and_nothing_in_common() {
         let x = MIDDLE_M + HALF_M * ((2 * i + 1) as f64 / n as f64 - 1.0);
         level_n(unit(k), x) / F_C_N - 1.0
     };
-    for k in 0..5 {
+    for k in 0..6 {
         let mean = (0..n).map(|i| wave(k, i)).sum::<f64>() / n as f64;
         assert!(mean.abs() < 1e-9, "{k}: {mean}");
         for j in 0..k {
@@ -73,7 +77,7 @@ fn the_waves_have_no_mean_and_nothing_in_common() {
 /// Over the ends goes neither a step nor a corner.
 #[test]
 fn is_smooth_over_the_ends() {
-    let a = [0.3, -0.2, 0.05, 0.1, -0.07];
+    let a = [0.3, -0.2, 0.05, 0.1, -0.07, 0.04];
     let h = 1e-6;
     for end in [MIDDLE_M - HALF_M, MIDDLE_M + HALF_M] {
         let slope = |x: f64| (level_n(a, x + h) - level_n(a, x - h)) / (2.0 * h);
@@ -88,6 +92,6 @@ fn is_smooth_over_the_ends() {
 /// Of waves that would make friction push there is none left.
 #[test]
 fn the_level_is_never_below_zero() {
-    assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0], 0.0), 0.0);
-    assert!((level_n([0.0, 2.0, 0.0, 0.0, 0.0], MIDDLE_M) - 3.0 * F_C_N).abs() < 1e-12);
+    assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);
+    assert!((level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], MIDDLE_M) - 3.0 * F_C_N).abs() < 1e-12);
 }

@@ -23,7 +23,11 @@ from rigsim.foreign import FOREIGN, draw_foreign
 from rigsim.warmth import Kind
 
 KINDS = ("none", "single", "pair", "foreign", "temperature")
-COMPANY = {"torque_proportional": ("gravity",)}
+COMPANY = {
+    "torque_proportional": ("gravity",),
+    "cogging_2": ("cogging",),
+    "pitch_ripple_2": ("pitch_ripple",),
+}
 """What must be hidden beside an effect for it to show."""
 SWING = 8.0
 """A joint whose weight is carried swings so much wider than a slide."""
@@ -69,7 +73,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
     together = [
         tuple(sorted(pair))
         for pair in itertools.combinations(cold, 2)
-        if not {"torque_proportional"} & set(pair)
+        if not set(COMPANY) & set(pair)
     ]
     for number in rounds:
         rng = np.random.default_rng([number, 15])

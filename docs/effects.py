@@ -64,7 +64,26 @@ SHOWN = {
     "viscous_temperature_dependence": Shown(
         {"B": 600.0, "C": -95.0, "T_0": 20.0}, "eight periods of 1 rad/s", warms_c=(20.0, 70.0)
     ),
+    "dry_asymmetry": Shown({"a": 0.25}),
+    "stribeck_asymmetry": Shown({"c": 4.0, "v_s": 0.02, "n": 1.0}),
+    "stroke_dependence": Shown(
+        {
+            "a_1": 0.2,
+            "a_2": -0.15,
+            "a_3": 0.05,
+            "a_4": 0.05,
+            "a_5": 0.0,
+            "a_6": 0.0,
+            "x_0": 0.127,
+            "h": 0.127,
+        }
+    ),
     "pitch_ripple": Shown({"a": 0.3, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
+    "pitch_ripple_2": Shown(
+        {"a": 0.2, "pitch": 0.01, "phase": 0.0},
+        "a sine of 0.5 rad/s",
+        beside={"pitch_ripple.a": 0.3, "pitch_ripple.pitch": 0.02, "pitch_ripple.phase": 0.5},
+    ),
     "warm_up": Shown({"a": 0.5, "tau": 10.0}, "eight periods of 1 rad/s"),
     "torque_proportional": Shown({"mu": 0.3}, beside={"gravity.G": 20.0, "gravity.theta_0": 0.5}),
     "direction_asymmetry": Shown({"a": 0.2}),
@@ -76,6 +95,11 @@ SHOWN = {
     "zero_load_dependence": Shown({"k": 0.03}),
     "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
     "cogging": Shown({"A": 2.0, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
+    "cogging_2": Shown(
+        {"A": 1.0, "pitch": 0.01, "phase": 0.0},
+        "a sine of 0.5 rad/s",
+        beside={"cogging.A": 2.0, "cogging.pitch": 0.02, "cogging.phase": 0.5},
+    ),
     "sensor_lag": Shown({"tau": 0.15}),
     "time_delay": Shown({"tau": 0.12}),
     "sensor_offset": Shown({"b": 4.0}),

@@ -38,6 +38,7 @@ class EffectPage(TypedDict):
     moves_jumps: bool
     peaks: str | None
     longest_step_s: float
+    further_of: str | None
     rust_place: str
     rust_type: str
     parameters: list[ParameterPage]

@@ -129,7 +129,7 @@ class MadeUp:
 
     def fitted(self, effects: Iterable[str]) -> Any:
         names = [""] * (LAW + len(frozenset(effects)))
-        return SimpleNamespace(problem=SimpleNamespace(names=names))
+        return SimpleNamespace(problem=SimpleNamespace(names=names, open=range(len(names))))
 
     def one_more(self, effects: Iterable[str]) -> dict[str, Any]:
         here = frozenset(effects)

@@ -206,6 +206,7 @@ def test_what_these_motions_cannot_show_could_hide() -> None:
     assert d.next_experiment
     of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
     of_places = {"position_ripple", "gravity", "cogging", "pitch_ripple"}
+    of_places |= {"cogging_2", "pitch_ripple_2", "stroke_dependence"}
     assert set(d.not_tried) == {"drive_compliance", *of_places, *of_loads}
     # And what a gear loses of what it carries is nothing here.
     assert "torque_proportional" not in d.unseen

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jbf import Model, Rig, Run, diagnose, fit
+from jbf import Model, Parameter, Rig, Run, diagnose, fit
 from jbf.errors import InputError
 from jbf.models.catalogue import built_in as catalogue
 from rigsim import AXIS_EFFECTS, OF_TEMPERATURE, AxisRun, axis_campaign
@@ -18,10 +18,19 @@ OF_DRIVES = [name for name, page in catalogue().items() if "journal" in page.ref
 COULOMB: dict[str, Any] = {"law": "coulomb"}
 
 
-COMPANY: dict[str, tuple[str, ...]] = {"torque_proportional": ("gravity",)}
+COMPANY: dict[str, tuple[str, ...]] = {
+    "torque_proportional": ("gravity",),
+    "cogging_2": ("cogging",),
+    "pitch_ripple_2": ("pitch_ripple",),
+}
 """What must be hidden beside an effect for it to show."""
 SWING = 8.0
 """So much wider than a slide a joint swings whose weight the drive carries."""
+
+
+def catalogue_page(name: str) -> Parameter:
+    effect, _, short = name.partition(".")
+    return next(p for p in catalogue()[effect].parameters if p.name == short)
 
 
 def hidden_with(name: str) -> tuple[str, ...]:
@@ -75,20 +84,27 @@ def test_the_simulator_has_a_form_of_its_own_of_each() -> None:
 def test_the_right_structure_recovers_the_truth(name: str) -> None:
     hidden = hidden_with(name)
     runs, truth = drive(11, *hidden)
+    told = {
+        f"{effect}.{page.name}": v
+        for effect in hidden
+        for page in catalogue()[effect].parameters
+        for k, v in truth["effects"][effect].items()
+        if page.name.startswith(k)
+    }
     # The reference of the simulator's own law, so that the law's levels mean the same.
     stated = {f"{name}.T_0_c": REFERENCE_C} if name in OF_TEMPERATURE else {}
-    found = fit(Rig(), runs, hidden, fixed={"F_s_n": 10.0, **stated}, **COULOMB)
+    stated |= {n: v for n, v in told.items() if catalogue_page(n).stated}
+    true = {n: v for n, v in told.items() if n not in stated}
+    # Which of two waves is the first is a matter of where each starts.
+    pitches = {n: v for n, v in true.items() if name.endswith("_2") and n.endswith("pitch_m")}
+    held = {"F_s_n": 10.0, **stated}
+    found = fit(Rig(), runs, hidden, fixed=held, start=pitches, **COULOMB)
     assert found.converged
     assert found.rms_n == pytest.approx(truth["noise_n"], rel=0.03)
-    wanted = dict(truth["law"])
-    periods = {}
-    for effect in hidden:
-        for page in catalogue()[effect].parameters:
-            if page.stated:
-                continue
-            (short,) = (k for k in truth["effects"][effect] if page.name.startswith(k))
-            wanted[f"{effect}.{page.name}"] = truth["effects"][effect][short]
-            periods[f"{effect}.{page.name}"] = page.period
+    wanted = {**truth["law"], **true}
+    for parameter, value in stated.items():
+        assert found[parameter].value == value
+    periods = {n: catalogue_page(n).period for n in true}
     for parameter, value in wanted.items():
         p = found.parameters[parameter]
         assert p.stderr is not None, parameter
@@ -98,7 +114,8 @@ def test_the_right_structure_recovers_the_truth(name: str) -> None:
         assert abs(off) < 4.5 * p.stderr + 0.01 * abs(value), parameter
 
 
-@pytest.mark.parametrize("name", OF_DRIVES)
+# Of a dry level that nothing changes no motion tells an asymmetry from a zero: see test_directions.
+@pytest.mark.parametrize("name", [n for n in OF_DRIVES if n != "dry_asymmetry"])
 def test_it_is_named_alone(name: str) -> None:
     hidden = hidden_with(name)
     runs, _ = drive(12, *hidden)

@@ -29,10 +29,13 @@ def law_of(effect: str) -> str:
 
 
 def plain() -> list[tuple[str, str, Parameter]]:
-    """Law, effect (or none) and each of their parameters whose search is not logarithmic."""
+    """Law, effect (or none) and each of their parameters that is searched on a plain scale."""
     of_laws = [(law, "", p) for law, page in laws().items() for p in page.parameters if not p.log]
     of_effects = [
-        (law_of(name), name, p) for name, e in effects().items() for p in e.parameters if not p.log
+        (law_of(name), name, p)
+        for name, e in effects().items()
+        for p in e.parameters
+        if not (p.log or p.stated)
     ]
     return of_laws + of_effects
 

@@ -8,7 +8,9 @@ from jbf import Rig, Run
 from jbf.diagnosis import Policy
 from jbf.diagnosis.evidence import price
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import pitches
+from jbf.estimation.pitches import known_pitches, pitches
+from jbf.estimation.problem import Problem
+from jbf.records.drive import Drive
 
 STEP_S = 0.01
 NOISE_N = 0.2
@@ -64,6 +66,32 @@ def test_of_noise_the_highest_line_gains_less_than_its_parameters_cost() -> None
     # More than two parameters of noise alone would gain: the search does find something.
     assert 4.0 < np.median(gains) < 0.8 * without_margin
     assert max(gains) < without_margin
+
+
+def test_a_lower_wave_is_found_beside_a_higher_one() -> None:
+    some = []
+    for r in runs(0.0123):
+        low = 0.06 * np.sin(2.0 * np.pi * np.asarray(r.position_m) / 0.0079 + 0.3)
+        some.append(
+            Run.from_arrays(
+                r.time_s, r.velocity_m_s, r.friction_n + low, position_m=r.position_m, name=r.name
+            )
+        )
+    found = pitches(Campaign.prepare(Rig(), some), along=False)
+    assert found[:2] == pytest.approx((0.0123, 0.0079), rel=0.01)
+
+
+def test_a_rig_tells_the_turn_of_its_screw_and_of_its_motor() -> None:
+    assert known_pitches(Rig()) == ()
+    screw = Drive("linear", "force", pitch_m=0.02, gear_ratio=4.0)
+    assert known_pitches(Rig(drive=screw)) == pytest.approx((0.02, 0.005))
+    assert known_pitches(Rig(drive=Drive("linear", "force"))) == ()
+    joint = Drive("rotary", "torque", gear_ratio=100.0)
+    assert known_pitches(Rig(drive=joint)) == pytest.approx((0.02 * np.pi,))
+    assert known_pitches(Rig(drive=Drive("rotary", "torque"))) == ()
+    campaign = Campaign.prepare(Rig(drive=screw), runs(None))
+    page = Problem(campaign, "coulomb", "journal", ("cogging",)).parameters["cogging.pitch_m"]
+    assert {0.02, 0.005} <= set(page.starts)
 
 
 def test_a_way_that_holds_no_pitch_has_none() -> None:

@@ -22,6 +22,12 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "viscous_load_dependence": {"c": Spread(0.06, 0.2, "s/m", 1.0)},
     "zero_load_dependence": {"k": Spread(0.006, 0.02, "-", 1.0, signed=True)},
     "viscous_asymmetry": {"b": Spread(6.0, 15.0, "N s/m", 1.0, signed=True)},
+    "dry_asymmetry": {"a": Spread(0.06, 0.15, "-", 1.0, signed=True)},
+    "stribeck_asymmetry": {
+        "c": Spread(0.5, 1.5, "N", 1.0, signed=True),
+        "v_s": Spread(0.01, 0.04, "m/s"),
+        "n": Spread(1.0, 2.0, "-"),
+    },
     "torque_proportional": {"mu": Spread(0.08, 0.2, "-", 1.0)},
     "gravity": {"G": Spread(0.8, 4.0, "N", 1.0), "theta_0": Spread(0.0, 2.0 * math.pi, "rad")},
     "cogging": {
@@ -33,6 +39,26 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
         "a": Spread(0.05, 0.2, "-", 1.0),
         "pitch": Spread(0.004, 0.04, "m"),
         "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "cogging_2": {
+        "A": Spread(0.2, 0.6, "N", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "pitch_ripple_2": {
+        "a": Spread(0.05, 0.12, "-", 1.0),
+        "pitch": Spread(0.004, 0.04, "m"),
+        "phase": Spread(0.0, 2.0 * math.pi, "rad"),
+    },
+    "stroke_dependence": {
+        "a_1": Spread(0.04, 0.2, "-", 1.0, signed=True),
+        "a_2": Spread(0.04, 0.2, "-", 1.0, signed=True),
+        "a_3": Spread(0.01, 0.05, "-", 1.0, signed=True),
+        "a_4": Spread(0.01, 0.05, "-", 1.0, signed=True),
+        "a_5": Spread(0.01, 0.05, "-", 1.0, signed=True),
+        "a_6": Spread(0.01, 0.03, "-", 1.0, signed=True),
+        "x_0": Spread(0.0, 0.03, "m", signed=True),
+        "h": Spread(0.2, 0.4, "m"),
     },
     "warm_up": {"a": Spread(0.08, 0.25, "-", 1.0), "tau": Spread(6.0, 20.0, "s")},
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
@@ -152,8 +178,11 @@ def _force(
 
     tau_s = hidden.get("warm_up", {}).get("tau", 1.0)
     level = law["F_c_n"] + of("dry_load_dependence", "mu") * load
+    ahead = np.where(v > 0.0, 1.0, -1.0)
+    level = level * (1.0 + of("dry_asymmetry", "a") * ahead) + ahead * _peak(hidden, v)
+    level = level * _along_the_stroke(hidden, path)
     slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
-    slope = slope + of("viscous_asymmetry", "b") * np.where(v > 0.0, 1.0, -1.0)
+    slope = slope + of("viscous_asymmetry", "b") * ahead
     if celsius is not None:
         level = level * (1.0 + of("dry_temperature_dependence", "a") * (celsius - REFERENCE_C))
         b_k = of("viscous_temperature_dependence", "B")
@@ -165,11 +194,38 @@ def _force(
     # A gear asks for more than it carries where it drives and, driven back, gives less.
     lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)
     cold = 1.0 + of("warm_up", "a") * np.exp2(-time / (math.log(2.0) * tau_s))
-    place = 1.0 + of("pitch_ripple", "a") * _wave(hidden, "pitch_ripple", path, 0.25)
-    push = push + of("cogging", "A") * _wave(hidden, "cogging", path, 0.0)
+    place = np.ones(len(path))
+    for effect in ("pitch_ripple", "pitch_ripple_2"):
+        place = place * (1.0 + of(effect, "a") * _wave(hidden, effect, path, 0.25))
+    for effect in ("cogging", "cogging_2"):
+        push = push + of(effect, "A") * _wave(hidden, effect, path, 0.0)
     sliding = (np.sign(v) * level + slope * v) * cold * place
     found: Vector = sliding + carried + lost + push
     return found
+
+
+def _peak(hidden: dict[str, dict[str, float]], v: Vector) -> Vector:
+    """What friction at low speed has more in positive motion than in the mean, N."""
+    own = hidden.get("stribeck_asymmetry", {"c": 0.0, "v_s": 1.0, "n": 1.0})
+    found: Vector = own["c"] * np.power(math.e, -((np.abs(v) / own["v_s"]) ** own["n"]))
+    return found
+
+
+def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vector:
+    """The dry level at each place over its mean along the stroke.
+
+    Waves over the stroke are Chebyshev's polynomials of the cosine of the first one's phase.
+    """
+    own = hidden.get("stroke_dependence")
+    if own is None:
+        return np.ones(len(path))
+    share = np.clip((path - own["x_0"]) / own["h"], -1.0, 1.0)
+    # From the upper end down: cos(k t), t from 0 to pi; odd ones change their sign in turn.
+    sizes = [0.0, own["a_1"], -own["a_2"], -own["a_3"], own["a_4"], own["a_5"], -own["a_6"]]
+    whole: Vector = 1.0 + np.polynomial.chebyshev.chebval(
+        np.cos(0.5 * math.pi * (1.0 - share)), sizes
+    )
+    return whole
 
 
 def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:

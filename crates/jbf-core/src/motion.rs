@@ -176,6 +176,17 @@ pub struct JournalMotion<T> {
 }
 
 impl<T: Real> JournalMotion<T> {
+    /// The direction in which friction is asked for: that of the speed. At rest the motion may go
+    /// either way, and the direction that holds the journal decides.
+    #[inline(always)]
+    pub fn way(&self) -> T {
+        if self.velocity_m_s == T::ZERO {
+            self.direction.sign()
+        } else {
+            self.velocity_m_s.sign()
+        }
+    }
+
     /// Distance slid on the way to `to`, m, the speed on a straight line; back and forth both
     /// count.
     #[inline(always)]

@@ -46,6 +46,10 @@ pub enum Start {
     RunTime,
     /// The temperature at which a rig's viscosity holds, or else the mean of those on record, C.
     ReferenceTemperature,
+    /// The middle of the way that the runs cover.
+    StrokeMiddle,
+    /// Half of that way.
+    StrokeHalf,
     /// On a linear axis: a drive that gives by a small share of a stroke.
     DriveStiffness,
     /// On a linear axis: a drive that rings fast against a stroke.
@@ -72,6 +76,8 @@ impl Start {
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",
             Start::ReferenceTemperature => "reference_temperature",
+            Start::StrokeMiddle => "stroke_middle",
+            Start::StrokeHalf => "stroke_half",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",
             Start::DriveDamping => "drive_damping",

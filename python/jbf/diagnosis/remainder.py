@@ -20,6 +20,7 @@ from jbf.diagnosis.constancy import find_disagreement
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.replicates import find_replicates
+from jbf.diagnosis.ripples import find_ripples
 from jbf.diagnosis.tones import find_tones
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -38,6 +39,7 @@ def find_remainder(
     patterns = find_patterns(problem, solution, innovations, left, policy)
     found = [Remainder(f.axis, f.where, f.share) for f in patterns]
     found += find_tones(prepared, samples, innovations, left, policy)
+    found += find_ripples(problem.campaign, samples, innovations, left, policy)
     found += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
     found += find_bursts(prepared, samples, plain, left, policy)

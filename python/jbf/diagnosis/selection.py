@@ -18,6 +18,7 @@ from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
+from jbf.models.catalogue import may_come, may_go
 
 Names = tuple[str, ...]
 
@@ -129,7 +130,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     """Every candidate beside the effects present, most evidence first; those that could lead have
     converged."""
     policy = candidates.policy
-    rivals = [name for name in candidates.names if name not in present]
+    rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
     share = effective_share(base)
     first: dict[str, float] = {}
     for i, name in enumerate(rivals):
@@ -163,13 +164,17 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
         if many_peaks(effects) and r.evidence > least:
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
-    return sorted(found, key=lambda r: -r.evidence)
+    # Of two that are one in these runs the one nearer to the record supposes less of the machine.
+    order = {name: i for i, name in enumerate(rivals)}
+    return sorted(found, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
 
 def still_needed(candidates: Candidates, present: Names) -> Names:
     """The effects that have evidence yet, now that the samples are seen in another light."""
     current = present
     for name in present:
+        if not may_go(name, current):
+            continue
         rest = tuple(e for e in current if e != name)
         simpler = candidates.refit_from(rest, current)
         if evidence(candidates, candidates.converge(current), simpler) < 0:
@@ -189,7 +194,7 @@ def reconsider(
     """
     current = present
     for name in present:
-        if len(current) < 2 or name not in current:
+        if len(current) < 2 or name not in current or not may_go(name, current):
             continue
         rest = tuple(e for e in current if e != name)
         candidates.search_peaks(rest)
@@ -200,7 +205,7 @@ def reconsider(
             continue
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
-            if other in current or other in unconfirmed:
+            if other in current or other in unconfirmed or not may_come(other, rest):
                 continue
             better = -swap_cost(candidates, (*rest, other), whole, simpler)
             if better > gain:
@@ -221,6 +226,7 @@ def alternatives(candidates: Candidates, present: Names) -> dict[str, Names]:
             other
             for other in candidates.names
             if other not in present
+            and may_come(other, rest)
             and swap_cost(candidates, (*rest, other), whole, simpler) < candidates.policy.tie
         )
     return found

@@ -20,7 +20,7 @@ from jbf.diagnosis.separation import (
 )
 from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import Problem
-from jbf.models.catalogue import find_effect
+from jbf.models.catalogue import find_effect, may_come
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -39,7 +39,9 @@ def unseen(candidates: Candidates, present: Names) -> Names:
     level = max(float(noise @ noise) / len(noise), 1e-300)
     found = []
     for name in candidates.names:
-        if name in present or set(find_effect(name).columns) - SIMULATED:
+        if name in present or not may_come(name, present):
+            continue
+        if set(find_effect(name).columns) - SIMULATED:
             continue
         richer, values = _with_usual(candidates, present, name)
         gaps = [a - b for a, b in zip(richer.predict(values), now, strict=True)]

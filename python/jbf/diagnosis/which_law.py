@@ -134,11 +134,11 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     stay beside it."""
     policy, whole = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in NUISANCES)
-    most = len(candidates.fitted(effects).problem.names)
+    most = len(candidates.fitted(effects).problem.open)
     left, names, counts = [left_out(candidates, effects)], [""], [most]
     for name in allowed(whole.rig):
         other = Candidates(whole, name, clock, policy)
-        count = len(other.fitted(kept).problem.names)
+        count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
         # Far off in the fit is far off elsewhere.

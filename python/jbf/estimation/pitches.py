@@ -12,7 +12,6 @@ with a size, a phase and a pitch pays `3 log(samples)` for its three parameters.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -20,13 +19,15 @@ import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import moving_samples
+from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
 
 LINES = 3
-"""Highest lines of a spectrum that are tried."""
-LEAST_PERIODS = 3.0
-"""Periods that the way must hold: what is longer is a slope, or once a turn."""
+"""Highest lines of a spectrum that are tried, each of what the higher ones leave."""
+LEAST_PERIODS = 4.0
+"""Periods that the way must hold: what is longer varies along the stroke, whose shortest wave comes
+two and a half times in it, or is once a turn."""
 BINS_A_PITCH = 4.0
 """Bins of the place in the shortest pitch that is looked for."""
 MOST_BINS = 2**15
@@ -53,6 +54,29 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     return found[along]
 
 
+def longest_pitch(campaign: Campaign) -> float:
+    """The longest pitch that the way of a campaign's runs holds often enough, m; infinite where it
+    has no way to speak of."""
+    pairs = zip(campaign.prepared, moving_samples(campaign), strict=True)
+    places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
+    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
+    span = float(np.ptp(places)) * arm if len(places) else 0.0
+    return span / LEAST_PERIODS if span > 0.0 else np.inf
+
+
+def known_pitches(rig: Rig) -> tuple[float, ...]:
+    """The ways of one turn of the screw and of the motor, m (of a joint rad), where the rig's
+    [drive] tells them."""
+    drive = rig.drive
+    if drive is None:
+        return ()
+    turn = 2.0 * np.pi if drive.motion == "rotary" else drive.pitch_m
+    if turn is None or (drive.motion == "rotary" and drive.gear_ratio == 1.0):
+        return ()
+    turns = (turn,) if drive.motion == "linear" else ()
+    return tuple(dict.fromkeys((*turns, turn / drive.gear_ratio)))
+
+
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
     place, rest, speed = _what_is_left(campaign)
     if len(place) < PADDING * KNOTS:
@@ -64,23 +88,31 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
         return ()
     which = np.minimum((place - place.min()) / fine, count - 1).astype(np.intp)
     signal = rest * np.sign(speed) if along else rest
-    total = np.bincount(which, signal - np.mean(signal), count)
+    signal = signal - np.mean(signal)
     length = PADDING * count
-    power = np.abs(np.fft.rfft(total, length)) ** 2
     # In lines of a spectrum that is not padded: periods of the way.
-    periods = np.arange(len(power)) / PADDING * (span / (count * fine))
-    power[(periods < LEAST_PERIODS) | (periods * BINS_A_PITCH > count)] = 0.0
-    return tuple(float(span / periods[k]) for k in _highest(power))
-
-
-def _highest(power: Array) -> Sequence[int]:
-    """Indices of the highest lines, none on the slope of a higher one."""
-    power = power.copy()
-    found: list[int] = []
-    while len(found) < LINES and power.max(initial=0.0) > 0.0:
+    periods = np.arange(length // 2 + 1) / PADDING * (span / (count * fine))
+    told = (periods >= LEAST_PERIODS) & (periods * BINS_A_PITCH <= count)
+    found: list[float] = []
+    for _ in range(LINES):
+        power = np.abs(np.fft.rfft(np.bincount(which, signal, count), length)) ** 2
+        power[~told] = 0.0
         k = int(np.argmax(power))
-        found.append(k)
-        power[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = 0.0
+        if power[k] <= 0.0:
+            break
+        found.append(float(span / periods[k]))
+        # A place that is often passed gives a high line slopes of its own, as high as a lower line.
+        signal = signal - _wave(signal, place, found[-1])
+        told[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
+    return tuple(found)
+
+
+def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
+    """The wave of a pitch in a signal, by least squares."""
+    phase = 2.0 * np.pi * place / pitch_m
+    pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
+    solution, *_ = np.linalg.lstsq(pair, signal, rcond=None)
+    found: Array = pair @ solution
     return found
 
 

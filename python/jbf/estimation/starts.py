@@ -13,8 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import pitches
+from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
 from jbf.estimation.scales import Scales, scales
+from jbf.estimation.stroke import stroke
 from jbf.models.catalogue import Parameter
 from jbf.records.findings.slow_temperature import recorded_temperature
 
@@ -74,9 +75,11 @@ def _reference_temperature(campaign: Campaign) -> Starts:
 
 
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
-    "pitch": lambda c: pitches(c, along=False),
-    "ripple_pitch": lambda c: pitches(c, along=True),
+    "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
+    "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
     "run_time": _run_time,
+    "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
+    "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
 }
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
@@ -85,12 +88,21 @@ RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
 """What asks for no newtons."""
 
 
+PITCHES = ("pitch", "ripple_pitch")
+
+
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     """A transition speed as the data bound it: a film that carries the load only at several times
     the fastest speed on record never shows, and its equations grow stiff."""
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
     upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
     return replace(page, upper=upper)
+
+
+def _within_the_way(page: Parameter, campaign: Campaign) -> Parameter:
+    """A pitch as the way bounds it: what comes again too seldom on it is no ripple."""
+    upper = min(page.upper, longest_pitch(campaign))
+    return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
 def _inside(page: Parameter, starts: Starts) -> Parameter:
@@ -118,6 +130,8 @@ def with_starts(
         if sizes is not None and page.start in rules:
             page = _inside(page, rules[page.start](sizes))
         if in_newtons and page.start in CAMPAIGN_RULES:
+            if page.start in PITCHES:
+                page = _within_the_way(page, campaign)
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
         if page.start in RULES_OF_ANY_LAW:
             page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))

@@ -92,7 +92,8 @@ class Effect:
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
     instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
-    peaks, None for most. `rust_place` and `rust_type` are the names of its types in the core, empty
+    peaks, None for most; `further_of` the effect of which this is a further one, None for most.
+    `rust_place` and `rust_type` are the names of its types in the core, empty
     of an effect of one's own; `columns` are those that such an effect asks for.
     """
 
@@ -109,6 +110,7 @@ class Effect:
     longest_step_s: float
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()
+    further_of: str | None = None
     rust_place: str = ""
     rust_type: str = ""
 
@@ -271,6 +273,19 @@ def transition_speed(law: str, values: Sequence[float]) -> float | None:
     """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
     pages = zip(find_law(law).parameters, values, strict=False)
     return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
+
+
+def may_come(name: str, present: Collection[str]) -> bool:
+    """True where an effect says something of its own beside those present: a further one of another
+    does beside that one only."""
+    page = effects().get(name)
+    return page is None or page.further_of is None or page.further_of in present
+
+
+def may_go(name: str, present: Collection[str]) -> bool:
+    """True where none of those present is a further one of an effect."""
+    pages = effects()
+    return not any(e in pages and pages[e].further_of == name for e in present)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:

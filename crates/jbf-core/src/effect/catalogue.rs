@@ -6,10 +6,11 @@ use super::place::{
 };
 use super::registry::{signal_chain, Shelf};
 use super::{
-    backlash, cogging, coulomb_drag, direction_asymmetry, drive_compliance, dry_load_dependence,
-    dry_temperature_dependence, dwell_stiction, film_memory, gravity, inertia_leak,
-    load_dependence, pitch_ripple, position_ripple, presliding, quadratic_drag, sensor_drift,
-    sensor_lag, sensor_offset, shear_thinning, stribeck_excess, thermal_thinning, time_delay,
+    backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
+    dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,
+    gravity, inertia_leak, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
+    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
+    stribeck_asymmetry, stribeck_excess, stroke_dependence, thermal_thinning, time_delay,
     torque_proportional, viscous_asymmetry, viscous_load_dependence,
     viscous_temperature_dependence, vogel_viscosity, warm_up, wear_in, zero_load_dependence,
 };
@@ -40,9 +41,13 @@ signal_chain! {
         viscous_asymmetry::ViscousAsymmetry,
         dry_temperature_dependence::DryTemperatureDependence,
         viscous_temperature_dependence::ViscousTemperatureDependence,
+        dry_asymmetry::DryAsymmetry,
+        stribeck_asymmetry::StribeckAsymmetry,
         direction_asymmetry::DirectionAsymmetry,
         position_ripple::PositionRipple,
+        stroke_dependence::StrokeDependence,
         pitch_ripple::PitchRipple,
+        pitch_ripple_2::SecondPitchRipple,
         warm_up::WarmUp,
     ],
     transmission: InTransmission [torque_proportional::TorqueProportional],
@@ -54,6 +59,7 @@ signal_chain! {
         zero_load_dependence::ZeroLoadDependence,
         gravity::Gravity,
         cogging::Cogging,
+        cogging_2::SecondCogging,
     ],
     instrument: InInstrument [
         sensor_lag::SensorLag,

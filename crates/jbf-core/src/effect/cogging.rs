@@ -24,19 +24,22 @@ pub struct Cogging<T> {
     pitch: Pitch<T>,
 }
 
+/// The pages of its parameters.
+pub(super) const PARAMETERS: &[Parameter] = &[
+    Parameter::new("A_n", "N", "amplitude", [0.0, 1e7], &[1.0])
+        .null(0.0)
+        .start(Start::Drag),
+    PITCH,
+    PHASE,
+];
+
 impl<T: Real> Effect<T> for Cogging<T> {
     const INFO: Info = Info::new("cogging", Stage::Other)
         .summary("a motor's force that rises and falls with every pitch of the way, at rest too")
         .equation("F -> F + A sin(2 pi x/p - phi), x the way of the surface, m")
         .source("Zhu & Howe 2000; Otten et al. 1997")
-        .limits("one harmonic; the way must be absolute or have the same zero in every run")
-        .parameters(&[
-            Parameter::new("A_n", "N", "amplitude", [0.0, 1e7], &[1.0])
-                .null(0.0)
-                .start(Start::Drag),
-            PITCH,
-            PHASE,
-        ])
+        .limits("one wave, beside which cogging_2 is another; the way must be absolute or have the same zero in every run")
+        .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
     /// Radius, m.
     type State = T;

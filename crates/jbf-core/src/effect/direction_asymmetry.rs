@@ -16,7 +16,7 @@ pub struct DirectionAsymmetry<T> {
 }
 
 impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
-    const INFO: Info = Info::new("direction_asymmetry", Stage::Contact).summary("friction that is larger one way than the other").equation("f -> f (1 + a sgn(v))").source("Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)").limits("scales the whole friction; an offset of the cell shifts it instead, and is there at rest too").parameters(&[Parameter::new("a", "-", "share by which friction is larger in positive motion", [-0.95, 0.95], &[0.05]).null(0.0).signed()]);
+    const INFO: Info = Info::new("direction_asymmetry", Stage::Contact).summary("friction that is larger one way than the other").equation("f -> f (1 + a sgn(v))").source("Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)").limits("scales the whole friction, of a drive dry_asymmetry the dry one and viscous_asymmetry the viscous one; an offset of the cell shifts it instead, and is there at rest too").parameters(&[Parameter::new("a", "-", "share by which friction is larger in positive motion", [-0.95, 0.95], &[0.05]).null(0.0).signed()]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -32,13 +32,7 @@ impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
 impl<T: Real> Contact<T> for DirectionAsymmetry<T> {
     #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
-        // At rest the motion may go either way: the direction that holds the journal decides.
-        let way = if journal.velocity_m_s == T::ZERO {
-            journal.direction.sign()
-        } else {
-            journal.velocity_m_s.sign()
-        };
-        let factor = T::ONE + self.share * way;
+        let factor = T::ONE + self.share * journal.way();
         sliding.jump *= factor;
         sliding.smooth *= factor;
     }

@@ -62,6 +62,8 @@ pub struct Info {
     pub longest_step_s: f64,
     /// True of a force, beside friction, that the drive's transmission carries: a weight, a mass.
     pub transmitted: bool,
+    /// The effect of which this is a further one: without that beside it, it is that one.
+    pub further_of: Option<&'static str>,
 }
 
 impl Info {
@@ -78,6 +80,7 @@ impl Info {
             needs: &[],
             longest_step_s: 0.02,
             transmitted: false,
+            further_of: None,
         }
     }
 
@@ -126,6 +129,12 @@ impl Info {
     /// A force that the drive's transmission carries.
     pub const fn transmitted(mut self) -> Self {
         self.transmitted = true;
+        self
+    }
+
+    /// A further one of the effect of that name.
+    pub const fn further(mut self, of: &'static str) -> Self {
+        self.further_of = Some(of);
         self
     }
 

@@ -183,8 +183,14 @@ fn slopes_at_a_null_match_one_sided_differences() {
             };
             let h = 5e-5 * parameter.starts[0];
             let [at, one, two] = [0.0, h, 2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
+            let mut slopes = vec![one_sided(&at, &one, &two, h)];
+            if parameter.lower < null {
+                // A level that is zero already goes no further down: to either side another slope.
+                let [one, two] = [-h, -2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
+                slopes.push(one_sided(&at, &one, &two, -h));
+            }
             let difference = Difference {
-                slopes: vec![one_sided(&at, &one, &two, h)],
+                slopes,
                 step: h,
                 peak_n: peak(&at),
             };

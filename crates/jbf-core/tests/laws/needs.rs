@@ -22,12 +22,17 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
         "viscous_asymmetry",
         "dry_temperature_dependence",
         "viscous_temperature_dependence",
+        "dry_asymmetry",
+        "stribeck_asymmetry",
+        "stroke_dependence",
         "pitch_ripple",
+        "pitch_ripple_2",
         "warm_up",
         "torque_proportional",
         "zero_load_dependence",
         "gravity",
         "cogging",
+        "cogging_2",
     ];
     assert_eq!(refused, of_drives.map(|name| (name, Some(Need::NoFilm))));
     for name in of_drives {

@@ -1,0 +1,59 @@
+//! Dry friction times `1 + a sgn v`: one way is harder than the other, by the same share at every speed.
+//!
+//! A preload that a wedge, a wiper or a helix angle adds to one way and takes from the other changes
+//! what jumps with the direction, level and Stribeck peak alike; viscous friction is not pressed.
+//!
+//! Where the dry level is the same at every speed, place and load, this is in motion a force one way,
+//! `sensor_offset`; at rest that force is there and this is not.
+//!
+//! Source: listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Dry friction that depends on the direction of motion.
+#[derive(Clone, Copy, Debug)]
+pub struct DryAsymmetry<T> {
+    share: T,
+}
+
+impl<T: Real> Effect<T> for DryAsymmetry<T> {
+    const INFO: Info = Info::new("dry_asymmetry", Stage::Contact)
+        .summary("dry friction that is larger one way than the other")
+        .equation("F_dry -> F_dry (1 + a sgn(v))")
+        .source("Armstrong-Helouvry et al. 1994")
+        .limits(
+            "of a dry level that nothing changes, only a rest tells it from a force one way, which \
+             is sensor_offset",
+        )
+        .parameters(&[Parameter::new(
+            "a",
+            "-",
+            "share by which dry friction is larger in positive motion",
+            [-0.95, 0.95],
+            &[0.05],
+        )
+        .null(0.0)
+        .signed()])
+        .needs(&[Need::NoFilm]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            share: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for DryAsymmetry<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        sliding.jump *= T::ONE + self.share * journal.way();
+    }
+}

@@ -1,0 +1,45 @@
+//! A second ripple beside `pitch_ripple`, at a pitch of its own: times `1 + a cos(2 pi x/p - phi)`.
+//!
+//! A ripple is rarely one wave. Its second harmonic has half the pitch; the balls of a screw come round
+//! at another pitch than its lead. Which it is, the pitch that the fit finds says.
+//!
+//! Source: that of `pitch_ripple`.
+
+use super::pitch_ripple::{PitchRipple, PARAMETERS};
+use super::{Contact, Effect, Info, Need, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Friction that depends on the place within another pitch.
+#[derive(Clone, Copy, Debug)]
+pub struct SecondPitchRipple<T>(PitchRipple<T>);
+
+impl<T: Real> Effect<T> for SecondPitchRipple<T> {
+    const INFO: Info = Info::new("pitch_ripple_2", Stage::Contact)
+        .summary("a second ripple of friction beside the first: a harmonic, or another pitch")
+        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the way of the surface, m")
+        .source("Armstrong-Helouvry 1991, chapter 3")
+        .limits("one wave; the way must be absolute or have the same zero in every run")
+        .parameters(PARAMETERS)
+        .needs(&[Need::NoFilm, Need::Position])
+        .further("pitch_ripple");
+    /// Radius, m.
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        PitchRipple::new(parameters).map(Self)
+    }
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> T {
+        self.0.start(motion, rig)
+    }
+}
+
+impl<T: Real> Contact<T> for SecondPitchRipple<T> {
+    #[inline(always)]
+    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        self.0.apply(radius_m, journal, sliding);
+    }
+}

@@ -1,0 +1,75 @@
+//! A Stribeck peak that is higher one way than the other: `+ c exp(-(|v|/v_s)^n)`.
+//!
+//! Lips, wipers and skewed rollers draw a film in one direction and scrape it off in the other: at
+//! speed the two ways are alike, at low speed they are not. `c` is half of what the peak is higher by
+//! in positive motion.
+//!
+//! Source: Stribeck's curve in the form of Bo & Pavelescu (1982), its height one for each way; friction
+//! that depends on the direction is among the departures that Armstrong-Helouvry et al. (1994) list.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// Half the difference of the Stribeck peaks of the two directions.
+#[derive(Clone, Copy, Debug)]
+pub struct StribeckAsymmetry<T> {
+    height_n: T,
+    inverse_speed_s_m: T,
+    exponent: T,
+}
+
+impl<T: Real> Effect<T> for StribeckAsymmetry<T> {
+    const INFO: Info = Info::new("stribeck_asymmetry", Stage::Contact)
+        .summary("a Stribeck peak at low speed that is higher one way than the other")
+        .equation("F -> F + c exp(-(|v|/v_s)^n)")
+        .source("Bo & Pavelescu 1982; Armstrong-Helouvry et al. 1994")
+        .limits("no memory, no dwell; the dry level of either way never below zero")
+        .parameters(&[
+            Parameter::new(
+                "c_n",
+                "N",
+                "half of what the peak is higher by in positive motion",
+                [-1e7, 1e7],
+                &[0.1],
+            )
+            .null(0.0)
+            .signed()
+            .start(Start::BreakawayExcess),
+            Parameter::new(
+                "v_s_m_s",
+                "m/s",
+                "speed at which it has fallen to 1/e",
+                [1e-7, 1e2],
+                &[0.01, 0.04],
+            )
+            .log()
+            .start(Start::StribeckSpeed),
+            Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
+        ])
+        .needs(&[Need::NoFilm]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            height_n: parameters[0],
+            inverse_speed_s_m: T::ONE / parameters[1],
+            exponent: parameters[2],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for StribeckAsymmetry<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        let speed = journal.velocity_m_s.abs() * self.inverse_speed_s_m;
+        let higher = self.height_n * (-speed.powf(self.exponent)).exp();
+        sliding.jump = (sliding.jump + higher * journal.way()).max(T::ZERO);
+    }
+}

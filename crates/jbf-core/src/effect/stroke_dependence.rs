@@ -1,0 +1,112 @@
+//! Dry friction that varies smoothly along the stroke: times `1 + s(x)`.
+//!
+//! A screw that is tighter in its middle, a guide that is not straight, a rod that is worn where it
+//! mostly works: what presses changes slowly from place to place, and dry friction with it. What comes
+//! again with a pitch is `pitch_ripple`'s.
+//!
+//! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope vanishes
+//! at both ends, `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`: each has the mean zero over
+//! the stroke, and none does another's work or the dry level's. Beyond the ends friction stays as it is
+//! there. A fit puts the ends a little beyond where its runs go, for friction need not level off where
+//! a recording ends; the shortest wave then comes two and a half times in what they cover. What comes
+//! more often has a pitch.
+//!
+//! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has friction of its own at each place of its
+//! joints; Popovic & Goldenberg (1998), who model it by its Fourier series.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+use core::f64::consts::FRAC_PI_2;
+
+/// Dry friction over the place.
+#[derive(Clone, Copy, Debug)]
+pub struct StrokeDependence<T> {
+    sizes: [T; 6],
+    middle_m: T,
+    inverse_half_1_m: T,
+}
+
+/// The page of an even or an odd wave's share.
+const fn wave(name: &'static str, meaning: &'static str) -> Parameter {
+    Parameter::new(name, "-", meaning, [-2.0, 2.0], &[0.1]).null(0.0)
+}
+
+impl<T: Real> Effect<T> for StrokeDependence<T> {
+    const INFO: Info = Info::new("stroke_dependence", Stage::Contact)
+        .summary("dry friction that varies smoothly along the stroke")
+        .equation(
+            "F_dry -> F_dry (1 + sum of a_k w_k(u)), w_k = sin(k pi u/2) for k odd, cos(k pi u/2) for \
+             k even, u = (x - x_0)/h within -1 and 1",
+        )
+        .source("Armstrong-Helouvry 1991, chapter 3; Popovic & Goldenberg 1998")
+        .limits(
+            "what changes within less than a fifth of the stroke is smoothed; beyond the ends of the \
+             stroke friction stays as it is there; the way must be absolute or have the same zero in \
+             every run",
+        )
+        .parameters(&[
+            wave("a_1", "half a wave: the upper end above the lower").signed(),
+            wave("a_2", "one wave: the middle above both ends"),
+            wave("a_3", "one wave and a half").signed(),
+            wave("a_4", "two waves: the middle and the ends above what is between"),
+            wave("a_5", "two waves and a half").signed(),
+            wave("a_6", "three waves"),
+            Parameter::new("x_0_m", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
+                .signed()
+                .start(Start::StrokeMiddle)
+                .stated(),
+            Parameter::new("h_m", "m", "half of the stroke", [1e-9, 1e6], &[0.4])
+                .log()
+                .start(Start::StrokeHalf)
+                .stated(),
+        ])
+        .needs(&[Need::NoFilm, Need::Position]);
+    /// Radius, m.
+    type State = T;
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            sizes: [
+                parameters[0],
+                parameters[1],
+                parameters[2],
+                parameters[3],
+                parameters[4],
+                parameters[5],
+            ],
+            middle_m: parameters[6],
+            inverse_half_1_m: T::ONE / parameters[7],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, rig: &Rig<T>) -> T {
+        rig.radius_m
+    }
+}
+
+impl<T: Real> Contact<T> for StrokeDependence<T> {
+    #[inline(always)]
+    fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        let u = (journal.angle_rad * *radius_m - self.middle_m) * self.inverse_half_1_m;
+        let u = u.max(-T::ONE).min(T::ONE);
+        // cos 2q to cos 6q of one sine.
+        let sine = (u * T::of(FRAC_PI_2)).sin();
+        let square = sine * sine;
+        let whole = T::ONE - T::of(2.0) * square;
+        let third = sine * (T::of(3.0) - T::of(4.0) * square);
+        let twice = T::of(2.0) * whole * whole - T::ONE;
+        let fifth = T::of(2.0) * whole * third - sine;
+        let sixth = whole * (T::of(2.0) * twice - T::ONE);
+        let waves = [sine, whole, third, twice, fifth, sixth];
+        let mut factor = T::ONE;
+        for (size, wave) in self.sizes.iter().zip(waves) {
+            factor += *size * wave;
+        }
+        sliding.jump *= factor.max(T::ZERO);
+    }
+}

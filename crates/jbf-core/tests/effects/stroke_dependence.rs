@@ -1,0 +1,97 @@
+//! Dry friction times `1 + s(x)`: Fourier's waves over the stroke, written here by their angles.
+
+use crate::common::motion::{held, Sines};
+use crate::common::{chain_round, newtons, readings};
+use core::f64::consts::PI;
+use jbf_core::Bearing;
+
+const F_C_N: f64 = 6.0;
+const F_V_N_S_M: f64 = 40.0;
+const MIDDLE_M: f64 = 0.1;
+const HALF_M: f64 = 0.1;
+
+/// The dry level over its mean, at `x` m.
+fn share(a: [f64; 6], x: f64) -> f64 {
+    let u = ((x - MIDDLE_M) / HALF_M).clamp(-1.0, 1.0);
+    let waves = [
+        (0.5 * PI * u).sin(),
+        (PI * u).cos(),
+        (1.5 * PI * u).sin(),
+        (2.0 * PI * u).cos(),
+        (2.5 * PI * u).sin(),
+        (3.0 * PI * u).cos(),
+    ];
+    1.0 + a.iter().zip(waves).map(|(a, w)| a * w).sum::<f64>()
+}
+
+fn values(a: [f64; 6]) -> [f64; 8] {
+    [a[0], a[1], a[2], a[3], a[4], a[5], MIDDLE_M, HALF_M]
+}
+
+#[test]
+fn scales_the_dry_level_with_the_place_and_nothing_else() {
+    // From 0 to 0.254 m: beyond the upper end of the stroke, too.
+    let sines = Sines::two_way(1.0);
+    for a in [
+        [0.3, -0.2, 0.05, 0.1, -0.07, 0.04],
+        [-0.1, 0.4, 0.1, -0.1, 0.1, -0.05],
+    ] {
+        let law = newtons(F_C_N, F_V_N_S_M);
+        let chain = chain_round(law, &[("stroke_dependence", &values(a))]);
+        let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+        for (i, f) in got.iter().enumerate().skip(1) {
+            let t = 0.01 * i as f64;
+            let (v, way) = (0.127 * t.sin(), 0.127 * (1.0 - t.cos()));
+            let expected = F_C_N * share(a, way) * v.signum() + F_V_N_S_M * v;
+            assert!((f - expected).abs() < 1e-9, "{a:?} {i}: {f} {expected}");
+        }
+    }
+}
+
+/// The level that holds a drive at rest at a place, N.
+fn level_n(a: [f64; 6], x: f64) -> f64 {
+    let chain = chain_round(newtons(F_C_N, 0.0), &[("stroke_dependence", &values(a))]);
+    let state = chain.start(&held::<f64>(x / Bearing::THESIS.radius_m, 0.0));
+    chain.felt(&state).jump
+}
+
+/// None of the waves does the work of the dry level or of another.
+#[test]
+fn the_waves_have_no_mean_and_nothing_in_common() {
+    let n = 2000;
+    let unit = |k: usize| core::array::from_fn(|i| if i == k { 0.5 } else { 0.0 });
+    let wave = |k: usize, i: usize| {
+        let x = MIDDLE_M + HALF_M * ((2 * i + 1) as f64 / n as f64 - 1.0);
+        level_n(unit(k), x) / F_C_N - 1.0
+    };
+    for k in 0..6 {
+        let mean = (0..n).map(|i| wave(k, i)).sum::<f64>() / n as f64;
+        assert!(mean.abs() < 1e-9, "{k}: {mean}");
+        for j in 0..k {
+            let both = (0..n).map(|i| wave(k, i) * wave(j, i)).sum::<f64>() / n as f64;
+            assert!(both.abs() < 1e-9, "{j} {k}: {both}");
+        }
+    }
+}
+
+/// Over the ends goes neither a step nor a corner.
+#[test]
+fn is_smooth_over_the_ends() {
+    let a = [0.3, -0.2, 0.05, 0.1, -0.07, 0.04];
+    let h = 1e-6;
+    for end in [MIDDLE_M - HALF_M, MIDDLE_M + HALF_M] {
+        let slope = |x: f64| (level_n(a, x + h) - level_n(a, x - h)) / (2.0 * h);
+        // The slope falls to zero as a line over the way, some 2 N/m^2 times 1e3.
+        assert!(slope(end).abs() < 0.02, "{}", slope(end));
+        assert!((level_n(a, end - h) - level_n(a, end + h)).abs() < 1e-6);
+        assert!(slope(end + 0.3 * (end - MIDDLE_M)).abs() < 1e-9);
+    }
+    assert!((level_n(a, MIDDLE_M + h) - level_n(a, MIDDLE_M - h)).abs() > 1e-5);
+}
+
+/// Of waves that would make friction push there is none left.
+#[test]
+fn the_level_is_never_below_zero() {
+    assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);
+    assert!((level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], MIDDLE_M) - 3.0 * F_C_N).abs() < 1e-12);
+}

@@ -1,0 +1,166 @@
+"""Ripple at a place of its own in each run: waves over the way that stand out of the innovations.
+
+A drive that is logged set point by set point, its counter at zero each time, has the pitch of its
+screw or its teeth in every run, and in each at another phase. No effect of the catalogue has a
+phase a run: whatever phases the runs at hand had, of the next run's they say nothing, and a model
+with them predicts no run that it has not seen. So this is structure that is told, and no effect.
+
+Of each run's innovations the spectrum over its own way is taken (Fisher 1929; ordinates add from
+run to run whatever the phases). Where the runs share a phase, `cogging` and `pitch_ripple` say so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy import special
+
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.samples import Samples
+
+Array = npt.NDArray[np.float64]
+
+LEAST_PERIODS = 8.0
+"""Periods that the way of a run must hold: what is longer belongs to the patterns along axes."""
+BINS_A_PITCH = 4.0
+"""Bins of the way in the shortest pitch that is looked for."""
+MOST_BINS = 2**16
+PADDING = 4
+"""Spectral lines to the width of one."""
+ONE_PHASE = 0.5
+"""Share of the waves' power from which on one phase in all runs says them."""
+LEAST_RUNS = 3
+IN_MOST = 2.0 / 3.0
+"""Share of the runs, the weakest, that must have the wave, too: a hum is at this pitch in a few."""
+IN_MOST_CHANCE = 1e-3
+
+
+def find_ripples(
+    campaign: Campaign,
+    samples: Samples,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    policy: Policy,
+) -> list[Remainder]:
+    """The clearest wave over the way whose phase differs by run, if there is one.
+
+    Of a force itself, and of one in the direction of motion.
+    """
+    prepared = campaign.prepared
+    if campaign.rig.bearing is not None or len(prepared) < LEAST_RUNS:
+        return []
+    ways = [_way(p) for p in prepared]
+    turned = [np.sign(p.motion.velocity_m_s) for p in prepared]
+    found: list[Remainder] = []
+    for along in (False, True):
+        signs = turned if along else [np.ones(len(w)) for w in ways]
+        e = [x * s * c for x, s, c in zip(innovations, signs, samples.counted, strict=True)]
+        pitch = _pitch(ways, e, samples, policy)
+        if pitch is None:
+            continue
+        r = [x * s for x, s in zip(residuals, signs, strict=True)]
+        share, size, one = _waves(ways, r, samples, pitch)
+        if share >= policy.tone_share and one < ONE_PHASE:
+            words = _words(campaign, pitch, size, along)
+            found.append(Remainder("way", words, min(share, 1.0)))
+    return sorted(found, key=lambda x: -x.share)[:1]
+
+
+def _way(p: Prepared) -> Array:
+    """Where the run is, m (of a joint rad), from where it began."""
+    found: Array = p.motion.angle_rad - p.motion.angle_rad[0]
+    return found
+
+
+def _pitch(
+    ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
+) -> float | None:
+    """The pitch whose lines, summed over the runs, are no chance; None where none is."""
+    spans = np.array([float(np.ptp(w)) for w in ways])
+    longest = float(np.max(spans))
+    steps = np.concatenate([np.abs(np.diff(w)) for w in ways])
+    usual = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
+    if usual <= 0.0:
+        return None
+    fine = max(usual, longest / MOST_BINS)
+    length = PADDING * (int(longest / fine) + 1)
+    # Waves in a metre.
+    waves = np.arange(length // 2 + 1) / (length * fine)
+    total, degrees = np.zeros(len(waves)), np.zeros(len(waves))
+    for way, e, counted, span in zip(ways, innovations, samples.counted, spans, strict=True):
+        level = float(np.mean(e[counted] ** 2)) if counted.any() else 0.0
+        if level <= 0.0 or span <= LEAST_PERIODS * fine:
+            continue
+        bins = ((way - way.min()) / fine).astype(np.intp)
+        signal = np.where(counted, e - np.mean(e[counted]), 0.0)
+        power = np.abs(np.fft.rfft(np.bincount(bins, signal, length), length)) ** 2
+        told = waves * span >= LEAST_PERIODS
+        total += np.where(told, 2.0 * power / (level * counted.sum()), 0.0)
+        degrees += 2.0 * told
+    band = (degrees >= 2.0 * LEAST_RUNS) & (waves * fine * BINS_A_PITCH <= 1.0)
+    if not band.any():
+        return None
+    chance = np.ones(len(waves))
+    # Chi-square's tail; where it underflows the excess decides.
+    chance[band] = special.gammaincc(0.5 * degrees[band], 0.5 * total[band])
+    excess = np.where(band, total - degrees, -np.inf)
+    k = int(np.argmax(np.where(chance <= chance.min(), excess, -np.inf)))
+    if chance[k] * band.sum() > policy.tone_chance:
+        return None
+    pitch = 1.0 / float(waves[k])
+    return pitch if _in_most(ways, innovations, samples, pitch) else None
+
+
+def _in_most(
+    ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, pitch: float
+) -> bool:
+    """Whether the runs but the third that have most of a wave have it beyond chance, too."""
+    lines = []
+    for way, e, counted in zip(ways, innovations, samples.counted, strict=True):
+        level = float(np.sum(e[counted] ** 2))
+        if level > 0.0 and np.ptp(way) >= LEAST_PERIODS * pitch:
+            line = abs(np.sum((e * np.exp(2j * np.pi * way / pitch))[counted])) ** 2
+            lines.append(2.0 * float(line) / level)
+    weakest = sorted(lines)[: int(np.ceil(IN_MOST * len(lines)))]
+    return bool(special.gammaincc(len(weakest), 0.5 * sum(weakest)) < IN_MOST_CHANCE)
+
+
+def _waves(
+    ways: Sequence[Array], residuals: Sequence[Array], samples: Samples, pitch: float
+) -> tuple[float, float, float]:
+    """The share of the mean square that the waves have, their median size, N, and the share of
+    their power that one wave in all runs would have."""
+    pairs, rest = [], []
+    for way, r, counted in zip(ways, residuals, samples.counted, strict=True):
+        turns = np.exp(2j * np.pi * way[counted] / pitch)
+        pairs.append(np.stack([turns.real, turns.imag], axis=1))
+        rest.append(r[counted] - np.mean(r[counted]) if counted.any() else r[counted])
+    square = sum(float(np.sum(r[c] ** 2)) for r, c in zip(residuals, samples.counted, strict=True))
+    own, sizes = 0.0, []
+    for pair, r in zip(pairs, rest, strict=True):
+        solution, *_ = np.linalg.lstsq(pair, r, rcond=None)
+        own += float(np.sum((pair @ solution) ** 2))
+        sizes.append(float(np.hypot(*solution)))
+    whole = np.concatenate(pairs)
+    one, *_ = np.linalg.lstsq(whole, np.concatenate(rest), rcond=None)
+    shared = float(np.sum((whole @ one) ** 2))
+    return own / max(square, 1e-300), float(np.median(sizes)), shared / max(own, 1e-300)
+
+
+def _words(campaign: Campaign, pitch: float, size: float, along: bool) -> str:
+    rig, said = campaign.rig, campaign.rig.quantities
+    if said.motion == "rotary":
+        often = f"{2.0 * np.pi / pitch:.4g} times a turn"
+    else:
+        often = f"with every {pitch:.4g} {said.length}"
+    lead = None if rig.drive is None else rig.drive.pitch_m
+    if lead is not None:
+        often += f" ({lead / pitch:.3g} times a turn)"
+    what = "friction" if along else f"a {said.noun}"
+    where = "in each run at a phase of its own"
+    return f"{what} that comes again {often}, {size:.2g} {said.force}, {where}"

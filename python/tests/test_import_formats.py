@@ -112,7 +112,7 @@ def test_an_absent_library_is_one_line_that_says_what_to_install(
     known: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / f"a{(known.suffixes or ('.mat',))[0]}"
-    path.write_bytes((known.magic or (b"PK\x03\x04",))[0])
+    path.write_bytes(bytes(known.magic_at) + (known.magic or (b"PK\x03\x04",))[0])
     module = f"jbf.importing.formats.{known.opener.partition(':')[0]}"
     monkeypatch.delitem(sys.modules, module, raising=False)
     real = builtins.__import__
@@ -126,6 +126,22 @@ def test_an_absent_library_is_one_line_that_says_what_to_install(
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(InputError, match=rf"pip install 'jbf\[{known.extra}\]'"):
         open_source(path)
+
+
+@pytest.mark.parametrize("version", ["v7", "v7.3"])
+@pytest.mark.filterwarnings("ignore:.*timedelta64")
+def test_a_timetable_brings_its_clock(version: str, short: Columns, tmp_path: Path) -> None:
+    matio = pytest.importorskip("matio")
+    pandas = pytest.importorskip("pandas")
+    time = pandas.to_timedelta(np.arange(400) * 20, unit="ms").astype("timedelta64[ms]")
+    own = {name: short[name][:400] for name in ("position_m", "friction_n")}
+    frame = pandas.DataFrame(own, index=time)
+    frame.index.name = "Time"
+    path = tmp_path / "t.mat"
+    matio.save_to_mat(str(path), {"log": frame}, version=version)
+    (run,) = jbf.import_files(path).runs
+    np.testing.assert_array_equal(run.time_s, np.arange(400) / 50.0)
+    np.testing.assert_array_equal(run.friction_n, own["friction_n"])
 
 
 @pytest.mark.slow

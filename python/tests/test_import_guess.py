@@ -191,9 +191,9 @@ def test_any_encoding(encoding: str, tmp_path: Path) -> None:
 
 
 def test_gzip(tmp_path: Path) -> None:
-    path = tmp_path / "run.csv.gz"
+    path = tmp_path / "run_0.5.csv.gz"
     path.write_bytes(gzip.compress(text("time_s,position_m,friction_n\n", "t m f").encode()))
-    assert import_files(path).runs[0].name == "run"
+    assert import_files(path).runs[0].name == "run_0.5"
 
 
 ASKED = {

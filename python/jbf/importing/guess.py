@@ -101,6 +101,9 @@ def guess(source: Source) -> Guess:
                     questions.append(Question(key, ask))
         ignored |= _left_over(table, found, time)
     entries = _by_machine(entries)
+    for key in _beside_the_point(entries):
+        name = entries.pop(key).expression.split("`")[1]
+        ignored[name] = "the force and the place tell enough"
     questions += _missing(entries, source)
     sections, about_rig = guess_rig(set(entries))
     questions += about_rig
@@ -137,11 +140,11 @@ def _order(key: str) -> int:
 
 
 def _candidates(table: Table) -> list[Candidate]:
-    found = [c for column in table.columns if (c := _candidate(column)) is not None]
+    found = [c for column in table.columns if (c := _candidate(column, table)) is not None]
     return [c for c in found if c.key != "time_s"]
 
 
-def _candidate(column: Column) -> Candidate | None:
+def _candidate(column: Column, table: Table) -> Candidate | None:
     if column.kind != "number":
         return None
     if column.name in KNOWN:
@@ -151,6 +154,9 @@ def _candidate(column: Column) -> Candidate | None:
             return Candidate(column.name, column, header, False, "its name", ask)
         return Candidate(column.name, column, header, True, "its name is jbf's own")
     header = understood(column.name, column.unit)
+    if header.kind is None and not header.setpoint:
+        # `force/value`: the group says what its column does not.
+        header = understood(f"{table.name} {column.name}", column.unit)
     if header.setpoint or header.kind in NEVER or is_doubtful_time(header):
         return None
     unit = None if header.unit in ASK else parse_unit(header.unit)
@@ -253,6 +259,13 @@ def _by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
         if key in found and f"motor_{key}" not in found:
             found[f"motor_{key}"] = replace(found.pop(key), key=f"motor_{key}")
     return found
+
+
+def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
+    """Columns of a motor, where a slide has a force and a motion: they would ask for a pitch."""
+    if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
+        return []
+    return [key for key in entries if key.startswith("motor_")]
 
 
 def _missing(entries: Mapping[str, Entry], source: Source) -> list[Question]:

@@ -54,7 +54,8 @@ class Map:
 
     def open_questions(self) -> Iterator[InputError]:
         """One error for each `?` that still stands in it."""
-        for section, content in (("columns", self.columns), *self.rig.items()):
+        sections = {"columns": self.columns, "clocks": self.clocks, **self.rig}
+        for section, content in sections.items():
             for key, value in content.items():
                 if isinstance(value, str) and (value.strip() == OPEN or f"[{OPEN}]" in value):
                     yield InputError(

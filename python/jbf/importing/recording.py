@@ -54,7 +54,7 @@ def read_recording(
     InputError
         A column is not there, a unit does not fit, a cell or a time is wrong.
     """
-    recording = Recording(source.path.name.partition(".")[0] or source.path.stem, source.path, "")
+    recording = Recording(_stem(source.path), source.path, "")
     try:
         channels = _channels(source, mapping)
         groups = Counter((channel.table.name, channel.clock) for channel in channels)
@@ -65,6 +65,11 @@ def read_recording(
     except InputError as error:
         raise error.within(file=source.path) from None
     return recording
+
+
+def _stem(path: Path) -> str:
+    """A file's name without its end, and without `.gz` after that."""
+    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
 
 
 def _channels(source: Source, mapping: Map) -> list[Channel]:

@@ -28,8 +28,8 @@ class Format:
         `module:function` within this package; the module is imported at first use.
     suffixes
         Ends of file names, in small letters.
-    magic
-        How its files begin.
+    magic, magic_at
+        How its files begin, or what stands so many bytes from there.
     library, extra
         What it is read by, and the extra of jbf that installs it; empty where it comes with jbf.
     """
@@ -40,6 +40,7 @@ class Format:
     magic: tuple[bytes, ...] = ()
     library: str = ""
     extra: str = ""
+    magic_at: int = 0
 
     def open(self, path: Path, options: Options) -> Source:
         """The file as a source; an InputError where the library is absent."""
@@ -74,7 +75,7 @@ FORMATS = (
         "Parquet", "parquet:open_parquet", (".parquet", ".pq"), (b"PAR1",), "pyarrow", "parquet"
     ),
     Format("an Excel workbook", "excel:open_excel", (".xlsx", ".xlsm"), (), "openpyxl", "excel"),
-    Format("MAT v7.3", "mat73:open_mat73", (), (b"MATLAB 7.3",), "h5py", "mat73"),
+    Format("MAT v7.3", "mat73:open_mat73", (), (_HDF,), "h5py", "mat73", 512),
     Format("MAT", "mat:open_mat", (".mat",), (b"MATLAB 5.0",)),
     Format("HDF5", "hdf5:open_hdf5", (".h5", ".hdf5", ".hdf", ".he5"), (_HDF,), "h5py", "hdf5"),
     Format("NumPy", "numpy_arrays:open_arrays", (".npy", ".npz"), (b"\x93NUMPY",)),
@@ -101,14 +102,14 @@ def format_of(path: Path) -> Format:
         raise InputError(file=path, problem="is a folder", mend="name the files in it")
     try:
         with path.open("rb") as file:
-            begin = file.read(16)
+            begin = file.read(520)
     except OSError as error:
         reason = (error.strerror or type(error).__name__).lower()
         raise InputError(
             file=path, problem=f"cannot be read ({reason})", mend="check the path"
         ) from None
     for known in FORMATS:
-        if any(begin.startswith(magic) for magic in known.magic):
+        if any(begin.startswith(magic, known.magic_at) for magic in known.magic):
             return known
     suffix = path.suffix.lower()
     by_name = next((f for f in FORMATS if suffix in f.suffixes), None)

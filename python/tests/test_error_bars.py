@@ -41,7 +41,8 @@ def plain() -> list[tuple[str, str, Parameter]]:
 
 
 def motions() -> list[Run]:
-    """Two loads; a swell of two sines, then strokes with rests between; shaft angle and place."""
+    """Two loads; a swell of two sines, then strokes with rests between; shaft angle and place; a
+    temperature that wanders."""
     t = np.arange(0.0, 12.0, STEP_S)
     swell = 0.05 * np.minimum(t, 1.0) * (np.cos(4.0 * t) + 0.7 * np.cos(1.3 * t + 1.0))
     phase = np.mod(t, 3.0)
@@ -53,7 +54,12 @@ def motions() -> list[Run]:
         path = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * STEP_S)))
         runs.append(
             Run.from_arrays(
-                t, v, angle_rad=path / radius_m, load_n=np.full(len(t), load_n), name=name
+                t,
+                v,
+                angle_rad=path / radius_m,
+                load_n=np.full(len(t), load_n),
+                temperature_c=30.0 + 10.0 * np.sin(0.4 * t),
+                name=name,
             )
         )
     return runs

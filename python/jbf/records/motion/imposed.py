@@ -22,6 +22,7 @@ import numpy.typing as npt
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
 from jbf.records.motion.believed import NOT_AS_RECORDED, believed
+from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.rests import (
     place_rests,
     rest_edges,
@@ -180,6 +181,9 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
     without_swings(rest, velocity, sign_known)
     # A contact that bends begins bent where the run begins in motion: noise is none.
+    if n and begins_in_a_hum(time, velocity):
+        # Models begin at rest there, whatever its force is.
+        sign_known[0] = False
     if n and not sign_known[0]:
         velocity[0] = 0.0
     angle = smooth_path / (radius_m or records.arm_m)

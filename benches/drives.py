@@ -1,8 +1,8 @@
 """How often a diagnosis of simulated drives is right: `python benches/drives.py --seeds 4`.
 
 Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library),
-with nothing hidden, each effect of drives alone, two of them, or something that no catalogue has.
-Six runs are diagnosed, two more of the same drive are predicted.
+with nothing hidden, each effect of drives alone, two of them, something that no catalogue has, or
+a thermometer and what it tells. Six runs are diagnosed, two more of the same drive are predicted.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from dataclasses import dataclass, replace
 
 import jbf
 import numpy as np
-from rigsim import AXIS_EFFECTS, AxisRun, axis_campaign
+from rigsim import AXIS_EFFECTS, OF_TEMPERATURE, AxisRun, axis_campaign
 from rigsim.foreign import FOREIGN, draw_foreign
+from rigsim.warmth import Kind
 
-KINDS = ("none", "single", "pair", "foreign")
+KINDS = ("none", "single", "pair", "foreign", "temperature")
 COMPANY = {
     "torque_proportional": ("gravity",),
     "cogging_2": ("cogging",),
@@ -30,6 +31,14 @@ COMPANY = {
 """What must be hidden beside an effect for it to show."""
 SWING = 8.0
 """A joint whose weight is carried swings so much wider than a slide."""
+WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
+    ((), "wandering"),
+    ((), "warming"),
+    *(((name,), course) for name in OF_TEMPERATURE for course in ("wandering", "warming", "days")),
+    (OF_TEMPERATURE, "wandering"),
+    (("warm_up",), "wandering"),
+)
+"""What is hidden where a thermometer is read, and how the temperature goes."""
 FITTED, PREDICTED = 6, 2
 NONE_A_ROUND, PAIRS_A_ROUND = 6, 8
 
@@ -42,6 +51,7 @@ class Task:
     seed: int
     effects: tuple[str, ...] = ()
     foreign: str = ""
+    temperature: Kind | None = None
 
 
 @dataclass(frozen=True)
@@ -58,10 +68,11 @@ class Answer:
 
 def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
     """The campaigns of some rounds; no two share a seed."""
-    singles = [tuple(sorted({name, *COMPANY.get(name, ())})) for name in AXIS_EFFECTS]
+    cold = [name for name in AXIS_EFFECTS if name not in OF_TEMPERATURE]
+    singles = [tuple(sorted({name, *COMPANY.get(name, ())})) for name in cold]
     together = [
         tuple(sorted(pair))
-        for pair in itertools.combinations(AXIS_EFFECTS, 2)
+        for pair in itertools.combinations(cold, 2)
         if not set(COMPANY) & set(pair)
     ]
     for number in rounds:
@@ -72,6 +83,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
         plan += [Task("pair", 0, effects) for effects in drawn]
         # Cogging is in this catalogue.
         plan += [Task("foreign", 0, (), name) for name in FOREIGN if name != "cogging"]
+        plan += [Task("temperature", 0, effects, "", course) for effects, course in WARM]
         for i, task in enumerate(plan):
             if task.kind in kinds:
                 yield replace(task, seed=1000 * number + i)
@@ -81,7 +93,13 @@ def recorded(run: AxisRun, joint: bool) -> jbf.Run:
     """A run as the library takes it: a joint has an angle, a slide a position."""
     path = {"angle_rad" if joint else "position_m": run.path}
     return jbf.Run.from_arrays(
-        run.time_s, run.velocity_m_s, run.force_n, load_n=run.load_n, name=run.name, **path
+        run.time_s,
+        run.velocity_m_s,
+        run.force_n,
+        load_n=run.load_n,
+        temperature_c=run.temperature_c,
+        name=run.name,
+        **path,
     )
 
 
@@ -89,7 +107,14 @@ def simulated(task: Task) -> tuple[list[jbf.Run], float]:
     """The runs, and the noise on them, N."""
     joint = "gravity" in task.effects or task.seed % 2 == 0
     swing = SWING if "torque_proportional" in task.effects else 1.0
-    records, truth = axis_campaign(task.seed, task.effects, runs=FITTED + PREDICTED, swing=swing)
+    records, truth = axis_campaign(
+        task.seed,
+        task.effects,
+        runs=FITTED + PREDICTED,
+        swing=swing,
+        temperature=task.temperature,
+        thermometer="coarse" if task.seed % 2 else "fine",
+    )
     if task.foreign:
         rng = np.random.default_rng([task.seed, 16])
         strange = draw_foreign(task.foreign, rng)

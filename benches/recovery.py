@@ -28,6 +28,7 @@ import rigsim
 from rigruns import rig_of, runs_of
 from rigsim.campaign import draw_base
 from rigsim.motions import Motion
+from rigsim.warmth import REFERENCE_C, draw_warmth
 
 NOISE_SHARE = 0.0175
 WIDTH = 1.959964
@@ -65,16 +66,20 @@ def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
     random = np.random.default_rng([seed, zlib.crc32((effect or "").encode())])
     effects = {} if effect is None else {effect: rigsim.draw(effect, random)}
 
-    def record(motion: Motion) -> rigsim.Record:
+    def record(number: int, motion: Motion) -> rigsim.Record:
+        warmth = None
+        if effect in rigsim.BY_THERMOMETER:
+            warmth = draw_warmth("wandering", number, motion.duration_s, random)
         return rigsim.simulate_run(
             base,
             effects,
             motion,
             start_angle_rad=float(random.uniform(0.0, 2.0 * math.pi)),
             load_n=base.load_n * plan.load_shares.get(motion.name, 1.0),
+            warmth=warmth,
         )
 
-    return Truth(base, effects, {m.name: record(m) for m in plan.motions})
+    return Truth(base, effects, {m.name: record(i, m) for i, m in enumerate(plan.motions)})
 
 
 def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[jbf.Run]:
@@ -103,7 +108,9 @@ def errors_of(
     itself says that its own are none.
     """
     runs = measured(truth, np.random.default_rng(list(seed)), coloured)
-    fitted = jbf.fit(rig_of(truth.base.load_n), runs, list(truth.effects))
+    # The temperature at which the simulator's own viscosity holds.
+    stated = {f"{e}.T_0_c": REFERENCE_C for e in truth.effects if e in rigsim.BY_THERMOMETER}
+    fitted = jbf.fit(rig_of(truth.base.load_n), runs, list(truth.effects), fixed=stated)
     if bootstrap is not None and fitted.doubtful:
         fitted = jbf.bootstrap(fitted, runs, repeats=bootstrap).fit
     found = fitted.parameters

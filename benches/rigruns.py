@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import jbf
 import rigsim
+from rigsim.warmth import REFERENCE_C
 
 
 def simulated(
@@ -16,7 +18,13 @@ def simulated(
     `options` are those of `rigsim.simulate_campaign`.
     """
     records, truth = rigsim.simulate_campaign(seed, effects, **options)
-    return rig_of(truth["base"]["load_n"]), runs_of(records), truth
+    rig = rig_of(truth["base"]["load_n"])
+    if any(r.temperature_c is not None for r in records.values()):
+        # The viscosity holds at a temperature, and who has a thermometer knows at which.
+        assert rig.lubricant is not None
+        oil = replace(rig.lubricant, temperature_c=REFERENCE_C)
+        rig = replace(rig, lubricant=oil)
+    return rig, runs_of(records), truth
 
 
 def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
@@ -28,6 +36,7 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
             r.friction_n,
             angle_rad=r.angle_rad,
             load_n=r.load_n,
+            temperature_c=r.temperature_c,
             name=name,
         )
         for name, r in records.items()

@@ -32,7 +32,11 @@ FLOORS: list[list[tuple[str, str]]] = [
     ],
     [("comparison", "record - prediction in;\nwhere it fails out")],
     [("estimation", "model x runs in;\nparameters with errors out")],
-    [("models", "law + effects + parameters in;\nprediction out")],
+    [
+        ("", ""),  # what stands beside it is not below the rooms above
+        ("models", "law + effects + parameters in;\nprediction out"),
+        ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
+    ],
     [("records", "files in; runs, rig,\nimposed motion out")],
     [("_core", "crates/jbf-py, jbf-batch, jbf-core: the physics, once, in Rust")],
 ]
@@ -40,7 +44,7 @@ FLOORS: list[list[tuple[str, str]]] = [
 
 def imports() -> Counter[tuple[str, str]]:
     """How many imports go from one room to another."""
-    rooms = {name for floor in FLOORS for name, _ in floor}
+    rooms = {name for floor in FLOORS for name, _ in floor if name}
     found: Counter[tuple[str, str]] = Counter()
     for path in PACKAGE.rglob("*.py"):
         room = path.relative_to(PACKAGE).parts[0]
@@ -96,6 +100,8 @@ def rooms() -> Figure:
     order = [name for floor in FLOORS for name, _ in floor]
     for k, floor in enumerate(FLOORS):
         for i, (name, words) in enumerate(floor):
+            if not name:
+                continue
             x, y = 4.3 + 2.8 * (i - (len(floor) - 1) / 2), 8.6 - 1.12 * k
             places[name] = (x, y)
             box(ax, x, y, (5.2, 0.62) if name == "_core" else (2.5, 0.74), name, words)
@@ -106,7 +112,7 @@ def rooms() -> Figure:
     for a, b in pairwise(FLOORS):
         for name, _ in a:
             for other, _ in b:
-                if counts[name, other]:
+                if name and other and counts[name, other]:
                     (xa, ya), (xb, yb) = places[name], places[other]
                     arrow(ax, (xa, ya - 0.4), (xb, yb + 0.4))
     x, y = places["models"]

@@ -15,7 +15,7 @@ from pathlib import Path
 import jbf
 import numpy as np
 from jbf.models.catalogue import Effect, Parameter, built_in
-from jbf.reporting.catalogue_text import NEEDS, refused_words
+from jbf.reporting.catalogue_text import NEEDS, meaning_of, refused_words
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -36,6 +36,8 @@ class Shown:
     load_share: float = 1.0
     beside: Mapping[str, float] = field(default_factory=dict)
     """Parameters of effects without which it shows nothing, drawn on both curves."""
+    warms_c: tuple[float, float] | None = None
+    """Temperatures at the beginning and at the end, C."""
 
 
 SHOWN = {
@@ -43,6 +45,9 @@ SHOWN = {
     "backlash": Shown({"gap": 0.15}, "a sine of 2 rad/s"),
     "shear_thinning": Shown({"U_c": 0.08, "n": 1.2}),
     "thermal_thinning": Shown({"beta_q": 0.15, "tau": 60.0}, "eight periods of 1 rad/s"),
+    "vogel_viscosity": Shown(
+        {"B": 850.0, "C": -95.0, "T_0": 20.0}, "eight periods of 1 rad/s", warms_c=(20.0, 70.0)
+    ),
     "load_dependence": Shown({"p": 0.8, "q": 1.0}, load_share=0.6),
     "film_memory": Shown({"factor": 0.35}),
     "wear_in": Shown({"a": 0.6, "s_0": 1.0}, "eight periods of 1 rad/s"),
@@ -53,6 +58,12 @@ SHOWN = {
     "dry_load_dependence": Shown({"mu": 0.08}),
     "viscous_load_dependence": Shown({"c": 0.8}),
     "viscous_asymmetry": Shown({"b": 40.0}),
+    "dry_temperature_dependence": Shown(
+        {"a": -0.008, "T_0": 20.0}, "eight periods of 1 rad/s", warms_c=(20.0, 70.0)
+    ),
+    "viscous_temperature_dependence": Shown(
+        {"B": 600.0, "C": -95.0, "T_0": 20.0}, "eight periods of 1 rad/s", warms_c=(20.0, 70.0)
+    ),
     "dry_asymmetry": Shown({"a": 0.25}),
     "stribeck_asymmetry": Shown({"c": 4.0, "v_s": 0.02, "n": 1.0}),
     "stroke_dependence": Shown(
@@ -128,7 +139,14 @@ def draw(effect: Effect) -> Figure:
     assert RIG.load is not None
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) / RATE_HZ)))
     load = np.full(len(time), what.load_share * RIG.load.normal_n)
-    run = jbf.Run.from_arrays(time, speed, angle_rad=angle / RIG.bearing.radius_m, load_n=load)
+    celsius = None if what.warms_c is None else np.linspace(*what.warms_c, len(time))
+    run = jbf.Run.from_arrays(
+        time,
+        speed,
+        angle_rad=angle / RIG.bearing.radius_m,
+        load_n=load,
+        temperature_c=celsius,
+    )
     own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
     others = _others(what)
@@ -164,6 +182,8 @@ def page(effect: Effect) -> str:
     under = f"under {what.motion}"
     if what.load_share != 1.0:
         under += f" and {what.load_share:g} of the rig's load"
+    if what.warms_c is not None:
+        under += " while it warms from {:g} to {:g} C".format(*what.warms_c)
     if what.beside:
         named = ", ".join(f"`{n}` = {v:g}" for n, v in what.beside.items())
         under += f", both with {named}"
@@ -216,7 +236,7 @@ def _unit(units: Mapping[str, str], name: str) -> str:
 
 def _row(p: Parameter) -> str:
     null = "" if p.null is None else f"{p.null:g}"
-    return f"| {p.name} | {p.unit} | {p.lower:g} | {p.upper:g} | {null} | {p.meaning} |"
+    return f"| {p.name} | {p.unit} | {p.lower:g} | {p.upper:g} | {null} | {meaning_of(p)} |"
 
 
 def index() -> str:

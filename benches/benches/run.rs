@@ -27,6 +27,7 @@ fn run<T: Real>(c: &mut Criterion, name: &str, step_s: f64, lift: impl Fn(usize,
         acceleration_m_s2,
         angle_rad,
         load_n,
+        temperature_c: None,
     };
     let mut group = c.benchmark_group("run");
     group.throughput(Throughput::Elements((60.0 / step_s) as u64));

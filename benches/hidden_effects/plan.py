@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rigsim import CATALOGUE, FOREIGN
+from rigsim import BY_THERMOMETER, CATALOGUE, FOREIGN
 
 KINDS = ("single", "none", "pair", "foreign", "poor", "tied")
 STRENGTHS = (0.6, 1.0, 1.5)
@@ -57,7 +57,7 @@ def _kind(kind: str, seed: int) -> Iterator[Task]:
     """One round of a kind: what varies beside the seed goes round with it."""
     coloured = seed % 2 == 1
     strength = STRENGTHS[seed % len(STRENGTHS)]
-    names = sorted(CATALOGUE)
+    names = sorted(set(CATALOGUE) - set(BY_THERMOMETER))
     if kind == "single":
         for i, name in enumerate(names):
             strength = STRENGTHS[(seed + i) % len(STRENGTHS)]

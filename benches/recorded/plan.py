@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rigsim import CATALOGUE
+from rigsim import BY_THERMOMETER, CATALOGUE
 from rigsim.designs import draw_design
 from rigsim.excitation import campaign
 from rigsim.recording import ARTEFACTS, OFF_GRID, ONE_OF, STRENGTHS
@@ -73,7 +73,7 @@ def _recordings(rng: np.random.Generator) -> Iterator[tuple[str, tuple[str, ...]
 
 def _round(number: int) -> list[Task]:
     rng = np.random.default_rng([number, 14])
-    names = sorted(CATALOGUE)
+    names = sorted(set(CATALOGUE) - set(BY_THERMOMETER))
     ones = itertools.cycle([(n,) for n in rng.permutation(names).tolist()])
     pairs = itertools.cycle(rng.permutation(list(itertools.combinations(names, 2))).tolist())
     found = []

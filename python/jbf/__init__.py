@@ -16,6 +16,7 @@ from jbf.models.batch import batch
 from jbf.models.catalogue import Parameter, effects, laws
 from jbf.models.model import Model
 from jbf.models.own_effects import forget_effect, load_effects, register_effect
+from jbf.models.own_laws import forget_law, register_law
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Trajectory, trajectories, trajectory
 from jbf.records.csv_file import read_run
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
     from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
+    from jbf.importing.guessed import Guess
+    from jbf.importing.import_files import import_files, look, read_recording
+    from jbf.importing.mapping import Map, read_map
+    from jbf.importing.result import Import
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.
@@ -48,6 +53,13 @@ _LATER = {
     "fit": "jbf.estimation.fit",
     "TrajectoryFit": "jbf.estimation.trajectory_fit",
     "fit_trajectories": "jbf.estimation.trajectory_fit",
+    "Guess": "jbf.importing.guessed",
+    "Import": "jbf.importing.result",
+    "Map": "jbf.importing.mapping",
+    "import_files": "jbf.importing.import_files",
+    "look": "jbf.importing.import_files",
+    "read_map": "jbf.importing.mapping",
+    "read_recording": "jbf.importing.import_files",
 }
 
 __all__ = [
@@ -59,11 +71,14 @@ __all__ = [
     "Experiment",
     "FilmWarning",
     "Fit",
+    "Guess",
+    "Import",
     "InputError",
     "JbfError",
     "Limits",
     "Load",
     "Lubricant",
+    "Map",
     "Model",
     "Parameter",
     "ParameterValue",
@@ -82,12 +97,18 @@ __all__ = [
     "fit",
     "fit_trajectories",
     "forget_effect",
+    "forget_law",
+    "import_files",
     "laws",
     "load_effects",
+    "look",
+    "read_map",
+    "read_recording",
     "read_rig",
     "read_run",
     "read_runs",
     "register_effect",
+    "register_law",
     "trajectories",
     "trajectory",
 ]

@@ -24,7 +24,7 @@ class ParameterPage(TypedDict):
     period: float | None
     start: str
     bound: str
-    constant: bool
+    stated: bool
 
 class EffectPage(TypedDict):
     name: str
@@ -72,6 +72,7 @@ class Motion:
         acceleration_m_s2: Array,
         angle_rad: Array,
         load_n: Array,
+        temperature_c: Array | None = None,
     ) -> None: ...
     def __len__(self) -> int: ...
 

@@ -35,7 +35,7 @@ def plain() -> list[tuple[str, str, Parameter]]:
         (law_of(name), name, p)
         for name, e in effects().items()
         for p in e.parameters
-        if not (p.log or p.constant)
+        if not (p.log or p.stated)
     ]
     return of_laws + of_effects
 

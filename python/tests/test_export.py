@@ -15,12 +15,14 @@ from jbf.models.catalogue import Parameter
 from jbf.models.chain import MAX_STEP_S, imposed
 
 ROOT = Path(__file__).resolve().parents[2]
+OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
 
 RUST_MAIN = """
 mod drag;
 mod gear;
 mod gms;
 mod slider;
+mod warm;
 
 use jbf_core::effect::EffectSet;
 use jbf_core::law::Named;
@@ -29,7 +31,7 @@ use jbf_core::{Chain, Motion, Real};
 
 fn main() {
     let text = std::fs::read_to_string(std::env::args().nth(1).unwrap()).unwrap();
-    let mut columns: [Vec<f64>; 5] = Default::default();
+    let mut columns: [Vec<f64>; 6] = Default::default();
     for line in text.lines() {
         for (column, cell) in columns.iter_mut().zip(line.split(' ')) {
             column.push(cell.parse().unwrap());
@@ -38,6 +40,7 @@ fn main() {
     match std::env::args().nth(2).unwrap().as_str() {
         "drag" => run(drag::model::<f64>().unwrap(), drag::model::<f32>().unwrap(), &columns),
         "gear" => run(gear::model::<f64>().unwrap(), gear::model::<f32>().unwrap(), &columns),
+        "warm" => run(warm::model::<f64>().unwrap(), warm::model::<f32>().unwrap(), &columns),
         "gms" => run(gms::model::<f64>().unwrap(), gms::model::<f32>().unwrap(), &columns),
         _ => run(slider::model::<f64>().unwrap(), slider::model::<f32>().unwrap(), &columns),
     }
@@ -45,15 +48,16 @@ fn main() {
 
 fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
-    c: &[Vec<f64>; 5],
+    c: &[Vec<f64>; 6],
     dt_s: f64,
 ) -> Vec<T> {
     let motion = |i: usize| {
-        Motion::at_rest(T::of(c[4][i]))
+        let motion = Motion::at_rest(T::of(c[4][i]))
             .with_time_s(T::of(c[0][i]))
             .with_velocity_m_s(T::of(c[1][i]))
             .with_acceleration_m_s2(T::of(c[2][i]))
-            .with_angle_rad(T::of(c[3][i]))
+            .with_angle_rad(T::of(c[3][i]));
+        if c[5][i].is_nan() { motion } else { motion.with_temperature_c(T::of(c[5][i])) }
     };
     let mut state = chain.start(&motion(0));
     let mut out = vec![state.reading_n];
@@ -63,15 +67,17 @@ fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
     out
 }
 
-fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 5])
+fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 6])
 where
     L: Named<f64>,
     E: EffectSet<f64>,
     S: Named<f32>,
     F: EffectSet<f32>,
 {
-    let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] = c;
-    let record = Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n };
+    let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, celsius] = c;
+    let temperature_c = (!celsius[0].is_nan()).then_some(celsius.as_slice());
+    let record =
+        Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c };
     let mut whole = vec![0.0; time_s.len()];
     predict(&model, &record, MAX_STEP_S, |i, f| whole[i] = f);
     let (f64s, f32s) = (step(&model, c, 0.01), step(&small, c, 0.01));
@@ -89,14 +95,14 @@ C_MAIN = """
 #include "model.h"
 
 #define MOST 5000
-static double column[5][MOST], whole[MOST];
+static double column[6][MOST], whole[MOST];
 
 int main(int argc, char **argv) {
   size_t n = 0;
   FILE *file = argc > 1 ? fopen(argv[1], "r") : NULL;
   if (!file) return 1;
-  while (n < MOST && fscanf(file, "%lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
-                            &column[2][n], &column[3][n], &column[4][n]) == 5)
+  while (n < MOST && fscanf(file, "%lf %lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
+                            &column[2][n], &column[3][n], &column[4][n], &column[5][n]) == 6)
     n++;
   model_f64 model;
   model_f64_state state;
@@ -109,12 +115,14 @@ int main(int argc, char **argv) {
   }
   const double wrong = -1.0;
   if (model_f64_init(NULL, &error) != JBF_NULL) return 3;
-  jbf_record record = {n, column[0], column[1], column[2], column[3], column[4]};
+  const double *celsius = isnan(column[5][0]) ? NULL : column[5];
+  jbf_record record = {n, column[0], column[1], column[2], column[3], column[4], celsius};
   if (model_f64_predict(&model, &record, MAX_STEP_S, whole)) return 4;
   for (size_t i = 0; i < n; i++) {
-    jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i], column[3][i], column[4][i]};
+    jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i],
+                        column[3][i], column[4][i], column[5][i]};
     jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity_m_s, (float)m.acceleration_m_s2,
-                        (float)m.angle_rad, (float)m.load_n};
+                        (float)m.angle_rad, (float)m.load_n, (float)m.temperature_c};
     double f = i ? model_f64_step(&model, &state, &m, 0.01) : model_f64_start(&model, &state, &m);
     float g = i ? model_f32_step(&small, &small_state, &s, (float)0.01)
                 : model_f32_start(&small, &small_state, &s);
@@ -156,7 +164,12 @@ def models() -> dict[str, jbf.Model]:
         ),
         "slider": jbf.Model(jbf.Rig(), law="lugre", effects=["sensor_offset"]),
         "gms": jbf.Model(jbf.Rig(), law="maxwell_slip", effects=["stribeck_excess"]),
-        "gear": jbf.Model(jbf.Rig(), law="elasto_plastic", effects=["dry_load_dependence"]),
+        "gear": jbf.Model(
+            jbf.Rig(),
+            law="elasto_plastic",
+            effects=["dry_load_dependence", *OF_TEMPERATURE],
+        ),
+        "warm": jbf.Model(jbf.Rig.thesis("4.2"), effects=["vogel_viscosity"]),
     }
 
 
@@ -165,9 +178,12 @@ def motion(model: jbf.Model) -> jbf.Run:
     time_s = np.arange(0.0, 8.0, 0.01)
     speed = 0.05 * np.sin(2.0 * time_s) * (np.abs(time_s - 4.0) > 0.5)
     way = np.cumsum(speed) * 0.01
+    asked = {"vogel_viscosity", *OF_TEMPERATURE} & set(model.effects)
+    celsius = 25.0 + 2.0 * time_s if asked else None
     if model.rig.bearing is None:
-        return jbf.Run("motion", time_s, speed, angle_rad=None, position_m=way)
-    return jbf.Run.from_arrays(time_s, speed, angle_rad=way / model.rig.bearing.radius_m)
+        return jbf.Run("motion", time_s, speed, position_m=way, temperature_c=celsius)
+    angle = way / model.rig.bearing.radius_m
+    return jbf.Run.from_arrays(time_s, speed, angle_rad=angle, temperature_c=celsius)
 
 
 def run(*command: object, folder: Path) -> str:
@@ -187,7 +203,10 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, model in models().items():
         record, m = motion(model), imposed(model.rig, motion(model))
         load = np.full(len(record), 104.0 if model.rig.load else 1.0)
-        columns = (record.time_s, m.velocity_m_s, m.acceleration_m_s2, m.angle_rad, load)
+        celsius = record.temperature_c
+        if celsius is None:
+            celsius = np.full(len(record), np.nan)
+        columns = (record.time_s, m.velocity_m_s, m.acceleration_m_s2, m.angle_rad, load, celsius)
         rows = zip(*(c.tolist() for c in columns), strict=True)
         text = "\n".join(" ".join(map(repr, row)) for row in rows)
         (folder / f"{name}.txt").write_text(text + "\n")

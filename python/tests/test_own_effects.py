@@ -286,14 +286,15 @@ def test_columns_of_the_record_reach_the_function() -> None:
 def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = Path(__file__).resolve().parents[2] / "docs" / "own_effects.md"
     snippets = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-    assert len(snippets) == 1
+    assert len(snippets) == 2
     Rig.thesis().write(tmp_path / "rig.toml")
     (tmp_path / "runs").mkdir()
     for i, run in enumerate(make_runs({"coulomb_drag": {"F_d_n": 2.0}})):
         warm(run, i).write_csv(tmp_path / "runs" / f"{run.name}.csv")
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    exec(compile(snippets[0], page.name, "exec"), names)
+    for snippet in snippets:
+        exec(compile(snippet, page.name, "exec"), names)
     found = names["again"]
     assert isinstance(found, Model)
     value = found.parameters["warm_seal.k_n_k"]

@@ -31,7 +31,9 @@ def test_a_row_tells_bias_and_width_apart() -> None:
     assert recovery.Row.of(list(2.0 * z)).spread > 1.9
 
 
-@pytest.mark.parametrize("effect", ["coulomb_drag", "sensor_lag", "shear_thinning", "backlash"])
+@pytest.mark.parametrize(
+    "effect", ["coulomb_drag", "sensor_lag", "shear_thinning", "backlash", "vogel_viscosity"]
+)
 def test_a_few_repeats(effect: str) -> None:
     truth = recovery.make_truth(effect, 7, SHORT)
     errors = [recovery.errors_of(truth, (7, k), False) for k in range(REPEATS)]

@@ -16,6 +16,7 @@ PACKAGE = Path(jbf.__file__).parent
 ROOT = PACKAGE.parents[1]
 ROOMS = (
     "records",
+    "importing",
     "models",
     "estimation",
     "comparison",

@@ -6,9 +6,16 @@ import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import scales
-from jbf.estimation.starts import CAMPAIGN_RULES, LINEAR_RULES, RULES, with_starts
+from jbf.estimation.starts import (
+    CAMPAIGN_RULES,
+    LINEAR_RULES,
+    RULES,
+    RULES_OF_ANY_LAW,
+    with_starts,
+)
 from jbf.models.catalogue import Parameter, effects, laws, parameters_of
 
+EVERY_RULE = {**RULES, **LINEAR_RULES, **CAMPAIGN_RULES, **RULES_OF_ANY_LAW}
 MINE = Parameter("F_n", "N", lower=1e-6, upper=1e7, starts=(10.0,), start="kinetic")
 
 
@@ -19,7 +26,7 @@ def prepared() -> Campaign:
 
 def test_each_start_that_a_page_names_has_a_rule_and_each_rule_a_page() -> None:
     pages = [p for x in (*laws().values(), *effects().values()) for p in x.parameters]
-    assert {p.start for p in pages} == {"catalogue", *RULES, *LINEAR_RULES, *CAMPAIGN_RULES}
+    assert {p.start for p in pages} == {"catalogue", *EVERY_RULE}
     assert {p.bound for p in pages} == {"catalogue", "transition_speed"}
 
 

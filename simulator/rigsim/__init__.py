@@ -1,19 +1,22 @@
 """rigsim: an independent simulator of a friction rig with hidden effects."""
 
-from .axes import AXIS_EFFECTS, AxisRun, axis_campaign
+from .axes import AXIS_EFFECTS, OF_TEMPERATURE, AxisRun, axis_campaign
 from .bearing import Base, Bearing
 from .campaign import Campaign, draw_base, simulate_campaign, standard, write_campaign
-from .catalogue import CATALOGUE, draw
+from .catalogue import BY_THERMOMETER, CATALOGUE, draw
 from .foreign import FOREIGN, draw_foreign
 from .motions import Motion, multisine, polyline, sine, steps, stop_and_go, sweep, triangle
 from .noise import Noise
 from .record import Record
 from .simulate import simulate_run
+from .warmth import Warmth
 
 __all__ = [
     "AXIS_EFFECTS",
+    "BY_THERMOMETER",
     "CATALOGUE",
     "FOREIGN",
+    "OF_TEMPERATURE",
     "AxisRun",
     "Base",
     "Bearing",
@@ -21,6 +24,7 @@ __all__ = [
     "Motion",
     "Noise",
     "Record",
+    "Warmth",
     "axis_campaign",
     "draw",
     "draw_base",

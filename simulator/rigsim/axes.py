@@ -7,12 +7,13 @@ beside it. Forces are closed forms of the true motion; the records have counts a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from .catalogue import Spread
+from .warmth import REFERENCE_C, Kind, Warmth, draw_warmth, read_by, thinner
 
 Vector = npt.NDArray[np.float64]
 
@@ -62,10 +63,15 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "warm_up": {"a": Spread(0.08, 0.25, "-", 1.0), "tau": Spread(6.0, 20.0, "s")},
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
     "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
+    "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
+    "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
 }
 """Parameters as drawn at strength 1, some noises large."""
+OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
+"""Effects that show where the temperature changes."""
 
 STEP_S = 0.01
+RUN_S = 40.0
 ARM_M = 1.0
 """A joint on a radius of one metre: its angle is the path."""
 COUNTS_PER_M = 2.0e4
@@ -74,7 +80,8 @@ LOADS_N = (60.0, 100.0, 160.0)
 
 @dataclass(frozen=True)
 class AxisRun:
-    """A recorded run: time (s), angle (rad) or position (m), speed (m/s), force (N), load (N)."""
+    """A recorded run: time (s), angle (rad) or position (m), speed (m/s), force (N), load (N), and
+    temperature (C) where there is a thermometer."""
 
     name: str
     time_s: Vector
@@ -82,6 +89,7 @@ class AxisRun:
     velocity_m_s: Vector
     force_n: Vector
     load_n: Vector
+    temperature_c: Vector | None = None
 
 
 def draw_axis(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str, float]:
@@ -96,16 +104,30 @@ def axis_campaign(
     strength: float = 1.0,
     runs: int = 6,
     swing: float = 1.0,
+    temperature: Kind | None = None,
+    thermometer: str = "fine",
 ) -> tuple[list[AxisRun], dict[str, object]]:
     """Runs of one drive, each under one of three loads, and the truth behind them.
 
-    `swing` widens the motion: times 8 it is a joint's, a radian or two to either side.
+    `swing` widens the motion: times 8 it is a joint's, a radian or two to either side. The
+    temperature changes where an effect asks for it, or where its course is given.
     """
     rng = np.random.default_rng([seed, 77])
     hidden = {name: draw_axis(name, rng, strength) for name in effects}
     law = {"F_c_n": float(rng.uniform(3.0, 9.0)), "F_v_n_s_m": float(rng.uniform(15.0, 60.0))}
     noise_n = float(rng.uniform(0.15, 0.35))
-    records = [_run(i, law, hidden, noise_n, rng, swing) for i in range(runs)]
+    if temperature is None and set(effects) & set(OF_TEMPERATURE):
+        temperature = "wandering"
+    records = []
+    # A stream of its own: a campaign with a thermometer is the one without it.
+    air = np.random.default_rng([seed, 78])
+    for i in range(runs):
+        warmth = None if temperature is None else draw_warmth(temperature, i, RUN_S, air)
+        record = _run(i, law, hidden, noise_n, rng, swing, warmth)
+        if record.temperature_c is not None:
+            celsius = read_by(thermometer, record.time_s, record.temperature_c, air)
+            record = replace(record, temperature_c=celsius)
+        records.append(record)
     return records, {"law": law, "effects": hidden, "noise_n": noise_n}
 
 
@@ -116,8 +138,9 @@ def _run(
     noise_n: float,
     rng: np.random.Generator,
     swing: float,
+    warmth: Warmth | None,
 ) -> AxisRun:
-    time = np.arange(0.0, 40.0, STEP_S)
+    time = np.arange(0.0, RUN_S, STEP_S)
     rates = 2.0 * math.pi * rng.uniform(0.05, 0.6, 3)
     sizes, phases = swing * rng.uniform(0.03, 0.09, 3), rng.uniform(0.0, 2.0 * math.pi, 3)
     waves = rates[:, None] * time + phases[:, None]
@@ -125,7 +148,8 @@ def _run(
     acceleration = (sizes * rates) @ np.cos(waves)
     path = -(sizes / rates) @ np.cos(waves)
     load = np.full(len(time), LOADS_N[i % len(LOADS_N)])
-    force = _force(law, hidden, speed, acceleration, path, load, time)
+    celsius = None if warmth is None else warmth.along(time)
+    force = _force(law, hidden, speed, acceleration, path, load, time, celsius)
     return AxisRun(
         name=f"{i}_load_{load[0]:g}",
         time_s=time,
@@ -133,6 +157,7 @@ def _run(
         velocity_m_s=speed + 2e-4 * rng.standard_normal(len(time)),
         force_n=force + noise_n * rng.standard_normal(len(time)),
         load_n=load,
+        temperature_c=celsius,
     )
 
 
@@ -144,6 +169,7 @@ def _force(
     path: Vector,
     load: Vector,
     time: Vector,
+    celsius: Vector | None,
 ) -> Vector:
     """What the drive must push with, N."""
 
@@ -157,6 +183,10 @@ def _force(
     level = level * _along_the_stroke(hidden, path)
     slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
     slope = slope + of("viscous_asymmetry", "b") * ahead
+    if celsius is not None:
+        level = level * (1.0 + of("dry_temperature_dependence", "a") * (celsius - REFERENCE_C))
+        b_k = of("viscous_temperature_dependence", "B")
+        slope = slope * np.array([thinner(b_k, c) for c in celsius.tolist()])
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
     carried = weight + of("inertia_leak", "m_e") * a

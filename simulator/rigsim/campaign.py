@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from .noise import Noise
 from .record import Record
 from .seeds import stream
 from .simulate import simulate_run
+from .warmth import Kind, draw_warmth, read_by
 
 
 @dataclass(frozen=True)
@@ -129,13 +130,16 @@ def simulate_campaign(
     coloured: bool = False,
     campaign: str | Campaign = "full",
     foreign: Sequence[str] = (),
+    temperature: Kind | None = None,
+    thermometer: str = "fine",
 ) -> tuple[dict[str, Record], dict[str, Any]]:
     """Records by run name, and the truth behind them.
 
     `effects` are names (parameters are drawn at `strength`) or name -> parameters. `noise` is
     the white sd as a share of the nominal peak f_m F, drawn from 1 to 2.5 % if None;
     `coloured` adds a first-order part half as large with 0.2 s. Rig, effects and noise level
-    depend on `seed` alone, so two campaigns with one seed are of the same rig.
+    depend on `seed` alone, so two campaigns with one seed are of the same rig. The temperature
+    changes, and is recorded, where an effect asks for it or where its course is given.
     """
     plan = standard(campaign) if isinstance(campaign, str) else campaign
     base = draw_base(seed)
@@ -148,7 +152,11 @@ def simulate_campaign(
     meter = Noise(share * base.f_m * base.load_n, coloured_share=0.5 if coloured else 0.0)
     records: dict[str, Record] = {}
     weight: dict[str, float] = {}
-    for motion in plan.motions:
+    if temperature is None and "vogel_viscosity" in chosen:
+        temperature = "wandering"
+    for number, motion in enumerate(plan.motions):
+        air = stream(seed, "temperature", motion.name)
+        warmth = temperature and draw_warmth(temperature, number, motion.duration_s, air)
         rng = stream(seed, plan.name, motion.name)
         angle = float(rng.uniform(0.0, 2.0 * math.pi))
         load = base.load_n * plan.load_shares.get(motion.name, 1.0)
@@ -161,7 +169,11 @@ def simulate_campaign(
             foreign=strange,
             noise=meter,
             rng=rng,
+            warmth=warmth or None,
         )
+        if record.temperature_c is not None:
+            celsius = read_by(thermometer, record.time_s, record.temperature_c, air)
+            record = replace(record, temperature_c=celsius)
         records[motion.name] = record
         if meter.friction_n > 0.0:
             bare = simulate_run(base, {}, motion, load_n=load) if chosen or strange else record

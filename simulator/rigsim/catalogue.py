@@ -48,6 +48,7 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
         "beta_q": Spread(0.05, 0.13, "1/J", 1.0),
         "tau": Spread(60.0, 160.0, "s"),
     },
+    "vogel_viscosity": {"B": Spread(600.0, 1000.0, "K", 1.0)},
     "shear_thinning": {"U_c": Spread(0.08, 0.16, "m/s", -1.0), "n": Spread(0.8, 1.5, "-")},
     "film_memory": {"factor": Spread(2.0, 3.0, "-")},
     "presliding": {"sigma": Spread(1200.0, 3000.0, "1/m", -1.0)},
@@ -77,11 +78,15 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
     "sensor_drift": {"d": Spread(0.008, 0.02, "N/s", 1.0, signed=True)},
 }
 
+BY_THERMOMETER = ("vogel_viscosity",)
+"""Effects that show where the temperature changes, which is then recorded."""
+
 NULLS: dict[str, dict[str, float]] = {
     "drive_compliance": {"k": math.inf},
     "backlash": {"gap": 0.0},
     "load_dependence": {"p": 0.0, "q": 0.0},
     "thermal_thinning": {"beta_q": 0.0},
+    "vogel_viscosity": {"B": 0.0},
     "shear_thinning": {"U_c": math.inf},
     "film_memory": {"factor": 1.0},
     "presliding": {"sigma": math.inf},

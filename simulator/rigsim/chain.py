@@ -9,23 +9,29 @@ from .contact import Contact, Path
 from .film import Film
 from .lubricant import Lubricant, Parameters
 from .other import OtherFriction
+from .warmth import Warmth
 
 
 class Chain:
     """Lubricant, film, contact, other friction and sensor lag of one rig.
 
     The state holds eps, phi and, where their effects are on, heat beta T (-), bristle
-    deflection (m) and lagged friction (N), in that order.
+    deflection (m), lagged friction (N) and the time (s) that a thermometer asks for, in that
+    order.
     """
 
     def __init__(
-        self, base: Base, effects: Parameters, film_start: tuple[float, float] | None = None
+        self,
+        base: Base,
+        effects: Parameters,
+        film_start: tuple[float, float] | None = None,
+        warmth: Warmth | None = None,
     ) -> None:
         self.load_n = base.load_n
         self.film_start = film_start
         memory = effects.get("film_memory", {}).get("factor", 1.0)
         self.film = Film.of(base, memory)
-        self.lubricant = Lubricant(effects, base.U_tr)
+        self.lubricant = Lubricant(effects, base.U_tr, warmth)
         self.contact = Contact(effects, self.film, base.f_m)
         self.other = OtherFriction(effects)
         self.lag_s = effects.get("sensor_lag", {}).get("tau", 0.0)
@@ -33,6 +39,7 @@ class Chain:
         self.heat_at = self._slot(self.lubricant.heats)
         self.bristle_at = self._slot(self.contact.sigma > 0.0)
         self.lag_at = self._slot(self.lag_s > 0.0)
+        self.time_at = self._slot(self.lubricant.warmth is not None)
 
     def _slot(self, wanted: bool) -> int:
         if not wanted:
@@ -63,7 +70,8 @@ class Chain:
 
     def _film_speed(self, y: Sequence[float], speed: float) -> float:
         heat = y[self.heat_at] if self.heat_at >= 0 else 0.0
-        return self.lubricant.film_speed(speed, heat)
+        time_s = y[self.time_at] if self.time_at >= 0 else 0.0
+        return self.lubricant.film_speed(speed, heat, time_s)
 
     def unsigned(self, y: Sequence[float], v: float, sign: int, path: Path) -> float:
         """Sliding friction coefficient of the contact (-), without its sign."""
@@ -109,6 +117,10 @@ class Chain:
         speed = abs(v)
         ub = self._film_speed(y, speed)
         out = list(self.film.rates(y[0], y[1], ub))
+        if self.time_at >= 0:
+            # Thin oil leaves the gap sooner: the squeeze goes with 1/mu.
+            thick = self.lubricant.thickness(y[self.time_at])
+            out = [rate / thick for rate in out]
         if self.size == 2:
             return out
         if self.heat_at >= 0:
@@ -121,4 +133,6 @@ class Chain:
             force = self.bearing(y, v, sign, path, held_n)
             force += self.other.force(v, sign, acceleration)
             out.append((force - y[self.lag_at]) / self.lag_s)
+        if self.time_at >= 0:
+            out.append(1.0)
         return out

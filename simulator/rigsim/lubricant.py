@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import math
 
+from .warmth import Warmth, thinner
+
 Parameters = dict[str, dict[str, float]]
 
 
 class Lubricant:
-    """Speed seen by the film under `thermal_thinning` and `shear_thinning`.
+    """Speed seen by the film under `thermal_thinning`, `shear_thinning` and `vogel_viscosity`.
 
     The heat is kept as h = beta T (-), so that only beta q (1/J) and tau (s) matter.
     """
 
-    def __init__(self, effects: Parameters, transition_speed: float) -> None:
+    def __init__(
+        self, effects: Parameters, transition_speed: float, warmth: Warmth | None = None
+    ) -> None:
+        self.b_k = effects.get("vogel_viscosity", {}).get("B", 0.0)
+        self.warmth = warmth if self.b_k else None
         thermal = effects.get("thermal_thinning")
         self.heats = thermal is not None
         self.heating = thermal["beta_q"] if thermal else 0.0
@@ -23,16 +29,23 @@ class Lubricant:
         self.shear_power = shear["n"] if shear else 1.0
         self._scale = 1.0 / transition_speed
 
-    def film_speed(self, speed: float, heat: float) -> float:
-        """|Ub| (-) for the surface speed |U| (m/s) and heat beta T (-)."""
+    def film_speed(self, speed: float, heat: float, time_s: float = 0.0) -> float:
+        """|Ub| (-) for the surface speed |U| (m/s) and heat beta T (-) at a time (s)."""
         if speed <= 0.0:
             return 0.0
         ub = speed * self._scale
         if self.shear_speed > 0.0:
             ub /= 1.0 + (speed / self.shear_speed) ** self.shear_power
+        ub *= self.thickness(time_s)
         if self.heats:
             ub *= math.exp(-heat)
         return ub
+
+    def thickness(self, time_s: float) -> float:
+        """Viscosity over that at the reference temperature at a time (s)."""
+        if self.warmth is None:
+            return 1.0
+        return thinner(self.b_k, self.warmth.at(time_s))
 
     def heat_rate(self, power_w: float, heat: float) -> float:
         """d(beta T)/dt (1/s) at friction power `power_w` (W) of one bearing."""

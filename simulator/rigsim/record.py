@@ -13,7 +13,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Record:
-    """Samples of one run: s, rad, m/s, N, N; `clean_friction_n` is free of noise."""
+    """Samples of one run: s, rad, m/s, N, N, C; `clean_friction_n` is free of noise."""
 
     time_s: Vector
     angle_rad: Vector
@@ -21,6 +21,7 @@ class Record:
     friction_n: Vector
     load_n: Vector
     clean_friction_n: Vector
+    temperature_c: Vector | None = None
 
     def write(self, path: Path) -> None:
         """Write the run as CSV in the contract's columns (without the clean friction)."""
@@ -34,4 +35,7 @@ class Record:
         rows = ["time_s,angle_rad,velocity_m_s,friction_n,load_n"]
         for t, angle, v, force, load in zip(*(c.tolist() for c in columns), strict=True):
             rows.append(f"{t:.3f},{angle:.5f},{v:.6f},{force:.4f},{load:.1f}")
+        if self.temperature_c is not None:
+            warmth = ["temperature_c", *(f"{c:.2f}" for c in self.temperature_c.tolist())]
+            rows = [f"{row},{celsius}" for row, celsius in zip(rows, warmth, strict=True)]
         path.write_text("\n".join(rows) + "\n", encoding="utf-8")

@@ -19,6 +19,7 @@ from .noise import Noise
 from .record import Record, Vector
 from .rigid import run_rigid
 from .slack import behind_gap
+from .warmth import Warmth
 
 
 def commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
@@ -48,6 +49,7 @@ def cell_force(
     times: Vector,
     start_angle_rad: float = 0.0,
     film_start: tuple[float, float] | None = None,
+    warmth: Warmth | None = None,
 ) -> Vector:
     """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending).
 
@@ -59,7 +61,7 @@ def cell_force(
         journal = behind_gap(motion, effects["backlash"]["gap"], radius)
     # A late record shows at each instant the force of tau before; at first that of the start.
     seen = np.maximum(times - effects.get("time_delay", {}).get("tau", 0.0), 0.0)
-    chain = Chain(base, effects, film_start)
+    chain = Chain(base, effects, film_start, warmth)
     if "drive_compliance" in effects:
         drive = CompliantDrive(
             chain, effects["drive_compliance"], base.bearing.count, radius, start_angle_rad
@@ -79,11 +81,13 @@ def simulate_run(
     foreign: Sequence[Foreign] = (),
     noise: Noise | None = None,
     rng: np.random.Generator | None = None,
+    warmth: Warmth | None = None,
 ) -> Record:
     """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` ones.
 
     `load_n` is the load of this run, that of `base` if None. Without `noise` the record is
-    exact; `rng` is needed by noise and some foreign effects.
+    exact; `rng` is needed by noise and some foreign effects. A `warmth` is recorded, without
+    noise.
     """
     effects = check(effects)
     rng = rng if rng is not None else np.random.default_rng(0)
@@ -92,7 +96,7 @@ def simulate_run(
     if load_n is not None:
         base = under_load(base, load_n, effects)
     radius = base.bearing.radius_m
-    force = cell_force(base, effects, motion, times, start_angle_rad)
+    force = cell_force(base, effects, motion, times, start_angle_rad, warmth=warmth)
     clean = read_out(force, times, effects)
     speed, position = commanded(motion, times)
     angle = start_angle_rad + position / radius
@@ -104,4 +108,5 @@ def simulate_run(
         velocity = noise.velocity(speed, rng)
         angle = noise.angle(angle)
     load = np.full(len(times), base.load_n)
-    return Record(times, angle, velocity, friction, load, clean)
+    celsius = None if warmth is None else warmth.along(times)
+    return Record(times, angle, velocity, friction, load, clean, celsius)

@@ -1,10 +1,11 @@
 """Each effect's form: null, order of magnitude, and what defines it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from rigsim import CATALOGUE, Base, draw, polyline, simulate_run, sine, stop_and_go
+from rigsim import CATALOGUE, Base, Warmth, draw, polyline, simulate_run, sine, stop_and_go
 from rigsim.catalogue import NULLS
 
 BASE = Base()
@@ -53,7 +54,9 @@ def test_fades_towards_its_null(name):
 def test_standard_strength_shows(name):
     motion = STOP if name == "dwell_stiction" else SWING
     load = 83.5 if name == "load_dependence" else None
-    gap = force({name: drawn(name)}, motion, load_n=load) - force({}, motion, load_n=load)
+    cold = Warmth(18.0) if name == "vogel_viscosity" else None
+    hidden = force({name: drawn(name)}, motion, load_n=load, warmth=cold)
+    gap = hidden - force({}, motion, load_n=load)
     assert np.sqrt(np.mean(gap**2)) > 0.05
 
 
@@ -155,3 +158,26 @@ def test_wrong_names_are_refused():
         force({"magic": {}})
     with pytest.raises(ValueError, match="takes F_d"):
         force({"coulomb_drag": {"force": 1.0}})
+
+
+def test_a_warm_film_is_that_of_a_thinner_oil():
+    """At a steady temperature: another oil, and with it another transition speed."""
+    thin = math.exp(800.0 / (45.0 + 95.0) - 800.0 / (25.0 + 95.0))
+    oil = replace(BASE.bearing, viscosity_pa_s=BASE.bearing.viscosity_pa_s * thin)
+    other = replace(BASE, U_tr=BASE.U_tr / thin, bearing=oil)
+    warm = force({"vogel_viscosity": {"B": 800.0}}, warmth=Warmth(45.0))
+    thinner = simulate_run(other, {}, SWING).friction_n
+    np.testing.assert_allclose(warm, thinner, atol=1e-5)
+    assert np.max(np.abs(warm - force({}))) > 0.5
+
+
+def test_a_film_follows_a_temperature_that_changes():
+    """Cold at first and warm at last; in between it is neither."""
+    hidden = {"vogel_viscosity": {"B": 900.0}}
+    speed = hold(0.03)
+    cold, warm = (force(hidden, speed, warmth=Warmth(c)) for c in (15.0, 40.0))
+    warming = force(hidden, speed, warmth=Warmth(15.0, rise_k=25.0, tau_s=6.0))
+    apart = abs(cold[-1] - warm[-1])
+    assert apart > 1.0
+    assert abs(warming[-1] - warm[-1]) < 0.02 * apart
+    assert np.max(np.abs(warming - warm)) > 0.5 * apart

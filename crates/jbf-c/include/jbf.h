@@ -46,19 +46,20 @@ typedef struct {
   uint32_t count; /* bearings on the shaft */
 } jbf_bearing;
 
-/* An imposed motion at one instant; on a linear axis angle_rad is the place in m. */
+/* An imposed motion at one instant; on a linear axis angle_rad is the place in m. A temperature is
+ * what effects of temperature ask for: NAN where none is measured, which is as at their reference. */
 typedef struct {
-  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n;
+  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
 } jbf_motion_f32;
 
 typedef struct {
-  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n;
+  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
 } jbf_motion_f64;
 
-/* A whole run: five columns, each of so many samples. */
+/* A whole run: columns, each of so many samples; temperature_c may be null. */
 typedef struct {
   size_t samples;
-  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n;
+  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n, *temperature_c;
 } jbf_record;
 
 /* Which parameter, which rule, which value; texts end with a zero. */
@@ -98,24 +99,24 @@ typedef struct {
   int32_t jbf_##law##_##kind##_predict(const jbf_##law##_##kind *model, const jbf_record *record,  \
                                        double max_step_s, real *out_n);
 
-JBF_DECLARE(journal, f32, float, 48, 128)
-JBF_DECLARE(journal, f64, double, 96, 256)
-JBF_DECLARE(journal_full, f32, float, 48, 128)
-JBF_DECLARE(journal_full, f64, double, 96, 256)
-JBF_DECLARE(coulomb, f32, float, 48, 128)
-JBF_DECLARE(coulomb, f64, double, 96, 256)
-JBF_DECLARE(stribeck, f32, float, 48, 128)
-JBF_DECLARE(stribeck, f64, double, 96, 256)
-JBF_DECLARE(seven_parameter, f32, float, 48, 192)
-JBF_DECLARE(seven_parameter, f64, double, 96, 384)
-JBF_DECLARE(dahl, f32, float, 48, 128)
-JBF_DECLARE(dahl, f64, double, 96, 256)
-JBF_DECLARE(lugre, f32, float, 48, 128)
-JBF_DECLARE(lugre, f64, double, 96, 256)
+JBF_DECLARE(journal, f32, float, 64, 128)
+JBF_DECLARE(journal, f64, double, 128, 256)
+JBF_DECLARE(journal_full, f32, float, 64, 128)
+JBF_DECLARE(journal_full, f64, double, 128, 256)
+JBF_DECLARE(coulomb, f32, float, 64, 128)
+JBF_DECLARE(coulomb, f64, double, 128, 256)
+JBF_DECLARE(stribeck, f32, float, 64, 128)
+JBF_DECLARE(stribeck, f64, double, 128, 256)
+JBF_DECLARE(seven_parameter, f32, float, 64, 192)
+JBF_DECLARE(seven_parameter, f64, double, 128, 384)
+JBF_DECLARE(dahl, f32, float, 64, 128)
+JBF_DECLARE(dahl, f64, double, 128, 256)
+JBF_DECLARE(lugre, f32, float, 64, 128)
+JBF_DECLARE(lugre, f64, double, 128, 256)
 JBF_DECLARE(maxwell_slip, f32, float, 64, 128)
 JBF_DECLARE(maxwell_slip, f64, double, 128, 256)
-JBF_DECLARE(elasto_plastic, f32, float, 48, 128)
-JBF_DECLARE(elasto_plastic, f64, double, 96, 256)
+JBF_DECLARE(elasto_plastic, f32, float, 64, 128)
+JBF_DECLARE(elasto_plastic, f64, double, 128, 256)
 
 #ifdef __cplusplus
 }

@@ -112,46 +112,46 @@ macro_rules! laws {
 laws! {
     journal::Journal, f32,
         jbf_journal_f32_init jbf_journal_f32_effect jbf_journal_f32_start jbf_journal_f32_step jbf_journal_f32_predict,
-        48, 128;
+        64, 128;
     journal::Journal, f64,
         jbf_journal_f64_init jbf_journal_f64_effect jbf_journal_f64_start jbf_journal_f64_step jbf_journal_f64_predict,
-        96, 256;
+        128, 256;
     journal_full::JournalFull, f32,
         jbf_journal_full_f32_init jbf_journal_full_f32_effect jbf_journal_full_f32_start jbf_journal_full_f32_step jbf_journal_full_f32_predict,
-        48, 128;
+        64, 128;
     journal_full::JournalFull, f64,
         jbf_journal_full_f64_init jbf_journal_full_f64_effect jbf_journal_full_f64_start jbf_journal_full_f64_step jbf_journal_full_f64_predict,
-        96, 256;
+        128, 256;
     coulomb::Coulomb, f32,
         jbf_coulomb_f32_init jbf_coulomb_f32_effect jbf_coulomb_f32_start jbf_coulomb_f32_step jbf_coulomb_f32_predict,
-        48, 128;
+        64, 128;
     coulomb::Coulomb, f64,
         jbf_coulomb_f64_init jbf_coulomb_f64_effect jbf_coulomb_f64_start jbf_coulomb_f64_step jbf_coulomb_f64_predict,
-        96, 256;
+        128, 256;
     stribeck::Stribeck, f32,
         jbf_stribeck_f32_init jbf_stribeck_f32_effect jbf_stribeck_f32_start jbf_stribeck_f32_step jbf_stribeck_f32_predict,
-        48, 128;
+        64, 128;
     stribeck::Stribeck, f64,
         jbf_stribeck_f64_init jbf_stribeck_f64_effect jbf_stribeck_f64_start jbf_stribeck_f64_step jbf_stribeck_f64_predict,
-        96, 256;
+        128, 256;
     seven_parameter::SevenParameter, f32,
         jbf_seven_parameter_f32_init jbf_seven_parameter_f32_effect jbf_seven_parameter_f32_start jbf_seven_parameter_f32_step jbf_seven_parameter_f32_predict,
-        48, 192;
+        64, 192;
     seven_parameter::SevenParameter, f64,
         jbf_seven_parameter_f64_init jbf_seven_parameter_f64_effect jbf_seven_parameter_f64_start jbf_seven_parameter_f64_step jbf_seven_parameter_f64_predict,
-        96, 384;
+        128, 384;
     dahl::Dahl, f32,
         jbf_dahl_f32_init jbf_dahl_f32_effect jbf_dahl_f32_start jbf_dahl_f32_step jbf_dahl_f32_predict,
-        48, 128;
+        64, 128;
     dahl::Dahl, f64,
         jbf_dahl_f64_init jbf_dahl_f64_effect jbf_dahl_f64_start jbf_dahl_f64_step jbf_dahl_f64_predict,
-        96, 256;
+        128, 256;
     lugre::LuGre, f32,
         jbf_lugre_f32_init jbf_lugre_f32_effect jbf_lugre_f32_start jbf_lugre_f32_step jbf_lugre_f32_predict,
-        48, 128;
+        64, 128;
     lugre::LuGre, f64,
         jbf_lugre_f64_init jbf_lugre_f64_effect jbf_lugre_f64_start jbf_lugre_f64_step jbf_lugre_f64_predict,
-        96, 256;
+        128, 256;
     maxwell_slip::MaxwellSlip, f32,
         jbf_maxwell_slip_f32_init jbf_maxwell_slip_f32_effect jbf_maxwell_slip_f32_start jbf_maxwell_slip_f32_step jbf_maxwell_slip_f32_predict,
         64, 128;
@@ -160,8 +160,8 @@ laws! {
         128, 256;
     elasto_plastic::ElastoPlastic, f32,
         jbf_elasto_plastic_f32_init jbf_elasto_plastic_f32_effect jbf_elasto_plastic_f32_start jbf_elasto_plastic_f32_step jbf_elasto_plastic_f32_predict,
-        48, 128;
+        64, 128;
     elasto_plastic::ElastoPlastic, f64,
         jbf_elasto_plastic_f64_init jbf_elasto_plastic_f64_effect jbf_elasto_plastic_f64_start jbf_elasto_plastic_f64_step jbf_elasto_plastic_f64_predict,
-        96, 256;
+        128, 256;
 }

@@ -55,19 +55,26 @@ pub struct CMotion<T> {
     pub angle_rad: T,
     /// Load on one bearing, N.
     pub load_n: T,
+    /// Temperature, C; NaN where none is measured.
+    pub temperature_c: T,
 }
 
 impl<T: Real> From<&CMotion<T>> for Motion<T> {
     fn from(m: &CMotion<T>) -> Self {
-        Motion::at_rest(m.load_n)
+        let motion = Motion::at_rest(m.load_n)
             .with_time_s(m.time_s)
             .with_velocity_m_s(m.velocity_m_s)
             .with_acceleration_m_s2(m.acceleration_m_s2)
-            .with_angle_rad(m.angle_rad)
+            .with_angle_rad(m.angle_rad);
+        if m.temperature_c.value().is_nan() {
+            motion
+        } else {
+            motion.with_temperature_c(m.temperature_c)
+        }
     }
 }
 
-/// A whole recorded run: five columns of one length.
+/// A whole recorded run: columns of one length.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct CRecord {
@@ -83,6 +90,8 @@ pub struct CRecord {
     pub angle_rad: *const f64,
     /// Load on one bearing, N.
     pub load_n: *const f64,
+    /// Temperature, C; null where none was recorded.
+    pub temperature_c: *const f64,
 }
 
 /// Which parameter, which value, which rule.

@@ -149,7 +149,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         let middle =
             (state.journal.velocity_m_s + journal.velocity_m_s).abs() * (T::of(0.25) * factors);
         let mut rate = T::ONE;
-        self.effects.film_rate(&state.effects, &mut rate);
+        self.effects.film_rate(&state.effects, &journal, &mut rate);
         let speed_m_s = [state.film_speed_m_s, middle, end];
         law.advance(&mut state.law, speed_m_s, rate, dt_s);
         (state.film_speed_m_s, state.film_factor) = (end, factor);
@@ -169,21 +169,55 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
 
     /// The longest step of the law under the lightest and the heaviest load of a run, s.
     pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
-        let mut longest = self.law.longest_step_s(top_m_s);
         let Some(first) = record.motion(0) else {
-            return longest;
+            return self.law.longest_step_s(top_m_s);
         };
         let mut states = self.effects.start(&first, &self.rig);
+        let oils = self.oils(&states, record, &first);
+        let longest_of = |law: &L| {
+            let steps = oils.map(|[factor, rate]| law.longest_step_s(top_m_s * factor) / rate);
+            steps[0].min(steps[1])
+        };
+        let mut longest = longest_of(&self.law);
         let loads = record.load_n.iter();
         let (light, heavy) = loads.fold((f64::INFINITY, 0.0_f64), |(low, high), &n| {
             (low.min(n), high.max(n))
         });
         for load_n in [light, heavy] {
             if let Some(law) = self.scaled(&mut states, T::of(load_n)) {
-                longest = longest.min(law.longest_step_s(top_m_s));
+                longest = longest.min(longest_of(&law));
             }
         }
         longest
+    }
+
+    /// What the lubricant makes of a speed and of the film's clock, as factors, at the coldest and
+    /// the warmest of a run.
+    fn oils(&self, states: &E::State, record: &Record<'_>, first: &Motion<T>) -> [[f64; 2]; 2] {
+        let Some(all) = record.temperature_c else {
+            return [[1.0; 2]; 2];
+        };
+        let mut rest = first.with_velocity_m_s(T::ZERO);
+        rest.temperature_c = None;
+        let rate_of = |motion: &Motion<T>| {
+            let mut rate = T::ONE;
+            let journal = JournalMotion::from(motion);
+            self.effects.film_rate(states, &journal, &mut rate);
+            rate.value()
+        };
+        let usual = rate_of(&rest);
+        let ends = all
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &c| {
+                [low.min(c), high.max(c)]
+            });
+        ends.map(|c| {
+            let motion = rest.with_temperature_c(T::of(c));
+            let mut factor = T::ONE;
+            let journal = JournalMotion::from(&motion);
+            self.effects.lubricant(states, &journal, &mut factor);
+            [factor.value(), rate_of(&motion) / usual]
+        })
     }
 
     /// The law as it is under this load, where an effect makes it another.

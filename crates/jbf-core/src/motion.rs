@@ -23,6 +23,9 @@ pub struct Motion<T> {
     pub angle_rad: T,
     /// Normal load on one bearing, N.
     pub load_n: T,
+    /// Recorded temperature, C; without one nothing differs from what it is at the reference
+    /// temperature of the effects that ask for it.
+    pub temperature_c: Option<T>,
 }
 
 impl<T: Real> Motion<T> {
@@ -35,6 +38,7 @@ impl<T: Real> Motion<T> {
             acceleration_m_s2: T::ZERO,
             angle_rad: T::ZERO,
             load_n,
+            temperature_c: None,
         }
     }
 
@@ -78,6 +82,14 @@ impl<T: Real> Motion<T> {
         self
     }
 
+    /// The same at a recorded temperature, C.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_temperature_c(mut self, temperature_c: T) -> Self {
+        self.temperature_c = Some(temperature_c);
+        self
+    }
+
     /// True where every quantity is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
@@ -86,6 +98,7 @@ impl<T: Real> Motion<T> {
             && self.acceleration_m_s2.is_finite()
             && self.angle_rad.is_finite()
             && self.load_n.is_finite()
+            && self.temperature_c.is_none_or(T::is_finite)
     }
 
     /// The same motion in another kind of number, without derivatives.
@@ -98,6 +111,7 @@ impl<T: Real> Motion<T> {
             acceleration_m_s2: lift(self.acceleration_m_s2),
             angle_rad: lift(self.angle_rad),
             load_n: lift(self.load_n),
+            temperature_c: self.temperature_c.map(lift),
         }
     }
 
@@ -115,6 +129,10 @@ impl<T: Real> Motion<T> {
             acceleration_m_s2: line(self.acceleration_m_s2, other.acceleration_m_s2),
             angle_rad: line(self.angle_rad, other.angle_rad) - sag(fraction) * bend,
             load_n: line(self.load_n, other.load_n),
+            temperature_c: match (self.temperature_c, other.temperature_c) {
+                (Some(from), Some(to)) => Some(line(from, to)),
+                (_, to) => to,
+            },
         }
     }
 }
@@ -153,6 +171,8 @@ pub struct JournalMotion<T> {
     pub time_s: T,
     /// Recorded load, N.
     pub load_n: T,
+    /// Recorded temperature, C, where there is one.
+    pub temperature_c: Option<T>,
 }
 
 impl<T: Real> JournalMotion<T> {
@@ -191,6 +211,7 @@ impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
             direction: m.velocity_m_s.sign(),
             time_s: m.time_s,
             load_n: m.load_n,
+            temperature_c: m.temperature_c,
         }
     }
 }

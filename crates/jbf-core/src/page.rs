@@ -44,6 +44,8 @@ pub enum Start {
     RipplePitch,
     /// A share of a usual run's time.
     RunTime,
+    /// The temperature at which a rig's viscosity holds, or else the mean of those on record, C.
+    ReferenceTemperature,
     /// The middle of the way that the runs cover.
     StrokeMiddle,
     /// Half of that way.
@@ -73,6 +75,7 @@ impl Start {
             Start::Pitch => "pitch",
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",
+            Start::ReferenceTemperature => "reference_temperature",
             Start::StrokeMiddle => "stroke_middle",
             Start::StrokeHalf => "stroke_half",
             Start::DriveStiffness => "drive_stiffness",
@@ -138,8 +141,10 @@ pub struct Parameter {
     pub start: Start,
     /// What bounds it from above in a fit.
     pub bound: Bound,
-    /// True of a constant of the machine, which no fit moves: it stays where it starts.
-    pub constant: bool,
+    /// True of a number that is stated, not found: a fit holds it where it starts, or where it is
+    /// told to. It says in what terms the others are meant (a reference), or stands in a form with
+    /// one parameter more than records tell.
+    pub stated: bool,
 }
 
 impl Parameter {
@@ -164,7 +169,7 @@ impl Parameter {
             mirror: Mirror::Same,
             start: Start::Catalogue,
             bound: Bound::Catalogue,
-            constant: false,
+            stated: false,
         }
     }
 
@@ -198,9 +203,9 @@ impl Parameter {
         self
     }
 
-    /// A constant of the machine, which no fit moves.
-    pub const fn constant(mut self) -> Self {
-        self.constant = true;
+    /// A number that is stated, not found.
+    pub const fn stated(mut self) -> Self {
+        self.stated = true;
         self
     }
 

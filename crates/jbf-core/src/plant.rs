@@ -287,6 +287,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
             acceleration_m_s2: (speed_rad_s - before.speed_rad_s) * radius_m / h,
             angle_rad,
             load_n: before.load_n,
+            temperature_c: None,
         };
         state.chain = before.chain;
         self.chain.step(&mut state.chain, &to, h);

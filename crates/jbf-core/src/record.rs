@@ -16,6 +16,8 @@ pub struct Record<'a> {
     pub angle_rad: &'a [f64],
     /// Load on one bearing, N.
     pub load_n: &'a [f64],
+    /// Recorded temperature, C, where there is one.
+    pub temperature_c: Option<&'a [f64]>,
 }
 
 impl Record<'_> {
@@ -34,6 +36,10 @@ impl Record<'_> {
             acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
             angle_rad: *self.angle_rad.get(i)?,
             load_n: *self.load_n.get(i)?,
+            temperature_c: match self.temperature_c {
+                Some(all) => Some(*all.get(i)?),
+                None => None,
+            },
         })
     }
 }

@@ -4,23 +4,26 @@ mod common;
 
 use common::motion::Sines;
 use common::{chain, readings};
-use jbf_core::run::{predict, Record};
+use jbf_core::run::{film_rate_1_s, predict, Record};
 use jbf_core::Motion;
 
 /// Samples of a motion as columns.
-struct Columns([Vec<f64>; 5]);
+struct Columns([Vec<f64>; 5], Option<Vec<f64>>);
 
 impl Columns {
     fn of(sines: &Sines, dt_s: f64, count: u32) -> Self {
         let motions: Vec<Motion<f64>> = (0..count).map(|i| sines.at(dt_s * f64::from(i))).collect();
         let column = |f: fn(&Motion<f64>) -> f64| motions.iter().map(f).collect();
-        Self([
-            column(|m| m.time_s),
-            column(|m| m.velocity_m_s),
-            column(|m| m.acceleration_m_s2),
-            column(|m| m.angle_rad),
-            column(|m| m.load_n),
-        ])
+        Self(
+            [
+                column(|m| m.time_s),
+                column(|m| m.velocity_m_s),
+                column(|m| m.acceleration_m_s2),
+                column(|m| m.angle_rad),
+                column(|m| m.load_n),
+            ],
+            None,
+        )
     }
 
     fn record(&self) -> Record<'_> {
@@ -31,6 +34,7 @@ impl Columns {
             acceleration_m_s2,
             angle_rad,
             load_n,
+            temperature_c: self.1.as_deref(),
         }
     }
 }
@@ -92,4 +96,46 @@ fn the_shortest_column_ends_the_run() {
     assert_eq!(run(&[], &columns, 0.01).len(), 20);
     columns.0[1].clear();
     assert!(run(&[], &columns, 0.01).is_empty());
+}
+
+/// Between its samples a temperature is on a straight line: a coarse record with one and a fine one
+/// are the same run.
+#[test]
+fn a_temperature_is_followed_between_its_samples() {
+    let sines = Sines::one_way(1.0);
+    let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[-0.03, 20.0])];
+    let warming = |dt_s: f64, count: u32| {
+        let mut columns = Columns::of(&sines, dt_s, count);
+        columns.1 = Some(columns.0[0].iter().map(|t| 20.0 + 3.0 * t).collect());
+        columns
+    };
+    let (coarse, fine) = (warming(0.02, 201), warming(0.001, 4001));
+    let [coarse, fine] = [coarse, fine].map(|columns| run(&effect, &columns, 1e-3));
+    let bare = run(&[], &Columns::of(&sines, 0.02, 201), 1e-3);
+    for (i, a) in coarse.iter().enumerate() {
+        assert!((a - fine[20 * i]).abs() < 2e-3, "{i}: {a} {}", fine[20 * i]);
+    }
+    assert!((coarse[200] - bare[200]).abs() > 0.5);
+}
+
+/// Warm oil makes a fast film: the steps of a run follow its warmest sample as those of a film of
+/// that oil, and no column, or one at the reference, asks for nothing.
+#[test]
+fn warm_oil_asks_for_short_steps() {
+    let effects: [(&str, &[f64]); 1] = [("vogel_viscosity", &[800.0, -95.0, 40.0])];
+    let chain = chain::<f64>(&effects);
+    let mut columns = Columns::of(&Sines::two_way(1.0), 0.01, 400);
+    let rate = |columns: &Columns| film_rate_1_s(&chain, &columns.record());
+    let without = rate(&columns);
+    columns.1 = Some(vec![40.0; 400]);
+    assert_eq!(rate(&columns), without);
+    if let Some(all) = columns.1.as_mut() {
+        all[17] = 90.0;
+    }
+    let warm = rate(&columns);
+    let thin = (800.0_f64 / 185.0 - 800.0 / 135.0).exp();
+    let mut slower = Sines::two_way(1.0);
+    slower.waves[0][0] *= thin;
+    let wanted = rate(&Columns::of(&slower, 0.01, 400)) / thin;
+    assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
 }

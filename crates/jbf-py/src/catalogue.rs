@@ -20,7 +20,7 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
         d.set_item("period", p.period)?;
         d.set_item("start", p.start.name())?;
         d.set_item("bound", p.bound.name())?;
-        d.set_item("constant", p.constant)?;
+        d.set_item("stated", p.stated)?;
         out.append(d)?;
     }
     Ok(out)

@@ -5,7 +5,7 @@ use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The imposed motion of one run: five arrays of one length. Python may hang attributes on it.
+/// The imposed motion of one run: arrays of one length. Python may hang attributes on it.
 #[pyclass(frozen, dict, module = "jbf._core")]
 pub struct Motion {
     time_s: Vec<f64>,
@@ -13,6 +13,7 @@ pub struct Motion {
     acceleration_m_s2: Vec<f64>,
     angle_rad: Vec<f64>,
     load_n: Vec<f64>,
+    temperature_c: Option<Vec<f64>>,
 }
 
 impl Motion {
@@ -23,6 +24,7 @@ impl Motion {
             acceleration_m_s2: &self.acceleration_m_s2,
             angle_rad: &self.angle_rad,
             load_n: &self.load_n,
+            temperature_c: self.temperature_c.as_deref(),
         }
     }
 
@@ -34,13 +36,15 @@ impl Motion {
 #[pymethods]
 impl Motion {
     #[new]
-    #[pyo3(signature = (time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n))]
+    #[pyo3(signature = (time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n,
+                        temperature_c=None))]
     fn new(
         time_s: PyReadonlyArray1<'_, f64>,
         velocity_m_s: PyReadonlyArray1<'_, f64>,
         acceleration_m_s2: PyReadonlyArray1<'_, f64>,
         angle_rad: PyReadonlyArray1<'_, f64>,
         load_n: PyReadonlyArray1<'_, f64>,
+        temperature_c: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Self> {
         let n = time_s.len();
         let column = |name: &str, a: &PyReadonlyArray1<'_, f64>| -> PyResult<Vec<f64>> {
@@ -62,6 +66,9 @@ impl Motion {
             acceleration_m_s2: column("acceleration_m_s2", &acceleration_m_s2)?,
             angle_rad: column("angle_rad", &angle_rad)?,
             load_n: column("load_n", &load_n)?,
+            temperature_c: temperature_c
+                .map(|values| column("temperature_c", &values))
+                .transpose()?,
         };
         if let Some(i) = motion.time_s.windows(2).position(|w| w[1] <= w[0]) {
             return Err(PyValueError::new_err(format!(

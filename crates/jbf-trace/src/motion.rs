@@ -1,5 +1,6 @@
 //! One motion for all: two sines with many reversals, contact and full film, a rest, and a load
-//! that jumps. Of sums, products and `jbf-core`'s own sine alone.
+//! that jumps; the temperature
+//! rises. Of sums, products and `jbf-core`'s own sine alone.
 
 use jbf_core::{Bearing, Motion, Real};
 
@@ -16,6 +17,10 @@ const REST: core::ops::Range<u32> = 240..280;
 
 /// The load (N) jumps at this sample.
 const JUMP: (u32, f64, f64) = (400, 104.0, 150.0);
+
+/// Temperature at first, C, and how fast it rises, C/s.
+const FIRST_C: f64 = 28.0;
+const RISE_C_S: f64 = 1.5;
 
 /// The motion, sample by sample.
 pub fn motions<T: Real>() -> impl Iterator<Item = Motion<T>> {
@@ -37,5 +42,6 @@ pub fn motions<T: Real>() -> impl Iterator<Item = Motion<T>> {
             .with_velocity_m_s(T::of(speed))
             .with_acceleration_m_s2(T::of(rate))
             .with_angle_rad(T::of(angle_rad))
+            .with_temperature_c(T::of(FIRST_C + RISE_C_S * time_s))
     })
 }

@@ -20,8 +20,12 @@ from typing import Any, NoReturn
 
 from jbf.errors import InputError, did_you_mean
 
-COMMANDS = ("demo", "compare", "fit", "diagnose", "predict", "export", "effects", "control")
+COMMANDS = (
+    "demo", "import", "compare", "fit", "diagnose", "predict", "export", "effects", "control",
+)  # fmt: skip
 """Modules of this package, in the order in which help lists them."""
+_MODULES = {"import": "import_files"}
+"""Of a command whose name is a word of Python."""
 
 _PIPE_CLOSED = 141
 
@@ -48,7 +52,7 @@ def parser() -> Parser:
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
     for name in COMMANDS:
-        import_module(f"jbf.cli.{name}").add(commands)
+        import_module(f"jbf.cli.{_MODULES.get(name, name)}").add(commands)
     return top
 
 

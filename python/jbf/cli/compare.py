@@ -16,6 +16,9 @@ def add(commands: Commands) -> None:
     parser = command(commands, "compare", does, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     add_runs(parser)
+    parser.add_argument(
+        "--map", metavar="MAP", help="the runs are recordings, read through this map (jbf import)"
+    )
     add_json(parser)
     add_report(parser)
     add_own(parser)
@@ -26,7 +29,10 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json, "--report": arguments.report}
     outputs.check(wanted, [arguments.model, *arguments.runs])
     model = inputs.model(arguments.model)
-    runs = inputs.runs(arguments.runs, model.rig, first="MODEL")
+    if arguments.map is None:
+        runs = inputs.runs(arguments.runs, model.rig, first="MODEL")
+    else:
+        _, runs = inputs.recordings(arguments.map, arguments.runs)
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.comparison.comparison import compare

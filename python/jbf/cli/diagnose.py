@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jbf.cli import diagnose_many, hold_out, inputs, outputs
@@ -22,7 +23,9 @@ def add(commands: Commands) -> None:
     """Put the command on the command line."""
     does = "which effect is missing: adds it and shows the error fall, until nothing is missing"
     parser = command(commands, "diagnose", does, run)
-    parser.add_argument("rig", metavar="RIG", nargs="?", help="rig file (TOML)")
+    parser.add_argument(
+        "rig", metavar="RIG", nargs="?", help="rig file (TOML), a folder of jbf import, or its map"
+    )
     add_runs(parser, needed=False)
     parser.add_argument("--out", metavar="MODEL", help="write the completed model")
     add_json(parser)
@@ -61,6 +64,13 @@ def _add_next_run(parser: Parser) -> None:
         type=float,
         help="loads that the rig can be put under; as recorded",
     )
+    group.add_argument(
+        "--temperatures-c",
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        type=float,
+        help="temperatures that it can be recorded at; as recorded",
+    )
 
 
 def _limits(arguments: argparse.Namespace) -> Limits:
@@ -71,6 +81,9 @@ def _limits(arguments: argparse.Namespace) -> Limits:
         acceleration_m_s2=arguments.max_acceleration_m_s2,
         duration_s=arguments.next_duration_s,
         load_n=None if arguments.loads_n is None else tuple(arguments.loads_n),
+        temperature_c=(
+            None if arguments.temperatures_c is None else tuple(arguments.temperatures_c)
+        ),
     )
 
 
@@ -82,7 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
                 file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
             )
         return diagnose_many.run(arguments, _limits(arguments))
-    if arguments.rig is None or not arguments.runs:
+    alone = arguments.rig is not None and Path(arguments.rig).is_dir()
+    if arguments.rig is None or not (arguments.runs or alone):
         raise InputError(
             file="jbf diagnose",
             problem="RIG and RUN are missing",
@@ -94,8 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     if arguments.law != AUTO:
         find_law(arguments.law)
-    rig = inputs.rig(arguments.rig, arguments.law)
-    runs = inputs.runs(arguments.runs, rig, first="RIG")
+    rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
     outputs.check(wanted, [run.path for run in runs if run.path])
     runs, held = hold_out.split(runs, arguments)
 

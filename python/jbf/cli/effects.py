@@ -8,7 +8,7 @@ from typing import Any
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
-from jbf.models.catalogue import Effect, effects, find_effect, find_law
+from jbf.models.catalogue import Effect, effects, find_effect, find_law, why_not
 from jbf.reporting.json import json_text
 
 
@@ -35,8 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         pages = [find_effect(arguments.name)]
         text = effect_page(pages[0])
-        if law is not None and law in pages[0].refused:
-            text += f"\n\nDoes not apply: the law {law} {pages[0].refused[law]}"
+        reason = None if law is None else why_not(pages[0], law)
+        if reason is not None:
+            text += f"\n\nDoes not apply: the law {law} {reason}"
     if arguments.json:
         outputs.write({arguments.json: json_text({"effects": list(map(_plain, pages))})})
     outputs.say(text, wanted)

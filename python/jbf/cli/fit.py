@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
@@ -15,8 +16,10 @@ def add(commands: Commands) -> None:
     """Put the command on the command line."""
     does = "fit the base law, with named effects, to runs"
     parser = command(commands, "fit", does, run)
-    parser.add_argument("rig", metavar="RIG", help="rig file (TOML)")
-    add_runs(parser)
+    parser.add_argument(
+        "rig", metavar="RIG", help="rig file (TOML), a folder of jbf import, or its map"
+    )
+    add_runs(parser, needed=False)
     parser.add_argument(
         "--effects",
         metavar="A,B",
@@ -46,12 +49,15 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     wanted = {"--out": arguments.out}
+    if not arguments.runs and not Path(arguments.rig).is_dir():
+        raise InputError(
+            file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
+        )
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
     check_applies(arguments.law, effects)
     fixed = _fixed(arguments.fix, arguments.law, effects)
-    rig = inputs.rig(arguments.rig, arguments.law)
-    runs = inputs.runs(arguments.runs, rig, first="RIG")
+    rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
     outputs.check(wanted, [run.path for run in runs if run.path])
     runs, held = hold_out.split(runs, arguments)
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.models.chain import check_rig
 from jbf.models.model import Model
@@ -15,7 +17,43 @@ from jbf.records.run import Run
 from jbf.records.run_files import read_runs
 from jbf.records.toml_file import read_toml
 
+if TYPE_CHECKING:
+    from jbf.importing.result import Import
+
 _RIG_SECTIONS = {"bearing", "lubricant", "load", "drive"}
+_imports: list[Import] = []
+"""Kept until the command ends: their folders go with them."""
+
+
+def campaign(rig_or_map: str, items: Sequence[str], law: str) -> tuple[Rig, list[Run]]:
+    """The rig and the runs: of `rig.toml` and CSV files, of a folder that an import wrote, or of a
+    map and recordings as they are."""
+    if Path(rig_or_map).is_dir():
+        found = rig(str(Path(rig_or_map) / "rig.toml"), law)
+        return found, runs(items or [rig_or_map], found, first="RIG")
+    if is_map(rig_or_map):
+        imported = recordings(rig_or_map, items)
+        if law != AUTO:
+            check_rig(imported[0], law)
+        return imported
+    found = rig(rig_or_map, law)
+    return found, runs(items, found, first="RIG")
+
+
+def is_map(path: str) -> bool:
+    """Whether a file is a map of `jbf import`."""
+    return Path(path).suffix.lower() != ".csv" and "columns" in _keys(path)
+
+
+def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
+    """Rig and runs of recordings, through a map."""
+    from jbf.importing.import_files import import_files
+
+    with shown("importing") as report:
+        found = import_files(items, map_path, progress=report)
+    # The report looks for the ledger beside the runs.
+    _imports.append(found)
+    return found.rig, found.runs
 
 
 def rig(path: str, law: str) -> Rig:

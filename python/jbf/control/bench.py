@@ -13,6 +13,7 @@ from jbf.models import catalogue
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
+from jbf.models.own_laws import OwnLaw
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
@@ -99,6 +100,11 @@ def core_model(model: Model) -> dict[str, Any]:
         It has an effect of one's own, which is Python and cannot run in a loop.
     """
     pages = catalogue.effects()
+    if isinstance(catalogue.find_law(model.law), OwnLaw):
+        raise InputError(
+            problem=f"{model.law} is a law of your own: it runs in Python, not in a loop",
+            mend="write it for the core: cargo run --example own_law shows how",
+        )
     own_effects = [name for name in model.effects if isinstance(pages.get(name), OwnEffect)]
     if own_effects:
         raise InputError(

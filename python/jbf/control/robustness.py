@@ -19,7 +19,7 @@ from jbf.control.schemes import NoCompensation, Observed, Scheme
 from jbf.control.task import TASKS, Task
 from jbf.control.tuning import tune
 from jbf.estimation.fit import fit
-from jbf.models.catalogue import effects, laws
+from jbf.models.catalogue import effects, laws, why_not
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
 from jbf.models.parameter_value import ParameterValue
@@ -89,7 +89,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     """Every way in which the model is made wrong."""
     for name, page in effects().items():
         own = isinstance(page, OwnEffect)
-        if own or base.law in page.refused or name in base.effects:
+        if own or why_not(page, base.law) is not None or name in base.effects:
             continue
         strong = STRONG.get(name, {})
         known = {p.name for p in page.parameters}

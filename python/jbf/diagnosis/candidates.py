@@ -24,7 +24,7 @@ from jbf.estimation.minimum import approach, search_peaks, settle
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import effects as catalogue
-from jbf.models.catalogue import find_effect
+from jbf.models.catalogue import find_effect, why_not
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
@@ -103,13 +103,13 @@ class Candidates:
     @cached_property
     def names(self) -> list[str]:
         """Effects that go with the law and that these records could show."""
-        pages = (e for e in catalogue().values() if self.law not in e.refused)
+        pages = (e for e in catalogue().values() if why_not(e, self.law) is None)
         return [e.name for e in pages if self.campaign.lacking(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
         """Effects that go with the law but that these records cannot show, and why."""
-        pages = [e for e in catalogue().values() if self.law not in e.refused]
+        pages = [e for e in catalogue().values() if why_not(e, self.law) is None]
         reasons = {e.name: self.campaign.lacking(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
 

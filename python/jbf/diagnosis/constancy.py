@@ -31,6 +31,8 @@ SENSITIVE = 1e-3
 """A direction in which a run moves with the parameters less than this share of its best is none."""
 OIL = {"U_tr_m_s", "gamma"}
 """What the oil's warmth moves together: a run whose one differs has another of the other."""
+TOLD = float(np.log(20.0))
+"""Largest change of a logarithm that is told as a number: one Gauss-Newton step knows no larger."""
 NAMED = 3
 """Runs named in the description."""
 
@@ -173,6 +175,9 @@ def own_step(problem: Problem, solution: Solution, run: str) -> str:
     said = shown_name(name, page, unit)
     more = "higher" if step > 0.0 else "lower"
     if problem.log[place]:
-        part = float(np.expm1(min(step, 700.0)))
+        part = float(np.expm1(np.clip(step, -TOLD, TOLD)))
+        if abs(step) > TOLD:
+            # One step says no more than this of a value so far off.
+            return f"{said} many times as {'large' if step > 0.0 else 'small'}"
         return f"{said} {100.0 * abs(part):.3g} % {more}"
     return f"{said} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"

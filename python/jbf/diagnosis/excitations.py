@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.campaign import Campaign
+from jbf.estimation.campaign import TEMPERATURES_DIFFER_K, Campaign
 
 Array = npt.NDArray[np.float64]
 
@@ -37,17 +38,21 @@ class Limits:
     load_n
         Smallest and largest load on a bearing; one value twice for a load that cannot be changed.
         From the runs: the loads on record.
+    temperature_c
+        Temperatures to record at, the lowest and the highest, C. From the runs: those on record,
+        where they differ.
 
     Raises
     ------
     InputError
-        A limit that is not positive, or a smallest load above the largest.
+        A limit that is not positive, or a lower end above the upper one.
     """
 
     velocity_m_s: float | None = None
     acceleration_m_s2: float | None = None
     duration_s: float = 60.0
     load_n: tuple[float, float] | None = None
+    temperature_c: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         named = {name: getattr(self, name) for name in ("velocity_m_s", "acceleration_m_s2")}
@@ -61,6 +66,12 @@ class Limits:
                 problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",
                 mend="give the smaller load first",
             )
+        low, high = self.temperature_c or (0.0, 0.0)
+        if not (np.isfinite([low, high]).all() and low <= high):
+            raise InputError(
+                problem=f"the limit temperature_c = {low:g} to {high:g}",
+                mend="give two temperatures, the lower first",
+            )
 
     def filled(self, campaign: Campaign) -> Limits:
         """The limits with what the runs tell in place of None."""
@@ -73,21 +84,29 @@ class Limits:
         if load is None and campaign.has_loads and loads:
             middles = [float(np.median(values)) for values in loads]
             load = min(middles), max(middles)
-        return Limits(top, sharp, self.duration_s, load)
+        celsius = self.temperature_c
+        if celsius is None and (campaign.temperatures_k or 0.0) >= TEMPERATURES_DIFFER_K:
+            celsius = campaign.temperature_range_c
+        return Limits(top, sharp, self.duration_s, load, celsius)
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """A motion to play: words, speed (m/s) at even steps, load (N) or None for the usual one."""
+    """A motion to play: words, speed (m/s) at even steps, load (N) or None for the usual one,
+    temperature (C) or None where none matters."""
 
     words: str
     velocity_m_s: Array
     load_n: float | None
+    temperature_c: float | None = None
 
 
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
     """Motions within limits that are filled in: each begins at rest."""
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
+    warmths = (
+        (None,) if limits.temperature_c is None else tuple(dict.fromkeys(limits.temperature_c))
+    )
     top, sharp = limits.velocity_m_s, limits.acceleration_m_s2
     assert top is not None
     assert sharp is not None
@@ -95,9 +114,10 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
     for words, velocity in _motions(time, top, sharp, speed_unit):
         if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * sharp * step_s:
             continue
-        for load in loads:
+        for load, celsius in itertools.product(loads, warmths):
             under = "" if load is None else f" under {load:.4g} N"
-            yield Excitation(words + under, velocity, load)
+            at = "" if celsius is None else f", the machine at {celsius:.3g} C all the time,"
+            yield Excitation(words + under + at, velocity, load, celsius)
 
 
 def _motions(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:

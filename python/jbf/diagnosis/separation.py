@@ -85,5 +85,7 @@ def _run(candidates: Candidates, excitation: Excitation, step_s: float) -> Run:
     place = {"position_m": path} if linear else {"angle_rad": path / radius}
     load_n = excitation.load_n or core_load_n(campaign.rig)
     load = None if load_n is None else np.full(len(time), load_n)
-    run = Run.from_arrays(time, velocity, load_n=load, name="next", **place)
+    warmth = excitation.temperature_c
+    celsius = None if warmth is None else np.full(len(time), warmth)
+    run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
     return run_on(campaign.rig, run)

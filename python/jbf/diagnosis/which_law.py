@@ -148,5 +148,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
             counts.append(count)
     tried = compared(names, counts, left, policy)
     here = next(t for t in tried if t.law == "")
-    better = [t for t in tried if t.law and t.left_out_rms_n <= here.left_out_rms_n and t.tied]
+    others = [t for t in tried if t.law and t.tied]
+    # Of two that say the same the one with fewer parameters, whichever comes out ahead by chance.
+    better = [t for t in others if t.parameters < most or t.left_out_rms_n <= here.left_out_rms_n]
     return min(better, key=lambda t: t.parameters, default=None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_run import copies, repeated
+from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.roughness import noise_of
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
@@ -34,6 +36,9 @@ LEFT_OF_BIAS = 0.3
 which it is known are estimates."""
 LOADS_DIFFER = 0.05
 """Loads that differ by less than this share are one load."""
+TEMPERATURES_DIFFER_K = 2.0
+"""Temperatures that differ by less, K, are one: it changes an oil by a tenth, dry friction by a
+hundredth or two, and a thermometer sits where the friction is not."""
 NOISE_SPAN = 3.29
 """Standard deviations between the quantiles of white noise at 5 % and at 95 %."""
 
@@ -101,6 +106,24 @@ class Campaign:
         span = max([*spans, max(known) - min(known)]) if known else 0.0
         return bool(known) and span > LOADS_DIFFER * max(known)
 
+    @cached_property
+    def temperature_range_c(self) -> tuple[float, float] | None:
+        """The lowest and the highest of the recorded temperatures, C; None where not every run has
+        one."""
+        every = [recorded_temperature(p.run) for p in self.prepared]
+        known = [celsius for celsius in every if celsius is not None]
+        if not known or len(known) < len(every):
+            return None
+        return float(min(map(np.min, known))), float(max(map(np.max, known)))
+
+    @property
+    def temperatures_k(self) -> float | None:
+        """How far they go, K, within runs and from run to run."""
+        if self.temperature_range_c is None:
+            return None
+        low, high = self.temperature_range_c
+        return high - low
+
     def lacking(self, effect: Effect) -> str | None:
         """What these runs do not hold of what an effect needs, in words; None where nothing."""
         needs = effect.needs
@@ -115,6 +138,15 @@ class Campaign:
             return "not every run has a position or an angle"
         if "loads" in needs and not self.has_loads:
             return "all runs have one load, under which it changes nothing"
+        if "temperatures" in needs:
+            span_k = self.temperatures_k
+            if span_k is None:
+                return "not every run has the column temperature_c"
+            if span_k < TEMPERATURES_DIFFER_K:
+                return (
+                    f"the temperature stays within {span_k:.2g} K: what it changes takes "
+                    f"{TEMPERATURES_DIFFER_K:g} K to show"
+                )
         return None
 
     @property

@@ -16,8 +16,8 @@ from jbf.models.catalogue import Parameter
 
 HELD = "held fixed"
 """The note of a parameter that was not fitted."""
-CONSTANT = "a constant: given, or taken from where the runs go"
-"""The note of a constant of the machine."""
+STATED = "stated, not fitted: given, or taken from the runs"
+"""The note of a number that no fit finds."""
 NEVER_MOVED = "never moved: these runs do not depend on it"
 NOT_SEPARATE = "not separately known: another parameter does the same in these runs"
 NO_EFFECT = "at its null: no effect"

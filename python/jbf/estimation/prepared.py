@@ -20,6 +20,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import find_noisy_load, steady_load
 from jbf.records.findings.own_clock import own_clock
 from jbf.records.findings.pushing import find_pushing
+from jbf.records.findings.slow_temperature import find_slow_temperature
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require, run_on
@@ -89,6 +90,7 @@ class Prepared:
             *motion.findings,
             *find_pushing(run, motion, examined.usable),
             *find_noisy_load(run.name, run.load_n),
+            *find_slow_temperature(run),
         )
         examined = replace(examined, findings=(*examined.findings, *more))
         step_s = float(np.median(np.diff(run.time_s)))

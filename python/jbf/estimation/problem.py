@@ -56,9 +56,8 @@ class Problem:
             parameters_of(law, self.effects), campaign, not find_law(law).needs_bearing
         )
         self.names = list(self.parameters)
-        # Of parameters that no fit moves the data tell the value at once.
-        constants = {n: p.starts[0] for n, p in self.parameters.items() if p.constant}
-        self.fixed = {**constants, **(fixed or {})}
+        stated = {name: page.starts[0] for name, page in self.parameters.items() if page.stated}
+        self.fixed = stated | dict(fixed or {})
         self.open = [i for i, name in enumerate(self.names) if name not in self.fixed]
         pages = list(self.parameters.values())
         self.log = np.array([p.log for p in pages])

@@ -44,8 +44,8 @@ class Solution:
 
     @property
     def free(self) -> int:
-        """Number of parameters."""
-        return len(self.values)
+        """Number of parameters that were fitted."""
+        return self.jacobian[0].shape[1] if self.jacobian else len(self.values)
 
     @property
     def rms_n(self) -> float:

@@ -17,6 +17,7 @@ from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
 from jbf.estimation.scales import Scales, scales
 from jbf.estimation.stroke import stroke
 from jbf.models.catalogue import Parameter
+from jbf.records.findings.slow_temperature import recorded_temperature
 
 Starts = tuple[float, ...]
 FASTEST_FILM = 5.0
@@ -62,6 +63,17 @@ def _run_time(campaign: Campaign) -> Starts:
     return (0.3 * usual, 0.1 * usual)
 
 
+def _reference_temperature(campaign: Campaign) -> Starts:
+    """The temperature at which the lubricant's viscosity holds, or else the mean of those on
+    record, to a degree, C."""
+    lubricant = campaign.rig.lubricant
+    if lubricant is not None and lubricant.temperature_c is not None:
+        return (lubricant.temperature_c,)
+    every = [recorded_temperature(p.run) for p in campaign.prepared]
+    means = [float(np.mean(celsius)) for celsius in every if celsius is not None]
+    return (float(np.round(np.mean(means))),) if means else ()
+
+
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
     "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
@@ -70,6 +82,10 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
 }
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
+RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
+    "reference_temperature": _reference_temperature,
+}
+"""What asks for no newtons."""
 
 
 PITCHES = ("pitch", "ripple_pitch")
@@ -117,5 +133,7 @@ def with_starts(
             if page.start in PITCHES:
                 page = _within_the_way(page, campaign)
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
+        if page.start in RULES_OF_ANY_LAW:
+            page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
         found[name] = page
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from jbf.estimation.determined import CONSTANT, HELD, undetermined
+from jbf.estimation.determined import HELD, STATED, undetermined
 from jbf.estimation.problem import Problem
 from jbf.estimation.put_back import PutBack
 from jbf.estimation.spread import Array, Spread
@@ -16,7 +16,7 @@ def parameter_values(problem: Problem, found: PutBack, spread: Spread) -> dict[s
     for i, (name, page) in enumerate(problem.parameters.items()):
         error, note = None, found.notes.get(name)
         if i not in problem.open:
-            note = CONSTANT if page.constant else HELD
+            note = STATED if page.stated else HELD
         elif note is None:
             k = problem.open.index(i)
             error = spread.error(k)

@@ -11,6 +11,7 @@ from jbf.models.catalogue import Effect, Law, Parameter, find_effect, find_law
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
+from jbf.models.own_laws import OwnLaw
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,11 @@ class Numbers:
             An effect of one's own is written in Python, which no target runs.
         """
         law = find_law(model.law)
+        if isinstance(law, OwnLaw):
+            raise InputError(
+                problem=f"the law {law.name} is written in Python, which no target runs",
+                mend="write it in Rust: cargo run --example own_law shows how",
+            )
         effects = []
         for name in model.effects:
             page = find_effect(name)

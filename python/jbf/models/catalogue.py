@@ -25,6 +25,12 @@ class _Summed(Protocol):
     def summary(self) -> str: ...
 
 
+BESIDE = ("other friction", "instrument")
+"""Stages whose effects go with a law of one's own: they add to its force, or act on the sum. The
+others change a law's own parts, which nobody knows of such a one."""
+CARRIER = "coulomb"
+"""The core's law that carries the effects of a law of one's own, with next to no force itself."""
+
 Page = TypeVar("Page", bound=_Summed)
 
 
@@ -50,8 +56,8 @@ class Parameter:
     bound
         What in the data bounds it from above: "transition_speed" the fastest speed on record,
         "catalogue" nothing.
-    constant
-        True of a constant of the machine, which no fit moves: it stays where it starts.
+    stated
+        True of a number that no fit finds: it is held where it starts, or is fixed elsewhere.
     """
 
     name: str
@@ -65,7 +71,7 @@ class Parameter:
     period: float | None = None
     start: str = "catalogue"
     bound: str = "catalogue"
-    constant: bool = False
+    stated: bool = False
 
 
 class Pages(dict[str, Page]):
@@ -179,14 +185,39 @@ def effects() -> Pages[Effect]:
 
 
 @cache
-def laws() -> Pages[Law]:
-    """Every base law by name."""
+def built_in_laws() -> Pages[Law]:
+    """The core's laws by name."""
     pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
         fields["parameters"] = tuple(_parameter(p) for p in page["parameters"])
         pages[page["name"]] = Law(**fields)  # type: ignore[arg-type]
     return pages
+
+
+_own_laws: dict[str, Law] = {}
+
+
+def own_laws() -> dict[str, Law]:
+    """Laws of one's own that are registered now."""
+    return _own_laws
+
+
+def put_law(page: Law) -> None:
+    """Take a law of one's own in."""
+    _own_laws[page.name] = page
+    vocabulary.cache_clear()
+
+
+def drop_law(name: str) -> bool:
+    """Take a law of one's own out; False where there is none of that name."""
+    vocabulary.cache_clear()
+    return _own_laws.pop(name, None) is not None
+
+
+def laws() -> Pages[Law]:
+    """Every base law by name; one's own come last."""
+    return Pages({**built_in_laws(), **_own_laws})
 
 
 def find_effect(name: str) -> Effect:
@@ -217,11 +248,20 @@ def find_clock(name: str) -> Clock:
     return one_of(name, CLOCKS, "clock")
 
 
+def why_not(effect: Effect, law: str) -> str | None:
+    """Why an effect does not go with a law: "the law ..."; None where it does."""
+    if law not in _own_laws:
+        return effect.refused.get(law)
+    if effect.stage not in BESIDE:
+        return "is one of your own, and the effect changes parts of a law that nobody knows of it"
+    return effect.refused.get(CARRIER)
+
+
 def check_applies(law: str, names: Iterable[str]) -> None:
     """An InputError where one of the effects does not go with a law."""
     page = find_law(law)
     for name in names:
-        reason = find_effect(name).refused.get(page.name)
+        reason = why_not(find_effect(name), page.name)
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} does not apply: the law {page.name} {reason}",

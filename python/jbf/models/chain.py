@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jbf import _core
 from jbf.errors import FilmWarning, InputError
 from jbf.models.catalogue import (
+    CARRIER,
     check_applies,
     find_clock,
     find_effect,
@@ -21,9 +22,11 @@ from jbf.models.catalogue import (
 from jbf.models.driven import Driven, DrivenChain
 from jbf.models.own_chain import OwnChain
 from jbf.models.own_effects import OwnEffect
+from jbf.models.own_laws import OwnLaw
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
+from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.recorded_load import recorded_load
@@ -110,24 +113,33 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
     film_clock = find_clock(clock)
     pages = [find_effect(name) for name in in_chain_order(effects)]
     own = [page for page in pages if isinstance(page, OwnEffect)]
-    with core_refusals():
-        core = _core.Chain(
-            law=law,
-            bearing=core_bearing(rig),
-            load_n=core_load_n(rig),
-            clock=film_clock,
-            effects=[page.name for page in pages if page not in own],
-            max_step_s=MAX_STEP_S,
-        )
-    if not own:
+    page_of_law = find_law(law)
+    own_law = page_of_law.force if isinstance(page_of_law, OwnLaw) else None
+
+    def of_core(names: list[str]) -> _core.Chain:
+        with core_refusals():
+            return _core.Chain(
+                law=law if own_law is None else CARRIER,
+                bearing=core_bearing(rig),
+                load_n=core_load_n(rig),
+                clock=film_clock,
+                effects=names,
+                max_step_s=MAX_STEP_S,
+            )
+
+    core = of_core([page.name for page in pages if page not in own])
+    if not own and own_law is None:
         return DrivenChain(core)
+    held = [] if own_law is None else [p.lower for p in find_law(CARRIER).parameters]
+    first = 0 if own_law is None else len(own_law.parameters) - len(held)
     names = core.parameter_names
     instrument = [
-        (page.name, [names.index(f"{page.name}.{p.name}") for p in page.parameters])
+        (page.name, [first + names.index(f"{page.name}.{p.name}") for p in page.parameters])
         for page in pages
         if page.stage == "instrument" and page not in own
     ]
-    return DrivenChain(OwnChain(core, instrument, own))
+    carrier = None if own_law is None else of_core([])
+    return DrivenChain(OwnChain(core, instrument, own, own_law, held, carrier))
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
@@ -168,6 +180,9 @@ def core_motion(
         "angle_rad": motion.angle_rad,
         "load_n": load,
     }
+    celsius = recorded_temperature(run)
+    if celsius is not None:
+        columns["temperature_c"] = celsius
     kept = None
     if before is not None:
         count, columns = _with_motion_before(columns, rig, *before)
@@ -179,6 +194,7 @@ def core_motion(
             np.ascontiguousarray(columns["acceleration_m_s2"]),
             np.ascontiguousarray(columns["angle_rad"]),
             np.ascontiguousarray(columns["load_n"]),
+            None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
         )
     # What effects of one's own see: the record, its motion as the models are driven with it.
     made.columns = columns

@@ -32,6 +32,7 @@ from jbf.models.chain import (
 )
 from jbf.models.driven_motion import driven_motion
 from jbf.models.model_file import model_file_text, read_model_file, write_model_file
+from jbf.models.own_laws import OwnLaw
 from jbf.models.parameter_units import shown
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
@@ -156,10 +157,14 @@ class Model:
 
         Speeds (m/s) of shape (n,), none of them zero; under the rig's load where the law needs one.
         """
-        count = len(find_law(self.law).parameters)
+        page = find_law(self.law)
+        count = len(page.parameters)
+        speeds = numbers(velocity_m_s, "velocity_m_s", flat=True)
+        if isinstance(page, OwnLaw):
+            return page.steady_n(speeds, self.values[:count].tolist(), core_load_n(self.rig))
         with core_refusals():
             return _core.steady_friction(
-                numbers(velocity_m_s, "velocity_m_s", flat=True),
+                speeds,
                 law=self.law,
                 parameters=self.values[:count].tolist(),
                 bearing=core_bearing(self.rig),

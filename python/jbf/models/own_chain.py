@@ -1,7 +1,8 @@
-"""The core's chain with effects of one's own beside it.
+"""The core's chain with effects, or a law, of one's own beside it.
 
 A force beside the bearing's passes through the instrument, whose effects are linear in the force:
-what they make of the bearing's force and of this one adds up.
+what they make of the bearing's force and of this one adds up. So does a law of one's own: the
+core's chain then carries the effects, round a law that is held at next to nothing.
 """
 
 from __future__ import annotations
@@ -29,6 +30,12 @@ class OwnChain:
         Names of the instrument's effects in it, each with the places of its parameters.
     own
         The effects of one's own; their parameters follow those of the core.
+    law
+        A law of one's own; its parameters come first, and the core's law has none.
+    held
+        What the parameters of the core's law are held at, where there is a law of one's own.
+    carrier
+        The core's law alone, then.
     """
 
     def __init__(
@@ -36,17 +43,29 @@ class OwnChain:
         core: _core.Chain,
         instrument: Sequence[tuple[str, Sequence[int]]],
         own: Sequence[OwnEffect],
+        law: OwnEffect | None = None,
+        held: Sequence[float] = (),
+        carrier: _core.Chain | None = None,
     ) -> None:
-        self.core, self.instrument, self.own = core, list(instrument), list(own)
-        self.count = len(core.parameter_names)
-        ends = np.cumsum([self.count, *(len(e.parameters) for e in own)]).tolist()
+        self.core, self.instrument, self.carrier = core, list(instrument), carrier
+        self.held = np.array(held, dtype=np.float64)
+        first = 0 if law is None else len(law.parameters)
+        rest = len(core.parameter_names) - len(held)
+        self.of_core = range(first, first + rest)
+        ends = np.cumsum([first + rest, *(len(e.parameters) for e in own)]).tolist()
+        self.own = [*own] if law is None else [law, *own]
         self.places = [range(a, b) for a, b in pairwise(ends)]
+        if law is not None:
+            self.places.insert(0, range(first))
+        self.law = law
 
     @property
     def parameter_names(self) -> list[str]:
         """Dotted names of the parameters, in the order of every array here."""
-        theirs = [f"{e.name}.{p.name}" for e in self.own for p in e.parameters]
-        return [*self.core.parameter_names, *theirs]
+        first = [] if self.law is None else [p.name for p in self.law.parameters]
+        effects = self.own if self.law is None else self.own[1:]
+        theirs = [f"{e.name}.{p.name}" for e in effects for p in e.parameters]
+        return [*first, *self.core.parameter_names[len(self.held) :], *theirs]
 
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
         """Friction readings, N, one array a run."""
@@ -61,14 +80,16 @@ class OwnChain:
         self, parameters: Array, motions: Sequence[_core.Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:
         """Readings and their derivatives by the parameters `which`."""
-        of_core = [w for w in which if w < self.count]
-        rows = self.core.jacobian(self._inner(parameters), motions, of_core)
+        of_core = [w for w in which if w in self.of_core]
+        shift = len(self.held) - self.of_core.start
+        inner = [w + shift for w in of_core]
+        rows = self.core.jacobian(self._inner(parameters), motions, inner)
         found = []
         for (values, slopes), motion in zip(rows, motions, strict=True):
             added, by_instrument = self._added(parameters, motion)
             whole = np.empty((len(values), len(which)))
             for k, w in enumerate(which):
-                if w < self.count:
+                if w in self.of_core:
                     whole[:, k] = slopes[:, of_core.index(w)] + by_instrument.get(w, 0.0)
                 else:
                     whole[:, k] = self._slope(parameters, motion, w)
@@ -76,7 +97,8 @@ class OwnChain:
         return found
 
     def _inner(self, parameters: Array) -> Array:
-        return np.ascontiguousarray(parameters[: self.count])
+        part = parameters[self.of_core.start : self.of_core.stop]
+        return np.ascontiguousarray(np.concatenate((self.held, part)))
 
     def _values(self, parameters: Array, number: int) -> list[float]:
         found: list[float] = parameters[self.places[number]].tolist()
@@ -92,6 +114,10 @@ class OwnChain:
                 beyond += force
             else:
                 beside += force
+        if self.law is not None:
+            # What the core's law has at its bounds is not the law's.
+            assert self.carrier is not None
+            beside -= self.carrier.predict(self.held, [motion])[0]
         read, slopes = self._read(parameters, motion, beside)
         return read + beyond, slopes
 

@@ -44,6 +44,7 @@ class OwnEffect(Effect):
 
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
     analytic: dict[str, bool] = field(default_factory=dict, compare=False)
+    called: str = "effect"
 
     def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
         """The force at every sample, N, shape (n,).
@@ -119,7 +120,7 @@ class OwnEffect(Effect):
             if name not in columns:
                 raise InputError(
                     column=name,
-                    problem=f"is missing, and the effect {self.name} needs it",
+                    problem=f"is missing, and the {self.called} {self.name} needs it",
                     mend="add the column",
                 )
         try:
@@ -128,14 +129,14 @@ class OwnEffect(Effect):
             raise
         except Exception as error:
             raise InputError(
-                problem=f"the effect {self.name} fails: {type(error).__name__}: {error}",
+                problem=f"the {self.called} {self.name} fails: {type(error).__name__}: {error}",
                 mend="correct its function",
             ) from error
 
     def _checked(self, found: Any, n: int, values: Sequence[float]) -> Array:
         def wrong(problem: str) -> InputError:
             return InputError(
-                problem=f"the effect {self.name} {problem}",
+                problem=f"the {self.called} {self.name} {problem}",
                 mend="its function must give one finite force (N) a sample",
             )
 
@@ -208,7 +209,11 @@ def register_effect(
     if stage not in STAGES:
         known = " or ".join(STAGES)
         raise wrong(f"cannot act at the stage {quoted(stage)}", f"choose {known}")
-    _check_parameters(pages, wrong)
+    if not pages:
+        raise wrong("has no parameters", "give at least one jbf.Parameter with a null")
+    check_pages(pages, wrong)
+    if all(p.null is None for p in pages):
+        raise wrong("never vanishes", "give one parameter null=VALUE, where the force is zero")
     page = OwnEffect(
         name=own,
         stage=STAGES[stage],
@@ -222,7 +227,7 @@ def register_effect(
         peaks=None,
         longest_step_s=np.inf,
         parameters=pages,
-        columns=_columns(function, pages, wrong),
+        columns=columns_of(function, pages, wrong),
         function=function,
     )
     catalogue.put(page)
@@ -235,9 +240,8 @@ def forget_effect(name: str) -> None:
         raise InputError(problem=f"{quoted(name)} is no effect of your own", mend="check the name")
 
 
-def _check_parameters(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
-    if not pages:
-        raise wrong("has no parameters", "give at least one jbf.Parameter with a null")
+def check_pages(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
+    """An error by `wrong` where a parameter has no proper name, bounds or start."""
     names = [p.name for p in pages]
     if len(set(names)) < len(names):
         raise wrong("has two parameters of one name", "rename one")
@@ -257,11 +261,9 @@ def _check_parameters(pages: Sequence[Parameter], wrong: Callable[[str, str], In
             )
         if p.null is not None and not p.lower <= p.null <= p.upper:
             raise wrong(f"{place} with its null out of its bounds", "widen the bounds to the null")
-    if all(p.null is None for p in pages):
-        raise wrong("never vanishes", "give one parameter null=VALUE, where the force is zero")
 
 
-def _columns(
+def columns_of(
     function: Callable[..., Any],
     pages: Sequence[Parameter],
     wrong: Callable[[str, str], InputError],
@@ -284,14 +286,14 @@ def _columns(
 
 
 def load_effects(path: PathLike) -> None:
-    """Run a Python file that registers effects; the file can do anything that you can.
+    """Run a Python file that registers effects or laws; the file can do anything that you can.
 
     Raises
     ------
     InputError
         The file cannot be read, fails, or registers nothing.
     """
-    before = dict(catalogue.own())
+    before = dict(catalogue.own()) | dict(catalogue.own_laws())
     file = Path(path)
     if not file.is_file():
         raise InputError(file=file, problem="is no file", mend="name a Python file")
@@ -308,10 +310,12 @@ def load_effects(path: PathLike) -> None:
             problem=f"fails: {type(error).__name__}: {error}",
             mend="correct the file",
         ) from None
-    after = catalogue.own()
+    after = {**catalogue.own(), **catalogue.own_laws()}
     if all(before.get(name) is page for name, page in after.items()):
         raise InputError(
-            file=file, problem="registers no effect", mend="call jbf.register_effect in it"
+            file=file,
+            problem="registers no effect and no law",
+            mend="call jbf.register_effect or jbf.register_law in it",
         )
 
 

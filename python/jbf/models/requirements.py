@@ -41,6 +41,8 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
                 problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
                 mend="drop position_m, or give the rig its [bearing]",
             )
+        if "temperatures" in needs:
+            require(run, "temperature_c", f"the effect {name}")
         if "position" in needs and not has_position(run):
             require(run, "angle_rad" if rig.radius_m else "position_m", f"the effect {name}")
         if "path" in needs and not has_path(rig, run):

@@ -19,7 +19,15 @@ import numpy.typing as npt
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
 from jbf.records.channels import OWN_CLOCK, filled
-from jbf.records.checks import COLUMNS, MIN_SAMPLES, MOTION, check_columns, frozen, listed
+from jbf.records.checks import (
+    COLUMNS,
+    MIN_SAMPLES,
+    MOTION,
+    SLOW,
+    check_columns,
+    frozen,
+    listed,
+)
 from jbf.records.counts import count_of
 from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
@@ -227,11 +235,16 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         )
     columns: dict[str, Array] = {}
     gaps: dict[str, Mask] = {}
-    for name, cells in zip(header, zip(*rows, strict=True), strict=True):
+    turned = list(zip(*rows, strict=True))
+    for name, cells in zip(header, turned, strict=True):
+        if name == SLOW:
+            cells = tuple(cell if cell.strip() else "nan" for cell in cells)
+            if all(cell == "nan" for cell in cells):
+                continue
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
-            own = None if name == "time_s" else _by_its_own_clock(cells)
+            own = None if name == "time_s" else _by_its_own_clock(cells, turned)
             if own is not None and name:
                 columns[name], gaps[name] = own
             elif name in known:
@@ -248,17 +261,27 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     called = of_drive.called(columns)
     columns, findings = of_drive.converted(path.stem, columns)
     run = Run.of_columns(path.stem, columns, path)
+    findings = (*findings, *run.reading)
     read = {called.get(name, name): there for name, there in gaps.items()}
     read = {name: there for name, there in read.items() if name in columns}
     return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
 
 
-def _by_its_own_clock(cells: Sequence[str]) -> tuple[Array, Mask] | None:
+def _by_its_own_clock(
+    cells: Sequence[str], others: Sequence[Sequence[str]]
+) -> tuple[Array, Mask] | None:
     """The readings of a channel with a clock of its own, and where it was read; None where a cell
-    is no number, or so few are empty that they are gaps."""
-    there = np.array([bool(cell.strip()) for cell in cells])
-    if not there.any() or np.count_nonzero(~there) < max(MIN_SAMPLES, OWN_CLOCK * len(cells)):
+    is no number, or so few are empty that they are gaps.
+
+    A quick channel is seldom empty: then each row that lacks it is there for a slow one's sake.
+    """
+    there = _filled_cells(cells)
+    if not there.any():
         return None
+    if not _is_a_clock(there):
+        slow = [mask for mask in map(_filled_cells, others) if _is_a_clock(mask)]
+        if not slow or not np.logical_or.reduce(slow)[~there].all():
+            return None
     try:
         read = [float(cell) for cell in cells if cell.strip()]
     except ValueError:
@@ -266,6 +289,14 @@ def _by_its_own_clock(cells: Sequence[str]) -> tuple[Array, Mask] | None:
     values = np.zeros(len(cells))
     values[there] = read
     return frozen(values), there
+
+
+def _filled_cells(cells: Sequence[str]) -> Mask:
+    return np.array([bool(cell.strip()) for cell in cells])
+
+
+def _is_a_clock(there: Mask) -> bool:
+    return int(np.count_nonzero(~there)) >= max(MIN_SAMPLES, OWN_CLOCK * len(there))
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
 from typing import Any, TypeVar
 
 import tomlkit
@@ -15,6 +15,9 @@ from jbf.records.drive import Drive
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.records.toml_file import PathLike, number, read_toml, refuse_unknown, table
 from jbf.text_files import write_text
+
+COLDEST_C, WARMEST_C = -100.0, 1000.0
+"""Temperatures of a lubricant."""
 
 _Section = TypeVar("_Section", "Bearing", "Lubricant", "Load")
 
@@ -67,12 +70,32 @@ class Bearing:
 
 @dataclass(frozen=True)
 class Lubricant:
-    """The lubricant; `viscosity_pa_s` is its dynamic viscosity, Pa s."""
+    """The lubricant.
+
+    Attributes
+    ----------
+    viscosity_pa_s : float
+        Its dynamic viscosity, Pa s.
+    temperature_c : float, optional
+        The temperature at which it has that viscosity, degrees Celsius; a model with
+        `vogel_viscosity` has its law's parameters there.
+    """
 
     viscosity_pa_s: float
+    temperature_c: float | None = None
 
     def __post_init__(self) -> None:
         _make_positive(self, "viscosity_pa_s")
+        if self.temperature_c is None:
+            return
+        celsius = number(self.temperature_c, "temperature_c")
+        if not (COLDEST_C <= celsius <= WARMEST_C):
+            raise InputError(
+                key="temperature_c",
+                problem=f"{celsius} is not from {COLDEST_C:g} to {WARMEST_C:g}",
+                mend="give it in degrees Celsius",
+            )
+        object.__setattr__(self, "temperature_c", celsius)
 
 
 @dataclass(frozen=True)
@@ -93,7 +116,8 @@ def _section(
     content = table(mapping[name], prefix + name)
     known = [f.name for f in fields(kind)]
     refuse_unknown(content, known, f"{prefix}{name}.")
-    for key in known:
+    needed = [f.name for f in fields(kind) if f.default is MISSING]
+    for key in needed:
         if key not in content:
             raise InputError(
                 key=f"{prefix}{name}.{key}",

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.records.channels import Channels, side_by_side, with_own_clock
-from jbf.records.checks import COLUMNS, MOTION, as_array, check_columns, frozen, listed
+from jbf.records.channels import Channels, filled, side_by_side, with_own_clock
+from jbf.records.checks import COLUMNS, MOTION, SLOW, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
@@ -50,7 +50,7 @@ class Run:
     load_n : ndarray or None
         Normal load on one bearing, above zero, N.
     temperature_c : ndarray or None
-        Temperature, degrees Celsius.
+        Temperature, degrees Celsius; where it was read more seldom, straight lines between.
     extra : dict of str to ndarray
         The other numeric columns, units as their names say.
     path : Path or None
@@ -256,9 +256,20 @@ class Run:
         recorded = "velocity_m_s" in columns
         if not recorded:
             columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
+        reading: tuple[Finding, ...] = ()
+        if SLOW in columns:
+            whole, reading = _whole(name, columns["time_s"], columns[SLOW])
+            columns = dict(columns) | {SLOW: whole}
         known: dict[str, Any] = {c: values for c, values in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
-        return cls(name=name, **known, extra=extra, path=path, speed_recorded=recorded)
+        return cls(
+            name=name,
+            **known,
+            extra=extra,
+            path=path,
+            speed_recorded=recorded,
+            reading=reading,
+        )
 
     def at(self, time_s: Array, friction_n: Array) -> Run:
         """The run at other instants within it, with the friction read there, N; every other column
@@ -302,6 +313,18 @@ class Run:
                 of_column[i] = ""
         writer.writerows(zip(*cells, strict=True))
         return text.getvalue()
+
+
+def _whole(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
+    """A temperature, C, with straight lines over its gaps, and what is said of them."""
+    there = np.isfinite(celsius)
+    if there.all():
+        return celsius, ()
+    ends = np.concatenate((time_s[:1], time_s[there], time_s[-1:]))
+    longest_s = float(np.max(np.diff(ends)))
+    words = f"the temperature was read at {there.sum()} of {len(celsius)} samples"
+    told = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
+    return filled(time_s, celsius, there), (told,)
 
 
 def _made_speed(columns: Mapping[str, Array]) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jbf.models.catalogue import Effect, Parameter, built_in, find_law
+from jbf.models.catalogue import Effect, Parameter, built_in, find_law, why_not
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
@@ -14,6 +14,7 @@ NEEDS = {
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "position": "the column angle_rad or position_m in every run",
+    "temperatures": "the column temperature_c in every run, and temperatures that differ",
     "loads": "runs under several loads (load_n, or pressure_pa on an axis without a bearing)",
 }
 
@@ -37,7 +38,8 @@ def effects_page(
     """
     pages = list(pages)
     if law is not None:
-        refused = {e.name: e.refused[law] for e in pages if law in e.refused}
+        reasons_of = {e.name: why_not(e, law) for e in pages}
+        refused = {name: reason for name, reason in reasons_of.items() if reason is not None}
         said = OF_BEARING if find_law(law).needs_bearing else LINEAR
         there = effects_page([e for e in pages if e.name not in refused], None, said)
         widest = max(map(len, refused), default=0)
@@ -81,4 +83,9 @@ def effect_page(effect: Effect) -> str:
 
 def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
     null = "" if p.null is None else f"{p.null:g}"
-    return p.name, p.unit, f"{p.lower:g}", f"{p.upper:g}", null, p.meaning
+    return p.name, p.unit, f"{p.lower:g}", f"{p.upper:g}", null, meaning_of(p)
+
+
+def meaning_of(p: Parameter) -> str:
+    """What a parameter is, and that no fit finds it where none does."""
+    return f"{p.meaning} (stated, not fitted)" if p.stated else p.meaning

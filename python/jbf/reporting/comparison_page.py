@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from jbf.comparison.comparison import Comparison
 from jbf.reporting.comparison_plots import plot_comparison, plot_run
-from jbf.reporting.page import measurement, page, pattern_rows, picture
+from jbf.reporting.page import import_rows, measurement, page, pattern_rows, picture
 from jbf.reporting.tables import finding_rows, parameter_rows, run_rows
 from jbf.reporting.words import comparison_sentence, law_and_effects, listed
 
@@ -25,5 +25,6 @@ def comparison_page(comparison: Comparison) -> str:
         unit=model.rig.quantities.force,
         runs=run_rows(comparison),
         findings=finding_rows(comparison.findings),
+        imported=import_rows(comparison),
         parameters=parameter_rows(model.law, model.effects, model.parameters, model.rig.quantities),
     )

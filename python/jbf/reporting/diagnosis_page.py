@@ -10,7 +10,7 @@ from jbf.models.catalogue import Effect, find_effect
 from jbf.reporting.comparison_plots import plot_run
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.effect_words import known_mass, limits_of, summary_of
-from jbf.reporting.page import measurement, page, pattern_rows, picture
+from jbf.reporting.page import import_rows, measurement, page, pattern_rows, picture
 from jbf.reporting.tables import (
     correlation_pairs,
     finding_rows,
@@ -81,6 +81,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         effects=[_effect(diagnosis, name) for name in diagnosis.effects],
         unexplained=pattern_rows(diagnosis.unexplained),
         findings=finding_rows(diagnosis.findings),
+        imported=import_rows(before),
         parameters=parameter_rows(
             diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, said
         ),

@@ -15,7 +15,8 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
-from jbf.reporting import frames, short, small_tables
+from jbf.importing.result import Import
+from jbf.reporting import frames, import_text, short, small_tables
 from jbf.reporting.comparison_text import comparison_report
 from jbf.reporting.control_run_text import runs_text
 from jbf.reporting.diagnosis_text import diagnosis_report
@@ -37,6 +38,7 @@ summary.register(TrajectoryFit, trajectory_report)
 summary.register(Comparison, comparison_report)
 summary.register(Diagnosis, diagnosis_report)
 summary.register(LoopRun, lambda run: runs_text([run]))
+summary.register(Import, import_text.import_report)
 
 
 @singledispatch
@@ -50,6 +52,7 @@ short_words.register(Bootstrap, short.short_bootstrap)
 short_words.register(TrajectoryFit, short.short_trajectory_fit)
 short_words.register(Comparison, short.short_comparison)
 short_words.register(Diagnosis, short.short_diagnosis)
+short_words.register(Import, import_text.short_import)
 
 
 @singledispatch
@@ -64,6 +67,7 @@ small_table.register(TrajectoryFit, small_tables.trajectory_table)
 small_table.register(Comparison, small_tables.comparison_table)
 small_table.register(Diagnosis, small_tables.diagnosis_table)
 small_table.register(LoopRun, small_tables.loop_table)
+small_table.register(Import, small_tables.import_table)
 
 
 @singledispatch
@@ -78,6 +82,7 @@ columns.register(TrajectoryFit, frames.trajectory_columns)
 columns.register(Comparison, frames.comparison_columns)
 columns.register(Diagnosis, frames.diagnosis_columns)
 columns.register(LoopRun, LoopRun.columns)
+columns.register(Import, import_text.import_columns)
 
 
 def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:

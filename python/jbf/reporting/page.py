@@ -16,7 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jbf import _core
+from jbf.importing.ledger import ledgers_beside
 from jbf.records.counts import count_of
+from jbf.reporting.import_text import provenance_rows
 from jbf.reporting.words import number
 
 if TYPE_CHECKING:
@@ -65,6 +67,11 @@ def picture(axes: Sequence[Axes]) -> str:
 def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str, str]]:
     """Axis, share and words of each pattern."""
     return [(p.axis, f"{100 * p.share:.0f} %", p.where) for p in patterns]
+
+
+def import_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
+    """What the runs were imported from, where they were."""
+    return provenance_rows(ledgers_beside(p.run.path for p in comparison.campaign.prepared))
 
 
 def measurement(comparison: Comparison, noise_n: float) -> str:

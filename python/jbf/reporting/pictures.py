@@ -13,10 +13,12 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.importing.result import Import
 from jbf.reporting import fit_page
 from jbf.reporting.comparison_page import comparison_page
 from jbf.reporting.comparison_plots import plot_comparison
 from jbf.reporting.control_run_plot import plot_run_of_loop
+from jbf.reporting.cut_plot import import_page, plot_cut
 from jbf.reporting.diagnosis_page import diagnosis_page
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
@@ -34,6 +36,7 @@ plot.register(TrajectoryFit, plot_trajectory_fit)
 plot.register(Comparison, plot_comparison)
 plot.register(Diagnosis, plot_diagnosis)
 plot.register(LoopRun, plot_run_of_loop)
+plot.register(Import, plot_cut)
 
 
 @singledispatch
@@ -48,3 +51,4 @@ page.register(TrajectoryFit, fit_page.trajectory_page)
 page.register(Comparison, comparison_page)
 page.register(Diagnosis, diagnosis_page)
 page.register(LoopRun, fit_page.loop_page)
+page.register(Import, import_page)

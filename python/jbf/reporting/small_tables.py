@@ -11,6 +11,7 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
+from jbf.importing.result import Import
 from jbf.reporting.control_run_text import status_words
 from jbf.reporting.tables import ledger_rows, parameter_rows, run_rows
 from jbf.reporting.words import (
@@ -78,3 +79,12 @@ def diagnosis_table(diagnosis: Diagnosis) -> str:
     unit = diagnosis.model.rig.quantities.force
     head = ("step", f"fit ({unit})", f"held out ({unit})", f"noise ({unit})", "held out / noise")
     return table(title, head, ledger_rows(diagnosis))
+
+
+def import_table(found: Import) -> str:
+    """The runs, and what was left out."""
+    rows = [
+        (p.name or f"left out: {p.why}", p.file, f"{p.from_s:.3f}", f"{p.to_s:.3f}")
+        for p in found.pieces
+    ]
+    return table(f"Import: {found.folder}", ("run", "file", "from (s)", "to (s)"), rows)

@@ -129,6 +129,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
             acceleration_m_s2: change / dt_s,
             angle_rad,
             load_n: self.load_n,
+            temperature_c: None,
         };
         self.chain.step(state, &to, dt_s);
     }

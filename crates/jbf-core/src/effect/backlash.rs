@@ -144,6 +144,7 @@ impl<T: Real> Drive<T> for Backlash<T> {
             direction: to.direction * driven,
             time_s: to.time_s,
             load_n: to.load_n,
+            temperature_c: to.temperature_c,
         }
     }
 }

@@ -7,11 +7,12 @@ use super::place::{
 use super::registry::{signal_chain, Shelf};
 use super::{
     backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
-    dry_asymmetry, dry_load_dependence, dwell_stiction, film_memory, gravity, inertia_leak,
-    load_dependence, pitch_ripple, pitch_ripple_2, position_ripple, presliding, quadratic_drag,
-    sensor_drift, sensor_lag, sensor_offset, shear_thinning, stribeck_asymmetry, stribeck_excess,
-    stroke_dependence, thermal_thinning, time_delay, torque_proportional, viscous_asymmetry,
-    viscous_load_dependence, warm_up, wear_in, zero_load_dependence,
+    dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,
+    gravity, inertia_leak, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
+    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
+    stribeck_asymmetry, stribeck_excess, stroke_dependence, thermal_thinning, time_delay,
+    torque_proportional, viscous_asymmetry, viscous_load_dependence,
+    viscous_temperature_dependence, vogel_viscosity, warm_up, wear_in, zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
 use crate::error::ParameterError;
@@ -24,7 +25,11 @@ use crate::real::Real;
 // Inside a stage effects act from left to right.
 signal_chain! {
     drive: InDrive [drive_compliance::DriveCompliance, backlash::Backlash],
-    lubricant: InLubricant [shear_thinning::ShearThinning, thermal_thinning::ThermalThinning],
+    lubricant: InLubricant [
+        shear_thinning::ShearThinning,
+        thermal_thinning::ThermalThinning,
+        vogel_viscosity::VogelViscosity,
+    ],
     load: UnderLoad [load_dependence::LoadDependence],
     film: InFilm [film_memory::FilmMemory],
     contact: InContact [
@@ -34,6 +39,8 @@ signal_chain! {
         dry_load_dependence::DryLoadDependence,
         viscous_load_dependence::ViscousLoadDependence,
         viscous_asymmetry::ViscousAsymmetry,
+        dry_temperature_dependence::DryTemperatureDependence,
+        viscous_temperature_dependence::ViscousTemperatureDependence,
         dry_asymmetry::DryAsymmetry,
         stribeck_asymmetry::StribeckAsymmetry,
         direction_asymmetry::DirectionAsymmetry,
@@ -141,8 +148,9 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         self.load.scales(&mut s.load, share, scales);
     }
     #[inline(always)]
-    fn film_rate(&self, s: &States<T>, rate: &mut T) {
-        self.film.film_rate(&s.film, rate);
+    fn film_rate(&self, s: &States<T>, journal: &JournalMotion<T>, rate: &mut T) {
+        self.lubricant.film_rate(&s.lubricant, journal, rate);
+        self.film.film_rate(&s.film, journal, rate);
     }
     #[inline]
     fn fastest_film(&self) -> f64 {

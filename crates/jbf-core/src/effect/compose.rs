@@ -58,9 +58,9 @@ impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
         self.1.scales(&mut s.1, share, scales);
     }
     #[inline(always)]
-    fn film_rate(&self, s: &Self::State, rate: &mut T) {
-        self.0.film_rate(&s.0, rate);
-        self.1.film_rate(&s.1, rate);
+    fn film_rate(&self, s: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
+        self.0.film_rate(&s.0, journal, rate);
+        self.1.film_rate(&s.1, journal, rate);
     }
     #[inline]
     fn fastest_film(&self) -> f64 {
@@ -176,9 +176,9 @@ impl<T: Real, A: EffectSet<T>> EffectSet<T> for Option<A> {
         }
     }
     #[inline(always)]
-    fn film_rate(&self, s: &Self::State, rate: &mut T) {
+    fn film_rate(&self, s: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
         if let (Some(set), Some(s)) = (self, s) {
-            set.film_rate(s, rate);
+            set.film_rate(s, journal, rate);
         }
     }
     #[inline]

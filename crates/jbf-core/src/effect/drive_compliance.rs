@@ -183,6 +183,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             direction,
             time_s: to.time_s,
             load_n: to.load_n,
+            temperature_c: to.temperature_c,
         }
     }
 

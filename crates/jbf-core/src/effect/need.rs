@@ -25,6 +25,8 @@ pub enum Need {
     Position,
     /// Of the record: loads that differ, within a run or from run to run.
     Loads,
+    /// Of the record: temperatures that differ, within a run or from run to run.
+    Temperatures,
 }
 
 impl Need {
@@ -40,6 +42,7 @@ impl Need {
             Need::Path => "path",
             Need::Position => "position",
             Need::Loads => "loads",
+            Need::Temperatures => "temperatures",
         }
     }
 
@@ -50,7 +53,12 @@ impl Need {
             Need::NoFilm => !law.has_film,
             Need::NoBristle => !law.has_bristle,
             Need::NoDryLevel => !law.has_dry_level,
-            Need::Transmitted | Need::Angle | Need::Path | Need::Position | Need::Loads => true,
+            Need::Transmitted
+            | Need::Angle
+            | Need::Path
+            | Need::Position
+            | Need::Loads
+            | Need::Temperatures => true,
         }
     }
 
@@ -66,6 +74,7 @@ impl Need {
             Need::Path => "needs no path",
             Need::Position => "needs no position",
             Need::Loads => "needs no loads",
+            Need::Temperatures => "needs no temperatures",
         }
     }
 }

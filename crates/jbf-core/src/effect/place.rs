@@ -129,6 +129,10 @@ impl<T: Real, E: Lubricant<T>> EffectSet<T> for InLubricant<E> {
         *factor *= self.0.factor(s, journal);
     }
     #[inline(always)]
+    fn film_rate(&self, s: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
+        *rate *= self.0.rate(s, journal);
+    }
+    #[inline(always)]
     fn warm(&self, s: &mut Self::State, power_w: T, dt_s: T) {
         self.0.step(s, power_w, dt_s);
     }
@@ -174,7 +178,7 @@ impl<T: Real, E: Film<T>> EffectSet<T> for InFilm<E> {
         <Self as Place<T>>::INFO.longest_step_s
     }
     #[inline(always)]
-    fn film_rate(&self, s: &Self::State, rate: &mut T) {
+    fn film_rate(&self, s: &Self::State, _journal: &JournalMotion<T>, rate: &mut T) {
         *rate *= self.0.rate(s);
     }
     #[inline]

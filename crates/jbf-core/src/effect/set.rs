@@ -91,13 +91,13 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, share, scales);
     }
 
-    /// Film: the factor on its clock.
+    /// Lubricant and film: the factor on the film's clock.
     #[inline(always)]
-    fn film_rate(&self, state: &Self::State, rate: &mut T) {
-        let _ = (state, rate);
+    fn film_rate(&self, state: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
+        let _ = (state, journal, rate);
     }
 
-    /// Film: the same factor where it makes the film faster, else one.
+    /// Film: the largest of its factors on the clock, at least one.
     #[inline]
     fn fastest_film(&self) -> f64 {
         1.0

@@ -48,6 +48,12 @@ pub trait Drive<T: Real>: Effect<T> {
 pub trait Lubricant<T: Real>: Effect<T> {
     /// Factor on `Ub`.
     fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
+    /// Factor on the film's clock.
+    #[inline(always)]
+    fn rate(&self, state: &Self::State, journal: &JournalMotion<T>) -> T {
+        let _ = (state, journal);
+        T::ONE
+    }
     /// Advance over `dt_s`, at the end of which the friction power is `power_w`, W.
     #[inline(always)]
     fn step(&self, state: &mut Self::State, power_w: T, dt_s: T) {

@@ -58,11 +58,11 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
             Parameter::new("x_0_m", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
                 .signed()
                 .start(Start::StrokeMiddle)
-                .constant(),
+                .stated(),
             Parameter::new("h_m", "m", "half of the stroke", [1e-9, 1e6], &[0.4])
                 .log()
                 .start(Start::StrokeHalf)
-                .constant(),
+                .stated(),
         ])
         .needs(&[Need::NoFilm, Need::Position]);
     /// Radius, m.

@@ -3,8 +3,8 @@
 //! Grease and oil of a gearbox warm from the motor, from the bearings, from the sun, and all that
 //! they resist falls with it, sliding or not: by the clock. `wear_in` goes by the distance slid and
 //! changes the dry level alone; `thermal_thinning` is a film's, warmed by its own friction and by
-//! nothing else; `sensor_drift` is a force one way. Where a temperature was recorded, `temperature`
-//! says more.
+//! nothing else; `sensor_drift` is a force one way. Where a temperature was recorded,
+//! `dry_temperature_dependence` and `viscous_temperature_dependence` say more.
 //!
 //! Source: Bittencourt & Gunnarsson (2012) and Simoni et al. (2019) on robot joints that warm; of one
 //! lumped body the temperature goes as `exp(-t/tau)`, and friction with it as long as it changes by

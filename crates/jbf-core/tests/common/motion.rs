@@ -72,6 +72,11 @@ impl Sines {
         }
     }
 
+    /// Temperature at a time, C: that of a room in which the heating comes and goes.
+    pub fn temperature_c(time_s: f64) -> f64 {
+        31.0 + 6.0 * (0.7 * time_s).sin()
+    }
+
     /// The same under another load, N.
     pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
         self.at(time_s).with_load_n(T::of(load_n))
@@ -100,6 +105,7 @@ impl Sines {
             .with_velocity_m_s(T::of(self.sign * v))
             .with_acceleration_m_s2(T::of(self.sign * a))
             .with_angle_rad(T::of(self.sign * path_m / Bearing::THESIS.radius_m))
+            .with_temperature_c(T::of(Self::temperature_c(time_s)))
     }
 }
 

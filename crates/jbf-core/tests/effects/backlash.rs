@@ -96,6 +96,7 @@ fn the_reading_has_no_step_in_the_gap() {
         acceleration_m_s2: &columns[2],
         angle_rad: &columns[3],
         load_n: &columns[4],
+        temperature_c: None,
     };
     let run = |gap: f64| {
         let mut out = vec![0.0; 400];

@@ -6,7 +6,7 @@ use crate::common::{chain, readings, LOAD_N};
 use jbf_core::effect::CATALOGUE;
 use jbf_core::{Motion, Real};
 
-/// A jerky motion: jumps of speed, of load and of angle that no machine makes.
+/// A jerky motion: jumps of speed, of load, of angle and of temperature that no machine makes.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
     Motion::at_rest(T::of(if random.chance(0.1) {
@@ -18,6 +18,7 @@ fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     .with_velocity_m_s(T::of(if random.chance(0.2) { 0.0 } else { speed }))
     .with_acceleration_m_s2(T::of(random.uniform(-1e3, 1e3)))
     .with_angle_rad(T::of(random.uniform(-1e3, 1e3)))
+    .with_temperature_c(T::of(random.uniform(-1e3, 2e3)))
 }
 
 fn check<T: Real>(seed: u64) {
@@ -72,6 +73,7 @@ fn a_lost_sample_changes_nothing() {
                 to.with_velocity_m_s(f64::NAN),
                 to.with_angle_rad(f64::INFINITY),
                 to.with_load_n(f64::NAN),
+                to.with_temperature_c(f64::NAN),
             ];
             for motion in &lost {
                 assert_eq!(chain.step(&mut state, motion, 0.01), before);

@@ -3,8 +3,8 @@
 use crate::common::motion::Sines;
 use crate::common::random::Random;
 use crate::common::{chain, company, readings};
-use jbf_core::effect::{Info, CATALOGUE};
-use jbf_core::Real;
+use jbf_core::effect::{Info, Need, CATALOGUE};
+use jbf_core::{Motion, Real};
 
 /// Parameters of an effect with its null in place, the others anywhere in their bounds.
 fn at_null(info: &Info, random: &mut Random) -> Vec<f64> {
@@ -51,6 +51,27 @@ fn null_is_absent_to_the_bit_in_double_precision() {
 #[test]
 fn null_is_absent_to_the_bit_in_single_precision() {
     check::<f32>();
+}
+
+/// What asks for a temperature changes nothing, to the bit, where none was recorded.
+#[test]
+fn without_a_temperature_its_effects_are_absent() {
+    let sines = Sines::two_way(1.0);
+    let nowhere = |t: f64| {
+        let mut motion: Motion<f64> = sines.at(t);
+        motion.temperature_c = None;
+        motion
+    };
+    let bare = readings(&chain(&[]), 0.01, 300, nowhere);
+    let asks = |info: &&Info| info.needs.contains(&Need::Temperatures);
+    let all: Vec<&Info> = CATALOGUE.iter().filter(asks).collect();
+    assert!(all.len() >= 3);
+    for info in all {
+        let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        let with = chain(&[(info.name, &values)]);
+        assert_eq!(bare, readings(&with, 0.01, 300, nowhere), "{}", info.name);
+        assert_ne!(bare, readings(&with, 0.01, 300, |t| sines.at(t)));
+    }
 }
 
 /// Away from its null every effect does something, so that the test above can fail.

@@ -20,6 +20,8 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
         "dry_load_dependence",
         "viscous_load_dependence",
         "viscous_asymmetry",
+        "dry_temperature_dependence",
+        "viscous_temperature_dependence",
         "dry_asymmetry",
         "stribeck_asymmetry",
         "stroke_dependence",
@@ -44,6 +46,7 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
 fn effects_that_mean_nothing_are_refused() {
     for law in law::CATALOGUE.iter().filter(|l| !l.has_film) {
         assert_eq!(lacking("thermal_thinning", law.name), Some(Need::Film));
+        assert_eq!(lacking("vogel_viscosity", law.name), Some(Need::Film));
         assert_eq!(lacking("sensor_lag", law.name), None);
         let bristle = law.has_bristle.then_some(Need::NoBristle);
         assert_eq!(lacking("presliding", law.name), bristle);

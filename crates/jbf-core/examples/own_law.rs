@@ -1,0 +1,75 @@
+//! A law that is in no catalogue, with effects that are: dry friction that falls with the power of
+//! speed, `F = F_1 (|v|/v_1)^-p`, round which the catalogue's effects act. The crate is not touched.
+//!
+//! ```text
+//! cargo run --example own_law
+//! ```
+
+use jbf_core::effect::Effects;
+use jbf_core::law::Law;
+use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
+
+/// Newtons of a slide: it computes with no load, and its coefficient is a force over 1 N.
+#[derive(Clone, Copy, Debug)]
+struct FallingPower<T> {
+    at_unit_speed_n: T,
+    unit_speed_m_s: T,
+    power: T,
+}
+
+impl<T: Real> Law<T> for FallingPower<T> {
+    type State = ();
+
+    fn start(&self, _load_n: T) {}
+
+    // A law in newtons: every load is one newton.
+    fn pressed_n(&self, _load_n: T) -> T {
+        T::ONE
+    }
+
+    fn set_load(&self, _state: &mut (), _load_n: T) {}
+
+    fn friction(&self, _state: &(), velocity_m_s: T) -> Friction<T> {
+        // Bounded where the speed is none: a step never gives what is not finite.
+        let speed = velocity_m_s.abs().max(T::of(1e-6)) / self.unit_speed_m_s;
+        Friction {
+            jump: self.at_unit_speed_n * (-self.power * speed.ln()).exp(),
+            smooth: T::ZERO,
+        }
+    }
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    fn advance(&self, _state: &mut (), _speed_m_s: [T; 3], _rate: T, _dt_s: T) {}
+}
+
+fn main() -> Result<(), ParameterError> {
+    let law = FallingPower {
+        at_unit_speed_n: 4.0,
+        unit_speed_m_s: 0.01,
+        power: 0.1,
+    };
+    let mut effects = Effects::NONE;
+    effects.set("inertia_leak", &[2.0])?;
+    effects.set("presliding", &[1e5])?;
+    effects.set("sensor_lag", &[0.01])?;
+    let chain = Chain::round(law, effects, None);
+    let motion = |t: f64| {
+        Motion::at_rest(1.0)
+            .with_time_s(t)
+            .with_velocity_m_s(0.05 * t.sin())
+            .with_acceleration_m_s2(0.05 * t.cos())
+    };
+    let mut state = chain.start(&motion(0.0));
+    println!("time_s,friction_n");
+    for i in 1..=3000 {
+        let (t, dt) = (0.002 * f64::from(i), 0.002);
+        let friction_n = chain.step(&mut state, &motion(t), dt);
+        if i % 250 == 0 {
+            println!("{t:.1},{friction_n:.3}");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! Dry friction that changes with the recorded temperature, times `1 + a (T - T_0)`.
+//!
+//! Source: Bittencourt & Gunnarsson (2012), who find the static friction of a robot's joint linear in
+//! the temperature, and Simoni et al. (2019), a polynomial of it; of a preloaded gear, a bearing or a
+//! seal the fit changes as its parts expand. A straight line has an end: the level never falls below
+//! zero.
+
+use super::vogel::REFERENCE;
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A level by a thermometer.
+#[derive(Clone, Copy, Debug)]
+pub struct DryTemperatureDependence<T> {
+    slope_1_k: T,
+    reference_c: T,
+}
+
+impl<T: Real> Effect<T> for DryTemperatureDependence<T> {
+    const INFO: Info = Info::new("dry_temperature_dependence", Stage::Contact)
+        .summary("dry friction that rises or falls with the recorded temperature")
+        .equation("F_c -> F_c (1 + a (T - T_0)), T the recorded temperature; never below zero")
+        .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
+        .limits("a straight line over the temperature: what lies far from it is not said")
+        .parameters(&[
+            Parameter::new(
+                "a_1_k",
+                "1/K",
+                "change of the dry friction with each kelvin",
+                [-0.2, 0.2],
+                &[-0.01],
+            )
+            .null(0.0),
+            REFERENCE,
+        ])
+        .needs(&[Need::NoFilm, Need::Temperatures]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            slope_1_k: parameters[0],
+            reference_c: parameters[1],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for DryTemperatureDependence<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        if let Some(temperature_c) = journal.temperature_c {
+            let warmer_k = temperature_c - self.reference_c;
+            sliding.jump *= (T::ONE + self.slope_1_k * warmer_k).max(T::ZERO);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Viscous friction that changes with the recorded temperature, times
+//! `exp(B/(T - C) - B/(T_0 - C))`.
+//!
+//! Source: Vogel (1921), of the oil, or of the base oil of grease, that resists; see `vogel.rs`.
+//! Bittencourt & Gunnarsson (2012) find the viscous friction of a robot's joint to fall exponentially
+//! with the temperature, Simoni et al. (2019) a polynomial of it.
+
+use super::vogel::{Vogel, C, REFERENCE};
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// A viscous slope by a thermometer.
+#[derive(Clone, Copy, Debug)]
+pub struct ViscousTemperatureDependence<T> {
+    relation: Vogel<T>,
+}
+
+impl<T: Real> Effect<T> for ViscousTemperatureDependence<T> {
+    const INFO: Info = Info::new("viscous_temperature_dependence", Stage::Contact)
+        .summary("viscous friction that falls as the recorded temperature rises")
+        .equation("F_v v -> F_v v exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature")
+        .source("Vogel 1921; Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
+        .limits("what resists as warm as the thermometer; C as of a usual oil, unless it is told")
+        .parameters(&[
+            Parameter::new(
+                "B_k",
+                "K",
+                "Vogel's B: how steeply the viscous friction falls",
+                [-5000.0, 5000.0],
+                &[600.0],
+            )
+            .null(0.0),
+            C,
+            REFERENCE,
+        ])
+        .needs(&[Need::NoFilm, Need::Temperatures]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        let relation = Vogel {
+            b_k: parameters[0],
+            c_c: parameters[1],
+            reference_c: parameters[2],
+        };
+        Ok(Self { relation })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for ViscousTemperatureDependence<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        sliding.smooth *= self.relation.factor(journal.temperature_c);
+    }
+}

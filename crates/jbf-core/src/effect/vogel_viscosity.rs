@@ -1,0 +1,74 @@
+//! `Ub -> Ub m`, `t -> t/m`, `m = exp(B/(T - C) - B/(T_0 - C))`: oil that thins with the recorded
+//! temperature.
+//!
+//! Source: Vogel (1921); see `vogel.rs` for the relation and its C. Viscosity and transition speed
+//! go together (mu U_tr = const), so Fb and eps_tr stay, as in `thermal_thinning`, whose temperature
+//! nobody recorded. The film's clock, U_tr/R, goes with 1/mu: thin oil is squeezed out sooner. On the
+//! journal's clock the law of another oil is then this one at another temperature: two oils, or two
+//! days, are one model.
+
+use super::vogel::{Vogel, C, REFERENCE};
+use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::motion::{JournalMotion, Motion};
+use crate::real::Real;
+
+/// Viscosity by a thermometer.
+#[derive(Clone, Copy, Debug)]
+pub struct VogelViscosity<T> {
+    relation: Vogel<T>,
+}
+
+impl<T: Real> Effect<T> for VogelViscosity<T> {
+    const INFO: Info = Info::new("vogel_viscosity", Stage::Lubricant)
+        .summary("oil that thins as the recorded temperature rises")
+        .equation(
+            "Ub -> Ub m, t -> t/m, m = exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature",
+        )
+        .source(
+            "Vogel 1921; Crouch & Cameron 1961 for C; Cohn 1998, section 4.2, for mu U_tr = const",
+        )
+        .limits(
+            "the film as warm as the thermometer; C as of a usual oil, unless it is told; the \
+             journal's inertia as at T_0; without the temperature of the rig's viscosity that \
+             viscosity is taken to hold at the mean on record",
+        )
+        .parameters(&[
+            Parameter::new(
+                "B_k",
+                "K",
+                "Vogel's B: how steeply the oil thins",
+                [0.0, 5000.0],
+                &[800.0],
+            )
+            .null(0.0),
+            C,
+            REFERENCE,
+        ])
+        .needs(&[Need::Film, Need::Temperatures]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        let relation = Vogel {
+            b_k: parameters[0],
+            c_c: parameters[1],
+            reference_c: parameters[2],
+        };
+        Ok(Self { relation })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Lubricant<T> for VogelViscosity<T> {
+    #[inline(always)]
+    fn factor(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        self.relation.factor(journal.temperature_c)
+    }
+
+    #[inline(always)]
+    fn rate(&self, _state: &(), journal: &JournalMotion<T>) -> T {
+        T::ONE / self.relation.factor(journal.temperature_c)
+    }
+}

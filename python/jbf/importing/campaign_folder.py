@@ -1,0 +1,104 @@
+"""A campaign's folder, written whole or not at all: runs, rig, map, trims and ledger."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import shutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.cutting.trims import trims_text
+from jbf.importing.ledger import NAME
+from jbf.importing.mapping import Map
+from jbf.importing.run_text import run_text
+from jbf.importing.spool import Recording
+from jbf.records.rig import Rig
+
+Report = Callable[[str, int, int], None]
+
+
+def check_folder(path: Path, *, replace: bool) -> None:
+    """Refuse a folder that cannot be written, or that holds what is no import.
+
+    Raises
+    ------
+    InputError
+        Names the folder.
+    """
+
+    def wrong(problem: str, mend: str) -> InputError:
+        return InputError(file=path, problem=problem, mend=mend)
+
+    if path.exists() and not path.is_dir():
+        raise wrong("is a file, not a folder", "name a folder")
+    if path.is_dir() and any(path.iterdir()):
+        if not (path / NAME).is_file():
+            raise wrong("holds other files", "name a new folder")
+        if not replace:
+            raise wrong("holds an import already", "name a new folder, or say --force")
+    if not path.resolve().parent.is_dir():
+        raise wrong("its parent folder does not exist", "make it or correct the path")
+
+
+def write_campaign(
+    path: Path,
+    rig: Rig,
+    recordings: Sequence[Recording],
+    pieces: Sequence[Piece],
+    mapping: Map,
+    map_text: str,
+    ledger: dict[str, Any],
+    report: Report | None = None,
+) -> None:
+    """Write the folder; until all is there it has another name.
+
+    Raises
+    ------
+    InputError
+        It cannot be written; nothing is left behind.
+    """
+    target = path.resolve()
+    temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.tmp")
+    runs = [piece for piece in pieces if piece.keep]
+    by_file = {recording.path.name: recording for recording in recordings}
+    try:
+        temporary.mkdir()
+        for number, piece in enumerate(runs):
+            if report is not None:
+                report(f"writing {piece.name}", number, len(runs))
+            with (temporary / f"{piece.name}.csv").open("w", encoding="utf-8") as file:
+                for part in run_text(by_file[piece.file], piece):
+                    file.write(part)
+        rig.write(temporary / "rig.toml")
+        (temporary / "map.toml").write_text(map_text, encoding="utf-8")
+        (temporary / "cut.toml").write_text(trims_text(pieces), encoding="utf-8")
+        text = json.dumps(ledger, indent=1, ensure_ascii=False)
+        (temporary / NAME).write_text(text + "\n", encoding="utf-8")
+        _put(temporary, target)
+    except OSError as error:
+        reason = (error.strerror or type(error).__name__).lower()
+        problem = f"cannot be written ({reason})"
+        mend = "check the path and its permissions"
+        raise InputError(file=path, problem=problem, mend=mend) from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _put(temporary: Path, target: Path) -> None:
+    """Give the folder its name; an earlier import goes only once the new one is there."""
+    if not target.exists():
+        os.replace(temporary, target)
+        return
+    old = target.with_name(f".{target.name}.{secrets.token_hex(6)}.old")
+    os.replace(target, old)
+    try:
+        os.replace(temporary, target)
+    except OSError:
+        os.replace(old, target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)

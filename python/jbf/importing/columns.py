@@ -1,0 +1,220 @@
+"""What quantities are called in the world, and what a run's columns are in.
+
+A name is taken apart into words; each word speaks for a quantity, some for what it is of (a motor,
+a set point). The unit that a header states decides between quantities of one name (speed in rpm or
+in m/s) and never the other way round.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from jbf.importing.unit_table import (
+    ANGLE,
+    COUNT,
+    CURRENT,
+    FORCE,
+    LENGTH,
+    NONE,
+    PRESSURE,
+    RATE,
+    SPEED,
+    SPIN,
+    TEMPERATURE,
+    TIME,
+    TORQUE,
+    VOLTAGE,
+    Dimensions,
+)
+from jbf.importing.units import Unit, parse_unit, unit_of_name
+
+KINDS: dict[str, tuple[Dimensions, ...]] = {
+    "time": (TIME,),
+    "place": (LENGTH, ANGLE, COUNT),
+    "speed": (SPEED, SPIN, RATE),
+    "force": (FORCE,),
+    "load": (FORCE,),
+    "torque": (TORQUE, NONE),
+    "current": (CURRENT,),
+    "temperature": (TEMPERATURE,),
+    "pressure": (PRESSURE,),
+    "voltage": (VOLTAGE,),
+}
+"""The dimensions that a quantity may have."""
+
+_WORDS = {
+    "time": "t time zeit temps tiempo tempo timestamp zeitstempel uhrzeit datum date datetime "
+    "elapsed stamp laufzeit messzeit heure horodatage durée duree timestamps",
+    "place": "x y s pos position weg hub displacement disp stroke travel distance strecke course "
+    "déplacement deplacement posición posicion auslenkung lage spostamento corsa desplazamiento "
+    "posizione wegmessung encoder angle winkel theta phi drehwinkel angolo angulo ángulo "
+    "verfahrweg schlittenposition alpha kolbenweg",
+    "speed": "v n w vel velocity geschwindigkeit vitesse velocidad velocità velocita speed "
+    "drehzahl omega gleitgeschwindigkeit régime regime winkelgeschwindigkeit "
+    "rotationsgeschwindigkeit umdrehungszahl geschw vit velo verfahrgeschwindigkeit",
+    "force": "f force kraft friction reibung reibkraft reibungskraft effort fuerza forza "
+    "frottement ft fr ff tangential zugkraft friktion fx tangentialkraft attrito loadcell "
+    "kraftmessdose presskraft vorschubkraft ffriction fricción friccion",
+    "load": "load last normal normalkraft fn fz anpresskraft charge carga normale axialkraft "
+    "anpressung radialkraft carico fnormal belastung",
+    "torque": "torque moment drehmoment couple m md tau coppia par reibmoment tq trq mom momento "
+    "antriebsmoment",
+    "current": "current strom i iq courant corriente corrente motorstrom amps iact",
+    "temperature": "temperature temperatur température temp temperatura tmp öltemperatur "
+    "oltemperatur",
+    "pressure": "pressure druck pression presión presion pressione p",
+    "voltage": "voltage spannung tension volt u",
+    "index": "index idx nr no number sample samples row row_number row# # nummer zeile lfd "
+    "échantillon",
+    "run": "run test versuch essai lauf cycle zyklus ensayo trial messung segment ciclo prova",
+    "coefficient": "cof mu µ μ reibwert reibzahl reibkoeffizient coefficient",
+    "acceleration": "acc accel acceleration beschleunigung accélération aceleracion",
+}
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_MOTOR = {"motor", "mot", "moteur", "antrieb", "servo"}
+_SETPOINT = _words(
+    "soll sollwert setpoint set ref reference target cmd command demand desired consigne "
+    "sp commanded vorgabe nominal sollwerte setpt"
+)
+_ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
+_ANGLES = _words(
+    "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder drehzahl omega "
+    "winkelgeschwindigkeit rotationsgeschwindigkeit umdrehungszahl régime regime"
+)
+_BY_WORD = {word: kind for kind, words in _WORDS.items() for word in words.split()}
+_SPLIT = re.compile(r"[^\w#µμ]+|_+|(?<=[a-zà-ÿ])(?=[A-ZÄÖÜ])")
+_SHORT = 2
+"""Words of so few letters are symbols: what they mean is likely, not sure."""
+
+_STATED = (
+    re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$"),
+    re.compile(r"^(?P<name>.*?)\s*\((?P<unit>[^()]*(?:\([^()]*\))?[^()]*)\)\s*$"),
+    re.compile(r"^(?P<name>.*?)\s*\{(?P<unit>[^{}]*)\}\s*$"),
+    re.compile(r"^(?P<name>.*?)\s*<(?P<unit>[^<>]*)>\s*$"),
+    re.compile(r"^(?P<name>.+?)\s+in\s+(?P<unit>\S.*)$"),
+    re.compile(r"^(?P<name>.+?)\s*,\s*(?P<unit>\S.*)$"),
+    re.compile(r"^(?P<name>[^/]+?)\s*/\s*(?P<unit>\S.*)$"),
+    re.compile(r"^(?P<name>.+?)\s+(?P<unit>\S+)$"),
+)
+"""Ways of writing a unit into a header: in brackets, or behind, where the longest is taken."""
+_IN_BRACKETS = 4
+
+
+@dataclass(frozen=True)
+class Header:
+    """A header, taken apart.
+
+    Attributes
+    ----------
+    name
+        Without the unit.
+    unit
+        The unit's text; empty where none is written.
+    kind
+        The quantity that its words speak for; None where they speak for none.
+    sure
+        A whole word speaks, no mere letter.
+    motor, setpoint, turning
+        It is the motor's; it is what was asked for and not what was measured; its word is of
+        something that turns.
+    """
+
+    name: str
+    unit: str
+    kind: str | None
+    sure: bool
+    motor: bool = False
+    setpoint: bool = False
+    turning: bool = False
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """A header's name and the unit that it states, empty where it states none."""
+    # What stands twice in a file is numbered.
+    shown = re.sub(r" #\d+$", "", " ".join(text.split()))
+    loose: list[tuple[str, str]] = []
+    for number, pattern in enumerate(_STATED):
+        match = pattern.match(shown)
+        if match is None:
+            continue
+        name, unit = match["name"].strip(), match["unit"].strip()
+        if not name or not unit or (number > 0 and parse_unit(unit) is None):
+            continue
+        if unit.isdigit():
+            continue  # the place of an element
+        # In square brackets stands a unit, known or not; the other ways are words as well.
+        if number < _IN_BRACKETS:
+            return name, unit
+        loose.append((name, unit))
+    if loose:
+        return max(loose, key=lambda found: len(found[1]))
+    found = unit_of_name(shown)
+    return (shown, "") if found is None else (shown, found[1].text)
+
+
+def understood(text: str, unit: str = "") -> Header:
+    """What a header says.
+
+    Parameters
+    ----------
+    unit
+        What the file says of the unit elsewhere, where it does.
+    """
+    name, stated = split_unit(text)
+    unit = unit or stated
+    words = [word.lower() for word in _SPLIT.split(name) if word]
+    if not stated or parse_unit(stated) is None:
+        spoken = words
+    else:
+        # The unit at the end of a name is no word of it.
+        tail = unit_of_name(name)
+        spoken = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
+    kinds = [(word, _BY_WORD[word]) for word in spoken if word in _BY_WORD]
+    if "cell" in spoken or "zelle" in spoken:
+        kinds = [("loadcell", "force")]
+    kinds += [(w, k) for w in spoken if w not in _BY_WORD and (k := _within(w)) is not None]
+    return Header(
+        name=name,
+        unit=unit,
+        kind=_decided(kinds, parse_unit(unit)),
+        sure=any(len(word) > _SHORT for word, _ in kinds),
+        motor=any(word in _MOTOR or word.startswith("motor") for word in words),
+        setpoint=any(word in _SETPOINT for word in words) and not _ACTUAL.intersection(words),
+        turning=any(word in _ANGLES for word in spoken),
+    )
+
+
+def _within(word: str) -> str | None:
+    """The quantity of a compound whose last part is known: Spindeldrehzahl, Hydraulikdruck."""
+    for length in range(len(word) - 1, 3, -1):
+        kind = _BY_WORD.get(word[-length:])
+        if kind is not None and length >= 5:
+            return kind
+    return None
+
+
+def _decided(kinds: list[tuple[str, str]], unit: Unit | None) -> str | None:
+    """The quantity of several words: the one that the unit goes with, long words first, and a load
+    before the force that it is of."""
+    if not kinds:
+        return None
+    ordered = [kind for _, kind in sorted(kinds, key=lambda k: -min(len(k[0]), 4))]
+    if "run" in ordered and unit is None and len(ordered) == 1:
+        return "run"
+    if unit is not None:
+        fitting = [k for k in ordered if k in KINDS and unit.dimensions in KINDS[k]]
+        if fitting:
+            return "load" if "load" in fitting and "friction" not in dict(kinds) else fitting[0]
+    if "coefficient" in ordered:
+        return "coefficient"
+    measured = [k for k in ordered if k in KINDS] or ordered
+    if "load" in measured and "force" in measured:
+        strong = [word for word, kind in kinds if kind == "force" and word not in ("f", "force")]
+        return "force" if any(w.startswith(("fric", "reib", "frott")) for w in strong) else "load"
+    return measured[0]

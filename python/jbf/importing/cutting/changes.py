@@ -1,0 +1,29 @@
+"""Cut where a column changes its value: a set point, the number of a run."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from jbf.importing.cutting.piece import Cut
+from jbf.importing.spool import Stream
+
+
+def cut_at_changes(stream: Stream, column: str, why: str) -> list[Cut]:
+    """A cut at each change; where the column has no value the one before still holds."""
+    at = stream.columns.index(column)
+    found: list[Cut] = []
+    for segment, (first, end) in enumerate(stream.segments):
+        before, before_s = math.nan, math.nan
+        for block in stream.blocks(first, end):
+            there = np.isfinite(block[:, at])
+            times, values = block[there, 0], block[there, at]
+            if not len(values):
+                continue
+            previous = np.concatenate(([before], values[:-1]))
+            ago = np.concatenate(([before_s], times[:-1]))
+            for i in np.flatnonzero((values != previous) & ~np.isnan(previous)):
+                found.append(Cut(segment, float(ago[i]), float(times[i]), why))
+            before, before_s = float(values[-1]), float(times[-1])
+    return found

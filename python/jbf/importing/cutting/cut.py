@@ -1,0 +1,103 @@
+"""From a recording to pieces: every way of cutting that was asked for, or the trims of a person."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jbf.importing.cutting.changes import cut_at_changes
+from jbf.importing.cutting.load_steps import cut_at_load_steps
+from jbf.importing.cutting.motion_kinds import cut_at_motion_kinds
+from jbf.importing.cutting.piece import Cut, Piece
+from jbf.importing.cutting.rests import cut_at_rests
+from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.recording import CUT_COLUMN
+from jbf.importing.spool import Recording
+from jbf.importing.targets import FRICTION
+from jbf.records.checks import MIN_SAMPLES
+
+
+def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
+    """The pieces of a recording in the order of time, those that are left out among them."""
+    cuts: list[Cut] = []
+    for way in settings.by:
+        if way == "rests":
+            cuts += cut_at_rests(recording, settings)
+        elif way == "load_step":
+            cuts += cut_at_load_steps(recording)
+        elif way == "motion":
+            cuts += cut_at_motion_kinds(recording, settings)
+        else:
+            found = recording.stream_of(CUT_COLUMN)
+            assert found is not None
+            cuts += cut_at_changes(found[0], CUT_COLUMN, way.replace("_", " "))
+    pieces: list[Piece] = []
+    for segment in range(recording.segments):
+        own = sorted((c for c in cuts if c.segment == segment), key=lambda c: (c.first_s, c.last_s))
+        pieces += _between(recording, segment, own)
+    return _named(recording, [_judged(recording, piece, settings) for piece in pieces])
+
+
+def ends(recording: Recording, segment: int) -> tuple[float, float]:
+    """First and last instant of a stretch, over all clocks."""
+    rows = [(stream, stream.segments[segment]) for stream in recording.streams]
+    first = min(stream.at(a) for stream, (a, _) in rows)
+    return first, max(stream.at(b - 1) for stream, (_, b) in rows)
+
+
+def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
+    """What lies between cuts; what they leave out are pieces, too."""
+    first_s, last_s = ends(recording, segment)
+    found: list[Piece] = []
+    begin = first_s
+    file = recording.path.name
+    for c in cuts:
+        if c.first_s <= begin and c.last_s <= begin and c.first_s != first_s:
+            continue
+        if c.last_s > begin:
+            found.append(Piece("", file, segment, begin, c.last_s))
+        if c.first_s > max(c.last_s, begin) and _within(recording, segment, c):
+            out = Piece("", file, segment, max(c.last_s, begin), c.first_s, False, c.why)
+            found.append(out)
+        begin = max(begin, c.first_s)
+    if begin < last_s:
+        found.append(Piece("", file, segment, begin, last_s))
+    return found
+
+
+def _within(recording: Recording, segment: int, c: Cut) -> bool:
+    """Whether there are rows between the two instants of a cut."""
+    for stream in recording.streams:
+        first, end = stream.rows_between(segment, c.last_s, c.first_s)
+        if end - first > 2:
+            return True
+    return False
+
+
+def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
+    """A piece that is no run is left out."""
+    if not piece.keep:
+        return piece
+    found = recording.stream_of(*FRICTION)
+    assert found is not None
+    first, end = found[0].rows_between(piece.segment, piece.from_s, piece.to_s)
+    why = ""
+    if end - first < MIN_SAMPLES:
+        why = f"{end - first} samples, and a run has at least {MIN_SAMPLES}"
+    elif piece.to_s - piece.from_s < settings.shortest_s:
+        why = f"shorter than {settings.shortest_s:g} s"
+    return Piece(piece.name, piece.file, piece.segment, piece.from_s, piece.to_s, not why, why)
+
+
+def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
+    """Runs are called after their file, and numbered where there are several."""
+    runs = [piece for piece in pieces if piece.keep]
+    digits = len(str(len(runs)))
+    number = 0
+    found = []
+    for p in pieces:
+        name = ""
+        if p.keep:
+            number += 1
+            name = recording.name if len(runs) == 1 else f"{recording.name}_{number:0{digits}d}"
+        found.append(Piece(name, p.file, p.segment, p.from_s, p.to_s, p.keep, p.why))
+    return found

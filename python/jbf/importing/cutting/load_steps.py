@@ -1,0 +1,80 @@
+"""Cut where the load steps: a level that holds before and another that holds after."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.importing.cutting.piece import Cut
+from jbf.importing.spool import Recording, Stream
+
+Array = npt.NDArray[np.float64]
+
+LOADS = ("load_n", "pressure_pa")
+_PARTS = 20
+"""Rows whose median is one point of the load's course."""
+_STEP = 0.05
+"""A step is at least such a share of the larger level,"""
+_SIGMAS = 8.0
+"""and so many standard deviations of the points about their neighbours."""
+
+
+def cut_at_load_steps(recording: Recording) -> list[Cut]:
+    """A cut at each step of `load_n`, or of `pressure_pa`.
+
+    Raises
+    ------
+    InputError
+        Neither was recorded.
+    """
+    found = recording.stream_of(*LOADS)
+    if found is None:
+        raise InputError(
+            key="cut.by",
+            problem="load_step needs load_n or pressure_pa",
+            mend="name the column under [columns]",
+        )
+    stream, key = found
+    return [
+        cut
+        for segment in range(len(stream.segments))
+        for cut in _steps(stream, segment, stream.columns.index(key))
+    ]
+
+
+def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
+    first, end = stream.segments[segment]
+    parts = [
+        np.nanmedian(block[at : at + _PARTS, column])
+        for block in stream.blocks(first, end, size=_PARTS * 2_000)
+        for at in range(0, len(block), _PARTS)
+        if np.isfinite(block[at : at + _PARTS, column]).any()
+    ]
+    level = np.array(parts)
+    if len(level) < 4:
+        return []
+    noise = float(np.median(np.abs(np.diff(level)))) / 0.6745
+    found: list[Cut] = []
+    since = 0
+    for at in range(1, len(level) - 1):
+        before = float(np.median(level[since:at]))
+        least = max(_STEP * max(abs(before), abs(float(level[at]))), _SIGMAS * noise)
+        # It must hold: the point at a step itself lies between.
+        after = level[at : at + 2]
+        if np.all(np.abs(after - before) > least) and abs(after[1] - after[0]) < least:
+            row = _edge(stream, first, end, at, column, before, float(after[1]))
+            why = f"the load goes from {before:.4g} to {after[1]:.4g}"
+            found.append(Cut(segment, stream.at(row - 1), stream.at(row), why))
+            since = at
+    return found
+
+
+def _edge(
+    stream: Stream, first: int, end: int, part: int, column: int, before: float, after: float
+) -> int:
+    """The first row that is nearer to the level after."""
+    low = max(first + (part - 1) * _PARTS, first + 1)
+    values = stream.read(low, min(first + (part + 1) * _PARTS, end))[:, column]
+    nearer = np.abs(values - after) < np.abs(values - before)
+    return low + (int(np.argmax(nearer)) if nearer.any() else _PARTS)

@@ -1,0 +1,85 @@
+"""Cut where the kind of motion changes: at rest, steady, one way at changing speed, to and fro."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from jbf.importing.cutting.motion_speed import MotionSpeed
+from jbf.importing.cutting.piece import Cut
+from jbf.importing.cutting.rests import NOISES, STILL
+from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.spool import Recording
+
+WINDOW_S = 1.0
+"""What is looked at, at a time, where rests are not said to be longer."""
+STEADY = 0.02
+"""A speed that spreads by less than such a share of its mean is steady."""
+HOLDS = 3
+"""A kind holds for so many windows, or it belongs to the kind before."""
+
+
+def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut]:
+    """A cut at each change of kind that holds."""
+    window_s = max(settings.rest_s, WINDOW_S)
+    motion = MotionSpeed(recording, 0.1 * window_s)
+    least = (STILL if settings.still is None else settings.still) * motion.top()
+    noise = motion.noise()
+    least = max(least, NOISES * noise)
+    found: list[Cut] = []
+    for segment, (first, _) in enumerate(motion.stream.segments):
+        kinds: list[str] = []
+        begins: list[int] = []
+        per = max(4, round(window_s / 0.1 / window_s * 2.0 * motion.half))
+        for begin, _, speed in motion.blocks(segment):
+            for at in range(0, len(speed), per):
+                part = speed[at : at + per]
+                if len(part) >= per // 2:
+                    kinds.append(_kind(part, least, noise))
+                    begins.append(begin + at)
+        for at, kind in _held(_to_and_fro(kinds)):
+            row = begins[at]
+            if row > first:
+                stream = motion.stream
+                found.append(Cut(segment, stream.at(row - 1), stream.at(row), f"motion: {kind}"))
+    return found
+
+
+def _kind(speed: np.ndarray, least: float, noise: float) -> str:
+    size = float(np.median(np.abs(speed)))
+    if size <= least:
+        return "rest"
+    if (speed > least).any() and (speed < -least).any():
+        return "to and fro"
+    if float(np.ptp(speed)) <= max(STEADY * size, 6.0 * noise):
+        return f"steady {'forward' if speed.mean() > 0.0 else 'back'}"
+    return f"changing {'forward' if speed.mean() > 0.0 else 'back'}"
+
+
+def _to_and_fro(kinds: list[str]) -> list[str]:
+    """Windows one way between reversals are parts of a motion to and fro."""
+    found = list(kinds)
+    turns = [i for i, kind in enumerate(kinds) if kind == "to and fro"]
+    for one, other in pairwise(turns):
+        between = kinds[one + 1 : other]
+        if all(kind.startswith("changing") for kind in between):
+            found[one + 1 : other] = ["to and fro"] * len(between)
+    return found
+
+
+def _held(kinds: list[str]) -> list[tuple[int, str]]:
+    """Where a kind begins that holds, and is another than the last that held."""
+    found: list[tuple[int, str]] = []
+    last = None
+    at = 0
+    while at < len(kinds):
+        end = at
+        while end < len(kinds) and kinds[end] == kinds[at]:
+            end += 1
+        if end - at >= HOLDS and kinds[at] != last:
+            if last is not None:
+                found.append((at, kinds[at]))
+            last = kinds[at]
+        at = end
+    return found

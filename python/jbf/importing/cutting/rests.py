@@ -1,0 +1,66 @@
+"""Cut at rests: each motion, with a little of the rest before and after it, is a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jbf.importing.cutting.motion_speed import MotionSpeed
+from jbf.importing.cutting.piece import Cut
+from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.spool import Recording
+
+WINDOW = 0.05
+"""Share of the shortest rest over which the size of the speed is averaged."""
+STILL = 5e-3
+"""Share of the top speed that is a rest,"""
+NOISES = 2.0
+"""or so many standard deviations of the speed's white noise, where that is more."""
+
+
+def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
+    """A cut at each rest that is long enough; what is left of it is left out."""
+    motion = MotionSpeed(recording, WINDOW * settings.rest_s)
+    top = motion.top()
+    share = STILL if settings.still is None else settings.still
+    least = share * top
+    if settings.still is None:
+        least = max(least, NOISES * motion.noise())
+    found = []
+    for segment, (first, end) in enumerate(motion.stream.segments):
+        for begin, stop in _rests(motion, segment, least):
+            from_s, to_s = motion.stream.at(begin), motion.stream.at(stop - 1)
+            if to_s - from_s < settings.rest_s:
+                continue
+            keep = min(settings.keep_rest_s, 0.5 * (to_s - from_s))
+            last, _ = motion.stream.rows_between(segment, from_s + keep, to_s)
+            # The rest's first instants stay with the motion before, its last with that after.
+            last = begin if begin == first else min(last, stop - 1)
+            _, after = motion.stream.rows_between(segment, from_s, to_s - keep)
+            after = end - 1 if stop == end else max(after, last + 1)
+            why = f"a rest of {to_s - from_s:.3g} s"
+            if last < min(after, end - 1) or begin == first or stop == end:
+                found.append(
+                    Cut(segment, motion.stream.at(last), motion.stream.at(min(after, end - 1)), why)
+                )
+    return found
+
+
+def _rests(motion: MotionSpeed, segment: int, least: float) -> Iterator[tuple[int, int]]:
+    """First row and end of each stretch at rest."""
+    began: int | None = None
+    row = motion.stream.segments[segment][0]
+    for first, _, speed in motion.smoothed(segment):
+        still = speed <= least
+        edges = np.flatnonzero(np.diff(np.concatenate(([began is not None], still))))
+        for edge in edges:
+            row = first + int(edge)
+            if began is None:
+                began = row
+            else:
+                yield began, row
+                began = None
+        row = first + len(speed)
+    if began is not None:
+        yield began, row

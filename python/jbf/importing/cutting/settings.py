@@ -1,0 +1,82 @@
+"""How a recording is to be cut, as the section `[cut]` of a map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError, did_you_mean, quoted
+from jbf.records.toml_file import number, refuse_unknown
+
+WAYS = ("rests", "set_point", "load_step", "motion", "run")
+"""Ways of cutting, one file each in this folder or in `changes`."""
+
+
+@dataclass(frozen=True)
+class CutSettings:
+    """How a recording becomes runs.
+
+    Attributes
+    ----------
+    by
+        Ways of `WAYS`, all of which cut; none: one run a recording (and wherever time
+        starts again).
+    column
+        The file's column (an expression) of `set_point` or `run`.
+    rest_s
+        A rest of at least so long cuts, s.
+    keep_rest_s
+        So much of a rest stays with the motion before and after it, s.
+    shortest_s
+        Shorter pieces are left out, s.
+    still
+        Share of the top speed below which a motion rests; by the record's own noise where None.
+    file
+        Trims that a person has edited, in the place of all ways.
+    """
+
+    by: tuple[str, ...] = ()
+    column: str | None = None
+    rest_s: float = 2.0
+    keep_rest_s: float = 0.5
+    shortest_s: float = 0.0
+    still: float | None = None
+    file: Path | None = None
+
+    @classmethod
+    def from_mapping(cls, section: Mapping[str, Any], folder: Path) -> CutSettings:
+        """Settings from their section; paths are from the map's folder.
+
+        Raises
+        ------
+        InputError
+            A key is unknown or does not fit; names no file.
+        """
+        refuse_unknown(section, [f.name for f in fields(cls)], "cut.")
+        given = dict(section)
+        by = given.get("by", ())
+        ways = (by,) if isinstance(by, str) else tuple(by)
+        for way in ways:
+            if way not in WAYS:
+                raise InputError(
+                    key="cut.by", problem=f"{quoted(way)} is no cut", mend=did_you_mean(way, WAYS)
+                )
+        needs = [way for way in ways if way in ("set_point", "run")]
+        if needs and not isinstance(given.get("column"), str):
+            raise InputError(
+                key="cut.column",
+                problem="is missing",
+                mend=f'by = "{needs[0]}" needs the file\'s column, such as "setpoint_rpm"',
+            )
+        for key in ("rest_s", "keep_rest_s", "shortest_s", "still"):
+            if key in given:
+                given[key] = number(given[key], f"cut.{key}")
+                if not 0.0 <= given[key] < math.inf:
+                    problem = f"{given[key]} is below zero or not finite"
+                    raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
+        if "file" in given:
+            given["file"] = folder / str(given["file"])
+        return cls(**(given | {"by": ways}))

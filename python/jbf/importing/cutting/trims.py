@@ -1,0 +1,106 @@
+"""Trims in a file that a person can edit: `cut.toml`, a line for each piece of each recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError
+from jbf.importing.cutting.cut import ends
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.spool import Recording
+from jbf.records.toml_file import number, read_toml, refuse_unknown, table
+
+_KEYS = ("name", "file", "from_s", "to_s", "keep", "stretch", "why")
+_HEAD = """\
+# How the recordings were cut. Edit names, times (s) and keep, add and take away lines, and then:
+#   jbf import FILE... --map map.toml --cut cut.toml --out FOLDER
+# Both instants belong to the run. Where time starts again in a file, stretch counts from 1.
+"""
+
+
+def trims_text(pieces: Sequence[Piece]) -> str:
+    """The text of `cut.toml`."""
+    lines = [_HEAD + "pieces = ["]
+    for piece in pieces:
+        words = [
+            f"name = {_text(piece.name)}",
+            f"file = {_text(piece.file)}",
+            f"from_s = {piece.from_s!r}",
+            f"to_s = {piece.to_s!r}",
+            f"keep = {str(piece.keep).lower()}",
+        ]
+        if piece.segment:
+            words.append(f"stretch = {piece.segment + 1}")
+        if piece.why:
+            words.append(f"why = {_text(piece.why)}")
+        lines.append(f"  {{ {', '.join(words)} }},")
+    return "\n".join([*lines, "]\n"])
+
+
+def _text(word: str) -> str:
+    quoted = word.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{quoted}"'
+
+
+def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
+    """The pieces that a file of trims names.
+
+    Raises
+    ------
+    InputError
+        It is wrong, or names a file or an instant that is not there.
+    """
+    content = read_toml(path)
+    try:
+        refuse_unknown(content, ["pieces"])
+        rows = content.get("pieces", [])
+        if not isinstance(rows, list):
+            raise InputError(key="pieces", problem="is no list", mend="write pieces = [ { ... }, ]")
+        pieces = [_piece(row, at, recordings) for at, row in enumerate(rows, 1)]
+        names = [piece.name for piece in pieces if piece.keep]
+        for at, name in enumerate(names):
+            if name in names[:at]:
+                raise InputError(
+                    key="pieces", problem=f'two runs are called "{name}"', mend="rename one"
+                )
+    except InputError as error:
+        raise error.within(file=path) from None
+    return pieces
+
+
+def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
+    key = f"pieces, {at}"
+    content: Mapping[str, Any] = table(row, key)
+    refuse_unknown(content, _KEYS, f"{key}, ")
+    for needed in ("name", "file", "from_s", "to_s"):
+        if needed not in content:
+            raise InputError(key=f"{key}, {needed}", problem="is missing", mend="add it")
+    found = [r for r in recordings if r.path.name == content["file"]]
+    if not found:
+        names = ", ".join(r.path.name for r in recordings)
+        problem = f'"{content["file"]}" is not imported'
+        raise InputError(key=f"{key}, file", problem=problem, mend=f"there are {names}")
+    segment = int(number(content.get("stretch", 1), f"{key}, stretch")) - 1
+    if not 0 <= segment < found[0].segments:
+        problem = f"there is no stretch {segment + 1}"
+        mend = f"time starts again {found[0].segments - 1} times in {found[0].path.name}"
+        raise InputError(key=f"{key}, stretch", problem=problem, mend=mend)
+    from_s, to_s = (number(content[k], f"{key}, {k}") for k in ("from_s", "to_s"))
+    first_s, last_s = ends(found[0], segment)
+    if not from_s < to_s or to_s < first_s or from_s > last_s:
+        raise InputError(
+            key=f"{key}, from_s",
+            problem=f"from {from_s:g} to {to_s:g} s holds nothing",
+            mend=f"the recording goes from {first_s:g} to {last_s:g} s",
+        )
+    keep = content.get("keep", True)
+    if not isinstance(keep, bool):
+        raise InputError(key=f"{key}, keep", problem="is no true or false", mend="write one")
+    name = str(content["name"])
+    if keep and (not name or set(name) & set('/\\:*?"<>|') or name.startswith(".")):
+        raise InputError(
+            key=f"{key}, name", problem="is no name for a file", mend="write letters and figures"
+        )
+    return Piece(name, found[0].path.name, segment, from_s, to_s, keep, str(content.get("why", "")))

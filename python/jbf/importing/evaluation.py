@@ -1,0 +1,219 @@
+"""An expression's unit, checked before a value is read; and its values, block by block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError, quoted
+from jbf.importing.expression import OPEN, Binary, Call, Node, Number, Reference, Signed
+from jbf.importing.unit_table import ASK, BASES, NONE
+from jbf.importing.units import ONE, Unit, parse_unit
+
+Array = npt.NDArray[np.float64]
+Value = Array | float
+
+_RAD = BASES.index("rad")
+_SAME = 1e-6
+"""Relative distance within which a number is a unit's own factor."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value, or none yet, and its unit.
+
+    Attributes
+    ----------
+    loose
+        A number without a unit is a factor of it: it may have brought dimensions that nobody wrote.
+    """
+
+    value: Value
+    unit: Unit
+    loose: bool = False
+
+
+def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
+    """What a column is read in.
+
+    Parameters
+    ----------
+    units
+        The text that the file has for each column's unit.
+
+    Raises
+    ------
+    InputError
+        Nobody says it, or it is no unit.
+    """
+    text = units.get(reference.column, "") if reference.unit is None else reference.unit
+    if text == OPEN:
+        raise InputError(
+            column=reference.column,
+            problem="its unit is open",
+            mend="write it in place of the ? in the map, such as [mm]",
+        )
+    if reference.unit is None and text in ASK:
+        raise InputError(
+            column=reference.column,
+            problem=f"the unit {quoted(text)} may be {ASK[text]}",
+            mend="write the one that it is behind the column in the map, in square brackets",
+        )
+    unit = parse_unit(text) if text else ONE
+    if unit is None:
+        raise InputError(
+            column=reference.column,
+            problem=f"{quoted(text)} is no known unit",
+            mend="write one such as [N m], [mm/s], [rpm] behind the column in the map",
+        )
+    return unit
+
+
+def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str]) -> Quantity:
+    """An expression's values.
+
+    Parameters
+    ----------
+    columns
+        Readings of each column that it names, as they stand in the file.
+    units
+        The text that the file has for each column's unit.
+
+    Raises
+    ------
+    InputError
+        Units do not go together; names no file.
+    """
+    if isinstance(node, Number):
+        if node.unit is None:
+            return Quantity(node.value, ONE, loose=True)
+        unit = parse_unit(node.unit)
+        if unit is None:
+            raise InputError(
+                problem=f"{quoted(node.unit)} behind {node.value:g} is no known unit",
+                mend="write one such as [mm] or [N m/A]",
+            )
+        return Quantity(node.value, unit)
+    if isinstance(node, Reference):
+        return Quantity(columns[node.column], column_unit(node, units))
+    if isinstance(node, Signed):
+        inner = evaluate(node.of, columns, units)
+        _no_zero(inner.unit)
+        return Quantity(-inner.value, inner.unit, inner.loose)
+    if isinstance(node, Call):
+        return _called(node, evaluate(node.of, columns, units))
+    left, right = (evaluate(side, columns, units) for side in (node.left, node.right))
+    _no_zero(left.unit)
+    _no_zero(right.unit)
+    if node.sign in "*/":
+        _not_twice(node, left, right)
+        return _product(node.sign, left, right)
+    return _sum(node.sign, left, right)
+
+
+def converted(found: Quantity, wanted: Unit, key: str) -> Array:
+    """Values in the unit that a column's name promises.
+
+    Raises
+    ------
+    InputError
+        They are of another kind; names no file.
+    """
+    values = np.asarray(found.value, dtype=np.float64)
+    if found.unit.fits(wanted):
+        return found.unit.converted(values, wanted)
+    angle = wanted.dimensions[_RAD] - found.unit.dimensions[_RAD]
+    if found.loose and angle == 0:
+        # A bare factor is in SI: what it brought is what was missing.
+        return values * (found.unit.in_si / wanted.in_si)
+    if angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
+        problem, mend = (
+            "turns, degrees or radians?",
+            "give a factor its unit: [mm/rev], [counts/rev]",
+        )
+    else:
+        problem = f"has the unit {found.unit.text}, which is no {wanted.text}"
+        mend = "give columns and factors their units in square brackets"
+    raise InputError(key=f"columns.{key}", problem=problem, mend=mend)
+
+
+def _product(sign: str, left: Quantity, right: Quantity) -> Quantity:
+    loose = left.loose or right.loose
+    if sign == "*":
+        return Quantity(left.value * right.value, left.unit.times(right.unit), loose)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        quotient = np.divide(left.value, right.value)
+    return Quantity(quotient, left.unit.times(right.unit, -1), loose)
+
+
+def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
+    unit, value = left.unit, right.value
+    if right.unit.dimensions == unit.dimensions:
+        value = right.unit.converted(np.asarray(value, dtype=np.float64), unit)
+    elif right.loose and right.unit.dimensions == NONE:
+        # A bare number beside a column with a unit is in the column's.
+        pass
+    elif left.loose and left.unit.dimensions == NONE:
+        unit = right.unit
+    else:
+        raise InputError(
+            problem=f"{left.unit.text} and {right.unit.text} cannot be added",
+            mend="give each its unit in square brackets, such as [bar]",
+        )
+    total = left.value + value if sign == "+" else left.value - value
+    return Quantity(total, unit, left.loose and right.loose)
+
+
+def _called(node: Call, inner: Quantity) -> Quantity:
+    _no_zero(inner.unit)
+    if node.function == "abs":
+        return Quantity(np.abs(inner.value), inner.unit, inner.loose)
+    if node.function == "sign":
+        return Quantity(np.sign(inner.value), ONE)
+    if node.function == "sqrt":
+        return Quantity(_root(inner), ONE, loose=True)
+    if inner.unit.dimensions[:_RAD] != NONE[:_RAD] or inner.unit.dimensions[_RAD] not in (0, 1):
+        raise InputError(
+            problem=f"{node.function} of {inner.unit.text}, which is no angle",
+            mend="give it an angle",
+        )
+    angle = np.asarray(inner.value) * inner.unit.in_si
+    return Quantity(np.sin(angle) if node.function == "sin" else np.cos(angle), ONE)
+
+
+def _root(inner: Quantity) -> Value:
+    if inner.unit.dimensions != NONE:
+        raise InputError(
+            problem=f"the root of {inner.unit.text} has no unit", mend="divide by a unit first"
+        )
+    with np.errstate(invalid="ignore"):
+        found: Value = np.sqrt(np.asarray(inner.value) * inner.unit.in_si)
+    return found
+
+
+def _not_twice(node: Binary, left: Quantity, right: Quantity) -> None:
+    """A bare factor that is the unit's own: the readings would be converted twice."""
+    for this, other, power in ((left, right, 1), (right, left, 1 if node.sign == "*" else 0)):
+        if not (other.loose and isinstance(other.value, float) and power):
+            continue
+        size = this.unit.in_si
+        if this.unit.dimensions == NONE or size == 1.0 or other.unit is not ONE:
+            continue
+        factor = abs(other.value if node.sign == "*" or other is left else 1.0 / other.value)
+        if math.isclose(factor, size, rel_tol=_SAME):
+            raise InputError(
+                problem=f"the factor {other.value:g} converts {this.unit.text} a second time",
+                mend="drop it: units are converted by their names",
+            )
+
+
+def _no_zero(unit: Unit) -> None:
+    if unit.zero:
+        raise InputError(
+            problem=f"{unit.text} has a zero of its own and cannot be reckoned with",
+            mend="give the temperature's column alone",
+        )

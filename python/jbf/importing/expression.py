@@ -1,0 +1,230 @@
+"""What a column is made of: `Torque [Nm] / 0.0127`, `-Drehzahl [U/min]`, `p [bar] * 3.1 [cm^2]`.
+
+    sum     = product { ("+" | "-") product }
+    product = signed { ("*" | "/") signed }
+    signed  = ("-" | "+") signed | item
+    item    = number [unit] | column [unit] | function "(" sum ")" | "(" sum ")"
+
+A column stands as the file's header has it, whole (unit included) or without its unit; the longest
+name that fits is taken, so that blanks, slashes and brackets in names do no harm. In back quotes a
+name is what it is. A unit in square brackets after a column says what it is read in, whatever the
+header says; after a number, what the number is in. Nothing is evaluated but this grammar.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from jbf.errors import InputError, did_you_mean, quoted
+
+FUNCTIONS = ("abs", "sign", "sqrt", "sin", "cos")
+OPEN = "?"
+"""In the brackets where a unit belongs: nobody has said which."""
+
+_NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?")
+_UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
+_WORD = re.compile(r"[^\W\d]\w*")
+_DEEPEST = 50
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number, and the unit that was written beside it."""
+
+    value: float
+    unit: str | None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A column, and the unit that it is to be read in where the expression says one."""
+
+    column: str
+    unit: str | None
+
+
+@dataclass(frozen=True)
+class Signed:
+    """Minus something."""
+
+    of: Node
+
+
+@dataclass(frozen=True)
+class Binary:
+    """Two things and what is done with them."""
+
+    sign: Literal["+", "-", "*", "/"]
+    left: Node
+    right: Node
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function of one thing."""
+
+    function: str
+    of: Node
+
+
+Node = Number | Reference | Signed | Binary | Call
+
+
+def references(node: Node) -> list[Reference]:
+    """Every column that it takes, from left to right."""
+    if isinstance(node, Reference):
+        return [node]
+    if isinstance(node, Binary):
+        return references(node.left) + references(node.right)
+    return references(node.of) if isinstance(node, Signed | Call) else []
+
+
+def written(name: str) -> str:
+    """A column's name as an expression holds it."""
+    return f"`{name}`"
+
+
+def parse_expression(text: str, names: Mapping[str, str], known: Sequence[str] = ()) -> Node:
+    """The expression as a tree.
+
+    Parameters
+    ----------
+    names
+        What a column may be called, and the column that is then meant.
+    known
+        The columns, for a suggestion where a name is none; the keys of `names` by default.
+
+    Raises
+    ------
+    InputError
+        It is no expression, or names a column that is not there; names no file.
+    """
+    return _Parser(text, names, known or list(names)).parse()
+
+
+class _Parser:
+    """Recursive descent; `at` is the next character."""
+
+    def __init__(self, text: str, names: Mapping[str, str], known: Sequence[str]) -> None:
+        self.text = text
+        self.names = names
+        self.known = known
+        self.longest_first = sorted((n for n in names if n), key=len, reverse=True)
+        self.at = 0
+        self.depth = 0
+
+    def parse(self) -> Node:
+        found = self._sum()
+        self._skip()
+        if self.at < len(self.text):
+            raise self._wrong(f"{quoted(self.text[self.at :])} is left over")
+        return found
+
+    def _sum(self) -> Node:
+        self.depth += 1
+        if self.depth > _DEEPEST:
+            raise self._wrong("has too many brackets")
+        found = self._product()
+        while sign := self._one_of("+-"):
+            found = Binary(sign, found, self._product())  # type: ignore[arg-type]
+        self.depth -= 1
+        return found
+
+    def _product(self) -> Node:
+        found = self._signed()
+        while sign := self._one_of("*/"):
+            found = Binary(sign, found, self._signed())  # type: ignore[arg-type]
+        return found
+
+    def _signed(self) -> Node:
+        minus = False
+        while True:
+            # A name may begin with a sign; then it is the name.
+            if self._name_here() is None and (sign := self._one_of("+-")):
+                minus ^= sign == "-"
+                continue
+            item = self._item()
+            return Signed(item) if minus else item
+
+    def _item(self) -> Node:
+        self._skip()
+        if self.at == len(self.text):
+            raise self._wrong("ends where a column or a number is due")
+        if self.text[self.at] == "`":
+            return self._in_back_quotes()
+        name = self._name_here()
+        number = _NUMBER.match(self.text, self.at)
+        if name is not None and (number is None or len(name) > len(number[0])):
+            self.at += len(name)
+            return Reference(self.names[name], self._unit())
+        if number is not None:
+            self.at = number.end()
+            return Number(float(number[0]), self._unit())
+        if self._one_of("("):
+            return self._closed(self._sum())
+        word = _WORD.match(self.text, self.at)
+        if word is not None and word[0] in FUNCTIONS:
+            self.at = word.end()
+            if self._one_of("("):
+                return Call(word[0], self._closed(self._sum()))
+            self.at = word.start()
+        raise self._no_column(self.text[self.at :] if word is None else word[0])
+
+    def _in_back_quotes(self) -> Node:
+        end = self.text.find("`", self.at + 1)
+        if end < 0:
+            raise self._wrong("a back quote is not closed")
+        name = self.text[self.at + 1 : end]
+        if name not in self.names:
+            raise self._no_column(name)
+        self.at = end + 1
+        return Reference(self.names[name], self._unit())
+
+    def _closed(self, inside: Node) -> Node:
+        if not self._one_of(")"):
+            raise self._wrong("a bracket is not closed")
+        return inside
+
+    def _name_here(self) -> str | None:
+        """The longest name that stands here and does not end within a word."""
+        self._skip()
+        rest = self.text[self.at :]
+        for name in self.longest_first:
+            if rest.startswith(name):
+                after = rest[len(name) : len(name) + 1]
+                if not (_is_word(name[-1]) and _is_word(after)):
+                    return name
+        return None
+
+    def _unit(self) -> str | None:
+        match = _UNIT.match(self.text, self.at)
+        if match is None:
+            return None
+        self.at = match.end()
+        return match[1].strip()
+
+    def _one_of(self, signs: str) -> str | None:
+        self._skip()
+        if self.at < len(self.text) and self.text[self.at] in signs:
+            self.at += 1
+            return self.text[self.at - 1]
+        return None
+
+    def _skip(self) -> None:
+        while self.at < len(self.text) and self.text[self.at].isspace():
+            self.at += 1
+
+    def _no_column(self, word: str) -> InputError:
+        problem = f"{quoted(self.text)}: the file has no column {quoted(word.strip())}"
+        return InputError(problem=problem, mend=did_you_mean(word, self.known))
+
+    def _wrong(self, problem: str) -> InputError:
+        mend = "write columns and numbers with + - * / and brackets, a unit as [N m] behind them"
+        return InputError(problem=f"{quoted(self.text)} {problem}", mend=mend)
+
+
+def _is_word(sign: str) -> bool:
+    return sign.isalnum() or sign == "_"

@@ -1,0 +1,136 @@
+"""Tables of arrays that can be sliced: what NumPy, MAT and HDF5 files hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values, as_numbers
+
+Slice = Callable[[int, int], Any]
+"""Values from a first row to before an end."""
+_WIDEST = 64
+"""A matrix of more columns is no table of channels."""
+
+
+class ArraySource(Source):
+    """Columns by table, each read by slices."""
+
+    def __init__(self, path: Path, close: Callable[[], None] | None = None) -> None:
+        self.path = path
+        self.tables = ()
+        self._columns: dict[str, dict[str, Slice]] = {}
+        self._close = close
+        self._origin: np.datetime64 | None = None
+
+    def add(
+        self,
+        name: str,
+        columns: Mapping[str, tuple[Slice, str]],
+        rows: int,
+        clock: str | None = None,
+        start: str | None = None,
+    ) -> None:
+        """Add a table: column to slices and unit."""
+        if rows == 0 or not columns:
+            return
+        kept = []
+        for column, (read, unit) in columns.items():
+            kind = np.asarray(read(0, min(rows, 2))).dtype.kind
+            if kind in "biuf":
+                kept.append(Column(column, unit))
+            elif kind == "M":
+                kept.append(Column(column, "", "instant"))
+            elif kind in "OSU":
+                kept.append(Column(column, "", "word"))
+        self._columns[name] = {c.name: columns[c.name][0] for c in kept}
+        self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, start=start))
+
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+        """Columns in slices."""
+        readers = {name: self._columns[table.name][table.column(name).name] for name in names}
+        kinds = {name: table.column(name).kind for name in names}
+        assert table.rows is not None
+        for first in range(0, table.rows, BLOCK):
+            found = {}
+            for name, read in readers.items():
+                values = np.asarray(read(first, min(first + BLOCK, table.rows)))
+                if kinds[name] == "instant":
+                    # One for all columns of instants: their clocks are to be compared.
+                    self._origin = self._origin or first_instant(values)
+                    found[name] = seconds(values, self._origin)
+                else:
+                    found[name] = as_numbers(values)
+            yield found
+
+    def close(self) -> None:
+        """Let the file go."""
+        if self._close is not None:
+            self._close()
+
+
+def first_instant(instants: Any) -> np.datetime64 | None:
+    """The first that is one."""
+    fine = np.asarray(instants).astype("datetime64[ns]")
+    known = fine[~np.isnat(fine)]
+    return known[0] if known.size else None
+
+
+def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
+    """Dates as seconds from an origin on; nan where there is none."""
+    fine = np.asarray(instants).astype("datetime64[ns]")
+    if origin is None:
+        return np.full(len(fine), np.nan)
+    found: Values = (fine - origin).astype(np.int64) / 1e9
+    found[np.isnat(fine)] = np.nan
+    return found
+
+
+def slices(values: Any) -> Slice:
+    """Slices of a vector."""
+    return lambda first, end: values[first:end]
+
+
+def add_by_length(
+    source: ArraySource, vectors: Mapping[str, tuple[Any, str]], options: Options
+) -> None:
+    """Vectors of one length share their rows: a table for each length."""
+    lengths = dict.fromkeys(len(values) for values, _ in vectors.values())
+    for length in lengths:
+        if length < 2:
+            continue
+        own = {n: (slices(v), unit) for n, (v, unit) in vectors.items() if len(v) == length}
+        source.add(f"{length} samples" if _several(lengths) else "", own, length)
+    if not source.tables:
+        raise InputError(
+            file=source.path, problem="holds no columns of numbers", mend="name another file"
+        )
+
+
+def _several(lengths: Mapping[int, None]) -> bool:
+    return sum(length > 1 for length in lengths) > 1
+
+
+def vectors_of(name: str, values: Any) -> dict[str, Any]:
+    """An array's columns by name: itself, or those of a matrix or of records; none of what is no
+    channel."""
+    array = values
+    if array.dtype.names:
+        flat = array.reshape(-1)
+        return {f"{name}.{n}" if name else n: flat[n] for n in array.dtype.names}
+    if array.ndim == 1:
+        return {name or "column 1": array}
+    if array.ndim != 2:
+        return {}
+    if 1 in array.shape:
+        return {name or "column 1": array.reshape(-1)}
+    if array.shape[0] < array.shape[1]:
+        array = array.T
+    if array.shape[1] > _WIDEST:
+        return {}
+    lead = f"{name} " if name else ""
+    return {f"{lead}column {i + 1}": array[:, i] for i in range(array.shape[1])}

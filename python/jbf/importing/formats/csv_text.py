@@ -1,0 +1,283 @@
+"""Text: CSV as loggers, oscilloscopes, spreadsheets and drives write it, plain or gzipped.
+
+Read in blocks of lines. A block is turned into numbers at once, and looked at cell by cell only
+where that fails: a good file goes fast and a bad one still gets its row and column named.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from jbf.errors import InputError, quoted
+from jbf.importing.formats.dates import Instants, as_date, day_or_month_first, seconds_since
+from jbf.importing.formats.dialect import Dialect, decode, is_empty, is_instant, sniff
+from jbf.importing.formats.layout import Layout, lay_out
+from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
+
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
+_HEAD_LINES = 400
+_HEAD_BYTES = 1 << 20
+_COMMENTS = ("#", "%", "//")
+
+
+class TextSource(Source):
+    """A text file of one table."""
+
+    def __init__(self, path: Path, options: Options) -> None:
+        self.path = path
+        self.options = options
+        with _opened(path) as file:
+            data = file.read(_HEAD_BYTES)
+        if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            raise InputError(file=path, problem="is binary, not text", mend="name another file")
+        self.encoding = options.encoding or decode(data)
+        self._words: list[int] = []
+        self._firsts: dict[bool, int] = {}
+        self._origins: dict[str, tuple[int, str | None]] = {}
+        self._handle: io.BufferedReader | gzip.GzipFile | None = None
+        lines = [line for _, line in islice(self._lines(), _HEAD_LINES)]
+        if not any(line.strip() for line in lines):
+            raise InputError(file=path, problem="is empty", mend="name a file with samples")
+        self.dialect = sniff(lines, options.delimiter, options.decimal, options.thousands)
+        self.empty = frozenset(word.lower() for word in options.empty)
+        self.layout = self._laid_out(lines)
+        self.tables = (self._table(),)
+
+    def _lines(self) -> Iterator[tuple[int, str]]:
+        """Every line with its number."""
+        with _opened(self.path) as raw:
+            self._handle = raw
+            try:
+                text = io.TextIOWrapper(raw, self.encoding, errors="replace", newline=None)
+            except LookupError:
+                raise InputError(
+                    file=self.path,
+                    problem=f"{quoted(self.encoding)} is no encoding",
+                    mend='write one such as "utf-8" or "latin-1"',
+                ) from None
+            try:
+                for number, line in enumerate(text, 1):
+                    # Some programs write the sign that books print.
+                    yield number, line.replace("\u2212", "-")
+            except (OSError, EOFError, UnicodeError) as error:
+                problem = f"cannot be read ({error})"
+                raise InputError(file=self.path, problem=problem, mend="save it anew") from None
+
+    def _laid_out(self, lines: list[str]) -> Layout:
+        rows = [
+            (number, self.dialect.cells(line.rstrip("\n")))
+            for number, line in enumerate(lines, 1)
+            if line.strip() and not line.lstrip().startswith(_COMMENTS)
+        ]
+        options = self.options
+        try:
+            layout = lay_out(rows, self.dialect.is_number, options.header, options.units)
+        except InputError as error:
+            raise error.within(file=self.path) from None
+        if layout.headless and options.header is None:
+            # The names may stand in a comment, as numpy.savetxt writes them.
+            told = [
+                (n, self.dialect.cells(line.strip().lstrip("#%/ ")))
+                for n, line in enumerate(lines[: layout.first - 1], 1)
+                if line.lstrip().startswith(_COMMENTS)
+            ]
+            fitting = [row for row in told if len(row[1]) == len(layout.names)]
+            if fitting:
+                samples = [row for row in rows if row[0] >= layout.first]
+                layout = lay_out([*fitting, *samples], self.dialect.is_number)
+        return layout
+
+    def _table(self) -> Table:
+        first = list(islice(self._rows(), 500))
+        columns, questions, start = [], [], None
+        if self.dialect.question:
+            questions.append(self.dialect.question)
+        for at, (name, unit) in enumerate(zip(self.layout.names, self.layout.units, strict=True)):
+            cells = [c for _, row in first if not is_empty(c := row[at].strip(), self.empty)]
+            column = Column(name, unit)
+            if cells and not any(map(self.dialect.is_number, cells)):
+                dated = sum(map(is_instant, cells)) > 0.9 * len(cells)
+                column = replace(column, kind="instant" if dated else "word", unit="")
+            if column.kind == "instant":
+                order = self.options.dates or day_or_month_first(cells)
+                if order is None:
+                    questions.append(
+                        f"column {name}: {quoted(cells[0])} may begin with the day or the month; "
+                        'say dates = "day_first" or "month_first" under [file]'
+                    )
+                instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
+                start = as_date(instant) or start
+                # One of dates and one of times of day, for all columns: their clocks are to be
+                # compared.
+                dated = as_date(instant) is not None
+                self._firsts.setdefault(dated, instant)
+                self._origins[name] = (self._firsts[dated], order)
+            columns.append(column)
+        columns = [c for c in columns if self._holds_something(c, first)]
+        return Table(
+            "",
+            tuple(columns),
+            rate_hz=self.options.rate_hz or self.layout.rate_hz,
+            start=start,
+            questions=tuple(questions),
+        )
+
+    def _holds_something(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
+        """A nameless column without a value is a delimiter at the end of each line."""
+        at = self.layout.names.index(column.name)
+        return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
+
+    def _rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Every row of samples with its number, as many cells as there are names."""
+        names = self.layout.names
+        width, first_name = len(names), names[0]
+        split = self.dialect.split
+        short: tuple[int, int] | None = None
+        self._words = []
+        for number, line in self._lines():
+            if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
+                continue
+            if short is not None:
+                raise InputError(
+                    file=self.path,
+                    row=short[0],
+                    problem=f"has {short[1]} cells where the header has {width}",
+                    mend="correct the row or drop it",
+                )
+            cells = split(line.rstrip("\n"))
+            if len(cells) < width:
+                # Empty cells at the end may be left out; the last row may be cut off.
+                if self.dialect.delimiter == " " or len(cells) < width // 2:
+                    short = (number, len(cells))
+                    continue
+                cells += [""] * (width - len(cells))
+            elif len(cells) > width and any(cells[width:]):
+                raise InputError(
+                    file=self.path,
+                    row=number,
+                    problem=f"has {len(cells)} cells where the header has {width}",
+                    mend="correct the row, or say delimiter and decimal under [file]",
+                )
+            if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
+                continue  # a logger that was started anew writes its header again
+            if cells[0][:1].isalpha() and not any(map(self._counts, cells)):
+                self._words.append(number)  # "End of data"
+                continue
+            yield number, cells if len(cells) == width else cells[:width]
+
+    def _counts(self, cell: str) -> bool:
+        cell = cell.strip()
+        return self.dialect.is_number(cell) or is_instant(cell)
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """Rows of words among the samples."""
+        return [(len(self._words), "there are only words", self._words[0])] if self._words else []
+
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+        """Columns in blocks of lines."""
+        places = [self.layout.names.index(table.column(name).name) for name in names]
+        kinds = [table.column(name).kind for name in names]
+        readers = {
+            name: Instants(self._origins[name][1] or "day_first")
+            for name, kind in zip(names, kinds, strict=True)
+            if kind == "instant"
+        }
+        rows = self._rows()
+        while block := list(islice(rows, BLOCK)):
+            numbers = [number for number, _ in block]
+            turned = list(zip(*[cells for _, cells in block], strict=True))
+            found: dict[str, Values] = {}
+            for name, at, kind in zip(names, places, kinds, strict=True):
+                cells = turned[at]
+                if kind == "word":
+                    found[name] = np.array([cell.strip() for cell in cells], dtype=object)
+                elif kind == "instant":
+                    found[name] = self._instants(name, cells, numbers, readers[name])
+                else:
+                    found[name] = self._numbers(name, cells, numbers)
+            yield found
+
+    def _numbers(self, name: str, cells: Sequence[str], rows: Sequence[int]) -> Values:
+        dialect = self.dialect
+        plain = dialect.decimal == "." and not dialect.thousands
+        try:
+            values = map(float, cells if plain else map(dialect.plain, cells))
+            found = np.fromiter(values, np.float64, len(cells))
+            if np.isfinite(found).all():
+                return found
+        except ValueError:
+            pass
+        found = np.full(len(cells), np.nan)
+        for at, cell in enumerate(map(str.strip, cells)):
+            if is_empty(cell, self.empty):
+                continue
+            if not dialect.is_number(cell):
+                other = "," if dialect.decimal == "." else "."
+                mend = f'correct the cell, or write empty = ["{cell}"] under [file] if it is none'
+                if Dialect(dialect.delimiter, other).is_number(cell):
+                    mend = "write all decimals alike"
+                raise InputError(
+                    file=self.path,
+                    row=rows[at],
+                    column=name,
+                    problem=f"{quoted(cell)} is not a number",
+                    mend=mend,
+                )
+            found[at] = float(dialect.plain(cell))
+        found[~np.isfinite(found)] = np.nan
+        return found
+
+    def _instants(
+        self, name: str, cells: Sequence[str], rows: Sequence[int], reader: Instants
+    ) -> Values:
+        empty = [is_empty(cell, self.empty) for cell in cells]
+        try:
+            instants = reader.parse(cells, empty)
+        except InputError as error:
+            raise InputError(
+                file=self.path,
+                row=rows[error.row or 0],
+                column=name,
+                problem=error.problem,
+                mend=error.mend,
+            ) from None
+        return seconds_since(instants, self._origins[name][0])
+
+    def row_of(self, table: Table, sample: int) -> int | None:
+        """The line of a sample."""
+        return next((number for number, _ in islice(self._rows(), sample, None)), None)
+
+    def read_bytes(self) -> tuple[int, int]:
+        """How much of the file has been read, and its size."""
+        size = self.path.stat().st_size
+        handle = self._handle
+        if handle is None or handle.closed:
+            return 0, size
+        raw = getattr(handle, "fileobj", None) or handle
+        return min(int(raw.tell()), size), size
+
+
+def _opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
+    try:
+        file = path.open("rb")
+        if file.read(2) == b"\x1f\x8b":
+            file.seek(0)
+            return gzip.GzipFile(fileobj=file)
+        file.seek(0)
+    except OSError as error:
+        reason = (error.strerror or type(error).__name__).lower()
+        mend = "check the path and its permissions"
+        raise InputError(file=path, problem=f"cannot be read ({reason})", mend=mend) from None
+    return file
+
+
+def open_text(path: Path, options: Options) -> Source:
+    """Open a text file."""
+    return TextSource(path, options)

@@ -1,0 +1,185 @@
+"""How a text file is written: its encoding, what parts the cells, what marks the decimals.
+
+The delimiter is the one at which most lines have the same number of cells and most cells are
+numbers; a comma between digits is decided with it, since it may be either.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from dataclasses import dataclass
+
+from jbf.errors import quoted
+
+DELIMITERS = ("\t", ";", ",", "|", " ")
+_EMPTY_WORDS = frozenset(
+    [
+        "nan",
+        "n/a",
+        "na",
+        "#n/a",
+        "#nv",
+        "null",
+        "none",
+        "-",
+        "--",
+        "---",
+        "?",
+        "inf",
+        "-inf",
+        "#div/0!",
+        "#value!",
+        "nodata",
+    ]
+)
+_NUMBER = r"[+-]?(?:\d+{d}?\d*|{d}\d+)(?:[eE][+-]?\d+)?"
+_GROUPED = {
+    ",": re.compile(r"[+-]?\d{1,3}(?:[.' \u00a0\u202f]\d{3})+(?:,\d*)?(?:[eE][+-]?\d+)?"),
+    ".": re.compile(r"[+-]?\d{1,3}(?:[,' \u00a0\u202f]\d{3})+(?:\.\d*)?(?:[eE][+-]?\d+)?"),
+}
+_PLAIN = {mark: re.compile(_NUMBER.format(d=re.escape(mark))) for mark in ",."}
+_TIME = re.compile(r".*\d[:T]\d\d.*|\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}")
+_PARTS = re.compile(r"[+-]?(\d+)([.,])(\d+)")
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How cells are parted and numbers written.
+
+    Attributes
+    ----------
+    delimiter
+        A blank stands for any number of blanks.
+    decimal, thousands
+        The marks within a number; no thousands where `thousands` is empty.
+    question
+        What cannot be decided, in a line; None where all is sure.
+    """
+
+    delimiter: str
+    decimal: str
+    thousands: str = ""
+    question: str | None = None
+
+    def cells(self, line: str) -> list[str]:
+        """A line's cells, without blanks around them."""
+        return [cell.strip() for cell in self.split(line)]
+
+    def split(self, line: str) -> list[str]:
+        """A line's cells as they stand."""
+        if self.delimiter == " ":
+            return line.split()
+        if '"' not in line:
+            return line.split(self.delimiter)
+        return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
+
+    def is_number(self, cell: str) -> bool:
+        """Whether a cell holds a number."""
+        return _is_number(cell, self.decimal)
+
+    def plain(self, text: str) -> str:
+        """A number as every computer reads it."""
+        if self.thousands:
+            for mark in " \u00a0\u202f" if self.thousands == " " else self.thousands:
+                text = text.replace(mark, "")
+        return text.replace(",", ".") if self.decimal == "," else text
+
+
+def is_empty(cell: str, words: frozenset[str] = frozenset()) -> bool:
+    """Whether a cell says that there is no sample."""
+    low = cell.strip().lower()
+    return not low or low in _EMPTY_WORDS or low in words
+
+
+def is_instant(cell: str) -> bool:
+    """Whether a cell looks like a date or a time of day."""
+    return _TIME.fullmatch(cell.strip()) is not None
+
+
+def decode(data: bytes) -> str:
+    """The encoding of a text: by its mark, else UTF-8 where it is that, else Windows' Latin."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    # A block may end within a character.
+    for cut in range(4):
+        try:
+            data[: len(data) - cut].decode("utf-8")
+        except UnicodeDecodeError:
+            continue
+        return "utf-8-sig"
+    try:
+        data.decode("cp1252")
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "cp1252"
+
+
+def sniff(
+    lines: list[str], delimiter: str | None, decimal: str | None, thousands: str | None
+) -> Dialect:
+    """The dialect of a text's first lines; what is given is not asked."""
+    lines = [line for line in lines if line.strip() and not line.lstrip().startswith(("#", "%"))]
+    # What matters is where the samples are; titles stand before them.
+    sample = lines[len(lines) // 3 :][-200:] or lines
+    # In quotes a number may hold the delimiter.
+    quotes = any('"' in line for line in sample)
+    best: tuple[tuple[float, float, int], Dialect] | None = None
+    for place, mark in enumerate([delimiter] if delimiter else DELIMITERS):
+        for point in [decimal] if decimal else [".", ","]:
+            if mark == point and not quotes:
+                continue
+            dialect = Dialect(mark, point, thousands or "")
+            score = (*_score(dialect, sample), -place if point == "." else -place - 10)
+            if best is None or score > best[0]:
+                best = (score, dialect)
+    assert best is not None
+    found = best[1]
+    cells = [cell for line in sample for cell in found.cells(line)]
+    if thousands is None:
+        found = Dialect(found.delimiter, found.decimal, _thousands(cells, found.decimal))
+    if decimal is None and found.delimiter != ",":
+        question = _doubt(cells)
+        found = Dialect(found.delimiter, found.decimal, found.thousands, question)
+    return found
+
+
+def _score(dialect: Dialect, lines: list[str]) -> tuple[float, float]:
+    """Share of the text's cells that stand in lines of one length and are numbers, and how many."""
+    rows = [dialect.cells(line) for line in lines]
+    if not rows:
+        return 0.0, 0.0
+    width, count = Counter(map(len, rows)).most_common(1)[0]
+    cells = [cell for row in rows if len(row) == width for cell in row]
+    good = sum(dialect.is_number(cell) or is_instant(cell) for cell in cells if not is_empty(cell))
+    # Empty cells say nothing either way; a text of one column is one only if nothing parts it.
+    full = sum(not is_empty(cell) for cell in cells)
+    share = (count / len(rows)) * (good / full if full else 0.0)
+    return round(share, 2), float(min(width, 2))
+
+
+def _is_number(cell: str, decimal: str) -> bool:
+    return bool(_PLAIN[decimal].fullmatch(cell) or _GROUPED[decimal].fullmatch(cell))
+
+
+def _thousands(cells: list[str], decimal: str) -> str:
+    for cell in cells:
+        if _GROUPED[decimal].fullmatch(cell) and not _PLAIN[decimal].fullmatch(cell):
+            mark = next(c for c in cell if not c.isdigit() and c not in "+-")
+            return " " if mark in " \u00a0\u202f" else mark
+    return ""
+
+
+def _doubt(cells: list[str]) -> str | None:
+    """A line where a single mark, always before three digits, may part thousands or decimals."""
+    seen = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
+    commas = [m for m in seen if m[2] == ","]
+    if not commas or any(m[2] == "." for m in seen) or len(commas) < len(seen):
+        return None
+    if all(len(m[3]) == 3 and 1 <= len(m[1]) <= 3 and m[1][0] != "0" for m in commas):
+        return (
+            f'{quoted(commas[0][0])} may be a decimal comma or thousands; say decimal = "," or '
+            'decimal = "." and thousands = "," under [file]'
+        )
+    return None

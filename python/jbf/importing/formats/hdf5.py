@@ -1,0 +1,72 @@
+"""HDF5, by h5py: vectors that share a group and a length are a table; records are one, too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, Slice
+from jbf.importing.formats.table import Options, Source
+
+_UNITS = ("unit", "units", "Unit", "Units", "UNIT", "UNITS")
+_NAMES = ("columns", "names", "column_names", "channels")
+_WIDEST = 64
+
+
+def open_hdf5(path: Path, options: Options) -> Source:
+    """Open an HDF5 file."""
+    file = h5py.File(path, "r")
+    source = ArraySource(path, file.close)
+    found: dict[tuple[str, int], dict[str, tuple[Slice, str]]] = {}
+
+    def visit(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and item.ndim in (1, 2) and item.shape[0] > 1:
+            parent, _, own = name.rpartition("/")
+            for column, entry in _columns(own, item).items():
+                found.setdefault((parent, item.shape[0]), {})[column] = entry
+
+    file.visititems(visit)
+    parents = [parent for parent, _ in found]
+    for (parent, length), columns in found.items():
+        name = parent if parents.count(parent) == 1 else f"{parent} {length} samples".strip()
+        source.add(name if len(found) > 1 else "", columns, length)
+    if not source.tables:
+        raise InputError(file=path, problem="holds no columns of numbers", mend="name another")
+    return source
+
+
+def _columns(name: str, item: Any) -> dict[str, tuple[Slice, str]]:
+    unit = next((_text(item.attrs[key]) for key in _UNITS if key in item.attrs), "")
+    if item.dtype.names:
+        return {
+            field: (_field(item, field), "")
+            for field in item.dtype.names
+            if item.dtype[field].shape == ()
+        }
+    if item.dtype.kind not in "biuf":
+        return {}
+    if item.ndim == 1:
+        return {name: (lambda first, end: item[first:end], unit)}
+    if item.shape[1] > _WIDEST:
+        return {}
+    told = next((item.attrs[key] for key in _NAMES if key in item.attrs), ())
+    names = [_text(word) for word in np.ravel(told)]
+    if len(names) != item.shape[1]:
+        names = [f"{name} column {i + 1}" for i in range(item.shape[1])]
+    return {called: (_at(item, i), "") for i, called in enumerate(names)}
+
+
+def _field(item: Any, field: str) -> Slice:
+    return lambda first, end: item[first:end][field]
+
+
+def _at(item: Any, column: int) -> Slice:
+    return lambda first, end: item[first:end, column]
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

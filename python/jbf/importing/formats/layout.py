@@ -1,0 +1,202 @@
+"""Where in a table of cells the names stand, where the units, and where the samples begin.
+
+Works on rows of text, so that a sheet of a workbook is laid out by the same rules as a text file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from jbf.errors import InputError
+from jbf.importing.columns import split_unit, understood
+from jbf.importing.formats.dialect import is_empty, is_instant
+from jbf.importing.formats.table import unique
+from jbf.importing.units import parse_unit
+
+Row = tuple[int, list[str]]
+"""A row's number in the file, the first being 1, and its cells."""
+
+_RATE = re.compile(
+    r"(?P<word>abtast|sampl|rate|frequen|frequenz|fréquence|interval|intervall|period|dt\b|échant)",
+    re.IGNORECASE,
+)
+_VALUE = re.compile(r"(?P<value>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[a-zµμA-Z/]*)")
+_HZ = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "sps": 1.0}
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Names and units of the columns, and the number of the first row of samples.
+
+    Attributes
+    ----------
+    rate_hz
+        Samples a second, where the lines before the header state it.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    rate_hz: float | None = None
+    headless: bool = False
+
+
+def lay_out(
+    rows: Sequence[Row],
+    is_number: Callable[[str], bool],
+    header: int | None = None,
+    units: int | None = None,
+) -> Layout:
+    """The layout of a table's first rows.
+
+    Parameters
+    ----------
+    header, units
+        Rows that a person has named; 0 where there is none.
+
+    Raises
+    ------
+    InputError
+        There are no rows of numbers; names no file.
+    """
+
+    def counts(cell: str) -> bool:
+        return is_number(cell) or is_instant(cell) or is_empty(cell)
+
+    def numeric(cells: list[str]) -> int:
+        return sum(is_number(cell) or is_instant(cell) for cell in cells)
+
+    wide = [len(_trimmed(cells)) for _, cells in rows if numeric(cells)]
+    if not wide:
+        raise InputError(problem="holds no rows of numbers", mend="name a file with samples")
+    width = Counter(wide[len(wide) // 2 :]).most_common(1)[0][0]
+    first = _first_sample(rows, width, numeric, counts)
+    if first is None:
+        raise InputError(problem="holds no rows of numbers", mend="name a file with samples")
+    if header:
+        first = max(first, next((i for i, (n, _) in enumerate(rows) if n > header), first))
+        first = max(first, next((i for i, (n, _) in enumerate(rows) if n > (units or 0)), first))
+    above = list(rows[:first])
+    # The last columns may begin empty; then only the row of the names tells of them.
+    told = [len(_trimmed(cells)) for _, cells in above[-3:] if len(_trimmed(cells)) > 1]
+    width = max([width, *told])
+    rate = _rate(above)
+    heads = [row for row in above if _may_be_head(row[1], width)]
+    unit_cells = [""] * width
+    if units:
+        unit_cells = _row(above, units)
+        heads = [row for row in heads if row[0] != units]
+    elif units is None:
+        found = next((row for row in reversed(heads) if _is_units(row[1])), None)
+        if found is not None:
+            unit_cells, heads = found[1], [row for row in heads if row is not found]
+    number = rows[first][0]
+    if header == 0 or (header is None and not heads):
+        names = tuple(f"column {i}" for i in range(1, width + 1))
+        return Layout(names, _padded(unit_cells, width), number, rate, headless=True)
+    names_row = _row(above, header) if header else heads[-1][1]
+    named = _padded(names_row, width)
+    groups = [cells for n, cells in heads if header is None and cells is not names_row]
+    if groups and len({n for n in named if n}) < sum(map(bool, named)):
+        named = tuple(
+            f"{group} {name}".strip()
+            for group, name in zip(_carried(groups[-1], width), named, strict=True)
+        )
+    cleaned = tuple(_bare_unit(cell) for cell in _padded(unit_cells, width))
+    return Layout(tuple(unique(named)), cleaned, number, rate)
+
+
+def _first_sample(
+    rows: Sequence[Row],
+    width: int,
+    numeric: Callable[[list[str]], int],
+    counts: Callable[[str], bool],
+) -> int | None:
+    """The first row that is one of samples, and is followed by such."""
+
+    def sample(cells: list[str]) -> bool:
+        cells = _trimmed(cells)
+        usual = sum(map(counts, cells)) >= max(1, (len(cells) + 1) // 2)
+        return numeric(cells) > 0 and usual and abs(len(cells) - width) <= max(1, width // 2)
+
+    for at in range(len(rows)):
+        following = rows[at : at + 3]
+        if all(sample(cells) for _, cells in following):
+            # A row of names may hold numbers (years, channels); one of samples holds no names.
+            here = _trimmed(rows[at][1])
+            after = _trimmed(rows[at + 1][1]) if at + 1 < len(rows) else here
+            if sum(map(counts, here)) >= sum(map(counts, after)):
+                return at
+    return None
+
+
+def _may_be_head(cells: list[str], width: int) -> bool:
+    """Whether a row can name columns: as many cells as the samples have, or some of them."""
+    return len(cells) >= min(width, 2) and sum(map(bool, cells)) >= max(1, width // 2)
+
+
+def _is_units(cells: list[str]) -> bool:
+    full = [_bare_unit(cell) for cell in cells if cell]
+    known = sum(parse_unit(cell) is not None for cell in full)
+    # `s` is a unit and a name: a row of units names no quantity in whole words.
+    named = sum(understood(cell).kind is not None and len(cell) > 2 for cell in full)
+    return bool(full) and known > 0.5 * len(full) and named < known
+
+
+def _bare_unit(cell: str) -> str:
+    cell = cell.strip()
+    if len(cell) > 2 and cell[0] + cell[-1] in ("[]", "()", "{}", "<>"):
+        return cell[1:-1].strip()
+    return "" if cell in ("-", "[]", "()", "[-]", "(-)", "YYYY-MM-DD") else cell
+
+
+def _row(rows: Sequence[Row], number: int) -> list[str]:
+    for n, cells in rows:
+        if n == number:
+            return cells
+    raise InputError(
+        row=number, problem="stands not before the samples", mend="correct [file] header and units"
+    )
+
+
+def _trimmed(cells: Sequence[str]) -> list[str]:
+    """Without the empty cells at its end."""
+    end = len(cells)
+    while end and not cells[end - 1]:
+        end -= 1
+    return list(cells[:end])
+
+
+def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
+    return tuple([*cells, *[""] * width][:width])
+
+
+def _carried(cells: Sequence[str], width: int) -> list[str]:
+    """A group's name stands above its first column only."""
+    found: list[str] = []
+    for cell in _padded(cells, width):
+        found.append(cell or (found[-1] if found else ""))
+    return found
+
+
+def _rate(rows: Sequence[Row]) -> float | None:
+    """The rate that a line before the header states."""
+    for _, cells in rows:
+        line = " ".join(cells)
+        word = _RATE.search(line)
+        values = [v for v in _VALUE.finditer(line) if word and v.start() > word.start()]
+        if word is None or not values:
+            continue
+        value = float(values[0]["value"].replace(",", "."))
+        unit = values[0]["unit"] or split_unit(line[: values[0].start()].strip(" :=;"))[1]
+        if not value > 0.0:
+            continue
+        if unit.lower() in _HZ:
+            return value * _HZ[unit.lower()]
+        known = parse_unit(unit) if unit in ("s", "ms", "us", "µs", "ns", "sec", "min") else None
+        if known is not None:
+            return 1.0 / (value * known.in_si)
+    return None

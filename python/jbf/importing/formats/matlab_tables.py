@@ -1,0 +1,58 @@
+"""MATLAB's tables and timetables, which scipy and HDF5 show as opaque objects, by mat-io."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, slices
+from jbf.importing.formats.table import library_errors
+
+
+def add_tables(source: ArraySource, path: Path) -> None:
+    """Add every table of a file.
+
+    Raises
+    ------
+    InputError
+        mat-io is not there, or cannot read the file.
+    """
+    try:
+        from matio import load_from_mat
+    except ModuleNotFoundError:
+        raise InputError(
+            file=path,
+            problem="holds a MATLAB table or timetable, which mat-io reads, and that is not "
+            "installed",
+            mend="pip install 'jbf[timetable]', or save plain vectors",
+        ) from None
+    with library_errors(path, "cannot be read by mat-io"):
+        content = load_from_mat(str(path))
+    for name, value in content.items():
+        if hasattr(value, "columns") and hasattr(value, "index"):
+            _add_frame(source, name, value)
+
+
+def _add_frame(source: ArraySource, name: str, frame: Any) -> None:
+    """A table came as a frame of pandas; the index of a timetable is its time."""
+    columns: dict[str, tuple[Any, str]] = {}
+    clock = None
+    index = frame.index.to_numpy()
+    if index.dtype.kind in "mM":
+        clock = str(frame.index.name or "Time")
+        if index.dtype.kind == "m":
+            time = index.astype("timedelta64[ns]").astype(np.int64) / 1e9
+            columns[clock] = (slices(time), "s")
+        else:
+            columns[clock] = (slices(index), "")
+    units = getattr(frame, "attrs", {}).get("VariableUnits", [])
+    for at, column in enumerate(frame.columns):
+        values = np.asarray(frame[column].to_numpy())
+        if values.dtype == object and len(values) and np.ndim(values[0]) == 1:
+            values = np.array([np.ravel(v)[0] for v in values])
+        unit = str(units[at]) if len(units) == len(frame.columns) else ""
+        columns[str(column)] = (slices(values), unit)
+    source.add(name, columns, len(frame), clock)

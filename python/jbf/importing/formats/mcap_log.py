@@ -1,0 +1,60 @@
+"""MCAP, by mcap and mcap-ros2-support: ROS 2 messages and JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from mcap.decoder import DecoderFactory
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory as Ros2Decoder
+
+from jbf.errors import InputError
+from jbf.importing.formats.messages import MessageSource
+from jbf.importing.formats.table import Options, Source
+
+
+class _JsonDecoder(DecoderFactory):
+    """Messages that are JSON."""
+
+    def decoder_for(self, message_encoding: str, schema: Any) -> Callable[[bytes], Any] | None:
+        return json.loads if message_encoding == "json" else None
+
+
+class McapSource(MessageSource):
+    """A log; each topic is a table."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self._file = path.open("rb")
+        summary = make_reader(self._file).get_summary()
+        if summary is None:
+            raise InputError(file=path, problem="has no summary", mend="mcap recover FILE")
+        self.origin_ns = summary.statistics.message_start_time if summary.statistics else 0
+        counts = summary.statistics.channel_message_counts if summary.statistics else {}
+        others = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
+        for number, channel in summary.channels.items():
+            if channel.message_encoding in ("cdr", "json"):
+                self.add_topic(channel.topic, counts.get(number))
+        if not self.tables:
+            held = f" (it holds {', '.join(sorted(others))})" if others else ""
+            problem = f"holds no messages of ROS 2 or JSON with numbers{held}"
+            raise InputError(file=path, problem=problem, mend="name another file")
+
+    def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
+        """The messages of a topic."""
+        self._file.seek(0)
+        reader = make_reader(self._file, decoder_factories=[Ros2Decoder(), _JsonDecoder()])
+        for _, _, message, decoded in reader.iter_decoded_messages(topics=[topic]):
+            yield message.log_time, decoded
+
+    def close(self) -> None:
+        """Let the file go."""
+        self._file.close()
+
+
+def open_mcap(path: Path, options: Options) -> Source:
+    """Open a log."""
+    return McapSource(path)

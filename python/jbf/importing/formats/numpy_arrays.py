@@ -1,0 +1,26 @@
+"""NumPy: `.npy` (a matrix or records) and `.npz` (arrays by name)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jbf.importing.formats.arrays import ArraySource, add_by_length, vectors_of
+from jbf.importing.formats.table import Options, Source
+
+
+def open_arrays(path: Path, options: Options) -> Source:
+    """Open a file of arrays; nothing in it is run (no pickles)."""
+    with path.open("rb") as file:
+        alone = file.read(6) == b"\x93NUMPY"
+    # A single array stays on the disk until it is asked for.
+    content: Any = np.load(path, mmap_mode="r" if alone else None, allow_pickle=False)
+    arrays = {"": content} if alone else dict(content)
+    source = ArraySource(path)
+    vectors: dict[str, tuple[Any, str]] = {}
+    for name, values in arrays.items():
+        vectors |= {n: (v, "") for n, v in vectors_of(name, values).items()}
+    add_by_length(source, vectors, options)
+    return source

@@ -1,0 +1,73 @@
+"""Parquet, by pyarrow: batch by batch, units from the fields' metadata."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from jbf.importing.formats.arrays import first_instant, seconds
+from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values, as_numbers
+
+
+class ParquetSource(Source):
+    """A Parquet file of one table."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._origin: np.datetime64 | None = None
+        # Read ahead, a gigabyte stays in memory.
+        self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
+        schema = self._file.schema_arrow
+        columns = [c for field in schema if (c := _column(field)) is not None]
+        self.tables = (Table("", tuple(columns), rows=self._file.metadata.num_rows),)
+
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+        """Columns in batches."""
+        kinds = {name: table.column(name).kind for name in names}
+        for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
+            found: dict[str, Values] = {}
+            for name in names:
+                column = batch.column(name)
+                if kinds[name] == "instant":
+                    values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
+                    # One for all columns of instants: their clocks are to be compared.
+                    self._origin = self._origin or first_instant(values)
+                    found[name] = seconds(values, self._origin)
+                elif kinds[name] == "word":
+                    found[name] = np.array(column.to_pylist(), dtype=object)
+                else:
+                    numbers = column.cast(pa.float64(), safe=False)
+                    found[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
+            yield found
+
+    def close(self) -> None:
+        """Let the file go."""
+        self._file.close()
+
+
+def _column(field: Any) -> Column | None:
+    metadata = {
+        key.decode().lower(): value.decode("utf-8", "replace")
+        for key, value in (field.metadata or {}).items()
+    }
+    unit = metadata.get("unit") or metadata.get("units") or ""
+    kind = field.type
+    if pa.types.is_timestamp(kind):
+        return Column(field.name, "", "instant")
+    if pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind):
+        return Column(field.name, unit)
+    if pa.types.is_boolean(kind) or pa.types.is_duration(kind):
+        return None
+    if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
+        return Column(field.name, "", "word")
+    return None
+
+
+def open_parquet(path: Path, options: Options) -> Source:
+    """Open a Parquet file."""
+    return ParquetSource(path)

@@ -1,0 +1,130 @@
+"""Which format a file is: by its first bytes where they tell, else by its name's end.
+
+A format is one module: `open_...(path, options) -> Source`, and one line here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.importing.formats.table import Options, Source, library_errors
+from jbf.text_files import path_of
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format.
+
+    Attributes
+    ----------
+    name
+        As a person calls it.
+    opener
+        `module:function` within this package; the module is imported at first use.
+    suffixes
+        Ends of file names, in small letters.
+    magic, magic_at
+        How its files begin, or what stands so many bytes from there.
+    library, extra
+        What it is read by, and the extra of jbf that installs it; empty where it comes with jbf.
+    """
+
+    name: str
+    opener: str
+    suffixes: tuple[str, ...]
+    magic: tuple[bytes, ...] = ()
+    library: str = ""
+    extra: str = ""
+    magic_at: int = 0
+
+    def open(self, path: Path, options: Options) -> Source:
+        """The file as a source; an InputError where the library is absent."""
+        module, _, function = self.opener.partition(":")
+        try:
+            opener: Callable[[Path, Options], Source] = getattr(
+                import_module(f"jbf.importing.formats.{module}"), function
+            )
+            with library_errors(path, f"is no whole file of its kind, {self.name}"):
+                return opener(path, options)
+        except ModuleNotFoundError as error:
+            if not self.extra or (error.name or "").startswith("jbf"):
+                raise
+            raise self.absent(path) from None
+
+    def absent(self, path: Path) -> InputError:
+        """The line that says what to install."""
+        return InputError(
+            file=path,
+            problem=f"is {self.name}, which {self.library} reads, and that is not installed",
+            mend=f"pip install 'jbf[{self.extra}]'",
+        )
+
+
+_HDF = b"\x89HDF\r\n\x1a\n"
+FORMATS = (
+    Format("MCAP", "mcap_log:open_mcap", (".mcap",), (b"\x89MCAP0",), "mcap", "mcap"),
+    Format("a ROS bag", "ros_bag:open_bag", (".bag", ".db3"), (b"#ROSBAG",), "rosbags", "rosbag"),
+    Format("MDF", "mdf:open_mdf", (".mf4", ".mdf", ".dat4"), (b"MDF     ",), "asammdf", "mdf"),
+    Format("TDMS", "tdms:open_tdms", (".tdms",), (b"TDSm",), "npTDMS", "tdms"),
+    Format(
+        "Parquet", "parquet:open_parquet", (".parquet", ".pq"), (b"PAR1",), "pyarrow", "parquet"
+    ),
+    Format("an Excel workbook", "excel:open_excel", (".xlsx", ".xlsm"), (), "openpyxl", "excel"),
+    Format("MAT v7.3", "mat73:open_mat73", (), (_HDF,), "h5py", "mat73", 512),
+    Format("MAT", "mat:open_mat", (".mat",), (b"MATLAB 5.0",)),
+    Format("HDF5", "hdf5:open_hdf5", (".h5", ".hdf5", ".hdf", ".he5"), (_HDF,), "h5py", "hdf5"),
+    Format("NumPy", "numpy_arrays:open_arrays", (".npy", ".npz"), (b"\x93NUMPY",)),
+    Format(
+        "text",
+        "csv_text:open_text",
+        (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz"),
+    ),
+)
+
+
+def format_of(path: Path) -> Format:
+    """The format of a file; text where nothing says otherwise.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
+    """
+    if path.is_dir():
+        # ROS 2 writes a folder.
+        if (path / "metadata.yaml").is_file():
+            return next(f for f in FORMATS if f.extra == "rosbag")
+        raise InputError(file=path, problem="is a folder", mend="name the files in it")
+    try:
+        with path.open("rb") as file:
+            begin = file.read(520)
+    except OSError as error:
+        reason = (error.strerror or type(error).__name__).lower()
+        raise InputError(
+            file=path, problem=f"cannot be read ({reason})", mend="check the path"
+        ) from None
+    for known in FORMATS:
+        if any(begin.startswith(magic, known.magic_at) for magic in known.magic):
+            return known
+    suffix = path.suffix.lower()
+    by_name = next((f for f in FORMATS if suffix in f.suffixes), None)
+    return FORMATS[-1] if by_name is None else by_name
+
+
+def open_source(path: str | os.PathLike[str], options: Options | None = None) -> Source:
+    """Open a file of any known format.
+
+    Raises
+    ------
+    InputError
+        The file is not there, is broken, or its library is not installed.
+    """
+    path = path_of(path)
+    if not path.exists():
+        raise InputError(file=path, problem="the file does not exist", mend="correct the path")
+    return format_of(path).open(path, options or Options())

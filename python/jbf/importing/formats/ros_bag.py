@@ -1,0 +1,49 @@
+"""ROS bags, by rosbags: ROS 1 files, ROS 2 folders; no ROS needs to be installed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+from jbf.errors import InputError
+from jbf.importing.formats.messages import MessageSource
+from jbf.importing.formats.table import Options, Source
+
+
+class BagSource(MessageSource):
+    """A bag; each topic is a table."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        # A ROS 2 bag is its folder, whichever file of it was named.
+        bag = path.parent if path.suffix == ".db3" else path
+        store = get_typestore(Stores.ROS2_HUMBLE)
+        self._reader = AnyReader([bag], default_typestore=store)
+        self._reader.open()
+        self.origin_ns = self._reader.start_time
+        for topic, info in self._reader.topics.items():
+            if info.msgcount:
+                self.add_topic(topic, info.msgcount)
+        if not self.tables:
+            raise InputError(
+                file=path, problem="holds no messages with numbers", mend="name another"
+            )
+
+    def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
+        """The messages of a topic."""
+        own = [c for c in self._reader.connections if c.topic == topic]
+        for connection, stamp, raw in self._reader.messages(connections=own):
+            yield stamp, self._reader.deserialize(raw, connection.msgtype)
+
+    def close(self) -> None:
+        """Let the bag go."""
+        self._reader.close()
+
+
+def open_bag(path: Path, options: Options) -> Source:
+    """Open a bag."""
+    return BagSource(path)

@@ -1,0 +1,76 @@
+"""TDMS, by npTDMS: channels with a waveform's increment have a clock of their own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from nptdms import TdmsFile
+
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, Slice
+from jbf.importing.formats.table import Options, Source
+
+CLOCK = "time"
+Group = tuple[str, int, float | None, float, str]
+"""Name, samples, seconds from sample to sample, first instant, date that it counts from."""
+
+
+def open_tdms(path: Path, options: Options) -> Source:
+    """Open a TDMS file."""
+    file = TdmsFile.open(path)
+    source = ArraySource(path, file.close)
+    found: dict[Group, dict[str, tuple[Slice, str]]] = {}
+    starts: dict[Group, np.datetime64] = {}
+    for group in file.groups():
+        for channel in group.channels():
+            if len(channel) < 2 or channel.data_type is None:
+                continue
+            told = channel.properties
+            step = told.get("wf_increment")
+            key: Group = (
+                group.name,
+                len(channel),
+                float(step) if step else None,
+                float(told.get("wf_start_offset", 0.0)),
+                str(told.get("wf_start_time", "") if step else ""),
+            )
+            unit = str(told.get("unit_string", "") or told.get("NI_UnitDescription", ""))
+            found.setdefault(key, {})[channel.name] = (_read(channel), unit)
+            if key[4]:
+                starts[key] = np.datetime64(told["wf_start_time"])
+    names = [key[0] for key in found]
+    first = min(starts.values(), default=None)
+    for key, columns in found.items():
+        name, length, step_s, first_s, _ = key
+        clock = None
+        if key in starts and first is not None:
+            # Waveforms that were started at different instants keep their distance.
+            first_s += float((starts[key] - first) / np.timedelta64(1, "ns")) / 1e9
+        if step_s is not None:
+            clock = CLOCK
+            columns = {CLOCK: (_even(step_s, first_s), "s"), **columns}
+        if names.count(name) > 1:
+            # Told apart by their channels, which are unique in a group.
+            name = f"{name}: {', '.join(c for c in columns if c != CLOCK)}"
+        date = None if key not in starts else str(first)
+        source.add(name if len(found) > 1 else "", columns, length, clock, date)
+    if not source.tables:
+        raise InputError(file=path, problem="holds no channels of numbers", mend="name another")
+    return source
+
+
+def _read(channel: Any) -> Slice:
+    return lambda first, end: channel.read_data(offset=first, length=end - first)
+
+
+def _even(step_s: float, first_s: float) -> Slice:
+    # A division where the rate is whole: 1/50 s is no number, 50 Hz is.
+    rate = round(1.0 / step_s)
+    whole = rate > 0 and 1.0 / rate == step_s
+    return lambda first, end: (
+        first_s + np.arange(first, end) / rate
+        if whole
+        else first_s + np.arange(first, end) * step_s
+    )

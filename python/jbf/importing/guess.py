@@ -1,0 +1,308 @@
+"""A look at a file: which column is what, in which unit, and how sure that is."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from jbf.importing.columns import KINDS, Header, understood
+from jbf.importing.expression import OPEN, written
+from jbf.importing.formats.registry import format_of
+from jbf.importing.formats.table import Column, Source, Table, Values
+from jbf.importing.guess_rig import guess_rig
+from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
+from jbf.importing.guessed import Entry, Guess, Question
+from jbf.importing.names import qualified
+from jbf.importing.plausible import contradictions
+from jbf.importing.targets import FRICTION, KNOWN, MOTION, wanted_unit
+from jbf.importing.unit_table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
+from jbf.importing.units import parse_unit
+
+NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
+"""Quantities that make no column of a run."""
+_TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
+_BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A column of the file and the column of a run that it may make."""
+
+    key: str
+    column: Column
+    header: Header
+    sure: bool
+    why: str
+    question: str | None = None
+    called: str = ""
+
+    @property
+    def expression(self) -> str:
+        """As the map has it; the unit is written out where it is open."""
+        name = written(self.called or self.column.name)
+        if self.question is not None:
+            return f"{name} [{OPEN}]"
+        in_name = understood(self.column.name).unit
+        unit = "" if in_name or self.column.kind == "instant" else self.column.unit
+        return f"{name} [{unit}]" if unit else name
+
+
+def guess(source: Source) -> Guess:
+    """What a file's columns are.
+
+    Raises
+    ------
+    InputError
+        The file is broken where it was looked at.
+    """
+    entries: dict[str, Entry] = {}
+    ignored: dict[str, str] = {}
+    clocks: dict[str, str] = {}
+    questions: list[Question] = []
+    heads: dict[str, Values] = {}
+    several = len(source.tables) > 1
+    whole = Counter(column.name for table in source.tables for column in table.columns)
+    for table in source.tables:
+        questions += [
+            Question(f"[{table.name}]" if several else "file", q) for q in table.questions
+        ]
+        head = source.head(table, 5_000)
+        heads |= {qualified(table, name, whole): values for name, values in head.items()}
+        found = [
+            replace(c, called=qualified(table, c.column.name, whole)) for c in _candidates(table)
+        ]
+        # Of several groups each has its own clock, and no line of the map names them all.
+        own_clock = several and table.clock is not None
+        time, open_ = (None, []) if own_clock else guess_time(table, head)
+        if time is not None and several:
+            time = replace(time, expression=_qualified(time.expression, table, whole))
+        taken = {} if time is None else {time.key: time}
+        for key in dict.fromkeys(c.key for c in found):
+            rivals = [c for c in found if c.key == key]
+            if key in ("temperature_c", "pressure_pa") and not _one(rivals, key):
+                # What no law needs is left out rather than asked for.
+                ignored |= {c.column.name: f"one of several that may be {key}" for c in rivals}
+                continue
+            entry, rest, asked = _chosen(key, rivals)
+            taken[key] = entry
+            ignored |= dict.fromkeys(rest, f"{key} is made of another")
+            questions += asked
+        if not several or len(taken) > (0 if time is None else 1):
+            questions += open_
+            for key, entry in taken.items():
+                if key not in entries:
+                    entries[key] = entry
+                    other = time is not None and time is not entries.get("time_s")
+                    if other and key != "time_s" and time is not None:
+                        clocks[key] = time.expression
+                elif key != "time_s":
+                    ask = f"is in [{table.name}], too; say table under [file], or write it out"
+                    questions.append(Question(key, ask))
+        ignored |= _left_over(table, found, time)
+    entries = _by_machine(entries)
+    for key in _beside_the_point(entries):
+        name = entries.pop(key).expression.split("`")[1]
+        ignored[name] = "the force and the place tell enough"
+    questions += _missing(entries, source)
+    sections, about_rig = guess_rig(set(entries))
+    questions += about_rig
+    by_motion = time_by_motion(entries, source.tables, heads)
+    if by_motion is not None:
+        questions = [q for q in questions if q.place not in entries["time_s"].expression]
+        entries["time_s"] = by_motion
+    questions += contradictions(entries, source.tables, heads)
+    ordered = sorted(entries.values(), key=lambda e: _order(e.key))
+    return Guess(
+        source.path,
+        format_of(source.path).name,
+        source.tables,
+        tuple(ordered),
+        ignored,
+        sections,
+        tuple(dict.fromkeys(questions)),
+        clocks,
+    )
+
+
+def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
+    """A time's expression with its table's name, where another has a column of that name."""
+    for column in table.columns:
+        if whole[column.name] > 1:
+            expression = expression.replace(
+                written(column.name), written(qualified(table, column.name, whole))
+            )
+    return expression
+
+
+def _order(key: str) -> int:
+    return KNOWN.index(key) if key in KNOWN else len(KNOWN)
+
+
+def _candidates(table: Table) -> list[Candidate]:
+    found = [c for column in table.columns if (c := _candidate(column, table)) is not None]
+    return [c for c in found if c.key != "time_s"]
+
+
+def _candidate(column: Column, table: Table) -> Candidate | None:
+    if column.kind != "number":
+        return None
+    if column.name in KNOWN:
+        header = understood(column.name)
+        if column.unit and not _fits(column.unit, column.name):
+            ask = f"its unit is {column.unit}, its name says {wanted_unit(column.name).text}"
+            return Candidate(column.name, column, header, False, "its name", ask)
+        return Candidate(column.name, column, header, True, "its name is jbf's own")
+    header = understood(column.name, column.unit)
+    if header.kind is None and not header.setpoint:
+        # `force/value`: the group says what its column does not.
+        header = understood(f"{table.name} {column.name}", column.unit)
+    if header.setpoint or header.kind in NEVER or is_doubtful_time(header):
+        return None
+    unit = None if header.unit in ASK else parse_unit(header.unit)
+    kind, why = header.kind, "its name"
+    if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
+        # A name of two letters is no witness against a unit.
+        if kind is not None and header.sure:
+            ask = f"{header.unit} is no unit of a {kind}; write the one that it is"
+            return Candidate(_key(kind, header), column, header, False, why, ask)
+        kind = next((k for k in _BY_UNIT if unit.dimensions in KINDS[k]), None)
+        if kind == "torque" and unit.dimensions == NONE:
+            kind = None
+        why = "its unit alone"
+    if kind is None or kind == "time":
+        return None
+    key = _key(kind, header)
+    if header.unit in ASK:
+        ask = f"{header.unit} may be {ASK[header.unit]}; write which behind the column"
+        return Candidate(key, column, header, False, why, ask)
+    if unit is None:
+        said = f"the unit {header.unit!r} is not known" if header.unit else "no unit is written"
+        return Candidate(key, column, header, False, why, f"{said}; write it behind the column")
+    if unit.dimensions == COUNT:
+        ask = "how many counts is a turn (or a metre)? write / 4096 [counts/rev] behind the column"
+        return Candidate(key, column, header, False, why, ask)
+    sure = why == "its name" or len(header.name) <= 2
+    return Candidate(key, column, header, sure, f"{why} and its unit" if why == "its name" else why)
+
+
+def _fits(unit: str, key: str) -> bool:
+    stated = parse_unit(unit)
+    return stated is not None and stated.in_si == wanted_unit(key).in_si
+
+
+def _key(kind: str, header: Header) -> str:
+    """The column of a run that a quantity in this unit makes."""
+    unit = parse_unit(header.unit)
+    size = NONE if unit is None else unit.dimensions
+    motor = "motor_" if header.motor else ""
+    if kind == "place":
+        turning = size in (ANGLE, COUNT) or (unit is None and header.turning)
+        return f"{motor}angle_rad" if turning else "position_m"
+    if kind == "speed":
+        if size == SPEED or (unit is None and not header.turning and not header.motor):
+            return "velocity_m_s"
+        turns = header.unit in ASK or unit is None or unit.in_si in _TURNS
+        return f"{motor}speed_rpm" if turns else f"{motor}velocity_rad_s"
+    if kind == "torque":
+        if unit is not None and size != TORQUE:
+            return "torque_percent"
+        return f"{motor}torque_n_m"
+    if kind == "force" and unit is not None and size == NONE:
+        return "force_percent"
+    names = {
+        "force": "friction_n",
+        "load": "load_n",
+        "current": "current_a",
+        "temperature": "temperature_c",
+        "pressure": "pressure_pa",
+        "voltage": "voltage_v",
+    }
+    return names[kind]
+
+
+def _one(rivals: list[Candidate], key: str) -> bool:
+    """Whether one of them stands out."""
+    own = [c for c in rivals if c.column.name == key]
+    return len(own) == 1 or (len(rivals) == 1 and rivals[0].sure)
+
+
+def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
+    """The column that makes `key`, those that do not, and what must be asked."""
+    sure = [c for c in rivals if c.sure]
+    named = [c for c in rivals if c.why != "its unit alone"]
+    if named and len(named) < len(rivals):
+        # A unit alone is no rival to a name.
+        entry, rest, asked = _chosen(key, named)
+        return entry, [*rest, *(c.called for c in rivals if c not in named)], asked
+    own = [c for c in rivals if c.column.name == key]
+    if own or len(sure) == 1 or len(rivals) == 1:
+        best = (own or sure or rivals)[0]
+        questions = [] if best.question is None else [Question(best.column.name, best.question)]
+        if not best.sure and best.question is None and key in (*FRICTION, *MOTION):
+            ask = f"is it {key}? only its unit says so; write it into the map"
+            questions = [Question(best.column.name, ask)]
+        rest = [c.column.name for c in rivals if c is not best]
+        return Entry(key, best.expression, best.why, not questions), rest, questions
+    names = ", ".join(c.called for c in rivals)
+    entry = Entry(key, OPEN, f"one of: {names}", sure=False)
+    return entry, [], [Question(key, f"which of these is it: {names}?")]
+
+
+def _by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
+    """Keys that depend on what moves: a torque beside a slide is the motor's."""
+    found = dict(entries)
+    linear = any(key in found for key in ("position_m", "velocity_m_s"))
+    if not linear or ("friction_n" in found and "velocity_m_s" in found):
+        return found
+    for key in ("torque_n_m", "angle_rad", "velocity_rad_s", "speed_rpm"):
+        if key in found and f"motor_{key}" not in found:
+            found[f"motor_{key}"] = replace(found.pop(key), key=f"motor_{key}")
+    return found
+
+
+def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
+    """Columns of a motor, where a slide has a force and a motion: they would ask for a pitch."""
+    if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
+        return []
+    return [key for key in entries if key.startswith("motor_")]
+
+
+def _missing(entries: Mapping[str, Entry], source: Source) -> list[Question]:
+    names = [c.name for t in source.tables for c in t.columns]
+    shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+    found = []
+    if not any(key in entries for key in FRICTION):
+        if "load_n" in entries:
+            ask = f"is {entries['load_n'].expression} the friction or the load? write friction_n"
+        else:
+            ask = f"which column is the friction force or torque? there are {shown}"
+        found.append(Question("friction", ask))
+    if not any(key in entries for key in MOTION):
+        found.append(Question("motion", f"which column is a place or a speed? there are {shown}"))
+    return found
+
+
+def _left_over(table: Table, found: list[Candidate], time: Entry | None) -> dict[str, str]:
+    used = {c.column.name for c in found}
+    left = {}
+    for column in table.columns:
+        if (
+            column.name in used
+            or column.name == table.clock
+            or (time is not None and written(column.name) in time.expression)
+        ):
+            continue
+        header = understood(column.name, column.unit)
+        if column.kind == "word":
+            why = "words"
+        elif header.setpoint:
+            why = "a set point"
+        elif header.kind == "run":
+            why = "numbers the runs: [cut] may go by it"
+        elif header.kind is None:
+            why = "not known"
+        else:
+            why = f"{header.kind}: nothing is made of it"
+        left[column.name] = why
+    return left

@@ -1,0 +1,67 @@
+"""What a file's columns say of the machine: sections of its rig, and what only a person knows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jbf.importing.expression import OPEN
+from jbf.importing.guessed import Question
+from jbf.importing.targets import LINEAR, TURNING
+
+Sections = dict[str, dict[str, Any]]
+
+_ASKS = {
+    "rated_torque_n_m": "what is 100 % of the motor's torque, N m?",
+    "rated_force_n": "what is 100 % of the motor's force, N?",
+    "torque_constant_n_m_a": "what torque of the motor is 1 A, N m/A?",
+    "pitch_m": "how far does it move in one turn of its screw, m?",
+}
+_BEARING = ("radius_m", "length_m", "clearance_m", "mass_kg", "count")
+
+
+def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
+    """The sections of the rig, `?` where a value is open."""
+    linear = any(key in keys for key in LINEAR)
+    turning = any(key in keys for key in TURNING)
+    if "friction_n" in keys and turning and not (linear and "position_m" in keys):
+        return _bearing()
+    if not linear and not turning:
+        return {}, []
+    motion = "linear" if linear else "rotary"
+    drive: dict[str, Any] = {"motion": motion}
+    asked: list[str] = []
+    if "friction_n" in keys:
+        drive["friction"] = "force"
+    elif keys & {"torque_n_m", "motor_torque_n_m"}:
+        drive["friction"] = "torque"
+    elif "torque_percent" in keys:
+        drive["friction"] = "percent"
+        asked.append("rated_torque_n_m")
+    elif "force_percent" in keys:
+        drive["friction"] = "percent"
+        asked.append("rated_force_n")
+    elif "current_a" in keys:
+        drive["friction"] = "current"
+        asked.append("torque_constant_n_m_a")
+    else:
+        return {}, []
+    of_motor = any(key.startswith("motor_") for key in keys)
+    if linear and (of_motor or set(asked) & {"rated_torque_n_m", "torque_constant_n_m_a"}):
+        asked.append("pitch_m")
+    drive |= dict.fromkeys(asked, OPEN)
+    return {"drive": drive}, [
+        Question(f"drive.{key}", f"{_ASKS[key]} write it into the map") for key in asked
+    ]
+
+
+def _bearing() -> tuple[Sections, list[Question]]:
+    sections: Sections = {
+        "bearing": dict.fromkeys(_BEARING, OPEN),
+        "lubricant": {"viscosity_pa_s": OPEN},
+        "load": {"normal_n": OPEN},
+    }
+    ask = (
+        "a force beside an angle is a journal bearing's: what are its sizes? write them into the "
+        "map, or a [drive] in their place"
+    )
+    return sections, [Question("bearing", ask)]

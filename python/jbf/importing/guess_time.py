@@ -1,0 +1,134 @@
+"""Which column is the time, and in what."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from jbf.importing.columns import Header, understood
+from jbf.importing.expression import OPEN, written
+from jbf.importing.formats.table import Column, Table, Values
+from jbf.importing.guessed import Entry, Question
+from jbf.importing.plausible import OFF, PAIRS, speed_ratio
+from jbf.importing.unit_table import TIME
+from jbf.importing.units import parse_unit
+
+_FROM_S, _TO_S = 9.5e8, 4.1e9
+"""Seconds since 1970, from the year 2000 to 2100."""
+Found = tuple[Entry | None, list[Question]]
+
+
+def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
+    """The line of the map for the time of a table, and what is open about it."""
+    if table.clock is not None:
+        return Entry("time_s", written(table.clock), "the format's own clock"), []
+    own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
+    if own:
+        return Entry("time_s", written("time_s"), "its name is jbf's own"), []
+    numbers = [c for c in table.columns if _is_time(c)]
+    instants = [
+        c for c in table.columns if c.kind == "instant" and _steps(head[c.name]) is not None
+    ]
+    with_unit = [c for c in numbers if _time_unit(c)]
+    if len(with_unit) == 1:
+        return _of_number(with_unit[0])
+    if not numbers and instants:
+        finest = min(instants, key=lambda c: _steps(head[c.name]) or np.inf)
+        return Entry("time_s", written(finest.name), "its cells are dates or times of day"), []
+    if len(instants) == 1 and not with_unit:
+        return Entry("time_s", written(instants[0].name), "its cells are dates or times of day"), []
+    if len(numbers) == 1:
+        epoch = _since_1970(numbers[0], head[numbers[0].name])
+        return (epoch, []) if epoch else _of_number(numbers[0], _steps(head[numbers[0].name]))
+    if numbers:
+        names = ", ".join(c.name for c in numbers)
+        ask = f"which of these is it: {names}? those of other channels go under [clocks]"
+        return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
+    if table.rate_hz is not None:
+        return None, []
+    ask = "no column holds it; say rate_hz (samples a second) under [file], or which column it is"
+    return None, [Question("time_s", ask)]
+
+
+def time_by_motion(
+    entries: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
+) -> Entry | None:
+    """The time whose unit is open, in the one unit in which speed and change of place agree."""
+    time = entries.get("time_s")
+    if time is None or time.sure or not time.expression.endswith(f"[{OPEN}]"):
+        return None
+    fitting = {}
+    for pair in PAIRS:
+        if not all(key in entries and entries[key].sure for key in pair):
+            continue
+        for unit in ("s", "ms", "us", "min"):
+            text = time.expression.replace(OPEN, unit)
+            tried = replace(
+                time, expression=text, why=f"in {unit} speed and place agree", sure=True
+            )
+            ratio = speed_ratio({**entries, "time_s": tried}, pair, tables, heads)
+            if ratio is not None and 1.0 / OFF < ratio < OFF:
+                fitting[unit] = tried
+    return fitting.popitem()[1] if len(fitting) == 1 else None
+
+
+def is_doubtful_time(header: Header) -> bool:
+    """A time in `m`: minutes or milliseconds, and no place."""
+    return header.kind == "time" and header.unit == "m"
+
+
+def _is_time(column: Column) -> bool:
+    if column.kind != "number":
+        return False
+    header = understood(column.name, column.unit)
+    unit = parse_unit(header.unit)
+    if header.setpoint:
+        return False
+    if is_doubtful_time(header):
+        return True
+    if header.kind == "time":
+        return unit is None or unit.dimensions == TIME or header.sure
+    return header.kind is None and unit is not None and unit.dimensions == TIME
+
+
+def _time_unit(column: Column) -> bool:
+    unit = parse_unit(understood(column.name, column.unit).unit)
+    return unit is not None and unit.dimensions == TIME
+
+
+def _of_number(column: Column, step: float | None = None) -> Found:
+    header = understood(column.name, column.unit)
+    if _time_unit(column):
+        in_name = understood(column.name).unit
+        text = written(column.name) + ("" if in_name else f" [{column.unit}]")
+        return Entry("time_s", text, "its name and its unit"), []
+    if header.unit:
+        ask = f"{header.unit} is no unit of time: [min], [ms] or what? write it behind the column"
+    else:
+        ask = "no unit is written; write [s], [ms] or [us] behind the column"
+        if step is not None:
+            ask += f" (from row to row it grows by {step:.4g})"
+    entry = Entry("time_s", f"{written(column.name)} [{OPEN}]", "its name", sure=False)
+    return entry, [Question(column.name, ask)]
+
+
+def _since_1970(column: Column, values: Values) -> Entry | None:
+    """A number without a unit that only counts from 1970, in one unit, can be."""
+    known = np.asarray(values, dtype=np.float64)
+    known = known[np.isfinite(known)]
+    if understood(column.name, column.unit).unit or not known.size:
+        return None
+    for unit, size in (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)):
+        if _FROM_S * size < known.min() and known.max() < _TO_S * size:
+            why = f"{unit} since 1970, by its size"
+            return Entry("time_s", f"{written(column.name)} [{unit}]", why)
+    return None
+
+
+def _steps(values: Values) -> float | None:
+    """The usual step of a column that grows; None where it does not."""
+    steps = np.diff(np.asarray(values, dtype=np.float64))
+    grows = steps[steps > 0.0]
+    return float(np.median(grows)) if grows.size > 0.5 * max(steps.size, 1) else None

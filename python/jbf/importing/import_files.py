@@ -1,0 +1,200 @@
+"""From files to a campaign: read through a map, cut, written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from jbf.errors import InputError
+from jbf.importing.campaign_folder import check_folder, write_campaign
+from jbf.importing.cutting.cut import cut
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.cutting.trims import trimmed
+from jbf.importing.formats.registry import format_of, open_source
+from jbf.importing.guess import guess
+from jbf.importing.guessed import Guess
+from jbf.importing.ledger import ledger_of
+from jbf.importing.map_text import map_text
+from jbf.importing.mapping import Map, read_map
+from jbf.importing.overview import overview
+from jbf.importing.recording import read_recording as spooled
+from jbf.importing.result import Import
+from jbf.importing.rig_columns import check_rig_columns
+from jbf.importing.spool import Recording
+from jbf.records.rig import Rig
+from jbf.records.run import PathLike, Run
+from jbf.text_files import path_of, read_text
+
+Report = Callable[[str, int, int], None]
+
+
+class OpenQuestions(InputError):
+    """A file does not say all that an import must know.
+
+    Attributes
+    ----------
+    lines
+        Each question, with its file.
+    """
+
+    def __init__(self, guessed: Guess) -> None:
+        self.lines = [f"{guessed.path}, {question}" for question in guessed.questions]
+        more = len(guessed.questions) - 1
+        first = guessed.questions[0]
+        also = f" (and {more} more)" if more else ""
+        problem = f"{first}{also}"
+        super().__init__(file=guessed.path, problem=problem, mend="give a map: jbf import FILE")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return partial(InputError, **self._fields()), ()
+
+
+def look(path: PathLike) -> Guess:
+    """What a file's columns are, as far as it tells.
+
+    Raises
+    ------
+    InputError
+        The file is not there, is broken, or its library is not installed.
+    """
+    with open_source(path) as source:
+        return guess(source)
+
+
+def import_files(
+    files: PathLike | Iterable[PathLike],
+    map: PathLike | Map | None = None,
+    out: PathLike | None = None,
+    *,
+    cut_file: PathLike | None = None,
+    replace_folder: bool = False,
+    progress: Report | None = None,
+) -> Import:
+    """Recordings as a campaign: runs and a rig.
+
+    Parameters
+    ----------
+    files : path or iterable of path
+        Recordings of any format, all of which one map fits.
+    map : path or Map, optional
+        The map; without one everything in the files must be sure.
+    out : path, optional
+        The campaign's folder; without one a temporary folder, which goes with the result.
+    cut_file : path, optional
+        Trims (`cut.toml`) in the place of the map's `[cut]`.
+    replace_folder : bool
+        Whether an earlier import there may be replaced.
+    progress : callable, optional
+        Called with a message, how much is done and how much there is.
+
+    Raises
+    ------
+    InputError
+        A file, the map or a unit is wrong, or something is open; nothing is written.
+    """
+    paths = _paths(files)
+    folder = None if out is None else path_of(out)
+    if folder is not None:
+        check_folder(folder, replace=replace_folder)
+    mapping, text = _map(map, paths)
+    rig = mapping.check()
+    check_rig_columns(rig, mapping)
+    if cut_file is not None:
+        mapping = replace(mapping, cut=replace(mapping.cut, file=path_of(cut_file)))
+    beside = None if folder is None else folder.resolve().parent
+    with TemporaryDirectory(prefix=".jbf-import-", dir=beside) as spool:
+        recordings = [
+            _read(path, mapping, Path(spool) / str(number), progress)
+            for number, path in enumerate(paths)
+        ]
+        pieces = _pieces(recordings, mapping)
+        ledger = ledger_of(recordings, pieces, mapping)
+        pictures = tuple(overview(recording) for recording in recordings)
+        temporary = None
+        if folder is None:
+            temporary = TemporaryDirectory(prefix="jbf-import-")
+            folder = Path(temporary.name) / "campaign"
+        write_campaign(folder, rig, recordings, pieces, mapping, text, ledger, progress)
+    return Import(folder, rig, tuple(pieces), ledger, pictures, temporary)
+
+
+def read_recording(
+    files: PathLike | Iterable[PathLike],
+    map: PathLike | Map | None = None,
+    *,
+    progress: Report | None = None,
+) -> tuple[Rig, list[Run]]:
+    """The rig and the runs of recordings, as `import_files` makes them; no folder is left.
+
+    Raises
+    ------
+    InputError
+        As `import_files`.
+    """
+    found = import_files(files, map, progress=progress)
+    return found.rig, found.runs
+
+
+def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
+    if isinstance(files, str | os.PathLike):
+        files = [files]
+    paths = [path_of(file) for file in files]
+    if not paths:
+        raise InputError(problem="no file is given", mend="name at least one recording")
+    for at, path in enumerate(paths):
+        if not path.exists():
+            raise InputError(file=path, problem="the file does not exist", mend="correct the path")
+        if path.name in [other.name for other in paths[:at]]:
+            raise InputError(
+                file=path, problem="another file has the same name", mend="rename one of them"
+            )
+    return paths
+
+
+def _map(given: PathLike | Map | None, paths: Sequence[Path]) -> tuple[Map, str]:
+    """The map and its text; a guess, once it is sure, where none is given."""
+    if isinstance(given, Map):
+        text = "" if given.path is None else read_text(given.path)
+        return given, text
+    if given is not None:
+        return read_map(given), read_text(given)
+    found = look(paths[0])
+    if not found.sure:
+        raise OpenQuestions(found)
+    return found.map(), map_text(found)
+
+
+def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Recording:
+    folder.mkdir()
+    with open_source(path, mapping.options) as source:
+        recording = spooled(source, mapping, folder, progress)
+    recording.format = format_of(path).name
+    return recording
+
+
+def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
+    _unique_names(recordings)
+    if mapping.cut.file is not None:
+        pieces = trimmed(mapping.cut.file, recordings)
+    else:
+        pieces = [piece for r in recordings for piece in cut(r, mapping.cut)]
+    if not any(piece.keep for piece in pieces):
+        why = pieces[0].why if pieces else "it is empty"
+        raise InputError(
+            file=recordings[0].path,
+            problem=f"nothing is left to be a run: {why}",
+            mend="correct [cut] in the map, or the trims",
+        )
+    return pieces
+
+
+def _unique_names(recordings: Sequence[Recording]) -> None:
+    """Files of one stem and several ends are told apart by them."""
+    names = [recording.name for recording in recordings]
+    for recording in recordings:
+        if names.count(recording.name) > 1:
+            recording.name = recording.path.name.replace(".", "_")

@@ -1,0 +1,82 @@
+"""The ledger of an import, `import.json`: which file became which run, in which units, and what was
+left out."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from jbf._core import __version__
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.mapping import Map
+from jbf.importing.spool import Recording
+
+NAME = "import.json"
+_PART = 1 << 20
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file, or of a folder's files in the order of their names."""
+    digest = hashlib.sha256()
+    files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
+    for file in files:
+        with file.open("rb") as open_file:
+            while part := open_file.read(_PART):
+                digest.update(part)
+    return digest.hexdigest()
+
+
+def ledger_of(
+    recordings: Sequence[Recording], pieces: Sequence[Piece], mapping: Map
+) -> dict[str, Any]:
+    """The ledger as plain values."""
+    return {
+        "jbf": __version__,
+        "map": {
+            "columns": dict(mapping.columns),
+            "clocks": dict(mapping.clocks),
+            "file": {k: v for k, v in asdict(mapping.options).items() if v not in (None, ())},
+            "cut_by": list(mapping.cut.by),
+        },
+        "files": [_page(recording, pieces) for recording in recordings],
+    }
+
+
+def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
+    own = [piece for piece in pieces if piece.file == recording.path.name]
+    return {
+        "file": recording.path.name,
+        "sha256": file_hash(recording.path),
+        "format": recording.format,
+        "start": recording.start,
+        "channels": recording.channels,
+        "dropped": [
+            {k: v for k, v in asdict(d).items() if v is not None} for d in recording.dropped
+        ],
+        "notes": recording.notes,
+        "runs": [_span(piece) | {"name": piece.name} for piece in own if piece.keep],
+        "left_out": [_span(piece) | {"why": piece.why} for piece in own if not piece.keep],
+    }
+
+
+def _span(piece: Piece) -> dict[str, Any]:
+    found: dict[str, Any] = {"from_s": piece.from_s, "to_s": piece.to_s}
+    return found | ({"stretch": piece.segment + 1} if piece.segment else {})
+
+
+def ledgers_beside(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
+    """The ledgers in the folders of some runs; one that cannot be read is none."""
+    folders = dict.fromkeys(path.resolve().parent for path in paths if path is not None)
+    found = []
+    for folder in folders:
+        try:
+            content = json.loads((folder / NAME).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if isinstance(content, dict) and isinstance(content.get("files"), list):
+            found.append(content)
+    return found

@@ -1,0 +1,77 @@
+"""A guess as the text of `map.toml`: what is sure, open, or left out, each with its why."""
+
+from __future__ import annotations
+
+import tomlkit
+
+from jbf.importing.columns import understood
+from jbf.importing.guessed import Guess
+
+_HEAD = """\
+# A map: which columns of the file make which columns of a run. Made by jbf import; edit it, then
+#   jbf import {file} --map {map} --out FOLDER
+# A column stands as the file names it, in back quotes or not; + - * / and brackets are allowed, and
+# units in square brackets: "`Torque [Nm]` / 12.7 [mm]", "-`Speed` [rpm]". Units are converted to
+# what the name on the left ends in. Each ? is open: put what it is in its place.
+"""
+_CUT = """\
+# One recording becomes several runs where it is cut. Time that starts again always cuts.
+# [cut]
+# by = "{way}"  # one or several of: "rests", "set_point", "load_step", "motion", "run"
+"""
+
+
+def map_text(guess: Guess, name: str = "map.toml") -> str:
+    """The map, commented."""
+    parts = [_HEAD.format(file=guess.path, map=name)]
+    if guess.questions:
+        asked = "\n".join(f"#   {question}" for question in guess.questions)
+        parts.append(f"# Open:\n{asked}\n")
+    rates = [t.rate_hz for t in guess.tables if t.rate_hz is not None]
+    if not any(e.key == "time_s" for e in guess.entries):
+        if rates:
+            parts.append(f"[file]\nrate_hz = {rates[0]!r}  # stated in the file\n")
+        elif all(t.clock is None for t in guess.tables):
+            parts.append("# [file]\n# rate_hz = 1000.0\n")
+    lines = ["[columns]"]
+    lines += _aligned(
+        [
+            (f"{e.key} = {_quoted(e.expression)}", e.why + ("" if e.sure else "; open"))
+            for e in guess.entries
+        ]
+    )
+    lines += [f"# not taken: {name} ({why})" for name, why in guess.ignored.items()]
+    parts.append("\n".join(lines) + "\n")
+    if guess.clocks:
+        own = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
+        parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
+    parts.append(_cut(guess))
+    for section, content in guess.rig.items():
+        table = tomlkit.dumps({section: dict(content)}).rstrip("\n")
+        parts.append(table + "\n")
+    if not guess.rig:
+        parts.append(
+            '# What it was recorded on, as in rig.toml:\n# [drive]\n# motion = "linear"\n'
+            '# friction = "force"\n'
+        )
+    return "\n".join(parts)
+
+
+def _quoted(text: str) -> str:
+    return tomlkit.item(text).as_string()
+
+
+def _aligned(lines: list[tuple[str, str]]) -> list[str]:
+    width = max((len(line) for line, _ in lines), default=0)
+    return [f"{line:<{width}}  # {why}" for line, why in lines]
+
+
+def _cut(guess: Guess) -> str:
+    """The section of the cut, with a column of the file that it could go by."""
+    for table in guess.tables:
+        for column in table.columns:
+            header = understood(column.name, column.unit)
+            if header.kind == "run" or header.setpoint:
+                way = "run" if header.kind == "run" else "set_point"
+                return f"{_CUT.format(way=way)}# column = {_quoted(f'`{column.name}`')}\n"
+    return _CUT.format(way="rests")

@@ -1,0 +1,188 @@
+"""The map: `map.toml` says which columns of a file make which columns of a run, and on what rig.
+
+[file]      how the file is to be read, where it does not say so itself
+[columns]   column of a run = "expression over the file's columns"
+[clocks]    column of a run = "its own time", where that is not time_s
+[cut]       how one recording becomes runs
+[drive] or [bearing], [lubricant], [load]   as in rig.toml
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError
+from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.expression import OPEN
+from jbf.importing.formats.table import Options
+from jbf.importing.targets import FRICTION, MOTION, wanted_unit
+from jbf.records.rig import Rig
+from jbf.records.run import PathLike
+from jbf.records.toml_file import read_toml, refuse_unknown, table
+
+RIG = ("drive", "bearing", "lubricant", "load")
+SECTIONS = ("file", "columns", "clocks", "cut", *RIG)
+
+
+@dataclass(frozen=True)
+class Map:
+    """What a map says.
+
+    Attributes
+    ----------
+    columns, clocks
+        Column of a run to an expression over the file's columns.
+    options
+        How files are read.
+    cut
+        How a recording becomes runs.
+    rig
+        Sections of a `rig.toml`.
+    path
+        Where it was read; None of a guess.
+    """
+
+    columns: Mapping[str, str]
+    clocks: Mapping[str, str] = field(default_factory=dict)
+    options: Options = field(default_factory=Options)
+    cut: CutSettings = field(default_factory=CutSettings)
+    rig: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    path: Path | None = None
+
+    def open_questions(self) -> Iterator[InputError]:
+        """One error for each `?` that still stands in it."""
+        sections = {"columns": self.columns, "clocks": self.clocks, **self.rig}
+        for section, content in sections.items():
+            for key, value in content.items():
+                if isinstance(value, str) and (value.strip() == OPEN or f"[{OPEN}]" in value):
+                    yield InputError(
+                        file=self.path,
+                        key=f"{section}.{key}",
+                        problem="is open",
+                        mend="put what it is in the place of the ?",
+                    )
+
+    def check(self) -> Rig:
+        """The rig, once nothing is open.
+
+        Raises
+        ------
+        InputError
+            A key is unknown, open or missing.
+        """
+        try:
+            for error in self.open_questions():
+                raise error
+            for key in (*self.columns, *self.clocks):
+                wanted_unit(key)
+            for key in self.clocks:
+                if key not in self.columns or key == "time_s":
+                    problem = "has a clock of its own and is no other column"
+                    mend = "name it under [columns], too"
+                    raise InputError(key=f"clocks.{key}", problem=problem, mend=mend)
+            self._complete()
+            return Rig.from_mapping(self.rig)
+        except InputError as error:
+            raise error.within(file=self.path) from None
+
+    def _complete(self) -> None:
+        for wanted, what in ((FRICTION, "a friction"), (MOTION, "a motion")):
+            if not any(key in self.columns for key in wanted):
+                raise InputError(
+                    key="columns",
+                    problem=f"holds no column for {what}",
+                    mend=f"give one of {', '.join(wanted)}",
+                )
+        if not self.rig:
+            raise InputError(
+                key="drive",
+                problem="nothing says what it was recorded on",
+                mend='add [drive] with motion = "linear" or "rotary" and friction, or [bearing]',
+            )
+
+
+def read_map(path: PathLike) -> Map:
+    """Read a map.
+
+    Raises
+    ------
+    InputError
+        It is not TOML, or a key is unknown or of the wrong kind; what is open is asked later.
+    """
+    content = read_toml(path)
+    try:
+        return _map_of(content, Path(path))
+    except InputError as error:
+        raise error.within(file=path) from None
+
+
+def _map_of(content: Mapping[str, Any], path: Path) -> Map:
+    refuse_unknown(content, SECTIONS)
+    if "columns" not in content:
+        mend = 'add [columns] with lines such as friction_n = "Force [N]"'
+        raise InputError(key="columns", problem="is missing", mend=mend)
+    return Map(
+        columns=_texts(content, "columns"),
+        clocks=_texts(content, "clocks"),
+        options=_options(table(content.get("file", {}), "file")),
+        cut=CutSettings.from_mapping(table(content.get("cut", {}), "cut"), path.parent),
+        rig={name: dict(table(content[name], name)) for name in RIG if name in content},
+        path=path,
+    )
+
+
+def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
+    found = {}
+    for key, value in table(content.get(section, {}), section).items():
+        if not isinstance(value, str):
+            raise InputError(
+                key=f"{section}.{key}",
+                problem=f"{value!r} is no text",
+                mend='write an expression in quotes, such as "Force [N] / 2"',
+            )
+        found[key] = value
+    return found
+
+
+_KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    "delimiter": (str, 'text, such as ";"'),
+    "decimal": (str, '"," or "."'),
+    "thousands": (str, 'text, such as "."'),
+    "encoding": (str, 'text, such as "latin-1"'),
+    "header": (int, "the number of a row, 0 where there is none"),
+    "units": (int, "the number of a row, 0 where there is none"),
+    "table": (str, "the name of a sheet, group or topic"),
+    "rate_hz": ((int, float), "a number above zero"),
+    "dates": (str, '"day_first" or "month_first"'),
+    "empty": (list, 'a list of words, such as ["OFF"]'),
+}
+
+
+def _options(section: Mapping[str, Any]) -> Options:
+    refuse_unknown(section, [f.name for f in fields(Options)], "file.")
+    given = dict(section)
+    for key, value in given.items():
+        kind, wanted = _KINDS[key]
+        good = isinstance(value, kind) and not isinstance(value, bool)
+        if key == "decimal":
+            good = value in (",", ".")
+        elif key == "dates":
+            good = value in ("day_first", "month_first")
+        elif key == "rate_hz":
+            good = good and 0.0 < float(value) < float("inf")
+        elif key in ("header", "units"):
+            good = good and value >= 0
+        elif key == "delimiter":
+            good = good and len(value) == 1
+        elif key == "empty":
+            good = good and all(isinstance(word, str) for word in value)
+        if not good:
+            raise InputError(
+                key=f"file.{key}", problem=f"{value!r} does not fit", mend=f"write {wanted}"
+            )
+    if "empty" in given:
+        given["empty"] = tuple(given["empty"])
+    return Options(**given)

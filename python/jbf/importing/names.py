@@ -1,0 +1,59 @@
+"""What a file's columns may be called in an expression."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from jbf.importing.columns import understood
+from jbf.importing.formats.table import Table
+
+
+def column_names(tables: Sequence[Table]) -> dict[str, str]:
+    """Every name that means one column: as it stands, without its unit, with its table's name.
+
+    Of a column that stands in several tables only the name with the table's means one.
+    """
+    whole = Counter(column.name for table in tables for column in table.columns)
+    found: dict[str, str] = {}
+    bare: Counter[str] = Counter()
+    shorter: dict[str, str] = {}
+    for table in tables:
+        for column in table.columns:
+            if whole[column.name] == 1:
+                found[column.name] = column.name
+            found[f"{table.name}/{column.name}"] = qualified(table, column.name, whole)
+            name = understood(column.name).name
+            bare[name] += 1
+            shorter[name] = qualified(table, column.name, whole)
+    for name, column_name in shorter.items():
+        if bare[name] == 1:
+            found.setdefault(name, column_name)
+    return found
+
+
+def qualified(table: Table, name: str, whole: Counter[str]) -> str:
+    """A column's name, with its table's where it stands in several."""
+    return name if whole[name] == 1 else f"{table.name}/{name}"
+
+
+def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
+    """For each name that `column_names` gives, the table and the column in it."""
+    whole = Counter(column.name for table in tables for column in table.columns)
+    return {
+        qualified(table, column.name, whole): (table, column.name)
+        for table in tables
+        for column in table.columns
+    }
+
+
+def column_units(tables: Sequence[Table]) -> dict[str, str]:
+    """What the file says of each column's unit."""
+    units = {}
+    for name, (table, column_name) in located(tables).items():
+        column = table.column(column_name)
+        if column.kind == "instant":
+            units[name] = "s"
+        else:
+            units[name] = column.unit or understood(column.name).unit
+    return units

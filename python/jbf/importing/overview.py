@@ -1,0 +1,68 @@
+"""A recording in few points: the least and the largest value of each of some hundred stretches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.importing.formats.table import BLOCK
+from jbf.importing.spool import Recording, Stream
+from jbf.importing.targets import FRICTION, MOTION
+
+Array = npt.NDArray[np.float64]
+
+_POINTS = 1_200
+
+
+@dataclass(frozen=True, eq=False)
+class Overview:
+    """What a picture of a recording needs.
+
+    Attributes
+    ----------
+    file
+        Name of the file.
+    starts_s
+        For each stretch of growing time: what is to be added to its times, s, so that stretches
+        stand one after the other.
+    curves
+        Column to time, least and largest value, each of shape (points,).
+    """
+
+    file: str
+    starts_s: tuple[float, ...]
+    curves: dict[str, tuple[Array, Array, Array]]
+
+
+def overview(recording: Recording) -> Overview:
+    """A recording's friction, its motion and its load."""
+    starts, offset = [], 0.0
+    stream = recording.streams[0]
+    for first, end in stream.segments:
+        begin = stream.at(first)
+        starts.append(offset - begin if offset else 0.0)
+        offset = max(offset, begin + starts[-1]) + stream.at(end - 1) - begin
+    curves = {}
+    for keys in (FRICTION, MOTION, ("load_n", "pressure_pa")):
+        found = recording.stream_of(*keys)
+        if found is not None:
+            curves[found[1]] = _curve(*found, starts)
+    return Overview(recording.path.name, tuple(starts), curves)
+
+
+def _curve(stream: Stream, key: str, starts: list[float]) -> tuple[Array, Array, Array]:
+    column = stream.columns.index(key)
+    size = max(stream.rows // _POINTS, 1)
+    points: list[tuple[float, float, float]] = []
+    for (first, end), start in zip(stream.segments, starts, strict=True):
+        for rows in stream.blocks(first, end, size=size * max(1, BLOCK // size)):
+            for at in range(0, len(rows), size):
+                part = rows[at : at + size]
+                values = part[np.isfinite(part[:, column]), column]
+                if values.size:
+                    points.append((part[0, 0] + start, float(values.min()), float(values.max())))
+        points.append((np.nan, np.nan, np.nan))
+    times, low, high = np.array(points).T
+    return times, low, high

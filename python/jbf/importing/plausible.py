@@ -1,0 +1,78 @@
+"""Do place, speed and time go together in the units that were read? Where not, it is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.evaluation import converted, evaluate
+from jbf.importing.expression import parse_expression
+from jbf.importing.formats.table import Table, Values
+from jbf.importing.guessed import Entry, Question
+from jbf.importing.names import column_names, column_units
+from jbf.importing.targets import wanted_unit
+
+_ALIKE = 0.9
+"""Correlation of speed and change of place above which their ratio means something."""
+OFF = 1.25
+"""A ratio that is no ratio of units."""
+PAIRS = (
+    ("position_m", "velocity_m_s"),
+    ("angle_rad", "velocity_rad_s"),
+    ("angle_rad", "speed_rpm"),
+    ("motor_angle_rad", "motor_speed_rpm"),
+)
+"""A place and its speed."""
+_LEAST = 20
+
+
+def contradictions(
+    by_key: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
+) -> list[Question]:
+    """A question where a speed is not the change of its place."""
+    found = []
+    for place, speed in PAIRS:
+        if not {place, speed, "time_s"} <= by_key.keys():
+            continue
+        if not all(by_key[key].sure for key in (place, speed, "time_s")):
+            continue
+        ratio = speed_ratio(by_key, (place, speed), tables, heads)
+        if ratio is not None and not 1.0 / OFF < ratio < OFF:
+            of = f"{by_key[speed].expression} is {ratio:.4g} times the change of"
+            ask = f"{of} {by_key[place].expression}: a unit, of these or of the time, is wrong"
+            found.append(Question(speed, f"{ask}; write the right one behind the column"))
+    return found
+
+
+def speed_ratio(
+    entries: Mapping[str, Entry],
+    pair: tuple[str, str],
+    tables: Sequence[Table],
+    heads: Mapping[str, Values],
+) -> float | None:
+    """The speed over the change of the place; None where they do not go together at all."""
+    names, units = column_names(tables), column_units(tables)
+    values = []
+    try:
+        for key in ("time_s", *pair):
+            node = parse_expression(entries[key].expression, names)
+            unit = wanted_unit(key)
+            values.append(converted(evaluate(node, heads, units), unit, key) * unit.in_si)
+    except InputError:
+        return None
+    if len({len(column) for column in values}) != 1 or len(values[0]) < _LEAST:
+        return None
+    good = np.all(np.isfinite(values), axis=0)
+    time, place, speed = (column[good] for column in values)
+    steps = np.diff(time)
+    if len(time) < _LEAST or not (steps > 0.0).any():
+        return None
+    moves = steps > 0.0
+    change = np.diff(place)[moves] / steps[moves]
+    mean = (0.5 * (speed[1:] + speed[:-1]))[moves]
+    power = float(change @ change) * float(mean @ mean)
+    if power == 0.0 or abs(float(change @ mean)) < _ALIKE * power**0.5:
+        return None
+    return abs(float(change @ mean)) / float(change @ change)

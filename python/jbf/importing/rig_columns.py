@@ -1,0 +1,35 @@
+"""Do a map's columns go with its rig? Asked before hours are read, not when the runs are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.importing.mapping import Map
+from jbf.records.drive_columns import DriveColumns
+from jbf.records.rig import Rig
+
+
+def check_rig_columns(rig: Rig, mapping: Map) -> None:
+    """An InputError where the runs could not be read with the rig."""
+    file = mapping.path or Path("the columns")
+    keys = ["time_s", *mapping.columns]
+    if rig.drive is not None:
+        columns = DriveColumns.of(rig.drive)
+        try:
+            columns.refuse_strangers(file, 0, keys)
+        except InputError as error:
+            key = f"columns.{error.column}"
+            raise InputError(file=file, key=key, problem=error.problem, mend=error.mend) from None
+        required = columns.required(keys, True)
+    else:
+        motion = [k for k in ("velocity_m_s", "position_m", "angle_rad") if k in keys]
+        required = ["friction_n", motion[0] if motion else "velocity_m_s"]
+    for key in required:
+        if key not in keys:
+            raise InputError(
+                file=file,
+                key=f"columns.{key}",
+                problem="is missing, and the rig needs it",
+                mend="add it under [columns], or correct the rig's section",
+            )

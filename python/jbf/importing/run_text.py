@@ -1,0 +1,103 @@
+"""A piece of a recording as the CSV of a run, block by block.
+
+Where clocks differ, a row stands at each instant of any of them, and a cell is empty where its
+channel has no sample. Nothing is resampled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.formats.table import BLOCK
+from jbf.importing.recording import CUT_COLUMN
+from jbf.importing.spool import Recording, Stream
+from jbf.records.checks import COLUMNS
+
+Array = npt.NDArray[np.float64]
+
+
+def run_columns(recording: Recording) -> list[str]:
+    """The columns of its runs in order: known ones first."""
+    keys = [key for stream in recording.streams for key in stream.columns[1:]]
+    known = [key for key in COLUMNS if key in keys or key == "time_s"]
+    return known + [key for key in keys if key not in COLUMNS and key != CUT_COLUMN]
+
+
+def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
+    """The text of a run, in parts."""
+    columns = run_columns(recording)
+    yield ",".join(columns) + "\n"
+    for block in run_rows(recording, piece, columns):
+        yield _lines(block)
+
+
+def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator[Array]:
+    """Rows of a run, shape (n, columns), nan where a channel has no sample."""
+    parts = [_Part(stream, piece) for stream in recording.streams]
+    places = [[columns.index(k) for k in p.stream.columns if k != CUT_COLUMN] for p in parts]
+    taken = [[at for at, key in enumerate(p.stream.columns) if key != CUT_COLUMN] for p in parts]
+    while True:
+        # Every part is filled, not only the first that has rows.
+        there = [part.fill() for part in parts]
+        if not any(there):
+            return
+        # As far as every clock is known, and no farther.
+        horizon = min((p.last for p in parts if p.more), default=np.inf)
+        blocks = [part.take(horizon) for part in parts]
+        times = np.unique(np.concatenate([block[:, 0] for block in blocks]))
+        rows = np.full((len(times), len(columns)), np.nan)
+        for block, own, into in zip(blocks, taken, places, strict=True):
+            rows[np.searchsorted(times, block[:, 0])[:, None], np.array(into)] = block[:, own]
+        rows[:, columns.index("time_s")] = times
+        full = np.isfinite(rows).sum(axis=1) > 1
+        if full.any():
+            yield rows[full]
+
+
+class _Part:
+    """A stream's rows within a piece, read ahead by a block."""
+
+    def __init__(self, stream: Stream, piece: Piece) -> None:
+        self.stream = stream
+        self.next, self.end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
+        self.rows = np.empty((0, len(stream.columns)))
+        self._needed = bool(stream.needed)
+
+    @property
+    def more(self) -> bool:
+        """Whether there are rows after those that were read."""
+        return self.next < self.end
+
+    @property
+    def last(self) -> float:
+        """The last instant that was read."""
+        return float(self.rows[-1, 0]) if len(self.rows) else -np.inf
+
+    def fill(self) -> bool:
+        """Read a block where there is none; False at the end."""
+        while not len(self.rows) and self.more:
+            rows = self.stream.read(self.next, min(self.next + BLOCK, self.end))
+            self.next += len(rows)
+            self.rows = rows[self.stream.complete(rows)] if self._needed else rows
+        return bool(len(self.rows))
+
+    def take(self, horizon: float) -> Array:
+        """The rows up to an instant."""
+        count = int(np.searchsorted(self.rows[:, 0], horizon, side="right"))
+        taken, self.rows = self.rows[:count], self.rows[count:]
+        return taken
+
+
+def _lines(block: Array) -> str:
+    # repr of a float is the shortest text that reads back to the same bits.
+    columns = []
+    for column in block.T:
+        cells = list(map(repr, column.tolist()))
+        if np.isnan(column).any():
+            cells = ["" if cell == "nan" else cell for cell in cells]
+        columns.append(cells)
+    return "\n".join(map(",".join, zip(*columns, strict=True))) + "\n"

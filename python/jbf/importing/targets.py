@@ -1,0 +1,50 @@
+"""The columns that an import can make, and what each is in."""
+
+from __future__ import annotations
+
+from jbf.errors import InputError, closest, did_you_mean, quoted
+from jbf.importing.units import Unit, unit_of_name
+from jbf.records.checks import COLUMNS
+from jbf.records.csv_file import OF_DRIVES
+
+KNOWN = (*COLUMNS, *OF_DRIVES, "pressure_pa")
+"""Columns that a run can have and that mean something to it."""
+FRICTION = (
+    "friction_n", "torque_n_m", "motor_torque_n_m", "current_a", "torque_percent", "force_percent",
+)  # fmt: skip
+LINEAR = ("position_m", "velocity_m_s")
+TURNING = (
+    "angle_rad", "velocity_rad_s", "speed_rpm",
+    "motor_angle_rad", "motor_velocity_rad_s", "motor_speed_rpm",
+)  # fmt: skip
+MOTION = (*LINEAR, *TURNING)
+_ALIKE = 0.8
+_STEMS = {found[0]: key for key in reversed(KNOWN) if (found := unit_of_name(key)) is not None}
+
+
+def wanted_unit(key: str) -> Unit:
+    """What a column of a run is in, by the end of its name.
+
+    Raises
+    ------
+    InputError
+        The name is a slip of a known one, or ends in no unit.
+    """
+    if key not in KNOWN:
+        near = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
+        found = unit_of_name(key)
+        if near is None and found is not None:
+            # Of a known quantity: units are converted, and the name must not say another.
+            near = _STEMS.get(found[0])
+        if near is not None:
+            raise InputError(
+                key=f"columns.{key}", problem="is not known", mend=f"did you mean {quoted(near)}?"
+            )
+    found = unit_of_name(key)
+    if found is None:
+        raise InputError(
+            key=f"columns.{key}",
+            problem="is not known, and its name ends in no unit",
+            mend=f"{did_you_mean(key, KNOWN)}; one of your own is such as setpoint_rpm",
+        )
+    return found[1]

@@ -1,0 +1,58 @@
+"""An angle that starts again at each turn goes on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.importing.spool import Stream
+
+Array = npt.NDArray[np.float64]
+
+_ANGLES = ("angle_rad", "motor_angle_rad")
+_TURN = 2.0 * math.pi
+
+
+def unwrapped(stream: Stream) -> list[str]:
+    """Unwrap each angle of one turn that jumps; says what was done."""
+    notes = []
+    for key in _ANGLES:
+        if key not in stream.columns:
+            continue
+        column = stream.columns.index(key)
+        low, high, jumps, last = math.inf, -math.inf, 0, math.nan
+        for block in stream.blocks():
+            values = block[:, column][np.isfinite(block[:, column])]
+            if not values.size:
+                continue
+            low, high = min(low, float(values.min())), max(high, float(values.max()))
+            jumps += int((np.abs(np.diff(values, prepend=last)) > math.pi).sum())
+            last = float(values[-1])
+        if jumps and high - low <= _TURN * (1.0 + 1e-6):
+            stream.rewrite(column, _going_on(stream, column))
+            notes.append(f"{key} started again {jumps} times at a turn: whole turns were added")
+    return notes
+
+
+def _going_on(stream: Stream, column: int) -> Iterator[Array]:
+    turns, last = 0.0, math.nan
+    starts = {first for first, _ in stream.segments}
+    row = 0
+    for block in stream.blocks():
+        values = block[:, column]
+        found = np.empty_like(values)
+        for at, value in enumerate(values.tolist()):
+            if row + at in starts:
+                turns, last = 0.0, math.nan
+            if value - last > math.pi:
+                turns -= 1.0
+            elif last - value > math.pi:
+                turns += 1.0
+            found[at] = value + turns * _TURN
+            if value == value:
+                last = value
+        row += len(values)
+        yield found

@@ -1,0 +1,211 @@
+"""A unit as text becomes a size and dimensions; values go from one unit to another.
+
+`N m`, `N·m`, `Nm`, `mm/s`, `m s^-1`, `kg m²`, `N/(mm s)`: factors side by side, a slash that
+divides by the next factor, whole exponents.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.importing.unit_table import (
+    ALIASES,
+    BASES,
+    CELSIUS,
+    FAHRENHEIT,
+    NONE,
+    SUFFIXES,
+    TEMPERATURE,
+    UNITS,
+    Dimensions,
+)
+
+Array = npt.NDArray[np.float64]
+
+_RAD = BASES.index("rad")
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_FACTOR = re.compile(r"([^\W\d_]+|[%‰°º\"]|1)(?:\^?(-?\d+))?", re.UNICODE)
+_LONGEST = 40
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Size and dimensions: SI value = reading * ratio * pi^pi + zero.
+
+    Attributes
+    ----------
+    text
+        As it was written.
+    zero
+        SI value of a reading of nought, of temperatures only.
+    """
+
+    text: str
+    ratio: Fraction = Fraction(1)
+    pi: int = 0
+    dimensions: Dimensions = NONE
+    zero: Fraction = Fraction(0)
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        """The unit of a product (power 1) or a quotient (-1)."""
+        raised = other.raised(power)
+        sign = "*" if power > 0 else "/"
+        return Unit(
+            f"{self.text} {sign} {other.text}",
+            self.ratio * raised.ratio,
+            self.pi + raised.pi,
+            tuple(a + b for a, b in zip(self.dimensions, raised.dimensions, strict=True)),
+        )
+
+    def raised(self, power: int) -> Unit:
+        """The unit to a whole power."""
+        whole = tuple(a * power for a in self.dimensions)
+        return Unit(self.text, self.ratio**power, self.pi * power, whole)
+
+    def fits(self, wanted: Unit) -> bool:
+        """Whether a quantity in this unit is one of `wanted`; radians may fall away (rad x m is m),
+        but none comes of nothing."""
+        if self.dimensions == wanted.dimensions:
+            return True
+        mine, other = list(self.dimensions), list(wanted.dimensions)
+        if other[_RAD] == 0:
+            mine[_RAD] = 0
+        return mine == other
+
+    def converted(self, values: Array, to: Unit) -> Array:
+        """Readings in this unit as readings in another, rounded once where that can be."""
+        if self.zero != to.zero or (self.zero and self.ratio != to.ratio):
+            shift = float((self.zero - to.zero) / to.ratio)
+            return values * float(self.ratio / to.ratio) + shift
+        return scaled(values, self.ratio / to.ratio, self.pi - to.pi)
+
+    @property
+    def in_si(self) -> float:
+        """What one of it is in SI."""
+        return float(self.ratio) * math.pi**self.pi
+
+
+def scaled(values: Array, ratio: Fraction, pi: int = 0) -> Array:
+    """Values times a ratio and a power of pi; a division where the ratio is one."""
+    if pi:
+        return values * (float(ratio) * math.pi**pi)
+    if ratio == 1:
+        return values
+    if ratio.numerator == 1:
+        return values / float(ratio.denominator)
+    return values * float(ratio)
+
+
+ONE = Unit("1")
+CELSIUS_UNIT = Unit("°C", dimensions=TEMPERATURE, zero=Fraction("273.15"))
+FAHRENHEIT_UNIT = Unit("°F", Fraction(5, 9), 0, TEMPERATURE, Fraction("273.15") - Fraction(160, 9))
+
+
+def parse_unit(text: str) -> Unit | None:
+    """The unit that a text means, or None where it is none that is known."""
+    shown = " ".join(text.split())
+    if not shown or len(shown) > _LONGEST:
+        return None
+    low = shown.lower()
+    if low in CELSIUS:
+        return CELSIUS_UNIT
+    if low in FAHRENHEIT:
+        return FAHRENHEIT_UNIT
+    whole = _single(shown)
+    if whole is not None:
+        return Unit(shown, *whole)
+    try:
+        product = _Product(shown).parse()
+    except ValueError:
+        return None
+    return Unit(shown, product.ratio, product.pi, product.dimensions)
+
+
+def unit_of_name(name: str) -> tuple[str, Unit] | None:
+    """What stands before the unit at the end of a name, and the unit: `speed_rpm`, `v_m_s`."""
+    parts = name.split("_")
+    for count in (3, 2, 1):
+        if len(parts) <= count:
+            continue
+        found = SUFFIXES.get("_".join(parts[-count:]).lower())
+        unit = None if found is None else parse_unit(found)
+        if unit is not None:
+            return "_".join(parts[:-count]), unit
+    return None
+
+
+def _single(name: str) -> tuple[Fraction, int, Dimensions] | None:
+    """A unit that stands in the table, by its name, an alias, or its name in another case."""
+    if name in UNITS:
+        return UNITS[name]
+    alias = ALIASES.get(name.lower())
+    if alias is not None:
+        return UNITS[alias]
+    # In capitals or in small letters, where no other unit would be meant.
+    alike = {entry for known, entry in UNITS.items() if known.lower() == name.lower()}
+    return alike.pop() if len(alike) == 1 and len(name) > 1 else None
+
+
+class _Product:
+    """Factors, slashes, brackets and exponents."""
+
+    def __init__(self, text: str) -> None:
+        text = text.replace("·", " ").replace("*", " ").replace("⋅", " ").replace("×", " ")
+        # A superscript is an exponent; a hyphen or a full stop between letters is a product.
+        text = re.sub(r"([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+)", lambda m: "^" + m[1].translate(_SUPERSCRIPTS), text)
+        self.text = re.sub(r"(?<=[^\W\d_])[-.](?=[^\W\d_])", " ", text)
+        self.at = 0
+
+    def parse(self) -> Unit:
+        found = self._product()
+        if self.at != len(self.text):
+            raise ValueError(self.text)
+        return found
+
+    def _product(self) -> Unit:
+        found, power = ONE, 1
+        first = True
+        while True:
+            self._skip()
+            if self._take("/"):
+                power = -1
+                self._skip()
+            elif first is False and self.at < len(self.text) and self.text[self.at] == ")":
+                return found
+            elif self.at == len(self.text):
+                if first:
+                    raise ValueError(self.text)
+                return found
+            found = found.times(self._factor(), power)
+            power, first = 1, False
+
+    def _factor(self) -> Unit:
+        if self._take("("):
+            inside = self._product()
+            if not self._take(")"):
+                raise ValueError(self.text)
+            return inside
+        match = _FACTOR.match(self.text, self.at)
+        if match is None:
+            raise ValueError(self.text)
+        entry = _single(match[1])
+        if entry is None:
+            raise ValueError(self.text)
+        self.at = match.end()
+        return Unit(match[1], *entry).raised(int(match[2] or 1))
+
+    def _skip(self) -> None:
+        while self.at < len(self.text) and self.text[self.at] == " ":
+            self.at += 1
+
+    def _take(self, sign: str) -> bool:
+        if self.text.startswith(sign, self.at):
+            self.at += len(sign)
+            return True
+        return False

@@ -1,0 +1,84 @@
+"""A slow thermometer: one that is read more seldom than the force, in coarse steps, or with noise.
+
+What a temperature changes, it changes slowly: iron and oil take many seconds to warm. A model asks
+for the temperature of the body, not for the jumps of its reading.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.roughness import noise_of
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+HELD = 0.5
+"""A reading that repeats the one before at more than this share of the samples is held."""
+SMOOTH_S = 2.0
+"""Seconds over which a noisy reading is averaged."""
+NOISE_K = 0.1
+"""Noise below this, K, changes an oil by half a percent: nothing is done about it."""
+
+
+def recorded_temperature(run: Run) -> Array | None:
+    """The temperature that a run tells, C, shape (n,), without the steps and the noise of its
+    thermometer; None where none was recorded."""
+    if run.temperature_c is None:
+        return None
+    return _steady(run.time_s, run.temperature_c)[0]
+
+
+def find_slow_temperature(run: Run) -> list[Finding]:
+    """What was done to the recorded temperature."""
+    if run.temperature_c is None:
+        return []
+    _, held_s, noise_k = _steady(run.time_s, run.temperature_c)
+    found = []
+    if held_s > 0.0:
+        words = f"the temperature stands still for {held_s:.2g} s and jumps to its next reading"
+        done = "straight lines through the jumps"
+        found.append(Finding("held_samples", "temperature_c", run.name, held_s, "s", done, words))
+    if noise_k > 0.0:
+        words = f"the temperature has noise of {noise_k:.2g} K"
+        done = f"averaged over {SMOOTH_S:g} s"
+        found.append(
+            Finding("noisy_temperature", "temperature_c", run.name, noise_k, "K", done, words)
+        )
+    return found
+
+
+def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:
+    """The temperature of the body, C; how long its readings are held, s; their noise, K. Each is
+    zero where nothing was done."""
+    drawn, held_s = _through_jumps(time, celsius)
+    noise_k = noise_of(drawn)
+    if noise_k < NOISE_K:
+        return drawn, held_s, 0.0
+    return _averaged(time, drawn), held_s, noise_k
+
+
+def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
+    """Straight lines through the middles of a staircase's jumps, and how long its steps are, s."""
+    jumps = np.flatnonzero(np.diff(celsius) != 0.0)
+    if not len(jumps) or len(jumps) > (1.0 - HELD) * (len(celsius) - 1):
+        return celsius, 0.0
+    middles = 0.5 * (time[jumps] + time[jumps + 1])
+    values = 0.5 * (celsius[jumps] + celsius[jumps + 1])
+    knots = np.concatenate(([time[0]], middles, [time[-1]]))
+    ends = np.concatenate((celsius[:1], values, celsius[-1:]))
+    held_s = float(np.median(np.diff(knots)))
+    return np.interp(time, knots, ends), held_s
+
+
+def _averaged(time: Array, celsius: Array) -> Array:
+    """The mean over `SMOOTH_S` about each sample, on straight lines between the samples."""
+    area = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(time) * (celsius[1:] + celsius[:-1]))))
+    # Symmetric, so that a steady rise stays what it is up to both ends.
+    half = np.minimum(0.5 * SMOOTH_S, np.minimum(time - time[0], time[-1] - time))
+    early, late = time - half, time + half
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = (np.interp(late, time, area) - np.interp(early, time, area)) / (late - early)
+    return np.where(late > early, mean, celsius)

@@ -1,0 +1,77 @@
+"""A picture of recordings and of how they were cut."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from jbf.errors import InputError
+from jbf.importing.overview import Overview
+from jbf.importing.result import Import
+from jbf.reporting.page import PIXELS_PER_INCH, page, picture
+from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, axes_or_new, dress, plain
+
+_MOST_NAMED = 40
+
+
+def plot_cut(found: Import, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+    """Each recording's channels in time; runs are shaded in turn, what is left out is not."""
+    rows = [(view, key) for view in found.overviews for key in view.curves]
+    drawn = axes_or_new(axes, len(rows), 1, (11.0, 0.8 + 1.7 * len(rows)))
+    for ax, (view, key) in zip(drawn, rows, strict=True):
+        times, low, high = view.curves[key]
+        # A line through the middle shows where a stretch holds but one sample.
+        ax.fill_between(times, low, high, color=MEASURED, linewidth=0.0)
+        ax.plot(times, 0.5 * (low + high), color="black", linewidth=0.5)
+        _shade(ax, found, view)
+        dress(ax, f"{view.file}: {key}", "Time (s)", key)
+    return drawn
+
+
+def _shade(ax: Axes, found: Import, view: Overview) -> None:
+    own = [piece for piece in found.pieces if piece.file == view.file]
+    kept = [piece for piece in own if piece.keep]
+    for piece in own:
+        shift = view.starts_s[piece.segment]
+        span = (piece.from_s + shift, piece.to_s + shift)
+        if not piece.keep:
+            ax.axvspan(*span, facecolor="none", edgecolor="#d9d9d9", hatch="///", linewidth=0.0)
+            continue
+        number = kept.index(piece)
+        ax.axvspan(*span, color=(MODEL, BEFORE)[number % 2], alpha=0.15, linewidth=0.0)
+        if len(kept) <= _MOST_NAMED:
+            word = piece.name.rpartition("_")[2] if len(kept) > 1 else piece.name
+            ax.annotate(
+                plain(word),
+                (span[0], 1.0),
+                xycoords=("data", "axes fraction"),
+                fontsize=6,
+                va="top",
+            )
+
+
+def save_cut(found: Import, path: str | os.PathLike[str]) -> None:
+    """Write the picture.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written, or its end names no kind of picture.
+    """
+    figure = plot_cut(found)[0].figure
+    assert isinstance(figure, Figure)
+    try:
+        figure.savefig(path, dpi=PIXELS_PER_INCH)
+    except (OSError, ValueError) as error:
+        problem = f"cannot be written ({str(error).splitlines()[0].lower()})"
+        raise InputError(file=path, problem=problem, mend="name a .png, .svg or .pdf") from None
+
+
+def import_page(found: Import) -> str:
+    """The HTML text of an import's page."""
+    words, drawn = found.summary(), picture(plot_cut(found))
+    alt = "Each recording in time, and how it was cut"
+    return page("text.html.j2", "Import", words=words, picture=drawn, alt=alt)

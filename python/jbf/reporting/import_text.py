@@ -1,0 +1,135 @@
+"""A look at a file, and an import, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from jbf.importing.guessed import Guess
+from jbf.importing.result import Import
+from jbf.records.counts import count_of
+from jbf.reporting.paragraphs import columns, hanging
+
+_MOST = 12
+"""So many runs and pieces are listed; the ledger has them all."""
+
+
+def guess_report(guess: Guess, map_path: str) -> str:
+    """What a file is, what is sure of it and what is not."""
+    held = []
+    for table in guess.tables:
+        name = f" [{table.name}]" if table.name else ""
+        rows = "" if table.rows is None else f", {count_of(table.rows, 'row')}"
+        rate = "" if table.rate_hz is None else f", {table.rate_hz:g} Hz stated"
+        held.append(f"{count_of(len(table.columns), 'column')}{name}{rows}{rate}")
+    lines = [f"{guess.path.name}: {guess.format}, {'; '.join(held)}"]
+    rows_ = [(e.key, e.expression, "" if e.sure else "?", f"({e.why})") for e in guess.entries]
+    if rows_:
+        lines += ["", "What was found:", *columns(rows_, "<<<<")]
+    if guess.ignored:
+        shown = [f"{name} ({why})" for name, why in guess.ignored.items()]
+        more = [f"and {len(shown) - _MOST} more"] if len(shown) > _MOST else []
+        lines += ["", *hanging("Not taken: ", ", ".join(shown[:_MOST] + more), 0)]
+    if guess.questions:
+        lines += ["", "Not sure:"]
+        for question in guess.questions:
+            lines += hanging("- ", str(question))
+        lines += ["", f"{map_path} was written: answer there, then"]
+    else:
+        lines += [
+            "",
+            f"Nothing is open. {map_path} was written, should you want to change it; then",
+        ]
+    lines.append(f"  jbf import {guess.path} --map {map_path} --out FOLDER")
+    return "\n".join(lines)
+
+
+def import_report(found: Import) -> str:
+    """What became runs, what was left out, and what comes next."""
+    runs = [piece for piece in found.pieces if piece.keep]
+    out = [piece for piece in found.pieces if not piece.keep]
+    seconds = sum(piece.to_s - piece.from_s for piece in runs)
+    files = found.ledger["files"]
+    lines = [
+        f"{count_of(len(runs), 'run')} of {seconds:.4g} s in all, "
+        f"from {count_of(len(files), 'file')}:"
+    ]
+    rows = [
+        (piece.name, f"{piece.from_s:.4f}", "to", f"{piece.to_s:.4f} s", f"of {piece.file}")
+        for piece in runs[:_MOST]
+    ]
+    lines += columns(rows, "<><><")
+    if len(runs) > _MOST:
+        lines.append(f"  and {len(runs) - _MOST} more")
+    lines += ["", "Columns:", *columns(channel_rows(files[:1]), "<<<<<")]
+    lines += left_out_lines(found.ledger)
+    if out:
+        lines += ["", "Left out:"]
+        lines += columns(
+            [
+                (f"{p.from_s:.4f}", "to", f"{p.to_s:.4f} s", f"of {p.file}:", p.why)
+                for p in out[:_MOST]
+            ],
+            "><<<<",
+        )
+        if len(out) > _MOST:
+            lines.append(f"  and {len(out) - _MOST} more: see cut.toml")
+    return "\n".join(lines)
+
+
+def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str, str, str]]:
+    """Of each channel: what it is, what it was made of, unit as read, its rate, its clock."""
+    found: dict[tuple[str, str, str, str, str], None] = {}
+    for page in files:
+        for channel in page["channels"]:
+            if channel["channel"] == "cut":
+                continue
+            read = ", ".join(r["unit"] or "no unit" for r in channel["read"])
+            rate = "" if channel["rate_hz"] is None else f"{channel['rate_hz']:g} Hz"
+            row = (channel["channel"], channel["made_of"], f"{read} -> {channel['unit']}")
+            whole = (*row, rate, f"clock: {channel['clock']}")
+            found[whole] = None
+    return list(found)
+
+
+def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
+    """What was done to the rows of each file."""
+    said = []
+    for page in ledger["files"]:
+        for dropped in page["dropped"]:
+            first = f", the first in row {dropped['first_row']}" if "first_row" in dropped else ""
+            rows = count_of(dropped["rows"], "row")
+            said.append(f"{page['file']}: {rows} left out, for {dropped['why']}{first}")
+        said += [f"{page['file']}: {note}" for note in page["notes"]]
+    return ["", "On the way:", *[line for s in said for line in hanging("- ", s)]] if said else []
+
+
+def short_import(found: Import) -> str:
+    """A line for a prompt."""
+    runs = sum(piece.keep for piece in found.pieces)
+    return (
+        f"Import({count_of(runs, 'run')} from {count_of(len(found.ledger['files']), 'file')}: "
+        f"{found.folder})"
+    )
+
+
+def import_columns(found: Import) -> dict[str, list[Any]]:
+    """The pieces as columns."""
+    names = ("name", "file", "from_s", "to_s", "keep", "why")
+    return {name: [getattr(piece, name) for piece in found.pieces] for name in names}
+
+
+def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str]]:
+    """File, hash, and how its channels were read, for a page."""
+    rows = []
+    for ledger in ledgers:
+        for page in ledger["files"]:
+            channels = "; ".join(
+                f"{c} = {made} ({unit}{', ' + rate if rate else ''})"
+                for c, made, unit, rate, _ in channel_rows([page])
+            )
+            dropped = "".join(f"; {d['rows']} rows left out: {d['why']}" for d in page["dropped"])
+            out = page["left_out"]
+            left = f"; {count_of(len(out), 'piece')} left out" if out else ""
+            rows.append((page["file"], page["sha256"][:12], channels + dropped + left))
+    return rows

@@ -1,0 +1,175 @@
+"""Units against their definitions, and expressions against Python's own arithmetic."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jbf.errors import InputError
+from jbf.importing.evaluation import converted, evaluate
+from jbf.importing.expression import parse_expression, references, written
+from jbf.importing.targets import wanted_unit
+from jbf.importing.units import parse_unit, unit_of_name
+
+# Definitions: SI brochure; international pound, inch and standard gravity.
+SIZES = {
+    "kN": 1e3, "lbf": 4.4482216152605, "kgf": 9.80665, "kp": 9.80665, "mm": 1e-3, "µm": 1e-6,
+    "in": 0.0254, "rpm": 2 * math.pi / 60, "U/min": 2 * math.pi / 60, "1/min": 2 * math.pi / 60,
+    "deg": math.pi / 180, "°/s": math.pi / 180, "rev": 2 * math.pi, "bar": 1e5,
+    "psi": 6894.757293168,
+    "N/mm^2": 1e6, "MPa": 1e6, "Nm": 1.0, "N·m": 1.0, "N-m": 1.0, "Ncm": 0.01,
+    "lbf in": 0.112984829,
+    "mm/s": 1e-3, "m/min": 1 / 60, "km/h": 1 / 3.6, "%": 0.01, "ms": 1e-3, "min": 60.0,
+    "kg m²": 1.0, "N/(mm s)": 1e3, "m s^-2": 1.0, "mA": 1e-3, "gon": math.pi / 200,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SIZES)
+def test_a_unit_is_its_definition(text: str) -> None:
+    unit = parse_unit(text)
+    assert unit is not None
+    assert unit.in_si == pytest.approx(SIZES[text], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "foo", "N//m", "m^", "(m", "m)", "N m ^2 x", "Kanal", "#", "1/"]
+)
+def test_what_is_no_unit_is_none(text: str) -> None:
+    assert parse_unit(text) is None
+
+
+def test_temperatures_have_their_zeros() -> None:
+    celsius, fahrenheit, kelvin = (parse_unit(u) for u in ("°C", "°F", "K"))
+    assert celsius is not None
+    assert fahrenheit is not None
+    assert kelvin is not None
+    assert fahrenheit.converted(np.array([32.0, 212.0]), celsius) == pytest.approx([0.0, 100.0])
+    assert kelvin.converted(np.array([293.15]), celsius) == pytest.approx([20.0])
+    # 22.5 degrees stay 22.5, to the bit.
+    assert celsius.converted(np.array([22.5]), celsius).tolist() == [22.5]
+
+
+@given(st.integers(0, 10**9))
+def test_whole_milliseconds_are_the_nearest_seconds(count: int) -> None:
+    ms, s = parse_unit("ms"), parse_unit("s")
+    assert ms is not None
+    assert s is not None
+    assert ms.converted(np.array([float(count)]), s)[0] == float(Fraction(count, 1000))
+
+
+def test_an_end_of_a_name_is_a_unit() -> None:
+    assert unit_of_name("torque_n_m") == ("torque", parse_unit("N m"))
+    assert unit_of_name("speed") is None
+
+
+# Expressions.
+NAMES = ["F", "F2", "Torque [Nm]", "Kraft / kN", "a-b", "t(ms)", "Weg  links", "sin"]
+MEANT = {name: name for name in NAMES} | {"Torque": "Torque [Nm]"}
+UNITS = {"Torque [Nm]": "Nm", "Kraft / kN": "kN", "t(ms)": "ms"}
+VALUES = {name: np.array([i + 1.5, -2.0 * i - 1.0]) for i, name in enumerate(NAMES)}
+
+
+def value(text: str, key: str) -> np.ndarray:
+    node = parse_expression(text, MEANT)
+    return converted(evaluate(node, VALUES, UNITS), wanted_unit(key), key)
+
+
+def trees() -> st.SearchStrategy[tuple[str, str]]:
+    """An expression as ours, and the same as Python's."""
+    leaf = st.one_of(
+        st.sampled_from(NAMES).map(lambda n: (written(n), f"v[{n!r}]")),
+        st.floats(0.01, 1e3).map(lambda x: (repr(x), repr(x))),
+    )
+
+    def grow(inner: st.SearchStrategy[tuple[str, str]]) -> st.SearchStrategy[tuple[str, str]]:
+        pair = st.tuples(inner, st.sampled_from("+-*/"), inner)
+        return st.one_of(
+            pair.map(lambda p: (f"({p[0][0]} {p[1]} {p[2][0]})", f"({p[0][1]} {p[1]} {p[2][1]})")),
+            inner.map(lambda p: (f"-{p[0]}", f"(-{p[1]})")),
+            inner.map(lambda p: (f"abs({p[0]})", f"abs({p[1]})")),
+        )
+
+    return st.recursive(leaf, grow, max_leaves=8)
+
+
+@settings(deadline=None)
+@given(trees())
+def test_an_expression_is_the_arithmetic_that_it_says(tree: tuple[str, str]) -> None:
+    ours, python = tree
+    found = evaluate(parse_expression(ours, MEANT), VALUES, dict.fromkeys(NAMES, ""))
+    with np.errstate(all="ignore"):
+        wanted = eval(python, {"v": VALUES, "abs": abs})
+    np.testing.assert_array_equal(np.asarray(found.value), wanted)
+
+
+@given(st.text(max_size=40))
+@settings(deadline=None)
+def test_any_text_is_an_expression_or_one_line(text: str) -> None:
+    refused = None
+    try:
+        node = parse_expression(text, MEANT)
+    except InputError as error:
+        refused = str(error)
+    if refused is None:
+        assert all(r.column in NAMES for r in references(node))
+    else:
+        assert "\n" not in refused
+
+
+def test_names_stand_as_the_header_has_them() -> None:
+    assert value("Torque [Nm] / 0.5 [m]", "friction_n").tolist() == [7.0, -10.0]
+    assert value("Torque / 0.5", "friction_n").tolist() == [7.0, -10.0]
+    assert value("Kraft / kN", "friction_n").tolist() == [4500.0, -7000.0]
+    assert value("Torque [Ncm]", "torque_n_m") == pytest.approx([0.035, -0.05])
+    assert value("a-b [mm]", "position_m") == pytest.approx([0.0055, -0.009])
+    assert value("F2 [N] - F [N]", "friction_n").tolist() == [1.0, -2.0]
+    assert value("`Weg  links` [rpm] * 10 [mm]", "velocity_m_s") == pytest.approx(
+        VALUES["Weg  links"] * 2 * math.pi / 60 * 0.01
+    )
+
+
+def test_the_turn_and_the_pitch() -> None:
+    assert value("F [counts] / 4096 [counts/rev]", "angle_rad") == pytest.approx(
+        VALUES["F"] / 4096 * 2 * math.pi
+    )
+    assert value("F [mm] / 5 [mm/rev]", "angle_rad") == pytest.approx(VALUES["F"] / 5 * 2 * math.pi)
+    assert value("F [rev] * 5 [mm/rev]", "position_m") == pytest.approx(VALUES["F"] * 5e-3)
+    assert value("F [bar] * 314 [mm^2]", "friction_n") == pytest.approx(VALUES["F"] * 31.4)
+    assert value("F [%] * 2 [N m]", "torque_n_m") == pytest.approx(VALUES["F"] * 0.02)
+
+
+REFUSED = {
+    ("F", "friction_n"): "no N",
+    ("F [mm]", "friction_n"): "no N",
+    ("F [counts] / 4096", "angle_rad"): "turns, degrees or radians?",
+    ("F [mm] / 5 [mm]", "angle_rad"): "turns, degrees or radians?",
+    ("Kraft / kN * 1000", "friction_n"): "a second time",
+    ("t(ms) / 1000", "time_s"): "a second time",
+    ("t(ms) * 0.001", "time_s"): "a second time",
+    ("F [bar] + F2 [mm]", "friction_n"): "cannot be added",
+    ("F [kg]", "friction_n"): "no N",
+    ("F [?]", "friction_n"): "its unit is open",
+    ("F [foo]", "friction_n"): "is no known unit",
+    ("F [°C] * 2", "temperature_c"): "a zero of its own",
+    ("G", "friction_n"): 'no column "G"',
+    ("F +", "friction_n"): "ends where",
+    ("(F", "friction_n"): "not closed",
+    ("__import__('os')", "friction_n"): "no column",
+}
+
+
+@pytest.mark.parametrize(("text", "key"), REFUSED)
+def test_what_has_no_meaning_is_refused(text: str, key: str) -> None:
+    with pytest.raises(InputError) as refused:
+        value(text, key)
+    assert REFUSED[text, key] in str(refused.value)
+
+
+@pytest.mark.parametrize("key", ["fricton_n", "position_mm", "velocity_ms", "torque_nm"])
+def test_a_slip_in_a_columns_name_is_told(key: str) -> None:
+    with pytest.raises(InputError, match="did you mean"):
+        wanted_unit(key)

@@ -1,0 +1,67 @@
+"""How warm the machine is: a room that cools and warms, a drive that warms as it runs, two days."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+Kind = Literal["wandering", "warming", "days"]
+
+REFERENCE_C = 25.0
+"""Temperature at which a rig's own parameters hold, C."""
+OIL_K = 95.0
+"""So far below 0 C, K, the viscosity of a mineral oil would grow without bound."""
+
+
+@dataclass(frozen=True)
+class Warmth:
+    """Temperature (C) over the time of one run (s): a start, a swing, and an approach to an end."""
+
+    start_c: float
+    swing_k: float = 0.0
+    period_s: float = 60.0
+    phase: float = 0.0
+    rise_k: float = 0.0
+    tau_s: float = 20.0
+
+    def at(self, time_s: float) -> float:
+        """The temperature at a time, C."""
+        swing = self.swing_k * math.sin(2.0 * math.pi * time_s / self.period_s + self.phase)
+        return self.start_c + swing - self.rise_k * math.expm1(-time_s / self.tau_s)
+
+    def along(self, times: Vector) -> Vector:
+        """The same at many times."""
+        return np.array([self.at(t) for t in times.tolist()])
+
+
+def draw_warmth(kind: Kind, number: int, duration_s: float, rng: np.random.Generator) -> Warmth:
+    """The temperature of run `number` of a campaign."""
+    if kind == "warming":  # the same in every run: each starts cold
+        return Warmth(18.0, rise_k=16.0, tau_s=12.0)
+    if kind == "days":
+        return Warmth(float(18.0 + 6.0 * (number % 5) + rng.uniform(-1.0, 1.0)))
+    return Warmth(
+        start_c=float(rng.uniform(19.0, 33.0)),
+        swing_k=float(rng.uniform(3.0, 6.0)),
+        period_s=duration_s * float(rng.uniform(0.6, 1.5)),
+        phase=float(rng.uniform(0.0, 2.0 * math.pi)),
+    )
+
+
+def thinner(b_k: float, temperature_c: float) -> float:
+    """Viscosity over that at the reference, by the two distances from where oil sets (Vogel)."""
+    here, there = temperature_c + OIL_K, REFERENCE_C + OIL_K
+    return float(10.0 ** (b_k / math.log(10.0) * (there - here) / (here * there)))
+
+
+def read_by(thermometer: str, times: Vector, celsius: Vector, rng: np.random.Generator) -> Vector:
+    """What a thermometer writes: `fine` (0.05 K of noise) or `coarse` (degrees, once a second)."""
+    if thermometer == "coarse":
+        tick = np.searchsorted(times, np.floor(times - times[0]) + times[0] - 1e-9)
+        return np.round(celsius[tick])
+    return celsius + 0.05 * rng.standard_normal(len(times))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from jbf import Rig, Run
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import Samples, least_weights
@@ -47,3 +49,13 @@ def test_what_does_not_count_has_no_say_in_a_test() -> None:
     assert kept.tested().weight[0].tolist() == [1.0, 0.0, 1.0, 0.0]
     assert kept.rms([np.array([3.0, 90.0, 4.0, 90.0])]) == pytest.approx(np.sqrt(12.5))
     assert kept.square([np.array([3.0, 2.0, 4.0, 90.0])]) == pytest.approx(26.0)
+
+
+def test_a_run_that_turns_at_once_does_not_count_where_a_model_has_it_at_rest() -> None:
+    t = np.arange(0.0, 10.0, 0.01)
+    v = 0.1 * np.sin(t - 0.015)
+    run = Run.from_arrays(t, v, 5.0 * np.sign(v) + 2.0, position_m=-0.1 * np.cos(t - 0.015))
+    (turning,) = Campaign.prepare(Rig(), [run]).samples.counted
+    assert not turning[0]
+    (moving,) = Campaign.prepare(Rig(), [run.select(t > 0.5)]).samples.counted
+    assert moving[0]

@@ -38,6 +38,9 @@ LEAST_RUNS = 3
 IN_MOST = 2.0 / 3.0
 """Share of the runs, the weakest, that must have the wave, too: a hum is at this pitch in a few."""
 IN_MOST_CHANCE = 1e-3
+AS_MUCH = 0.8
+"""Share of the square of a pitch from which on a frequency says as much: half a line's width off
+loses a fifth of it."""
 
 
 def find_ripples(
@@ -65,10 +68,26 @@ def find_ripples(
             continue
         r = [x * s for x, s in zip(residuals, signs, strict=True)]
         share, size, one = _waves(ways, r, samples, pitch)
+        if _is_a_tone(campaign, e, r, samples, share, policy):
+            continue
         if share >= policy.tone_share and one < ONE_PHASE:
             words = _words(campaign, pitch, size, along)
             found.append(Remainder("way", words, min(share, 1.0)))
     return sorted(found, key=lambda x: -x.share)[:1]
+
+
+def _is_a_tone(
+    campaign: Campaign,
+    innovations: Sequence[Array],
+    residuals: Sequence[Array],
+    samples: Samples,
+    share: float,
+    policy: Policy,
+) -> bool:
+    """Whether one frequency in all runs says about as much as one pitch: at one speed it does."""
+    times = [p.run.time_s - p.run.time_s[0] for p in campaign.prepared]
+    period = _pitch(times, innovations, samples, policy)
+    return period is not None and _waves(times, residuals, samples, period)[0] > AS_MUCH * share
 
 
 def _way(p: Prepared) -> Array:

@@ -18,7 +18,6 @@ import numpy.typing as npt
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
-from jbf.records.motion.first_stroke import begins_in_a_hum
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -58,7 +57,7 @@ class Samples:
     def of(cls, prepared: Iterable[Prepared]) -> Samples:
         """Those at which the runs tell the sign of the friction, and a reading that can be used."""
         prepared = tuple(prepared)
-        counted = tuple(_tells(p) for p in prepared)
+        counted = tuple(p.motion.sign_known & p.examined.usable for p in prepared)
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),
@@ -200,15 +199,6 @@ class Samples:
             noise.innovations(r * (c * s), step) * c
             for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)
         ]
-
-
-def _tells(p: Prepared) -> Mask:
-    """True where a run tells the sign of the friction and has a reading that can be used."""
-    found: Mask = p.motion.sign_known & p.examined.usable
-    if begins_in_a_hum(p.run.time_s, p.motion.velocity_m_s):
-        # A model has it at rest there: one such sample of a run that turns at once buys an effect.
-        found[0] = False
-    return found
 
 
 def least_weights(a: Samples, b: Samples) -> Samples:

@@ -133,3 +133,13 @@ def test_the_command_takes_auto(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert main(["diagnose", str(rig), *names, "--law", "auto", "--json", str(answer)]) == 0
     assert json.loads(answer.read_text())["law"] == "stribeck"
     assert "The data chose the law stribeck" in capsys.readouterr().out
+
+
+def test_a_drive_without_a_law_takes_what_the_data_choose(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
+    for run in runs():
+        run.write_csv(tmp_path / f"{run.name.replace(' ', '_')}.csv")
+    assert main(["diagnose", str(tmp_path / "rig.toml"), str(tmp_path)]) == 0
+    assert "The data chose the law stribeck" in capsys.readouterr().out

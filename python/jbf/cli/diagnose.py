@@ -30,7 +30,8 @@ def add(commands: Commands) -> None:
     parser.add_argument("--out", metavar="MODEL", help="write the completed model")
     add_json(parser)
     add_report(parser)
-    add_law(parser, also=f"; {AUTO}: the one that alone predicts best")
+    add_law(parser, also=f"; {AUTO}, which a drive takes: the one that alone predicts best")
+    parser.set_defaults(law=None)
     add_own(parser)
     hold_out.add(parser)
     _add_next_run(parser)
@@ -106,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
     wanted["--next-run"] = arguments.next_run
     limits = _limits(arguments)
     outputs.check(wanted, [arguments.rig, *arguments.runs])
-    if arguments.law != AUTO:
+    if arguments.law not in (None, AUTO):
         find_law(arguments.law)
     rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
     outputs.check(wanted, [run.path for run in runs if run.path])
@@ -119,7 +120,7 @@ def run(arguments: argparse.Namespace) -> int:
         diagnosis = diagnose(
             rig,
             runs,
-            law=arguments.law,
+            law=inputs.law_for(rig, arguments.law),
             clock=arguments.clock,
             limits=limits,
             progress=report,

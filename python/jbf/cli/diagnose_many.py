@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
             campaigns,
             executor=executor,
             progress=report,
-            law=arguments.law,
+            law=arguments.law or "journal",
             clock=arguments.clock,
             limits=limits,
         )

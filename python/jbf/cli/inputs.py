@@ -25,7 +25,13 @@ _imports: list[Import] = []
 """Kept until the command ends: their folders go with them."""
 
 
-def campaign(rig_or_map: str, items: Sequence[str], law: str) -> tuple[Rig, list[Run]]:
+def law_for(on: Rig, asked: str | None) -> str:
+    """The law that was asked for; where none was, that of journal bearings, and of a drive the one
+    that the data choose."""
+    return asked or ("journal" if on.drive is None else AUTO)
+
+
+def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:
     """The rig and the runs: of `rig.toml` and CSV files, of a folder that an import wrote, or of a
     map and recordings as they are."""
     if Path(rig_or_map).is_dir():
@@ -33,8 +39,7 @@ def campaign(rig_or_map: str, items: Sequence[str], law: str) -> tuple[Rig, list
         return found, runs(items or [rig_or_map], found, first="RIG")
     if is_map(rig_or_map):
         imported = recordings(rig_or_map, items)
-        if law != AUTO:
-            check_rig(imported[0], law)
+        _check(imported[0], law)
         return imported
     found = rig(rig_or_map, law)
     return found, runs(items, found, first="RIG")
@@ -56,13 +61,19 @@ def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
     return found.rig, found.runs
 
 
-def rig(path: str, law: str) -> Rig:
+def _check(on: Rig, law: str | None) -> None:
+    """An InputError where a rig lacks what a law needs."""
+    law = law_for(on, law)
+    if law != AUTO:
+        check_rig(on, law)
+
+
+def rig(path: str, law: str | None) -> Rig:
     """The rig of a file, complete enough for a law; for any where the data are to choose it."""
     _refuse_csv(path, "RIG")
     try:
         found = read_rig(path)
-        if law != AUTO:
-            check_rig(found, law)
+        _check(found, law)
     except InputError as error:
         if {"law", "format", "effects"} & _keys(path):
             raise InputError(

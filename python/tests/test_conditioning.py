@@ -152,13 +152,13 @@ def test_uneven_noise_is_uneven_error() -> None:
     np.testing.assert_array_equal(np.sign(m.velocity_m_s[sure]), np.sign(v[sure]))
 
 
-def test_an_angle_without_a_radius_leaves_the_speed_alone() -> None:
+def test_an_angle_without_a_radius_goes_by_its_speed() -> None:
     t = np.arange(0.0, 10.0, 0.01)
     v = 0.1 * np.sin(t)
     angle = 3.0 * (1.0 - np.cos(t))
     m = impose(Run.from_arrays(t, v, angle_rad=angle), None)
-    assert np.max(np.abs(m.velocity_m_s - v)) < 1e-5
-    np.testing.assert_array_equal(m.angle_rad, np.unwrap(angle))
+    assert np.max(np.abs(m.velocity_m_s - v)) < 2e-5
+    np.testing.assert_allclose(m.angle_rad, angle, rtol=0.0, atol=1e-5)
 
 
 @pytest.mark.parametrize("half", [1, 4, 16])

@@ -108,7 +108,7 @@ fn parameters_of_every_effect_are_named() {
             info.name
         );
         for (i, p) in info.parameters.iter().enumerate() {
-            for bad in [p.lower - 1.0, p.upper * 2.0 + 1.0, f64::NAN] {
+            for bad in [p.lower - 1.0, p.upper + p.upper.abs() + 1.0, f64::NAN] {
                 let mut values = good.clone();
                 values[i] = bad;
                 let error = Effects::NONE

@@ -177,7 +177,8 @@ def test_every_effect_is_tried_or_said_not_to_be(campaign: Campaign) -> None:
     every = Candidates(campaign, "coulomb", "journal")
     assert RING in every.names
     of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
-    assert set(every.not_tried) == {"position_ripple", "gravity", *of_loads}
+    of_warmth = {f"{what}_temperature_dependence" for what in ("dry", "viscous")}
+    assert set(every.not_tried) == {"position_ripple", "gravity", *of_loads, *of_warmth}
     # An axis has a place, if no angle.
     assert {"cogging", "pitch_ripple"} <= {*every.names}
     assert not {"coulomb_drag", "film_memory"} & {*every.names, *every.not_tried}

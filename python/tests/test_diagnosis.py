@@ -54,7 +54,10 @@ def test_nothing_hidden_is_adequate(coloured: bool) -> None:
     assert d.effects == ()
     assert d.unexplained == ()
     assert len(d.steps) == 1
-    assert {t.effect for t in d.steps[0].trials} == set(EFFECTS) - {"load_dependence"}
+    assert {t.effect for t in d.steps[0].trials} == set(EFFECTS) - {
+        "load_dependence",
+        "vogel_viscosity",
+    }
     assert "one load" in d.not_tried["load_dependence"]
     assert "load_dependence" in d.summary()
 
@@ -101,7 +104,12 @@ def test_records_without_an_angle_leave_out_what_needs_one() -> None:
     d = diagnose(rig, [_without_angle(r) for r in runs])
     assert d.effects == ("coulomb_drag",)
     tried = {t.effect for t in d.steps[0].trials}
-    assert tried == set(EFFECTS) - {"position_ripple", "drive_compliance", "load_dependence"}
+    assert tried == set(EFFECTS) - {
+        "position_ripple",
+        "drive_compliance",
+        "load_dependence",
+        "vogel_viscosity",
+    }
 
 
 def test_one_run_alone_is_enough_to_speak() -> None:

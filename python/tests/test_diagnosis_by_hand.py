@@ -207,6 +207,7 @@ def test_what_these_motions_cannot_show_could_hide() -> None:
     of_loads = {f"{what}_load_dependence" for what in ("dry", "viscous", "zero")}
     of_places = {"position_ripple", "gravity", "cogging", "pitch_ripple"}
     of_places |= {"cogging_2", "pitch_ripple_2", "stroke_dependence"}
-    assert set(d.not_tried) == {"drive_compliance", *of_places, *of_loads}
+    of_warmth = {f"{what}_temperature_dependence" for what in ("dry", "viscous")}
+    assert set(d.not_tried) == {"drive_compliance", *of_places, *of_loads, *of_warmth}
     # And what a gear loses of what it carries is nothing here.
     assert "torque_proportional" not in d.unseen

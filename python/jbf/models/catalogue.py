@@ -80,7 +80,7 @@ class Pages(dict[str, Page]):
     def __repr__(self) -> str:
         widest = max(map(len, self), default=0)
         return "\n".join(
-            f"{name:<{widest}}  {shorten(page.summary, 60, placeholder=' ...')}"
+            f"{name:<{widest}}  {shorten(page.summary, 56, placeholder=' ...')}"
             for name, page in self.items()
         )
 

@@ -15,11 +15,11 @@ from jbf.diagnosis import Trial
 from jbf.reporting.words import verdict_sentence
 
 NOISE_N = 0.1
+RECORDED = {"angle", "path", "position", "loads", "temperatures"}
 CANDIDATES = sum(
-    "coulomb" not in e.refused and not {"angle", "path", "position", "loads"} & set(e.needs)
-    for e in effects().values()
+    "coulomb" not in e.refused and not RECORDED & set(e.needs) for e in effects().values()
 )
-"""Effects that go with Coulomb's law and need neither angle nor position nor loads."""
+"""Effects that go with Coulomb's law and need neither angle nor position, loads nor temperatures."""
 
 
 @cache

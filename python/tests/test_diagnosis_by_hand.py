@@ -19,7 +19,7 @@ RECORDED = {"angle", "path", "position", "loads", "temperatures"}
 CANDIDATES = sum(
     "coulomb" not in e.refused and not RECORDED & set(e.needs) for e in effects().values()
 )
-"""Effects that go with Coulomb's law and need neither angle nor position, loads nor temperatures."""
+"""Effects that go with Coulomb's law and need nothing recorded beside the motion."""
 
 
 @cache

@@ -1,7 +1,8 @@
 //! A bristle that bends towards a level over the way slid, `dF/dx = sigma (1 - F/(level sgn v))`:
 //! LuGre's, and that of a contact that bends under any law.
 
-use crate::path::Leg;
+use crate::motion::JournalMotion;
+use crate::path::{legs, Leg};
 use crate::real::Real;
 use crate::relaxation::relax;
 
@@ -18,4 +19,26 @@ pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
     let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL));
     let target = leg.level.map(|level| level * leg.direction);
     relax(force, target, stiffness * leg.distance_m / mean)
+}
+
+/// Take a bristle of one force through a step whose level turns at the mean of its ends, as of a
+/// law whose dry friction no speed changes. Without time the bristle slides.
+#[inline(always)]
+pub(crate) fn along<T: Real>(
+    force: &mut T,
+    from: &JournalMotion<T>,
+    to: &JournalMotion<T>,
+    level: [T; 2],
+    dt_s: T,
+    slide: impl Fn(T, &Leg<T>) -> T,
+) -> T {
+    if dt_s.value() <= 0.0 {
+        *force = level[1] * to.velocity_m_s.sign();
+        return *force;
+    }
+    let turning = |_| (level[0] + level[1]) * T::of(0.5);
+    for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
+        *force = slide(*force, leg);
+    }
+    *force
 }

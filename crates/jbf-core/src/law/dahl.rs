@@ -11,7 +11,7 @@
 //! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
 //! ```
 
-use super::bristle::LEAST_LEVEL;
+use super::bristle::{along, LEAST_LEVEL};
 use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
 use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
@@ -19,7 +19,7 @@ use crate::clock::Clock;
 use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
-use crate::path::{legs, Leg};
+use crate::path::Leg;
 use crate::real::Real;
 
 /// A bristle that bends before it slides, by way alone.
@@ -148,15 +148,9 @@ impl<T: Real> Law<T> for Dahl<T> {
         level: [T; 2],
         dt_s: T,
     ) -> T {
-        if dt_s.value() <= 0.0 {
-            *state = level[1] * to.velocity_m_s.sign();
-            return *state;
-        }
-        let turning = |_| (level[0] + level[1]) * T::of(0.5);
-        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
-            *state = self.slide(*state, leg);
-        }
-        *state
+        along(state, from, to, level, dt_s, |force, leg| {
+            self.slide(force, leg)
+        })
     }
 }
 

@@ -16,7 +16,7 @@
 //! LuGre creep. b towards 1 is a spring and a slider; a Stribeck fall is `stribeck_excess`, a level that
 //! grows with the load `dry_load_dependence`: both move F_c and leave sigma_0 and b as they are.
 
-use super::bristle::bent;
+use super::bristle::{along, bent};
 use super::newtons::{in_newtons, moving, stiffness, F_C, F_V};
 use super::{Info, Law, Named, SteadyCurve};
 use crate::bearing::Bearing;
@@ -25,7 +25,7 @@ use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::page::Parameter;
-use crate::path::{legs, Leg};
+use crate::path::Leg;
 use crate::real::Real;
 
 /// A contact that is elastic, then plastic.
@@ -139,15 +139,9 @@ impl<T: Real> Law<T> for ElastoPlastic<T> {
         level: [T; 2],
         dt_s: T,
     ) -> T {
-        if dt_s.value() <= 0.0 {
-            *state = level[1] * to.velocity_m_s.sign();
-            return *state;
-        }
-        let turning = |_| (level[0] + level[1]) * T::of(0.5);
-        for leg in legs(from, to, level, turning, dt_s).iter().flatten() {
-            *state = self.slide(*state, leg);
-        }
-        *state
+        along(state, from, to, level, dt_s, |force, leg| {
+            self.slide(force, leg)
+        })
     }
 }
 

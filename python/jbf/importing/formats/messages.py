@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -31,9 +32,9 @@ class MessageSource(Source):
         # One for all topics and stamps: their clocks are to be compared.
         self.origin_ns = 0
 
+    @abstractmethod
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
         """Log time, ns, and message, in the order of the log."""
-        raise NotImplementedError
 
     def add_topic(self, topic: str, count: int | None) -> None:
         """Look at a topic's first message, and add it where it holds numbers."""

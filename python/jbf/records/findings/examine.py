@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.findings.filled_in import find_filled_in
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
@@ -55,6 +56,9 @@ def examine(run: Run, velocity_m_s: Array | None = None) -> Examined:
     native = find_repeated(run.time_s, run.friction_n)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
+    native = find_filled_in(run.time_s, run.friction_n)
+    if native is not None:
+        return Examined((_filled_in(run, native),), np.ones(len(run), dtype=bool), native)
     of_readings = examine_readings(run, velocity)
     held, still = find_held(run, ~of_readings.usable)
     usable = of_readings.usable & ~still
@@ -76,6 +80,15 @@ def _interpolated(run: Run, native: Native) -> Finding:
     )
     done = "taken back to its readings"
     return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)
+
+
+def _filled_in(run: Run, native: Native) -> Finding:
+    share = 100.0 * (1.0 - len(native.time_s) / len(run))
+    words = (
+        f"{share:.2g} % of the samples of the {run.quantities.noun} lie on the straight line "
+        "between their neighbours: they were filled in, not read"
+    )
+    return Finding("interpolated", "friction_n", run.name, share, "%", "left out", words)
 
 
 def _repeated(run: Run, native: Native) -> Finding:

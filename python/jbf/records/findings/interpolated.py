@@ -70,7 +70,7 @@ class Native:
 def find_native(time: Array, values: Array) -> Native | None:
     """The readings of a slow channel behind its samples; None where the samples are its own."""
     n = len(time)
-    if n < 2 * WINDOW or _as_rough_as_noise(values) or _smooth(values):
+    if n < 2 * WINDOW or _as_rough_as_noise(values) or is_smooth(values):
         return None
     step = float(np.median(np.diff(time)))
     for first in np.linspace(0, n - WINDOW, LOOKS).astype(int).tolist():
@@ -124,7 +124,7 @@ def _as_rough_as_noise(values: Array) -> bool:
     return bool(near > ROUGH * far)
 
 
-def _smooth(values: Array, share: float = SMOOTH) -> bool:
+def is_smooth(values: Array, share: float = SMOOTH) -> bool:
     """True of a record without noise: a polygon goes through any smooth curve."""
     second, third = np.abs(np.diff(values, 2)), np.abs(np.diff(values, 3))
     return bool(np.quantile(third, 0.7) < share * np.quantile(second, 0.7))
@@ -182,7 +182,7 @@ def _whole_of(
     # Corners on a curve, or on a plateau, are of a record without noise; those nearly as close as
     # samples go through any curve.
     curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
-    if _smooth(read, curved) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(
+    if is_smooth(read, curved) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(
         read
     ):
         return None

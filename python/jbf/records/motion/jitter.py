@@ -69,6 +69,8 @@ def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | 
             slow = max(noise, floor)
             continue
         pairs = which[1:] & which[:-1]
+        if not np.any(pairs):
+            return None
         if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < max(
             BEYOND * slow, COUNTS * step
         ):

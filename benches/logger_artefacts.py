@@ -1,0 +1,127 @@
+"""What a logger's treatment of the force channel makes of a diagnosis.
+
+    .venv/bin/python benches/logger_artefacts.py
+
+Takes the demo campaign with nothing hidden (five runs at 50 Hz, a real rig's worth of noise), treats
+its force channel as loggers and exports do, imports the result as a file, and diagnoses it. Nothing
+but the recording changes, so every row should be `adequate`, or say what the recording did.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from importlib.resources import as_file, files
+from pathlib import Path
+
+import jbf
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Columns = dict[str, Array]
+
+
+def as_recorded(run: Columns) -> str:
+    """As it is."""
+    return table(run)
+
+
+def late(seconds: float) -> Callable[[Columns], str]:
+    """The force's clock behind the others, and interpolated to them."""
+
+    def treat(run: Columns) -> str:
+        time = run["time_s"]
+        return table(run | {"friction_n": np.interp(time - seconds, time, run["friction_n"])})
+
+    return treat
+
+
+def drawn(run: Columns) -> str:
+    """Logged at 20 Hz, straight lines between."""
+    time, force = slow(run)
+    return table(run | {"friction_n": np.interp(run["time_s"], time, force)})
+
+
+def held(run: Columns) -> str:
+    """Logged at 20 Hz, each value held until the next."""
+    time, force = slow(run)
+    last = np.searchsorted(time, run["time_s"] + 1e-9, side="right") - 1
+    return table(run | {"friction_n": force[last]})
+
+
+def own_clock(run: Columns) -> str:
+    """Logged at 20 Hz with stamps of its own: a row at each instant, empty cells elsewhere."""
+    time, force = slow(run)
+    motion = [name for name in run if name != "friction_n"]
+    rows = {round(t, 6): [run[name][i] for name in motion] for i, t in enumerate(run["time_s"])}
+    readings = {round(t, 6): f for t, f in zip(time, force, strict=True)}
+    lines = [",".join([*motion, "friction_n"])]
+    for t in sorted({*rows, *readings}):
+        cells = (
+            [f"{x:.9g}" for x in rows[t]] if t in rows else [f"{t:.9g}"] + [""] * len(motion[1:])
+        )
+        lines.append(",".join([*cells, f"{readings[t]:.9g}" if t in readings else ""]))
+    return "\n".join(lines)
+
+
+def slow(run: Columns) -> tuple[Array, Array]:
+    """The force at 20 Hz: the reading of the converter at that instant."""
+    time = np.arange(run["time_s"][0], run["time_s"][-1], 0.05)
+    nearest = np.abs(run["time_s"][:, None] - time).argmin(axis=0)
+    return run["time_s"][nearest], run["friction_n"][nearest]
+
+
+def table(run: Columns) -> str:
+    """CSV."""
+    rows = zip(*run.values(), strict=True)
+    return "\n".join([",".join(run), *(",".join(f"{x:.9g}" for x in row) for row in rows)])
+
+
+COLUMNS = """
+[columns]
+time_s = "time_s"
+angle_rad = "angle_rad"
+velocity_m_s = "velocity_m_s"
+friction_n = "friction_n"
+load_n = "load_n"
+"""
+
+TREATMENTS: dict[str, Callable[[Columns], str]] = {
+    "as recorded": as_recorded,
+    "10 ms late, interpolated": late(0.010),
+    "20 ms late": late(0.020),
+    "20 Hz, straight lines": drawn,
+    "20 Hz, last value held": held,
+    "20 Hz on its own clock": own_clock,
+}
+
+
+def main() -> None:
+    print("| force channel | verdict | named | held-out / noise | findings |")
+    print("| --- | --- | --- | --- | --- |")
+    with as_file(files("jbf") / "data" / "demo" / "plain") as plain:
+        mapping = COLUMNS + (plain / "rig.toml").read_text()
+        runs = {path.name: read(path) for path in sorted(plain.glob("*.csv"))}
+    for name, treat in TREATMENTS.items():
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder) / run for run in runs]
+            for path, columns in zip(paths, runs.values(), strict=True):
+                path.write_text(treat(columns))
+            (Path(folder) / "map.toml").write_text(mapping)
+            recording = jbf.import_files(paths, Path(folder) / "map.toml")
+            found = jbf.diagnose(recording.rig, recording.runs)
+        named = ", ".join(found.effects) or "-"
+        kinds = ", ".join(sorted({finding.kind for finding in found.findings})) or "-"
+        error = found.steps[-1].holdout_rms_n / found.steps[-1].noise_n
+        print(f"| {name} | `{found.verdict}` | {named} | {error:.2f} | {kinds} |", flush=True)
+
+
+def read(path: Path) -> Columns:
+    """The columns of a run."""
+    rows = np.genfromtxt(path, delimiter=",", names=True)
+    return {name: rows[name] for name in rows.dtype.names}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+"""Samples that lie on the straight line between their neighbours: filled in, not read.
+
+A channel with stamps of its own that an export drew onto the rows of another, or onto all instants of
+both, has its corners at rows, evenly spaced or not; lost samples that a logger replaced lie so, too.
+Noise puts hardly a sample there: how many it would is told by those that nearly lie there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.findings.interpolated import Native, is_smooth
+
+Array = npt.NDArray[np.float64]
+
+LEAST_SHARE, LEAST = 0.02, 10
+"""Of the samples: below that nobody filled a channel in; and so many at least."""
+BY_CHANCE = 10.0
+"""Times as many as chance puts there."""
+FINE = 0.02
+"""Digits are fine enough to tell a line by, as a share of how far samples usually are off one."""
+NEAR = 0.1
+"""Share of that within which samples nearly lie on a line."""
+LONGEST = 50.0
+"""Samples a reading on the whole: beyond, the lines are the friction's own."""
+
+
+def find_filled_in(time: Array, values: Array) -> Native | None:
+    """The readings among a channel's samples; None where all are readings."""
+    if len(time) < 5:
+        return None
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    off = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
+    digit = _digit(values)
+    beyond = off[off > 2.0 * digit]
+    usual = float(np.median(beyond)) if len(beyond) else 0.0
+    if usual == 0.0 or 2.0 * digit > FINE * usual:
+        return None
+    # Of equal samples nobody knows whether they were read: a held channel is another finding.
+    level = np.abs(values[2:] - values[:-2]) <= 2.0 * digit
+    line = (off <= 2.0 * digit) & ~level
+    near = beyond[beyond <= NEAR * usual]
+    # A converter's steps put samples on a line as often as they put them one step off it.
+    step = float(near.min()) if len(near) else 0.0
+    chance = len(near) / (NEAR * usual) * max(step, 2.0 * digit)
+    count = int(line.sum())
+    if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
+        return None
+    read = np.concatenate(([True], ~line, [True]))
+    # Friction that goes on straight lines itself, or a curve, has no noise at its corners.
+    if read.sum() * LONGEST < len(time) or is_smooth(values[read]):
+        return None
+    return Native(time[read], values[read], float(np.median(np.diff(time[read]))))
+
+
+def _digit(values: Array) -> float:
+    """The last decimal digit that samples are written with; of binary numbers their rounding."""
+    top = float(np.max(np.abs(values)))
+    if top == 0.0:
+        return 0.0
+    first = int(np.floor(np.log10(top)))
+    for place in range(first, first - 9, -1):
+        scaled = values / 10.0**place
+        if np.max(np.abs(scaled - np.round(scaled))) < 1e-6:
+            return float(10.0**place)
+    return 1e-9 * top

@@ -2,9 +2,9 @@
 
     .venv/bin/python benches/logger_artefacts.py
 
-Takes the demo campaign with nothing hidden (five runs at 50 Hz, a real rig's worth of noise), treats
-its force channel as loggers and exports do, imports the result as a file, and diagnoses it. Nothing
-but the recording changes, so every row should be `adequate`, or say what the recording did.
+Takes the demo campaign with nothing hidden (five runs at 50 Hz), treats its force channel as
+loggers and exports do, imports the result as a file, and diagnoses it. Nothing but the recording
+changes, so every row should be `adequate`, or say what the recording did.
 """
 
 from __future__ import annotations

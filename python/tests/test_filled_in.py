@@ -39,7 +39,7 @@ def test_the_union_of_two_clocks(seed: int) -> None:
     """An export onto all instants of both channels, each interpolated to the other's."""
     random = np.random.default_rng(seed)
     ticks = np.cumsum(random.uniform(0.04, 0.06, 1000))
-    both = np.unique(np.concatenate([TIME[(ticks[0] < TIME) & (TIME < ticks[-1])], ticks]))
+    both = np.unique(np.concatenate([TIME[(ticks[0] < TIME) & (ticks[-1] > TIME)], ticks]))
     native = find_filled_in(both, np.interp(both, ticks, force(ticks, seed)))
     assert native is not None
     assert np.isin(native.time_s, ticks).mean() > 0.999
@@ -84,4 +84,5 @@ def test_what_is_said() -> None:
     (finding,) = found.findings
     assert finding.kind == "interpolated"
     assert "20 % of the samples" in finding.words
-    assert found.native is not None and len(found.native.time_s) == 2400
+    assert found.native is not None
+    assert len(found.native.time_s) == 2400

@@ -1,7 +1,7 @@
 """Samples that lie on the straight line between their neighbours: filled in, not read.
 
-A channel with stamps of its own that an export drew onto the rows of another, or onto all instants of
-both, has its corners at rows, evenly spaced or not; lost samples that a logger replaced lie so, too.
+A channel with stamps of its own that an export drew onto the rows of another, or onto all instants
+of both, has its corners at rows, evenly spaced or not; lost samples that a logger replaced lie so.
 Noise puts hardly a sample there: how many it would is told by those that nearly lie there.
 """
 
@@ -19,9 +19,7 @@ LEAST_SHARE, LEAST = 0.02, 10
 BY_CHANCE = 10.0
 """Times as many as chance puts there."""
 FINE = 0.02
-"""Digits are fine enough to tell a line by, as a share of how far samples usually are off one."""
-NEAR = 0.1
-"""Share of that within which samples nearly lie on a line."""
+"""Digits are fine enough to tell a line by, as a share of how far samples beside one are off it."""
 LONGEST = 50.0
 """Samples a reading on the whole: beyond, the lines are the friction's own."""
 
@@ -33,17 +31,18 @@ def find_filled_in(time: Array, values: Array) -> Native | None:
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     off = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
     digit = _digit(values)
-    beyond = off[off > 2.0 * digit]
-    usual = float(np.median(beyond)) if len(beyond) else 0.0
-    if usual == 0.0 or 2.0 * digit > FINE * usual:
-        return None
     # Of equal samples nobody knows whether they were read: a held channel is another finding.
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * digit
     line = (off <= 2.0 * digit) & ~level
-    near = beyond[beyond <= NEAR * usual]
+    # Where friction itself goes straight on, the samples beside are nearly straight, too.
+    beside = (off > 2.0 * digit) & (np.convolve(line, [1, 0, 1], "same") > 0)
+    usual = float(np.median(off[beside])) if np.any(beside) else 0.0
+    if usual == 0.0 or 2.0 * digit > FINE * usual:
+        return None
+    near = off[(off > 2.0 * digit) & (off <= usual)]
     # A converter's steps put samples on a line as often as they put them one step off it.
     step = float(near.min()) if len(near) else 0.0
-    chance = len(near) / (NEAR * usual) * max(step, 2.0 * digit)
+    chance = len(near) / usual * max(step, 2.0 * digit)
     count = int(line.sum())
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None

@@ -8,6 +8,8 @@ friction's laws, and are set aside.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -110,7 +112,7 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
 
 
 def _findings(
-    campaign: Campaign, residuals: list[Array], masks: list[Mask], kept: Samples, what: str
+    campaign: Campaign, residuals: Sequence[Array], masks: list[Mask], kept: Samples, what: str
 ) -> list[Finding]:
     """The runs whose beginning is not what a rested film, or the first motion, would have given."""
     found = []

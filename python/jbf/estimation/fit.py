@@ -137,7 +137,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         rms_n=rms,
         noise=solution.noise,
         samples=samples,
-        residuals=found.residuals,
+        residuals=list(found.residuals),
         converged=solution.converged,
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),

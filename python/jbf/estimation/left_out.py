@@ -1,4 +1,5 @@
-"""The left-out error: prediction of runs that had no part in the fit, each left out once."""
+"""The left-out error: prediction of runs that had no part in the fit, each left out once; of many
+runs several at a time."""
 
 from __future__ import annotations
 
@@ -14,6 +15,8 @@ Array = npt.NDArray[np.float64]
 
 EVALUATIONS = 12
 """A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
+MOST_FITS = 12
+"""Fits without a run; of more runs groups are left out: so many folds of a cross-validation."""
 INSENSITIVE = 1e-4
 """Runs say nothing of a parameter where they hold less than this share of what is known of it."""
 
@@ -30,7 +33,8 @@ def left_out_residuals(problem: Problem, solution: Solution) -> Array:
 
 
 def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
-    """Residuals, N, at the samples that count of runs left out of the fit one at a time.
+    """Residuals, N, at the samples that count of runs left out of the fit, one at a time or, of
+    more than `MOST_FITS`, in so many groups.
 
     Parameters
     ----------
@@ -46,23 +50,29 @@ def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False
     count = len(campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
-    left = []
-    for i in range(count):
-        rest = [k for k in range(count) if k != i]
+    left: dict[int, Array] = {}
+    for group in _groups([p.run.name for p in campaign.prepared]):
+        rest = [k for k in range(count) if k not in group]
         part = _of(problem, campaign.only(rest))
         kept = samples.only(rest)
-        start = _without_leak(problem, solution, i)
+        start = _without_leak(problem, solution, rest)
         if np.array_equal(start, solution.values):
             # A law that misses the data badly is no place to extrapolate from.
             step = _one_step(problem, solution, rest)
             start = min((step, start), key=lambda v: part.square(v, kept))
         values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
-        own = _of(problem, campaign.only([i]))
-        residuals = own.residuals(values)
+        residuals = problem.residuals(values, group)
         if apart:
-            residuals = samples.only([i]).without_deviations(residuals, solution.noise)
-        left.append(residuals[0][samples.counted[i]])
-    return left
+            residuals = samples.only(group).without_deviations(residuals, solution.noise)
+        left |= {i: r[samples.counted[i]] for i, r in zip(group, residuals, strict=True)}
+    return [left[i] for i in range(count)]
+
+
+def _groups(names: list[str]) -> list[list[int]]:
+    """Runs that are left out together: neighbours by name are not, and in whatever order runs are
+    given, groups are the same."""
+    by_name = sorted(range(len(names)), key=lambda i: names[i])
+    return [by_name[k::MOST_FITS] for k in range(min(MOST_FITS, len(names)))]
 
 
 def _of(problem: Problem, campaign: Campaign) -> Problem:
@@ -70,8 +80,8 @@ def _of(problem: Problem, campaign: Campaign) -> Problem:
     return Problem(campaign, problem.law, problem.clock, problem.effects, problem.fixed)
 
 
-def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
-    """The whole solution, less what only the left-out run knows."""
+def _without_leak(problem: Problem, solution: Solution, rest: list[int]) -> Array:
+    """The whole solution, less what only runs other than the rest know."""
     values: Array = solution.values.copy()
     known = np.array(
         [
@@ -83,7 +93,7 @@ def _without_leak(problem: Problem, solution: Solution, left_out: int) -> Array:
     pages = list(problem.parameters.values())
     for k, i in enumerate(problem.open):
         page = pages[i]
-        if whole[k] - known[left_out, k] < INSENSITIVE * whole[k]:
+        if known[rest, k].sum() < INSENSITIVE * whole[k]:
             null = page.null if page.null is not None and np.isfinite(page.null) else None
             values[i] = page.starts[0] if null is None else null
     return values

@@ -50,7 +50,7 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
     return min(share, 1.0 / score_inflation(ways, left, samples.steps_s))
 
 
-def _whitened(samples: Samples, residuals: list[Array], noise: Noise, run: int) -> Array:
+def _whitened(samples: Samples, residuals: Sequence[Array], noise: Noise, run: int) -> Array:
     """Innovations of a run, free of the correlation that its deviations make."""
     return samples.stacked(residuals, [np.zeros((len(r), 0)) for r in residuals], noise, [run])[0]
 
@@ -82,17 +82,18 @@ def score_gain(problem: Problem, values: Array, near: Solution) -> float:
     """The score test of a model at its null: the gain in twice the log likelihood that one full
     Gauss-Newton step from `values` promises, under the noise of a solution nearby."""
     samples = problem.campaign.samples
-    return _promised(*samples.stacked(*problem.linearise(values), near.noise))
+    return _promised(*problem.gauss_newton_rows(values, samples, near.noise))
 
 
 def next_step_gain(solution: Solution) -> float:
     """The same of a step from a solution: nothing where it has converged."""
-    return _promised(*solution.stacked())
+    r, j = solution.stacked()
+    return _promised(r, j, len(r))
 
 
-def _promised(r: Array, j: Array) -> float:
+def _promised(r: Array, j: Array, count: int) -> float:
     left = max(unexplained_square(j, r), 1e-300)
-    return len(r) * float(np.log(max(float(r @ r), 1e-300) / left))
+    return count * float(np.log(max(float(r @ r), 1e-300) / left))
 
 
 def unexplained_square(design: Array, target: Array) -> float:

@@ -16,6 +16,8 @@ from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps
 from jbf.estimation.noise import Noise
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.rows import MOST_HELD, OnDemand, groups_of, triangular
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.starts import with_starts
@@ -101,25 +103,43 @@ class Problem:
 
     # ---- predictions ------------------------------------------------------------------------
 
-    def predict(self, values: Array) -> list[Array]:
-        """Predictions, N, one array a run."""
-        return self.chain.predict(values, self.campaign.motions)
+    def predict(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
+        """Predictions, N, one array a run; of some runs."""
+        return self.chain.predict(values, [p.core for p in self._runs(which)])
 
-    def residuals(self, values: Array) -> list[Array]:
-        """Record minus prediction, N, one array a run."""
-        return [
-            p.friction_n - f
-            for f, p in zip(self.predict(values), self.campaign.prepared, strict=True)
-        ]
+    def residuals(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
+        """Record minus prediction, N, one array a run; of some runs."""
+        runs = self._runs(which)
+        return [p.friction_n - f for f, p in zip(self.predict(values, which), runs, strict=True)]
 
-    def linearise(self, values: Array) -> tuple[list[Array], list[Array]]:
-        """Residuals, and the derivatives of the prediction by the search variables."""
+    def linearise(
+        self, values: Array, which: Sequence[int] | None = None
+    ) -> tuple[list[Array], list[Array]]:
+        """Residuals, and derivatives of the prediction by the search variables; of some runs."""
+        runs = self._runs(which)
         scale = np.where(self.log, values, 1.0)[self.open]
-        rows = self.chain.jacobian(values, self.campaign.motions, self.open)
-        residuals = [
-            p.friction_n - f for (f, _), p in zip(rows, self.campaign.prepared, strict=True)
-        ]
+        rows = self.chain.jacobian(values, [p.core for p in runs], self.open)
+        residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
         return residuals, [_scaled(j, scale) for _, j in rows]
+
+    def gauss_newton_rows(
+        self, values: Array, samples: Samples, noise: Noise
+    ) -> tuple[Array, Array, int]:
+        """Innovations and their derivatives in few rows, and how many innovations there are."""
+        r, j, count = [], [], 0
+        lengths = [len(p.friction_n) for p in self.campaign.prepared]
+        for group in groups_of(lengths, len(self.open)):
+            part = samples if len(group) == len(lengths) else samples.only(group)
+            innovations, slopes = part.stacked(*self.linearise(values, group), noise)
+            few = triangular(innovations, slopes)
+            r.append(few[0])
+            j.append(few[1])
+            count += len(innovations)
+        return np.concatenate(r), np.concatenate(j), count
+
+    def _runs(self, which: Sequence[int] | None) -> Sequence[Prepared]:
+        runs = self.campaign.prepared
+        return runs if which is None else [runs[i] for i in which]
 
     def square(self, values: Array, samples: Samples | None = None) -> float:
         """Sum of squares of weighted residuals, N^2; over the campaign's samples by default."""
@@ -143,7 +163,15 @@ class Problem:
         message: str = "",
     ) -> Solution:
         """The solution at given values, on given samples."""
-        residuals, jacobian = self.linearise(values)
+        residuals: Sequence[Array]
+        jacobian: Sequence[Array]
+        count = len(self.campaign.prepared)
+        numbers = sum(len(p.friction_n) for p in self.campaign.prepared) * len(self.open)
+        if numbers <= MOST_HELD:
+            residuals, jacobian = self.linearise(values)
+        else:
+            residuals = OnDemand(lambda i: self.residuals(values, [i])[0], count)
+            jacobian = OnDemand(lambda i: self.linearise(values, [i])[1][0], count)
         cost = samples.cost(residuals, noise)
         return Solution(
             self.effects, values, residuals, jacobian, noise, cost, converged, message, samples

@@ -7,7 +7,7 @@ Nothing is put back that would change what the model predicts where samples coun
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +45,7 @@ class PutBack:
     """
 
     values: Array
-    residuals: list[Array]
+    residuals: Sequence[Array]
     notes: dict[str, str]
 
 

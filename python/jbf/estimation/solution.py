@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +26,8 @@ class Solution:
     residuals
         Record minus prediction, N, one array a run.
     jacobian
-        Derivative of the prediction with respect to each search variable, one (n, k) a run.
+        Derivative of the prediction with respect to each search variable, one (n, k) a run. Where
+        samples are many, both are made when they are asked for.
     cost
         `n log(mean square innovation)` over weighted samples.
     samples
@@ -34,8 +37,8 @@ class Solution:
 
     effects: tuple[str, ...]
     values: Array
-    residuals: list[Array]
-    jacobian: list[Array]
+    residuals: Sequence[Array]
+    jacobian: Sequence[Array]
     noise: Noise
     cost: float
     converged: bool
@@ -47,7 +50,7 @@ class Solution:
         """Number of parameters that were fitted."""
         return self.jacobian[0].shape[1] if self.jacobian else len(self.values)
 
-    @property
+    @cached_property
     def rms_n(self) -> float:
         """Root mean square of the residuals over the samples that count, N."""
         return self.samples.rms(self.residuals)

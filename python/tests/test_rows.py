@@ -12,7 +12,7 @@ from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
-from jbf.estimation.rows import OnDemand, groups_of, triangular
+from jbf.estimation.rows import OnDemand, every_so_many, groups_of, triangular
 
 
 def test_few_rows_have_the_products_of_all() -> None:
@@ -106,3 +106,25 @@ def test_many_runs_are_left_out_in_groups(monkeypatch: pytest.MonkeyPatch) -> No
     assert found[0][0] == pytest.approx(0.05, rel=0.1)
     # The others are predicted by a fit that has it.
     assert found[0][1] > 0.15
+
+
+def test_a_search_finds_its_way_on_some_of_many_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert every_so_many([100] * 50, [f"{k:02}" for k in range(50)]) == list(range(50))
+    monkeypatch.setattr(rows, "MOST_SEARCHED", 1000)
+    some = every_so_many([100] * 50, [f"{49 - k:02}" for k in range(50)])
+    assert some == list(range(9, 50, 10))
+    # A few long runs are all taken.
+    assert every_so_many([5000, 5000], ["a", "b"]) == [0, 1]
+    monkeypatch.setattr(rows, "MOST_SEARCHED", 8000)
+    runs = [
+        one_way(f"{k:02}", coulomb, way=(-1.0) ** k, rate=0.5 + 0.1 * k, noise_n=0.1, seed=k)
+        for k in range(30)
+    ]
+    posed = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ())
+    assert 1 < len(posed.thinned.campaign.prepared) < 10
+    found = minimum(posed, [{}])
+    assert found.converged
+    monkeypatch.undo()
+    whole = minimum(Problem(posed.campaign, "coulomb", "journal", ()), [{}])
+    assert found.rms_n == pytest.approx(whole.rms_n, rel=1e-6)
+    assert sum(len(r) for r in found.residuals) == sum(len(run) for run in runs)

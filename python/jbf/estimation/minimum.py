@@ -117,18 +117,21 @@ def approach(
     followed, steps, method
         How many starting points are given how many steps before the best goes on alone, and how.
     """
-    every = problem.campaign.samples
+    few = problem.thinned
+    some = few.campaign.samples
     groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
     if each:
-        groups = [[min(group, key=problem.square)] for group in groups]
-    starts = sorted(itertools.chain.from_iterable(groups), key=problem.square)
+        groups = [[min(group, key=few.square)] for group in groups]
+    starts = sorted(itertools.chain.from_iterable(groups), key=few.square)
     best = starts[0]
     if len(starts) > 1:
-        short = [search(problem, every, s, WHITE, steps, method)[0] for s in starts[:followed]]
-        best = min(short, key=problem.square)
+        short = [search(few, some, s, WHITE, steps, method)[0] for s in starts[:followed]]
+        best = min(short, key=few.square)
     values, converged, message = best, False, "not followed"
     if len(starts) == 1 or problem.square(best) < least:
-        values, converged, message = search(problem, every, best, WHITE, evaluations)
+        values, converged, message = search(few, some, best, WHITE, evaluations)
+        # The whole has its minimum near that of its part.
+        converged = converged and few is problem
     samples = problem.samples_at(values)
     noise = noise_at(problem, samples, values)
     return problem.solution(problem.wrapped(values), samples, noise, converged, message)

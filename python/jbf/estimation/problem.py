@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from copy import copy
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +19,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.rows import MOST_HELD, OnDemand, groups_of, triangular
+from jbf.estimation.rows import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.starts import with_starts
@@ -136,6 +138,17 @@ class Problem:
             j.append(few[1])
             count += len(innovations)
         return np.concatenate(r), np.concatenate(j), count
+
+    @cached_property
+    def thinned(self) -> Problem:
+        """The same of fewer runs, where they are long: a search finds its way on those."""
+        runs = self.campaign.prepared
+        which = every_so_many([len(p.friction_n) for p in runs], [p.run.name for p in runs])
+        if len(which) == len(runs):
+            return self
+        few = copy(self)
+        few.campaign = self.campaign.only(which)
+        return few
 
     def _runs(self, which: Sequence[int] | None) -> Sequence[Prepared]:
         runs = self.campaign.prepared

@@ -13,6 +13,8 @@ Array = npt.NDArray[np.float64]
 
 MOST_HELD = 2_000_000
 """Numbers (samples times parameters) that a solution holds; more are made again when asked for."""
+MOST_SEARCHED = 400_000
+"""Samples of a search for the way to a minimum; of more, some of the runs show it as well."""
 GROUP = 16_000_000
 """Derivatives that are held at a time on the way to a solution."""
 
@@ -55,6 +57,16 @@ def groups_of(lengths: Sequence[int], width: int) -> list[list[int]]:
         groups[-1].append(i)
         held += length * width
     return groups
+
+
+def every_so_many(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
+    """Runs with half as many samples as a search takes at most, all of them where that many are not
+    there: every so many by name, in whatever order they are given."""
+    apart = 2.0 * sum(lengths) / MOST_SEARCHED
+    if apart <= 2.0 or len(lengths) < 2.0 * apart:
+        return list(range(len(lengths)))
+    by_name = sorted(range(len(names)), key=lambda i: names[i])
+    return sorted(by_name[k] for k in range(0, len(names), int(np.ceil(apart))))
 
 
 def triangular(r: Array, j: Array) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.power import power
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import select, step
@@ -158,6 +159,7 @@ def diagnose(
         confounders=tuple(name for name in doubted if name in kept),
         laws=laws,
         simpler_law=instead,
+        power=() if remains else power(candidates, present),
     )
 
 

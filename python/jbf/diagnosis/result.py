@@ -10,6 +10,7 @@ from jbf.comparison.patterns import Failure
 from jbf.diagnosis.experiment import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.power import Power
 from jbf.diagnosis.verdict import Verdict
 from jbf.diagnosis.which_law import LawTried
 from jbf.estimation.fit import Fit
@@ -47,6 +48,9 @@ class Diagnosis(Result):
         Effects that go with the law but that these runs cannot show, and why.
     unseen
         Effects that could be there at a usual strength, and that these runs would still not show.
+    power
+        How strong each effect that is not in the model would have had to be for these runs to show
+        it; empty where something remains that is no noise.
     experiment
         The motion of the next run, where a run would part rivals or show what could hide.
     policy
@@ -83,6 +87,7 @@ class Diagnosis(Result):
     confounders: tuple[str, ...] = ()
     laws: tuple[LawTried, ...] = ()
     simpler_law: LawTried | None = None
+    power: tuple[Power, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -108,6 +113,7 @@ class Diagnosis(Result):
             "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
+            "power": [p.to_dict() for p in self.power],
             "policy": self.policy.to_dict(),
             "elapsed_s": self.elapsed_s,
         }

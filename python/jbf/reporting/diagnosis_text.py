@@ -7,7 +7,7 @@ from jbf.records.counts import count_of
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
+from jbf.reporting.tables import law_rows, ledger_rows, power_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
 
@@ -39,6 +39,17 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
     return lines
 
 
+def _power_lines(diagnosis: Diagnosis) -> list[str]:
+    if not diagnosis.power:
+        return []
+    head = ("effect", "found from", "of friction", "alone from", "else it could be")
+    return [
+        "",
+        "What these runs would have shown, in 80 of 100 campaigns like this one",
+        *columns([head, *power_rows(diagnosis)], "<<>><", 4),
+    ]
+
+
 def diagnosis_report(diagnosis: Diagnosis) -> str:
     """The story on a page: verdict, measurement, miss, candidates, error falling, parameters."""
     campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
@@ -68,6 +79,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     ]
     lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]
     lines += _trial_lines(diagnosis)
+    lines += _power_lines(diagnosis)
     lines += ["", f"The error falling ({unit})"]
     head = ("step", "fit", "held out", "noise", "held out / noise")
     lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)

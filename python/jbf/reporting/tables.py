@@ -115,6 +115,25 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
     return rows
 
 
+def power_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
+    """Effect, the strength from which it would have been found, that as a share of the friction,
+    the strength from which it would have been named alone, and what could stand in its place."""
+    said = diagnosis.model.rig.quantities
+    rows = []
+    for p in diagnosis.power:
+        full = f"{p.effect}.{p.parameter}"
+        name, unit = shown(diagnosis.model.law, (p.effect,), said)[full]
+        name = name.removeprefix(f"{p.effect}.")
+        share = "" if p.share_80 is None or p.always else f"{100.0 * p.share_80:.2g} %"
+        found = "never" if p.found_80 is None else f"{name} {number(p.found_80)} {unit}".strip()
+        found = "any" if p.always else found
+        alone = "" if p.found_80 is None else "never" if p.alone_80 is None else number(p.alone_80)
+        if p.found_80 is not None and alone == number(p.found_80):
+            alone = "same"
+        rows.append((p.effect, found, share, alone, ", ".join(p.like[:MOST_RUNS_NAMED])))
+    return rows
+
+
 def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
     """Law, number of parameters, left-out error (N), and how it compares."""
     return [

@@ -1,0 +1,242 @@
+"""Power: how strong an effect must be for runs like these to show it.
+
+An effect of some strength changes the friction by what the law's own parameters cannot make up for;
+that, in squares of the noise, is the non-centrality of the likelihood ratio (Wald 1943), and the
+chance that it exceeds the price of a name is the test's power. What another effect makes up for as
+well is lost for telling the two apart.
+
+Strengths are followed to where they are asked for, not extrapolated from the null; the rest of the
+model moves in its tangent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize, stats
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
+from jbf.estimation.solution import Solution
+from jbf.models.catalogue import may_come
+
+Array = npt.NDArray[np.float64]
+Names = tuple[str, ...]
+
+LEVELS = (0.80, 0.95)
+"""Chances of being found."""
+LOOKS = 8
+"""Strengths tried for each."""
+AGREES = 0.05
+"""Relative difference in strength that ends it."""
+NEARLY_ALL = 0.97
+"""Share of a gain from which on a noise that is described anew forgives nothing of it."""
+BEYOND = 1.2
+"""Times the strength at which that is asked: where colour just earns its price, chance decides."""
+NEVER = 30.0
+"""Times the strength that shows an effect from which on two effects are one in these runs."""
+
+
+@dataclass(frozen=True)
+class Power:
+    """What runs like these show of one effect.
+
+    Attributes
+    ----------
+    effect, parameter, unit
+        The effect, the parameter whose distance from its null is its strength, and that one's unit.
+    found_80, found_95
+        The parameter's value from which the effect is found in 80 and in 95 of 100 such campaigns;
+        None where no value within its bounds would be.
+    always
+        True of an effect that shows however weak it is (a contact that holds at rest): the values
+        are the weakest of the catalogue.
+    share_80
+        By how much of the friction, RMS, it changes it there.
+    alone_80
+        The value from which no other effect could stand in its place in 80 of 100; None where one
+        always could.
+    like
+        Effects that could stand in its place at `found_80`, those that need the most to part first.
+    """
+
+    effect: str
+    parameter: str
+    unit: str
+    found_80: float | None
+    found_95: float | None
+    always: bool
+    share_80: float | None
+    alone_80: float | None
+    like: Names
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {**vars(self), "like": list(self.like)}
+
+
+def power(
+    candidates: Candidates, present: Names, names: Iterable[str] | None = None
+) -> tuple[Power, ...]:
+    """What these runs would have shown of each effect that is not in the model.
+
+    Parameters
+    ----------
+    candidates
+        The runs, and the fit of the effects that are in the model.
+    present
+        Those effects.
+    names
+        Effects asked for; all that were tried by default.
+    """
+    asked = set(candidates.names if names is None else names) - set(present)
+    runs = RunsAtHand(candidates, present)
+    models = {
+        name: model
+        for name in candidates.names
+        if name not in present and may_come(name, present)
+        if (model := strength_of(candidates, present, name)) is not None
+    }
+    seen = {name: _Seen.of(candidates, runs, model) for name, model in models.items()}
+    return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """How many times its usual strength an effect is found at, and what is seen of it there.
+
+    Attributes
+    ----------
+    times
+        Of each of `LEVELS`; nan where no strength is enough.
+    change
+        Of the first, shape (n,): in units of the noise, apart from what the model makes up for.
+    ways
+        The same and what the effect's own parameters change there, shape (n, 1 + k).
+    """
+
+    times: tuple[float, ...]
+    change: Array
+    ways: Array
+    share: float
+
+    @classmethod
+    def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Seen:
+        price = price_of(candidates, _parameters(runs.base, model))
+        usual = runs.share(runs.shown(runs.change(model, 1.0))[:, 0])
+        least = [non_centrality(price, _parameters(runs.base, model), p) / usual for p in LEVELS]
+        found = _found(runs, model, least)
+        if np.isfinite(found[1]):
+            left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
+            if left < NEARLY_ALL:
+                found = _found(runs, model, [wanted / left for wanted in least])
+        at = found[0] if np.isfinite(found[0]) else 1.0
+        changes = runs.change(model, at)
+        change = runs.shown(changes)[:, 0]
+        share = runs.samples.rms(changes) / max(runs.friction_n, 1e-300)
+        return cls(tuple(found), change, _ways(runs, model, at, change), share)
+
+
+def _found(runs: RunsAtHand, model: Strength, least: list[float]) -> list[float]:
+    found, times = [], 1.0
+    for wanted in least:
+        times = _times(runs, model, wanted, times)
+        found.append(times)
+        times = times if np.isfinite(times) else 1.0
+    return found
+
+
+def _parameters(base: Solution, model: Strength) -> int:
+    return max(len(model.problem.open) - base.free, 1)
+
+
+def non_centrality(price: float, parameters: int, chance: float) -> float:
+    """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
+
+    def lacking(root: float) -> float:
+        return float(stats.ncx2.sf(price, parameters, root**2)) - chance
+
+    top = np.sqrt(price) + 10.0
+    return float(optimize.brentq(lacking, 1e-3, top)) ** 2
+
+
+def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
+    """How many times its usual strength an effect has that is worth so much; nan where none is."""
+    for _ in range(LOOKS):
+        left = runs.shown(runs.change(model, times))
+        worth = float(np.sum(left**2))
+        further = float(np.clip(np.sqrt(wanted / max(worth, 1e-300)), 1e-3, 30.0))
+        if abs(np.log(further)) < AGREES:
+            return times
+        # At a bound there is no more to be had.
+        if np.array_equal(model.values(times * further), model.values(times)):
+            return times if further < 1.0 else np.nan
+        times *= further
+    return times if worth > 0.5 * wanted else np.nan
+
+
+def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Array:
+    """What an effect changes, and what its parameters change, apart from what the model can."""
+    problem = model.problem.thinned
+    own = [k for k, i in enumerate(problem.open) if problem.names[i].startswith(f"{model.name}.")]
+    _, slopes = problem.linearise(model.values(times))
+    return np.column_stack([change, runs.shown([j[:, own] for j in slopes])])
+
+
+def _power(
+    candidates: Candidates,
+    runs: RunsAtHand,
+    models: dict[str, Strength],
+    seen: dict[str, _Seen],
+    name: str,
+) -> Power:
+    model, own = models[name], seen[name]
+
+    def strength(times: float) -> float | None:
+        return float(model.values(times)[model.which]) if np.isfinite(times) else None
+
+    alone: dict[str, float] = {}
+    if np.isfinite(own.times[0]):
+        tie, mine = candidates.policy.tie, price_of(candidates, _parameters(runs.base, model))
+        sure = float(stats.norm.ppf(LEVELS[0]))
+        for other, rival in models.items():
+            if other == name:
+                continue
+            dearer = mine - price_of(candidates, _parameters(runs.base, rival))
+            # The difference of two gains is normal, with four times its mean as variance.
+            needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
+            left = np.sqrt(_left(seen[other].ways, own.change))
+            alone[other] = needed / max(left, 1e-300)
+    like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
+    most = max([1.0, *alone.values()])
+    return Power(
+        effect=name,
+        parameter=model.page.name,
+        unit=model.page.unit,
+        found_80=strength(own.times[0]),
+        found_95=strength(own.times[1]),
+        always=_weakest(model, own.times[0]),
+        share_80=own.share if np.isfinite(own.times[0]) else None,
+        alone_80=strength(own.times[0] * most) if most < NEVER else None,
+        like=tuple(like),
+    )
+
+
+def _weakest(model: Strength, times: float) -> bool:
+    return bool(
+        np.isfinite(times) and np.array_equal(model.values(0.1 * times), model.values(times))
+    )
+
+
+def _left(design: Array, target: Array) -> float:
+    """Sum of squares of a target that a design leaves."""
+    size = np.linalg.norm(design, axis=0)
+    design = design[:, size > 0.0] / size[size > 0.0]
+    step, *_ = np.linalg.lstsq(design, target, rcond=1e-9)
+    left = target - design @ step
+    return float(left @ left)

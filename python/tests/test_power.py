@@ -1,0 +1,129 @@
+"""How strong an effect must be for runs to show it: by closed forms, and by counting."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from by_hand import Array, coulomb, one_way
+from jbf import Rig, Run, diagnose
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, price_of
+from jbf.diagnosis.power import Power, non_centrality, power
+from jbf.estimation.campaign import Campaign
+from scipy import stats
+
+NOISE_N = 0.1
+Friction = Callable[[Array, Array, Array], Array]
+
+
+def runs(friction: Friction = coulomb, seed: int = 0) -> list[Run]:
+    return [
+        one_way(f"{k}", friction, way=way, rate=rate, noise_n=NOISE_N, seed=4 * seed + k)
+        for k, (way, rate) in enumerate([(1.0, 0.7), (-1.0, 1.3), (1.0, 2.1), (-1.0, 4.0)])
+    ]
+
+
+def candidates(some: list[Run]) -> Candidates:
+    return Candidates(Campaign.prepare(Rig(), some), "coulomb", "journal")
+
+
+def of(found: tuple[Power, ...], name: str) -> Power:
+    return next(p for p in found if p.effect == name)
+
+
+@pytest.mark.parametrize("parameters", [1, 2, 4])
+@pytest.mark.parametrize("chance", [0.8, 0.95])
+def test_a_chi_square_of_that_non_centrality_exceeds_the_price_so_often(
+    parameters: int, chance: float
+) -> None:
+    root = non_centrality(30.0, parameters, chance)
+    shift = np.zeros(parameters)
+    shift[0] = np.sqrt(root)
+    drawn = np.random.default_rng(1).standard_normal((40_000, parameters)) + shift
+    assert np.mean(np.sum(drawn**2, axis=1) > 30.0) == pytest.approx(chance, abs=0.01)
+
+
+def test_the_strength_of_a_mass_is_that_of_a_regression() -> None:
+    """Beside dry and viscous friction a mass is a third column: its error is in every textbook."""
+    some = runs()
+    tried = candidates(some)
+    found = of(power(tried, (), ["inertia_leak"]), "inertia_leak")
+    v = np.concatenate([run.velocity_m_s for run in some])
+    a = np.concatenate([np.gradient(run.velocity_m_s, run.time_s) for run in some])
+    design = np.column_stack([np.sign(v), v])
+    left = a - design @ np.linalg.lstsq(design, a, rcond=None)[0]
+    for value, chance in ((found.found_80, 0.8), (found.found_95, 0.95)):
+        wanted = np.sqrt(non_centrality(price_of(tried, 1), 1, chance)) * NOISE_N
+        # A tenth more: the long-run variance is estimated, and is never less than white noise's.
+        assert 1.0 < value * np.sqrt(left @ left) / wanted < 1.12
+    assert found.unit == "kg"
+    friction = np.concatenate([coulomb(run.time_s, run.velocity_m_s, v) for run in some[:1]])
+    assert found.share_80 == pytest.approx(
+        found.found_80 * np.sqrt(np.mean(a**2)) / np.sqrt(np.mean(friction**2)), rel=0.1
+    )
+
+
+@pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
+def test_so_many_campaigns_show_it(effect: str) -> None:
+    value = of(power(candidates(runs()), (), [effect]), effect).found_80
+    assert value is not None
+
+    def friction(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + value * (a if effect == "inertia_leak" else t)
+
+    shown = 0
+    campaigns = 24
+    for seed in range(1, campaigns + 1):
+        tried = candidates(runs(friction, seed))
+        shown += evidence(tried, tried.converge((effect,)), tried.converge(())) > 0.0
+    # Eighty of a hundred, as two dozen campaigns can tell (99.9 %).
+    low, high = stats.binom.ppf([0.0005, 0.9995], campaigns, 0.8)
+    assert low <= shown <= high
+
+
+def test_what_the_law_makes_up_for_is_never_found() -> None:
+    t = np.arange(0.0, 20.0, 0.02)
+    some = []
+    for k, way in enumerate((1.0, -1.0)):
+        v = np.full(len(t), way * 0.1)
+        noise = NOISE_N * np.random.default_rng(k).standard_normal(len(t))
+        some.append(Run.from_arrays(t, v, 5.0 * np.sign(v) + noise, name=f"{k}"))
+    found = of(power(candidates(some), (), ["quadratic_drag"]), "quadratic_drag")
+    # At one speed a drag is dry friction.
+    assert found.found_80 is None
+    assert found.alone_80 is None
+    assert found.like == ()
+
+
+def test_two_effects_that_are_one_in_these_runs() -> None:
+    """Without rests a dry level that differs by direction is a zero that is off."""
+    found = power(candidates(runs()), ())
+    offset, dry = of(found, "sensor_offset"), of(found, "dry_asymmetry")
+    assert offset.found_80 is not None
+    assert offset.alone_80 is None
+    assert "dry_asymmetry" in offset.like
+    assert "sensor_offset" in dry.like
+    assert dry.alone_80 is None
+    # No other effect of the catalogue has a peak at one end of these speeds.
+    peak = of(found, "stribeck_asymmetry")
+    assert peak.alone_80 == pytest.approx(peak.found_80, rel=0.2)
+
+
+def test_a_diagnosis_says_it_where_nothing_remains() -> None:
+    d = diagnose(Rig(), runs(lambda t, v, a: coulomb(t, v, a) + 2.0 * a), law="coulomb")
+    assert d.effects == ("inertia_leak",)
+    names = [p.effect for p in d.power]
+    assert "quadratic_drag" in names
+    assert "inertia_leak" not in names
+    text = d.summary()
+    assert "What these runs would have shown" in text
+    (row,) = [r for r in d.to_dict()["power"] if r["effect"] == "quadratic_drag"]
+    assert row["unit"] == "N s^2/m^2"
+    assert row["found_95"] > row["found_80"] > 0.0
+
+    def unknown(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + np.sin(40.0 * t)
+
+    assert diagnose(Rig(), runs(unknown), law="coulomb").power == ()

@@ -29,7 +29,7 @@ from rigsim.recording import ARTEFACTS, OFF_GRID
 from tables import kept, line, tables
 from written import written
 
-Job = tuple[str, Callable[[], Row]]
+Job = tuple[str, Callable[[], Row | None]]
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -61,9 +61,14 @@ def _simulated(asked: argparse.Namespace, parser: argparse.ArgumentParser) -> li
     if asked.short:
         planned = short(asked.first_seed)
 
-    def job(task: Task) -> Row:
+    def job(task: Task) -> Row | None:
         with tempfile.TemporaryDirectory() as scratch:
-            return scored(written(task, asked.keep or Path(scratch)), asked.limit)
+            try:
+                case = written(task, asked.keep or Path(scratch))
+            except (ArithmeticError, ValueError) as error:
+                print(f"{task.key}: left out, it cannot be simulated: {error}", flush=True)
+                return None
+            return scored(case, asked.limit)
 
     return [(task.key, lambda task=task: job(task)) for task in planned]  # type: ignore[misc]
 
@@ -95,6 +100,8 @@ def main() -> int:
         running = [pool.submit(run) for key, run in jobs if key not in done]
         for future in as_completed(running):
             row = future.result()
+            if row is None:
+                continue
             rows.append(row)
             print(line(row), flush=True)
             if asked.out is not None:

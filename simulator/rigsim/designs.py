@@ -121,7 +121,9 @@ def draw_film_start(base: Base, speed_m_s: float, rng: Rng) -> tuple[float, floa
     eps, phi = film.start()
     ub = abs(speed_m_s) / base.U_tr
     if ub < 0.02:
-        standing = film.eps_tr + math.sqrt(film.load_group / film.stiffness)
+        # Soft asperities alone would let the shaft through the bush: there the film bears as well.
+        gap = min(math.sqrt(film.load_group / film.stiffness), 0.9 * (1.0 - film.eps_tr))
+        standing = film.eps_tr + gap
         return float(rng.uniform(eps, standing)), phi * float(rng.uniform())
     if rng.random() < 0.25:
         return eps, phi

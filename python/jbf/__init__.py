@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from jbf import control
     from jbf.comparison.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
+    from jbf.diagnosis.planned import PlannedPower, planned_power
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
     from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
@@ -49,6 +50,8 @@ _LATER = {
     "Limits": "jbf.diagnosis",
     "diagnose": "jbf.diagnosis",
     "diagnose_many": "jbf.diagnosis",
+    "PlannedPower": "jbf.diagnosis.planned",
+    "planned_power": "jbf.diagnosis.planned",
     "Fit": "jbf.estimation.fit",
     "fit": "jbf.estimation.fit",
     "TrajectoryFit": "jbf.estimation.trajectory_fit",
@@ -82,6 +85,7 @@ __all__ = [
     "Model",
     "Parameter",
     "ParameterValue",
+    "PlannedPower",
     "Rig",
     "Run",
     "Trajectory",
@@ -102,6 +106,7 @@ __all__ = [
     "laws",
     "load_effects",
     "look",
+    "planned_power",
     "read_map",
     "read_recording",
     "read_rig",

@@ -50,6 +50,11 @@ def is_map(path: str) -> bool:
     return Path(path).suffix.lower() != ".csv" and "columns" in _keys(path)
 
 
+def is_model(path: str) -> bool:
+    """Whether a file is a model's."""
+    return Path(path).suffix.lower() != ".csv" and "law" in _keys(path)
+
+
 def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
     """Rig and runs of recordings, through a map."""
     from jbf.importing.import_files import import_files

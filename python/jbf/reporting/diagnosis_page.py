@@ -78,7 +78,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         before_picture=picture(plot_run(before)) if diagnosis.failures else "",
         failures=pattern_rows(diagnosis.failures),
         trials=trials,
-        power=power_rows(diagnosis),
+        power=power_rows(diagnosis.power, diagnosis.model.law, said),
         unit=said.force,
         effects=[_effect(diagnosis, name) for name in diagnosis.effects],
         unexplained=pattern_rows(diagnosis.unexplained),

@@ -7,7 +7,8 @@ from jbf.records.counts import count_of
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import law_rows, ledger_rows, power_rows, trial_rows
+from jbf.reporting.power_text import power_lines
+from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
 
@@ -42,11 +43,11 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
 def _power_lines(diagnosis: Diagnosis) -> list[str]:
     if not diagnosis.power:
         return []
-    head = ("effect", "found from", "of friction", "alone from", "else it could be")
+    model = diagnosis.model
     return [
         "",
         "What these runs would have shown, in 80 of 100 campaigns like this one",
-        *columns([head, *power_rows(diagnosis)], "<<>><", 4),
+        *power_lines(diagnosis.power, model),
     ]
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from jbf.comparison.comparison import Comparison
 from jbf.control.run import Result as LoopRun
+from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
@@ -21,6 +22,7 @@ from jbf.reporting.comparison_text import comparison_report
 from jbf.reporting.control_run_text import runs_text
 from jbf.reporting.diagnosis_text import diagnosis_report
 from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
+from jbf.reporting.power_text import planned_report, short_power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,6 +41,7 @@ summary.register(Comparison, comparison_report)
 summary.register(Diagnosis, diagnosis_report)
 summary.register(LoopRun, lambda run: runs_text([run]))
 summary.register(Import, import_text.import_report)
+summary.register(PlannedPower, planned_report)
 
 
 @singledispatch
@@ -53,6 +56,7 @@ short_words.register(TrajectoryFit, short.short_trajectory_fit)
 short_words.register(Comparison, short.short_comparison)
 short_words.register(Diagnosis, short.short_diagnosis)
 short_words.register(Import, import_text.short_import)
+short_words.register(PlannedPower, short_power)
 
 
 @singledispatch

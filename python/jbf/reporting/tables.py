@@ -15,6 +15,7 @@ from jbf.reporting.words import number, percent, step_name, value_and_error
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
     from jbf.diagnosis.ledger import Step
+    from jbf.diagnosis.power import Power
     from jbf.diagnosis.result import Diagnosis
     from jbf.estimation.fit import Fit
     from jbf.models.parameter_value import ParameterValue
@@ -115,14 +116,15 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
     return rows
 
 
-def power_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
+def power_rows(
+    power: Iterable[Power], law: str, said: Quantities
+) -> list[tuple[str, str, str, str, str]]:
     """Effect, the strength from which it would have been found, that as a share of the friction,
     the strength from which it would have been named alone, and what could stand in its place."""
-    said = diagnosis.model.rig.quantities
     rows = []
-    for p in diagnosis.power:
+    for p in power:
         full = f"{p.effect}.{p.parameter}"
-        name, unit = shown(diagnosis.model.law, (p.effect,), said)[full]
+        name, unit = shown(law, (p.effect,), said)[full]
         name = name.removeprefix(f"{p.effect}.")
         share = "" if p.share_80 is None or p.always else f"{100.0 * p.share_80:.2g} %"
         found = "never" if p.found_80 is None else f"{name} {number(p.found_80)} {unit}".strip()

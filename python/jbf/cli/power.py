@@ -1,0 +1,61 @@
+"""`jbf power RIG RUN...`: what planned runs would show, before anything is recorded."""
+
+from __future__ import annotations
+
+import argparse
+
+from jbf.cli import inputs, outputs
+from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_runs, command
+from jbf.errors import InputError
+from jbf.models.catalogue import parameters_of
+from jbf.models.model import Model
+from jbf.records.run_files import read_runs
+from jbf.reporting.json import json_text
+
+
+def add(commands: Commands) -> None:
+    """Put the command on the command line."""
+    does = "how strong each effect must be for planned runs to show it"
+    parser = command(commands, "power", does, run)
+    parser.add_argument(
+        "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
+    )
+    add_runs(parser)
+    parser.add_argument(
+        "--noise-n",
+        metavar="X",
+        type=float,
+        help="standard deviation of the noise on the friction (of a rotary drive in N m); of a "
+        "model that was fitted what the fit left",
+    )
+    add_json(parser)
+    add_law(parser)
+    add_own(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    from jbf.diagnosis.planned import planned_power
+
+    wanted = {"--json": arguments.json}
+    outputs.check(wanted, [arguments.rig, *arguments.runs])
+    model = _model(arguments)
+    left = model.fit.get("rms_n")  # N
+    noise_n = left if arguments.noise_n is None else arguments.noise_n
+    if noise_n is None or isinstance(noise_n, str):
+        raise InputError(problem="--noise-n is missing", mend="say how large the noise will be")
+    runs = read_runs(arguments.runs, model.rig, need_friction=False)
+    found = planned_power(model, runs, noise_n=noise_n)
+    if arguments.json:
+        outputs.write({arguments.json: json_text(found.to_dict())})
+    outputs.say(found.summary(), wanted)
+    return 0
+
+
+def _model(arguments: argparse.Namespace) -> Model:
+    """A model file, or a rig under a law at the catalogue's usual values."""
+    if inputs.is_model(arguments.rig):
+        return inputs.model(arguments.rig)
+    rig = inputs.rig(arguments.rig, arguments.law)
+    values = {name: page.starts[0] for name, page in parameters_of(arguments.law, ()).items()}
+    return Model(rig, arguments.law, (), values, arguments.clock)

@@ -1,0 +1,101 @@
+"""Power of runs that are planned, before anything is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.power import Power, power
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.models.model import Model
+from jbf.records.arguments import list_of_runs, of_kind
+from jbf.records.run import Run
+from jbf.records.toml_file import number
+from jbf.results import Result
+from jbf.threads import one_blas_thread
+
+
+@dataclass(frozen=True, repr=False)
+class PlannedPower(Result):
+    """What planned runs would show.
+
+    Attributes
+    ----------
+    model
+        What the machine is taken to be.
+    noise_n
+        Standard deviation of the noise on the friction that was asked for, N.
+    power
+        How strong each other effect must be to be found.
+    not_tried
+        Effects that go with the law but that such runs cannot show, and why.
+    runs
+        Names of the runs.
+    """
+
+    model: Model
+    noise_n: float
+    power: tuple[Power, ...]
+    not_tried: dict[str, str]
+    runs: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            **self.model.told_units(),
+            "law": self.model.law,
+            "effects": list(self.model.effects),
+            "noise_n": self.noise_n,
+            "runs": list(self.runs),
+            "power": [p.to_dict() for p in self.power],
+            "not_tried": dict(self.not_tried),
+        }
+
+
+@one_blas_thread
+def planned_power(model: Model, runs: Iterable[Run], *, noise_n: float) -> PlannedPower:
+    """How strong an effect must be for planned runs to show it.
+
+    The model's friction under the runs' motion, with white noise, is what would be recorded.
+
+    Parameters
+    ----------
+    model
+        What the machine is taken to be: of a fit, or `Model` with values of a data sheet.
+    runs
+        Motions to play; friction in them is ignored.
+    noise_n
+        Standard deviation of the noise on the friction, N (of a rotary drive N m).
+
+    Raises
+    ------
+    InputError
+        The noise is not above zero, nothing moves in a run, or a column is missing that the model
+        needs.
+    """
+    of_kind(model, Model, "model", "give a jbf.Model")
+    noise_n = number(noise_n, "noise_n")
+    if not (np.isfinite(noise_n) and noise_n > 0.0):
+        raise InputError(
+            key="noise_n",
+            problem=f"{noise_n:g} is not above zero",
+            mend="give its standard deviation",
+        )
+    planned = list_of_runs(runs)
+    if not planned:
+        raise InputError(problem="no run was given", mend="give at least one motion to play")
+    random = np.random.default_rng(0)
+    recorded = [
+        replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
+        for run, friction in zip(planned, model.predict_many(planned), strict=True)
+    ]
+    campaign = Campaign.prepare(model.rig, recorded)
+    candidates = Candidates(campaign, model.law, model.clock)
+    found = power(candidates, model.effects)
+    names = tuple(run.name for run in planned)
+    return PlannedPower(model, noise_n, found, candidates.not_tried, names)

@@ -155,6 +155,21 @@ def test_fewer_effects_are_fitted_from_where_they_are_in_a_richer_model(
     assert every.converge(["inertia_leak"]) is found
 
 
+@pytest.mark.parametrize(("times", "taken"), [(1.2, True), (1.3, False)])
+def test_a_likelier_fit_that_is_far_off_is_not_taken(
+    times: float, taken: bool, campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside deviations of the runs a law that is wrong may leave more and be likelier."""
+    every = Candidates(campaign, "coulomb", "journal")
+    every.converge(["inertia_leak", "sensor_offset"])
+    near = every.converge(["inertia_leak"])
+    residuals = [times * r for r in near.residuals]
+    likelier = replace(near, residuals=residuals, cost=near.cost - 100.0)
+    monkeypatch.setattr(module, "settle", lambda *_: likelier)
+    found = every.refit_from(["inertia_leak"], ["inertia_leak", "sensor_offset"])
+    assert (found is likelier) == taken
+
+
 def test_the_score_test_promises_what_a_linear_effect_gains(campaign: Campaign) -> None:
     every = Candidates(campaign, "coulomb", "journal")
     bare, found = every.converge([]), every.converge(["inertia_leak"])

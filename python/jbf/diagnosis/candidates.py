@@ -223,7 +223,9 @@ class Candidates:
         samples = problem.samples_at(start)
         there = problem.solution(start, samples, near.noise, False)
         there = settle(problem, there, samples)
-        if likelihood_gain(there, near) > 0.0:
+        # What each run may say for itself, a law that is wrong gives way to: likelier, and far off.
+        astray = there.rms_n > self.policy.leader_rms * near.rms_n
+        if likelihood_gain(there, near) > 0.0 and not astray:
             fitted.improve(there)
         return fitted.found()
 

@@ -56,11 +56,14 @@ def test_rows_by_groups_are_those_of_all(noise: Noise, monkeypatch: pytest.Monke
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     posed = Problem(campaign, "stribeck", "journal", ())
     values = posed.starts({})[0]
-    r, j, count = posed.gauss_newton_rows(values, campaign.samples, noise)
+    # Each run counts in a part of its own.
+    kept = [np.arange(len(c)) < 100 * (k + 1) for k, c in enumerate(campaign.samples.counted)]
+    samples = campaign.samples.within(kept)
+    r, j, count = posed.gauss_newton_rows(values, samples, noise)
     monkeypatch.setattr(rows, "GROUP", 1)
-    by_r, by_j, by_count = posed.gauss_newton_rows(values, campaign.samples, noise)
+    by_r, by_j, by_count = posed.gauss_newton_rows(values, samples, noise)
     assert len(by_r) == 4 * len(r)
-    assert count == by_count == campaign.samples.count
+    assert count == by_count == samples.count
     np.testing.assert_allclose(by_j.T @ by_j, j.T @ j, rtol=1e-9)
     np.testing.assert_allclose(by_j.T @ by_r, j.T @ r, rtol=1e-9)
 

@@ -65,6 +65,20 @@ def test_the_strength_of_a_mass_is_that_of_a_regression() -> None:
     )
 
 
+def test_a_slow_change_must_be_larger_for_the_noise_may_have_it() -> None:
+    """A drift within a run passes in part for coloured noise: it is no mere third column."""
+    some = runs()
+    tried = candidates(some)
+    value = of(power(tried, (), ["sensor_drift"]), "sensor_drift").found_80
+    v = np.concatenate([run.velocity_m_s for run in some])
+    t = np.concatenate([run.time_s for run in some])
+    design = np.column_stack([np.sign(v), v])
+    left = t - design @ np.linalg.lstsq(design, t, rcond=None)[0]
+    wanted = np.sqrt(non_centrality(price_of(tried, 1), 1, 0.8)) * NOISE_N
+    assert value is not None
+    assert 1.2 < value * np.sqrt(left @ left) / wanted < 1.7
+
+
 @pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
 def test_so_many_campaigns_show_it(effect: str) -> None:
     value = of(power(candidates(runs()), (), [effect]), effect).found_80

@@ -13,7 +13,7 @@ from jbf import Rig, Run
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.second_look import SecondLook, second_look
-from jbf.diagnosis.uneven_noise import HUBER
+from jbf.diagnosis.uneven_noise import HUBER, noise_sizes
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
@@ -153,6 +153,21 @@ def test_noise_that_differs_by_run(ratio: float) -> None:
 
 def by_run(seen: SecondLook) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
     return seen.campaign.samples.weight, seen.campaign.samples.counted
+
+
+def test_equal_readings_of_a_coarse_converter_are_not_quiet() -> None:
+    """In a run whose converter takes steps larger than the noise most readings are equal."""
+
+    def coarse(i: int, force: Array, random: np.random.Generator) -> Array:
+        read = force + NOISE_N * random.standard_normal(len(force))
+        return 10.0 * NOISE_N * np.round(read / (10.0 * NOISE_N)) if i == 2 else read
+
+    problem, solution = fitted(campaign(coarse, 3))
+    sizes, _ = noise_sizes(problem, solution, DEFAULT)
+    # Its rounding is three times the noise of the others: it counts for less, none for nothing.
+    least = [float(np.min(s)) for s in sizes]
+    assert least[2] == min(least)
+    assert min(least) > 0.2
 
 
 @pytest.mark.parametrize("seed", [0, 1])

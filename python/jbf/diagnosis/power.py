@@ -22,6 +22,7 @@ from scipy import optimize, stats
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
+from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come
 
@@ -210,7 +211,7 @@ def _power(
             dearer = mine - price_of(candidates, _parameters(runs.base, rival))
             # The difference of two gains is normal, with four times its mean as variance.
             needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
-            left = np.sqrt(_left(seen[other].ways, own.change))
+            left = np.sqrt(unexplained_square(seen[other].ways, own.change))
             alone[other] = needed / max(left, 1e-300)
     like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
     most = max([1.0, *alone.values()])
@@ -231,12 +232,3 @@ def _weakest(model: Strength, times: float) -> bool:
     return bool(
         np.isfinite(times) and np.array_equal(model.values(0.1 * times), model.values(times))
     )
-
-
-def _left(design: Array, target: Array) -> float:
-    """Sum of squares of a target that a design leaves."""
-    size = np.linalg.norm(design, axis=0)
-    design = design[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(design, target, rcond=1e-9)
-    left = target - design @ step
-    return float(left @ left)

@@ -50,6 +50,9 @@ def test_a_fitted_model_knows_its_noise(plan: Path, capsys: pytest.CaptureFixtur
     assert "coulomb" in said
     assert "inertia_leak" in said.splitlines()[0]
     assert "noise of 0.197 N" in said
+    # What is said goes before what was fitted.
+    assert main(["power", str(plan / "model.toml"), str(plan / "plan"), "--noise-n", "0.5"]) == 0
+    assert "noise of 0.500 N" in capsys.readouterr().out
     planned = planned_power(found.model, runs, noise_n=0.2)
     assert "PlannedPower: 4 runs show" in repr(planned)
     assert "inertia_leak" not in [p.effect for p in planned.power]

@@ -11,6 +11,7 @@ from jbf import Rig, Run, diagnose
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, price_of
 from jbf.diagnosis.power import Power, non_centrality, power
+from jbf.diagnosis.strength import RunsAtHand, strength_of
 from jbf.estimation.campaign import Campaign
 from scipy import stats
 
@@ -123,6 +124,42 @@ def test_two_effects_that_are_one_in_these_runs() -> None:
     # No other effect of the catalogue has a peak at one end of these speeds.
     peak = of(found, "stribeck_asymmetry")
     assert peak.alone_80 == pytest.approx(peak.found_80, rel=0.2)
+
+
+def stop_and_go() -> list[Run]:
+    some = []
+    for k in range(3):
+        t = np.arange(0.0, 20.0, 0.02)
+        v = 0.1 * np.sin((0.6 + 0.2 * k) * t) * (np.mod(t, 6.0) > 2.0)
+        noise = NOISE_N * np.random.default_rng(k).standard_normal(len(t))
+        some.append(Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=f"{k}"))
+    return some
+
+
+def test_samples_beside_jumps_that_an_effect_moves_show_less() -> None:
+    tried = candidates(stop_and_go())
+    delay = strength_of(tried, (), "time_delay")
+    assert delay is not None
+    runs_at_hand = RunsAtHand(tried, ())
+    changes = runs_at_hand.change(delay, 1.0)
+    weights = delay.problem.samples_at(delay.values(1.0)).weight
+    whole = [
+        f - now
+        for f, now in zip(delay.problem.predict(delay.values(1.0)), runs_at_hand.now, strict=True)
+    ]
+    less = 0
+    for change, gap, w in zip(changes, whole, weights, strict=True):
+        np.testing.assert_allclose(change[w == 1.0], gap[w == 1.0])
+        beside = (w < 0.9) & (gap != 0.0)
+        assert np.all(np.abs(change[beside]) < np.abs(gap[beside]))
+        less += int(beside.sum())
+    assert less > 10
+
+
+def test_a_contact_that_holds_at_rest_shows_however_stiff_it_is() -> None:
+    found = power(candidates(stop_and_go()), ())
+    assert of(found, "presliding").always
+    assert not of(found, "inertia_leak").always
 
 
 def test_a_diagnosis_says_it_where_nothing_remains() -> None:

@@ -106,6 +106,8 @@ def axis_campaign(
     swing: float = 1.0,
     temperature: Kind | None = None,
     thermometer: str = "fine",
+    run_s: float = RUN_S,
+    step_s: float = STEP_S,
 ) -> tuple[list[AxisRun], dict[str, object]]:
     """Runs of one drive, each under one of three loads, and the truth behind them.
 
@@ -122,8 +124,8 @@ def axis_campaign(
     # A stream of its own: a campaign with a thermometer is the one without it.
     air = np.random.default_rng([seed, 78])
     for i in range(runs):
-        warmth = None if temperature is None else draw_warmth(temperature, i, RUN_S, air)
-        record = _run(i, law, hidden, noise_n, rng, swing, warmth)
+        warmth = None if temperature is None else draw_warmth(temperature, i, run_s, air)
+        record = _run(i, np.arange(0.0, run_s, step_s), law, hidden, noise_n, rng, swing, warmth)
         if record.temperature_c is not None:
             celsius = read_by(thermometer, record.time_s, record.temperature_c, air)
             record = replace(record, temperature_c=celsius)
@@ -133,6 +135,7 @@ def axis_campaign(
 
 def _run(
     i: int,
+    time: Vector,
     law: dict[str, float],
     hidden: dict[str, dict[str, float]],
     noise_n: float,
@@ -140,7 +143,6 @@ def _run(
     swing: float,
     warmth: Warmth | None,
 ) -> AxisRun:
-    time = np.arange(0.0, RUN_S, STEP_S)
     rates = 2.0 * math.pi * rng.uniform(0.05, 0.6, 3)
     sizes, phases = swing * rng.uniform(0.03, 0.09, 3), rng.uniform(0.0, 2.0 * math.pi, 3)
     waves = rates[:, None] * time + phases[:, None]

@@ -31,7 +31,7 @@ Progress = Callable[[str, int, int], None]
 State = Literal["posed", "ranked", "converged"]
 Array = npt.NDArray[np.float64]
 
-RANKING_EVALUATIONS = 8
+RANKING_EVALUATIONS = 4
 """Steps after which candidates are ranked; only those that could win go on."""
 
 

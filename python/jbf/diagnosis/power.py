@@ -135,7 +135,8 @@ class _Seen:
         if np.isfinite(found[1]):
             left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
             if left < NEARLY_ALL:
-                found = _found(runs, model, [wanted / left for wanted in least])
+                near = found[0] / float(np.sqrt(left))
+                found = _found(runs, model, [wanted / left for wanted in least], near)
         at = found[0] if np.isfinite(found[0]) else 1.0
         changes = runs.change(model, at)
         change = runs.shown(changes)[:, 0]
@@ -143,12 +144,14 @@ class _Seen:
         return cls(tuple(found), change, _ways(runs, model, at, change), share)
 
 
-def _found(runs: RunsAtHand, model: Strength, least: list[float]) -> list[float]:
-    found, times = [], 1.0
+def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0) -> list[float]:
+    """How many times its usual strength an effect has that is worth so much, of each."""
+    found, times, last = [], near, least[0]
     for wanted in least:
-        times = _times(runs, model, wanted, times)
+        # What an effect is worth grows as its square, nearly.
+        times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
         found.append(times)
-        times = times if np.isfinite(times) else 1.0
+        times, last = (times, wanted) if np.isfinite(times) else (near, least[0])
     return found
 
 

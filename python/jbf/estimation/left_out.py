@@ -3,18 +3,29 @@ runs several at a time."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
+from jbf.estimation.rows import triangular
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
 EVALUATIONS = 12
 """A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
+SHORT = 3.0
+"""Standard deviations a parameter by which a step is short: noise makes the rest of the runs ask
+for as much. From the end of a longer one a search goes on."""
+STRAIGHT = 0.05
+"""Share of a step's change of the prediction by which that may be off the derivatives' for the step
+to be the whole way."""
+NOTHING = 0.01
+"""Share of the residual that no prediction needs to be closer than."""
 MOST_FITS = 12
 """Fits without a run; of more runs groups are left out: so many folds of a cross-validation."""
 INSENSITIVE = 1e-4
@@ -46,26 +57,98 @@ def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False
     value): what only the left-out run could know must not leak into its prediction. With one run
     there is nothing to leave out, and the halves of the run take turns.
     """
-    campaign, samples = problem.campaign, solution.samples
-    count = len(campaign.prepared)
+    samples = solution.samples
+    count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
+    told = _Told.of(problem, solution)
     left: dict[int, Array] = {}
-    for group in _groups([p.run.name for p in campaign.prepared]):
+    for group in _groups([p.run.name for p in problem.campaign.prepared]):
         rest = [k for k in range(count) if k not in group]
-        part = _of(problem, campaign.only(rest))
-        kept = samples.only(rest)
-        start = _without_leak(problem, solution, rest)
-        if np.array_equal(start, solution.values):
-            # A law that misses the data badly is no place to extrapolate from.
-            step = _one_step(problem, solution, rest)
-            start = min((step, start), key=lambda v: part.square(v, kept))
-        values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
-        residuals = problem.residuals(values, group)
+        residuals = _predicted(problem, solution, told, group, rest)
         if apart:
             residuals = samples.only(group).without_deviations(residuals, solution.noise)
         left |= {i: r[samples.counted[i]] for i, r in zip(group, residuals, strict=True)}
     return [left[i] for i in range(count)]
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What each run tells of the parameters, by the derivatives at a solution.
+
+    Attributes
+    ----------
+    known
+        Sums of squares of the derivatives, one (k,) a run.
+    factors
+        Innovations and derivatives in few rows, a pair a run.
+    innovations
+        How many there are, of each run.
+    """
+
+    known: Array
+    factors: list[tuple[Array, Array]]
+    innovations: list[int]
+
+    @classmethod
+    def of(cls, problem: Problem, solution: Solution) -> _Told:
+        known, factors, innovations = [], [], []
+        for i in range(len(problem.campaign.prepared)):
+            jacobian, residual = solution.jacobian[i], solution.residuals[i]
+            counted = solution.samples.counted[i]
+            known.append(np.sum(jacobian[counted] ** 2, axis=0))
+            one = solution.samples.only([i])
+            r, j = one.stacked([residual], [jacobian], solution.noise)
+            factors.append(triangular(r, j))
+            innovations.append(len(r))
+        return cls(np.array(known), factors, innovations)
+
+    def step(self, rest: list[int]) -> tuple[Array, float]:
+        """The Gauss-Newton step to the rest of the runs, and its square in units of what their
+        noise makes of steps."""
+        r = np.concatenate([self.factors[i][0] for i in rest])
+        j = np.concatenate([self.factors[i][1] for i in rest])
+        step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
+        ahead = j @ step
+        count = max(sum(self.innovations[i] for i in rest), 1)
+        square = float(ahead @ ahead) * count / max(float(r @ r), 1e-300)
+        return np.asarray(step), square
+
+
+def _predicted(
+    problem: Problem, solution: Solution, told: _Told, group: list[int], rest: list[int]
+) -> list[Array]:
+    """Residuals, N, of runs that had no part in the fit to the rest."""
+    start = _without_leak(problem, solution, told.known, rest)
+    step: Array | None = None
+    if np.array_equal(start, solution.values):
+        way, square = told.step(rest)
+        there = problem.encode(solution.values) + way
+        step = problem.decode(there, solution.values)
+        inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
+        if inside and solution.converged and square <= SHORT**2 * len(way):
+            residuals = problem.residuals(step, group)
+            if _straight(solution, way, group, residuals):
+                return residuals
+    part = _of(problem, problem.campaign.only(rest))
+    kept = solution.samples.only(rest)
+    if step is not None:
+        # A law that misses the data badly is no place to extrapolate from.
+        start = min((step, start), key=lambda v: part.square(v, kept))
+    values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
+    return problem.residuals(values, group)
+
+
+def _straight(solution: Solution, way: Array, group: list[int], residuals: list[Array]) -> bool:
+    """Whether predictions of runs go along a step as their derivatives say."""
+    off, moved, size = 0.0, 0.0, 0.0
+    for i, there in zip(group, residuals, strict=True):
+        at = solution.samples.counted[i]
+        here, change = solution.residuals[i][at], (solution.jacobian[i] @ way)[at]
+        off += float(np.sum((here - change - there[at]) ** 2))
+        moved += float(np.sum(change**2))
+        size += float(np.sum(here**2))
+    return off <= STRAIGHT**2 * moved + (STRAIGHT * NOTHING) ** 2 * size
 
 
 def _groups(names: list[str]) -> list[list[int]]:
@@ -80,15 +163,9 @@ def _of(problem: Problem, campaign: Campaign) -> Problem:
     return Problem(campaign, problem.law, problem.clock, problem.effects, problem.fixed)
 
 
-def _without_leak(problem: Problem, solution: Solution, rest: list[int]) -> Array:
+def _without_leak(problem: Problem, solution: Solution, known: Array, rest: list[int]) -> Array:
     """The whole solution, less what only runs other than the rest know."""
     values: Array = solution.values.copy()
-    known = np.array(
-        [
-            np.sum(jacobian[counted] ** 2, axis=0)
-            for jacobian, counted in zip(solution.jacobian, solution.samples.counted, strict=True)
-        ]
-    )
     whole = known.sum(axis=0)
     pages = list(problem.parameters.values())
     for k, i in enumerate(problem.open):
@@ -97,13 +174,6 @@ def _without_leak(problem: Problem, solution: Solution, rest: list[int]) -> Arra
             null = page.null if page.null is not None and np.isfinite(page.null) else None
             values[i] = page.starts[0] if null is None else null
     return values
-
-
-def _one_step(problem: Problem, solution: Solution, rest: list[int]) -> Array:
-    """The Gauss-Newton step to the rest of the runs, from derivatives that are there already."""
-    r, j = solution.samples.stacked(solution.residuals, solution.jacobian, solution.noise, rest)
-    step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
-    return problem.decode(problem.encode(solution.values) + step, solution.values)
 
 
 def _halves(problem: Problem, solution: Solution) -> list[Array]:

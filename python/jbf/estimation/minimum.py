@@ -26,7 +26,7 @@ Method = Literal["dogbox", "trf"]
 
 MAX_EVALUATIONS = 60
 """Steps of a search that converges."""
-TRIAL_EVALUATIONS = 6
+TRIAL_EVALUATIONS = 3
 """Steps given to each starting point before the best goes on alone."""
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked,"""
@@ -202,7 +202,10 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
 
 
 def noise_at(problem: Problem, samples: Samples, values: Array) -> Noise:
-    """The noise description that fits the residuals at some values, the runs' deviations apart."""
-    residuals = samples.without_deviations(problem.residuals(values), WHITE)
+    """The noise description that fits the residuals at some values, the runs' deviations apart; of
+    many long runs, those of some."""
+    which = problem.searched
+    samples = samples if len(which) == len(samples.runs) else samples.only(which)
+    residuals = samples.without_deviations(problem.residuals(values, which), WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
     return estimate_noise(masked, samples.steps_s, samples.counted, problem.campaign.most_noise_n)

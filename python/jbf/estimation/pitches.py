@@ -18,10 +18,12 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.scales import moving_samples
 from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 LINES = 3
 """Highest lines of a spectrum that are tried, each of what the higher ones leave."""
@@ -36,7 +38,10 @@ PADDING = 8
 KNOTS = 8
 """Speeds each way between which friction over the speed is a line."""
 
+Knots = list[tuple[float, Array]]
+
 _known: WeakKeyDictionary[Campaign, dict[bool, tuple[float, ...]]] = WeakKeyDictionary()
+_left: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDictionary()
 
 
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
@@ -119,40 +124,71 @@ def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
 def _what_is_left(campaign: Campaign) -> tuple[Array, Array, Array]:
     """Place, m, what of the force no speed, acceleration or turn explains, N, and the speed, m/s,
     of the samples that move."""
-    moving = moving_samples(campaign)
-    pairs = list(zip(campaign.prepared, moving, strict=True))
-    angle = np.concatenate([p.motion.angle_rad[m] for p, m in pairs])
-    speed = np.concatenate([p.motion.velocity_m_s[m] for p, m in pairs])
-    slope = np.concatenate([p.motion.acceleration_m_s2[m] for p, m in pairs])
-    force = np.concatenate([p.friction_n[m] for p, m in pairs])
+    if campaign not in _left:
+        _left[campaign] = _without_the_known(campaign)
+    return _left[campaign]
+
+
+def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
+    pairs = list(zip(campaign.prepared, moving_samples(campaign), strict=True))
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
+    place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * arm
+    speed = np.concatenate([p.motion.velocity_m_s[m] for p, m in pairs])
     if len(speed) < PADDING * KNOTS:
-        return angle * arm, force, speed
-    of_run = np.repeat(np.arange(len(pairs)), [int(m.sum()) for _, m in pairs])
-    known = [slope, np.cos(angle), np.sin(angle), *_hats(speed)]
-    # Each run has its own load, and its own warmth.
-    known += [np.where(of_run == i, sign, 0.0) for i in range(len(pairs)) for sign in _ways(speed)]
-    columns = np.stack(known, axis=1)
-    scale = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
-    solution, *_ = np.linalg.lstsq(columns / scale, force, rcond=1e-9)
-    return angle * arm, force - (columns / scale) @ solution, speed
+        return place, np.concatenate([p.friction_n[m] for p, m in pairs]), speed
+    knots = _knots(speed)
+    # Each run has its own load, and its own warmth: its means each way go run by run (Frisch &
+    # Waugh 1933), and of the rest a triangular factor is all that many runs leave.
+    factors, scales = [], []
+    for p, m in pairs:
+        known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
+        scales.append(np.sum(known**2, axis=0))
+        rows = _less_means(np.column_stack([known, p.friction_n[m]]), p.motion.velocity_m_s[m])
+        factors.append(np.linalg.qr(rows, mode="r"))
+    scale = np.maximum(np.sqrt(np.sum(scales, axis=0) / len(speed)), 1e-300)
+    factor = np.concatenate(factors)
+    solution, *_ = np.linalg.lstsq(factor[:, :-1] / scale, factor[:, -1], rcond=1e-9)
+    rest = []
+    for p, m in pairs:
+        known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
+        left = p.friction_n[m] - (known / scale) @ solution
+        rest.append(_less_means(left[:, None], p.motion.velocity_m_s[m])[:, 0])
+    return place, np.concatenate(rest), speed
 
 
-def _ways(speed: Array) -> tuple[Array, Array]:
-    """One, and the direction of motion."""
-    return np.ones_like(speed), np.sign(speed)
+def _known_of(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
+    """What a run's force may depend on beside the place, shape (n, k)."""
+    slope = p.motion.acceleration_m_s2[moving]
+    return np.stack([slope, np.cos(angle), np.sin(angle), *_hats(speed, knots)], axis=1)
 
 
-def _hats(speed: Array) -> list[Array]:
-    """Lines between knots over the speed, for each way: any steady curve."""
+def _less_means(rows: Array, speed: Array) -> Array:
+    """Rows less their means in each direction of motion."""
+    found = rows.copy()
+    for way in (speed > 0.0, speed < 0.0):
+        if way.any():
+            found[way] -= np.mean(rows[way], axis=0)
+    return found
+
+
+def _knots(speed: Array) -> Knots:
+    """Speeds between which any steady curve is a line, for each way."""
     found = []
     for way in (-1.0, 1.0):
         there = speed * way > 0.0
-        if not there.any():
-            continue
-        knots = np.unique(np.quantile(speed[there], np.linspace(0.0, 1.0, KNOTS)))
-        for hat in np.eye(len(knots)):
-            found.append(np.where(there, np.interp(speed, knots, hat), 0.0))
+        if there.any():
+            knots = np.unique(np.quantile(speed[there], np.linspace(0.0, 1.0, KNOTS)))
+            found.append((way, knots))
+    return found
+
+
+def _hats(speed: Array, knots: Knots) -> list[Array]:
+    """Lines between knots over the speed, for each way."""
+    found = []
+    for way, places in knots:
+        there = speed * way > 0.0
+        for hat in np.eye(len(places)):
+            found.append(np.where(there, np.interp(speed, places, hat), 0.0))
     return found
 
 

@@ -140,14 +140,20 @@ class Problem:
         return np.concatenate(r), np.concatenate(j), count
 
     @cached_property
-    def thinned(self) -> Problem:
-        """The same of fewer runs, where they are long: a search finds its way on those."""
+    def searched(self) -> list[int]:
+        """The runs on which a search finds its way: some of them, where they are long."""
         runs = self.campaign.prepared
-        which = every_so_many([len(p.friction_n) for p in runs], [p.run.name for p in runs])
-        if len(which) == len(runs):
+        return every_so_many([len(p.friction_n) for p in runs], [p.run.name for p in runs])
+
+    @cached_property
+    def thinned(self) -> Problem:
+        """The same of those runs."""
+        which = self.searched
+        if len(which) == len(self.campaign.prepared):
             return self
         few = copy(self)
         few.campaign = self.campaign.only(which)
+        del few.searched
         return few
 
     def _runs(self, which: Sequence[int] | None) -> Sequence[Prepared]:

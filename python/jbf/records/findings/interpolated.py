@@ -51,6 +51,8 @@ ROUNDING = 1e-7
 """Share of the whole range below which noise is none: that of digits, and of the search."""
 SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
+AT_ONCE = 2**13
+"""Samples of polygons that are solved at once."""
 EVEN = 1e-3
 """Samples are evenly spaced where they are off an even grid by less than this share of a step."""
 MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
@@ -99,14 +101,13 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
-    tried = [
-        (_polygon(t, y, p * step, f * p * step)[0], p * step, f * p * step)
-        for p in SHORT.tolist()
-        for f in PHASES.tolist()
-    ]
+    periods = np.repeat(SHORT * step, len(PHASES))
+    phases = np.tile(PHASES, len(SHORT)) * periods
+    lefts = _lefts(t, y, periods, phases)
     # Through a curve that a filter has made smooth any such polygon goes nearly.
-    usual = float(np.median([left for left, _, _ in tried]))
-    for left, period, phase in sorted(tried)[:FOLLOWED]:
+    usual = float(np.median(lefts))
+    best = np.argsort(lefts, kind="stable")[:FOLLOWED]
+    for left, period, phase in np.stack([lefts, periods, phases])[:, best].T.tolist():
         if left > LIKELY_SHORT * noise:
             break
         period, phase = _sharpened(t, y, period, phase)
@@ -231,25 +232,46 @@ def _even_looks(n: int) -> tuple[tuple[float, Array], ...]:
 
 def _polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
     """What the best polygon leaves (RMS a degree of freedom), and its corners: instants, values."""
-    place = (time - time[0] - phase) / period
-    first = int(np.floor(place[0]))
-    low = np.floor(place).astype(int) - first
-    share = place - first - low
-    count = int(low[-1]) + 2
+    left, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
+    knots = time[0] + phase + period * (first[0] + np.arange(len(corners)))
+    return float(left[0]), knots, corners
+
+
+def _lefts(time: Array, values: Array, period: Array, phase: Array) -> Array:
+    """What the best polygons of several periods and phases leave, shape (m,)."""
+    at_once = max(AT_ONCE // len(time), 1)
+    parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
+    return np.concatenate([_solved(time, values, period[p], phase[p])[0] for p in parts])
+
+
+def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
+    """What the best polygons leave, shape (m,), all their corners in a row, and each one's first.
+
+    Each is a tridiagonal system; in a row they are one, no two of them coupled.
+    """
+    place = (time - time[0] - phase[:, None]) / period[:, None]
+    whole = np.floor(place)
+    share = (place - whole).ravel()
+    low = whole.astype(np.intp)
+    first = low[:, 0].copy()
+    count = low[:, -1] - first + 2
+    offset = np.cumsum(count) - count
+    at = (low + (offset - first)[:, None]).ravel()
+    total = int(count.sum())
     level = values[0]
-    y = values - level
-    diagonal = np.bincount(low, (1.0 - share) ** 2, count)
-    diagonal += np.bincount(low + 1, share**2, count)
-    beside = np.bincount(low, (1.0 - share) * share, count)
-    right = np.bincount(low, (1.0 - share) * y, count) + np.bincount(low + 1, share * y, count)
+    y = np.tile(values - level, len(period))
+    rest = 1.0 - share
+    diagonal = np.bincount(at, rest**2, total) + np.bincount(at + 1, share**2, total)
+    beside = np.bincount(at, rest * share, total)
+    right = np.bincount(at, rest * y, total) + np.bincount(at + 1, share * y, total)
     # A corner that no sample is near (a gap, an end) is not known.
     band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
-    corners = linalg.solveh_banded(band, right)
-    gap = y - (1.0 - share) * corners[low] - share * corners[low + 1]
+    corners = linalg.solveh_banded(band, right, overwrite_ab=True, overwrite_b=True)
+    gap = (y - rest * corners[at] - share * corners[at + 1]).reshape(place.shape)
+    free = len(time) - np.add.reduceat((diagonal > 1e-6).astype(np.intp), offset)
     corners = np.where(diagonal > 1e-3, corners + level, np.nan)
-    knots = time[0] + phase + period * (first + np.arange(count))
-    free = max(len(time) - int(np.sum(diagonal > 1e-6)), 1)
-    return float(np.sqrt(np.sum(gap**2) / free)), knots, corners
+    left: Array = np.sqrt(np.sum(gap**2, axis=1) / np.maximum(free, 1))
+    return left, corners, first
 
 
 def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple[float, float]:
@@ -257,13 +279,14 @@ def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple
     length = float(time[-1] - time[0])
     reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
     best = (np.inf, period, phase)
+    steps = np.linspace(-1.0, 1.0, 5)
     for _ in range(9):
-        _, p0, f0 = best
-        for p in p0 + reach_period * np.linspace(-1.0, 1.0, 5):
-            for f in f0 + reach_phase * np.linspace(-1.0, 1.0, 5):
-                left, _, _ = _polygon(time, values, float(p), float(f))
-                if left < best[0]:
-                    best = (left, float(p), float(f))
+        periods = np.repeat(best[1] + reach_period * steps, len(steps))
+        phases = np.tile(best[2] + reach_phase * steps, len(steps))
+        left = _lefts(time, values, periods, phases)
+        k = int(np.argmin(left))
+        if left[k] < best[0]:
+            best = (float(left[k]), float(periods[k]), float(phases[k]))
         reach_period *= 0.5
         reach_phase *= 0.5
     return best[1], best[2]

@@ -28,7 +28,9 @@ from jbf.records.run_files import read_runs
 if TYPE_CHECKING:
     from jbf import control
     from jbf.comparison.comparison import Comparison, compare
-    from jbf.diagnosis import Diagnosis, Experiment, Limits, diagnose, diagnose_many
+    from jbf.diagnosis import Diagnosis, Experiment, Limits, Policy, diagnose, diagnose_many
+    from jbf.diagnosis.check import Check, check
+    from jbf.diagnosis.plan import Plan, plan
     from jbf.diagnosis.planned import PlannedPower, planned_power
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
@@ -50,6 +52,11 @@ _LATER = {
     "Limits": "jbf.diagnosis",
     "diagnose": "jbf.diagnosis",
     "diagnose_many": "jbf.diagnosis",
+    "Check": "jbf.diagnosis.check",
+    "check": "jbf.diagnosis.check",
+    "Plan": "jbf.diagnosis.plan",
+    "plan": "jbf.diagnosis.plan",
+    "Policy": "jbf.diagnosis",
     "PlannedPower": "jbf.diagnosis.planned",
     "planned_power": "jbf.diagnosis.planned",
     "Fit": "jbf.estimation.fit",
@@ -68,6 +75,7 @@ _LATER = {
 __all__ = [
     "Bearing",
     "Bootstrap",
+    "Check",
     "Comparison",
     "Diagnosis",
     "Drive",
@@ -85,7 +93,9 @@ __all__ = [
     "Model",
     "Parameter",
     "ParameterValue",
+    "Plan",
     "PlannedPower",
+    "Policy",
     "Rig",
     "Run",
     "Trajectory",
@@ -93,6 +103,7 @@ __all__ = [
     "__version__",
     "batch",
     "bootstrap",
+    "check",
     "compare",
     "control",
     "diagnose",
@@ -106,6 +117,7 @@ __all__ = [
     "laws",
     "load_effects",
     "look",
+    "plan",
     "planned_power",
     "read_map",
     "read_recording",

@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 from jbf import Comparison, Diagnosis, Fit, Model, ParameterValue, Rig, Run, compare, fit
 from jbf.diagnosis import Remainder, Step, Trial
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT
 
 Array = npt.NDArray[np.float64]
 Friction = Callable[[Array, Array, Array], Array]
@@ -157,6 +159,7 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         before=before,
         after=after if kept else before,
         elapsed_s=12.5,
+        level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
         not_tried={"position_ripple": "not every run has the shaft's angle"},
         unseen=("backlash",) if verdict == "adequate" else (),
     )

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from jbf import Fit, Model, Rig, Run, compare, fit
 from jbf.diagnosis import Diagnosis, Remainder, Step, Trial
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT
 
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
 DRAG_N = 2.0
@@ -117,6 +119,7 @@ def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[s
             before=first,
             after=last,
             elapsed_s=12.5,
+            level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
         )
 
     return make

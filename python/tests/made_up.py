@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 from jbf import Rig
+from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from scipy import stats
 
 N = 1000
 BARE_N = 2.0
@@ -140,8 +142,21 @@ class MadeUp:
             if len(s) == len(here) + 1 and here < s
         }
 
+    @property
+    def level(self) -> Level:
+        return Level.shared(self.policy, len(self.names), N, BARE_N)
+
+    def calibrate(self, present: Sequence[str]) -> None:
+        self.asked.append(("calibrate", frozenset(present)))
+
     def tell(self, message: str, done: int, total: int) -> None:
         pass
+
+
+def price(parameters: int, candidates: int) -> float:
+    """What a gain of so many parameters must exceed: one in a hundred shared among candidates, 22
+    for what recordings do, and log n for each parameter beyond the first."""
+    return float(stats.chi2.isf(0.01 / candidates, 1) + 22.0 + (parameters - 1) * np.log(N))
 
 
 def sets(gains: Mapping[str, float]) -> dict[Set, float]:

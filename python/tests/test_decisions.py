@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, price
+from jbf.diagnosis.evidence import evidence
 from jbf.diagnosis.ledger import Step, Trial
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import select
@@ -16,7 +16,7 @@ from jbf.diagnosis.selection import left_out_confirms
 from jbf.diagnosis.standing import as_it_ended
 from jbf.diagnosis.verdict import name_stands, verdict
 from jbf.estimation.likelihood import independent_share, likelihood_gain
-from made_up import MadeUp, N, sets, solution
+from made_up import MadeUp, N, price, sets, solution
 from scipy import signal
 
 
@@ -72,17 +72,6 @@ def test_what_left_out_runs_must_confirm(
     assert left_out_confirms(strength, share, better, DEFAULT) == confirmed
 
 
-def test_the_price_is_schwarzs_and_that_of_the_best_of_many() -> None:
-    # Schwarz (1978): log n a parameter, in twice the log likelihood.
-    assert price(0, 1000, 1, DEFAULT) == 20.0
-    assert price(3, 1000, 1, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
-        13.81551, abs=1e-4
-    )
-    assert price(1, 1000, 12, DEFAULT) - price(1, 1000, 1, DEFAULT) == pytest.approx(
-        4.96981, abs=1e-4
-    )
-
-
 # ---- evidence ---------------------------------------------------------------------------------
 
 
@@ -91,12 +80,10 @@ def test_evidence_of_made_up_models() -> None:
     bare, one, two = solution((), 0.0), solution(("a",), 100.0), solution(("a", "b"), 150.0)
     assert likelihood_gain(one, bare) == pytest.approx(100.0)
     assert likelihood_gain(bare, two) == pytest.approx(-150.0)
-    assert evidence(candidates, one, bare) == pytest.approx(100.0 - price(1, N, 2, DEFAULT))
-    assert evidence(candidates, two, bare) == pytest.approx(150.0 - price(2, N, 2, DEFAULT))
+    assert evidence(candidates, one, bare) == pytest.approx(100.0 - price(1, 2))
+    assert evidence(candidates, two, bare) == pytest.approx(150.0 - price(2, 2))
     smooth = solution(("a",), 100.0, smooth=3)
-    assert evidence(candidates, smooth, bare) == pytest.approx(
-        0.6 * 100.0 - price(1, N, 2, DEFAULT), abs=0.5
-    )
+    assert evidence(candidates, smooth, bare) == pytest.approx(0.6 * 100.0 - price(1, 2), abs=0.5)
 
 
 @pytest.mark.parametrize("phi", [0.0, 0.5, 0.9])
@@ -168,7 +155,7 @@ def test_a_stand_in_found_first_goes_when_the_truth_is_whole() -> None:
 
 @pytest.mark.parametrize(("strength", "told"), [(61.0, True), (59.0, False)])
 def test_what_fits_and_does_not_predict_is_structure(strength: float, told: bool) -> None:
-    gains = {"": 0.0, "sensor_lag": price(1, N, 2, DEFAULT) + strength}
+    gains = {"": 0.0, "sensor_lag": price(1, 2) + strength}
     left_out = {frozenset[str](): 2.0, frozenset(["sensor_lag"]): 2.1}
     found = MadeUp(["sensor_lag", "sensor_drift"], sets(gains), left_out=left_out)
     selected = select(cast(Candidates, found), 0.5)

@@ -13,6 +13,7 @@ from by_hand import Array, Friction, coulomb, four_runs, wandering
 from jbf import Diagnosis, Rig, Run, diagnose, effects
 from jbf.diagnosis import Trial
 from jbf.reporting.words import verdict_sentence
+from scipy import stats
 
 NOISE_N = 0.1
 RECORDED = {"angle", "path", "position", "loads", "temperatures"}
@@ -89,8 +90,10 @@ def trial(d: Diagnosis, effect: str, step: int = 0) -> Trial:
 
 
 def price(parameters: int, samples: int) -> float:
-    """What chance gains: prior odds, Schwarz's price of parameters, and of the best of many."""
-    return 20.0 + parameters * float(np.log(samples)) + 2.0 * float(np.log(CANDIDATES))
+    """What must be gained: more than chance, or a change of 3 % of the residual; for each parameter
+    beyond the first log n (Schwarz 1978)."""
+    least = max(float(stats.chi2.isf(0.01 / CANDIDATES, 1)) + 22.0, 0.03**2 * samples)
+    return least + max(parameters - 1, 0) * float(np.log(samples))
 
 
 def test_evidence_is_the_gain_less_what_chance_would_gain() -> None:

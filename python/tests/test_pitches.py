@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from jbf import Rig, Run
-from jbf.diagnosis import Policy
-from jbf.diagnosis.evidence import price
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.pitches import known_pitches, pitches
 from jbf.estimation.problem import Problem
@@ -62,10 +62,10 @@ def test_of_noise_the_highest_line_gains_less_than_its_parameters_cost() -> None
             fitted = pair @ np.linalg.lstsq(pair, noise, rcond=None)[0]
             gains.append(float(np.sum(fitted**2)) / NOISE_N**2)
     samples = sum(len(r) for r in some)
-    without_margin = price(3, samples, 1, Policy(margin=0.0))
+    asked = Level.shared(DEFAULT, 20, samples, NOISE_N).price(3, samples)
     # More than two parameters of noise alone would gain: the search does find something.
-    assert 4.0 < np.median(gains) < 0.8 * without_margin
-    assert max(gains) < without_margin
+    assert 4.0 < np.median(gains) < 0.8 * asked
+    assert max(gains) < asked
 
 
 def test_a_lower_wave_is_found_beside_a_higher_one() -> None:

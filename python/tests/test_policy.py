@@ -15,6 +15,7 @@ from jbf.diagnosis import Policy, late_channels, recipe
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
+from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import Selected, select, step
 from jbf.diagnosis.selection import (
@@ -33,17 +34,20 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.records.findings.finding import Finding
 from jbf.records.quantities import OF_BEARING
-from made_up import MadeUp, N, sets
+from made_up import MadeUp, N, price, sets
 from policy_gates import GATES, linear, looked_at
 from scipy import stats
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "drive_compliance"]
-PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
+PRICE = price(1, 4)
 
 
 def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
     assert Policy().to_dict() == {
-        "margin": 20.0,
+        "false_alarms": 0.01,
+        "imperfection": 22.0,
+        "indifference": 0.03,
+        "indifference_n": 0.0,
         "tie": 8.0,
         "most_effects": 5,
         "least_left_out_gain": 0.5,
@@ -51,7 +55,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "leader_rms": 1.25,
         "weak": 60.0,
         "refused_rms": 0.99,
-        "least_score": 10.0,
+        "least_score": 0.3,
         "least_swap": 0.05,
         "contender": 60.0,
         "close": 0.6,
@@ -127,7 +131,9 @@ def swapped(policy: Policy) -> object:
 def refused(policy: Policy) -> object:
     """A candidate that fits down to 0.99 of the RMS, and is refused for other reasons."""
     gains = sets({"": 0.0, "sensor_lag": -2.0 * N * float(np.log(0.99))})
-    candidates = MadeUp(["sensor_lag"], gains, policy=replace(policy, weak=-100.0))
+    candidates = MadeUp(
+        ["sensor_lag"], gains, policy=replace(policy, weak=-100.0, false_alarms=1e-9)
+    )
     return select(cast(Candidates, candidates), 1.0).refused
 
 
@@ -202,6 +208,13 @@ PLACES = np.arange(20_000)
 EVEN = 0.6745 * np.where(PLACES % 2, 1.0, -1.0)[:501]
 # One in eight is 2 in place of 0.67.
 GENTLE = np.where(PLACES % 8 == 0, 2.0, 0.6745)[:501] * np.where(PLACES % 2, 1.0, -1.0)[:501]
+
+
+def long_level(policy: Policy) -> float:
+    """What one parameter must gain in 100,000 samples of 0.5 N."""
+    return Level.shared(policy, 4, 1e5, 0.5).price(1, 100_000)
+
+
 # Two in five are 4 in place of 0.67: the median says one, the mean square 6.7.
 HEAVY = np.where(PLACES % 5 < 2, 4.0, 0.6745) * np.where(PLACES % 2, 1.0, -1.0)
 BURST_SIZE = float(np.sqrt(0.008 / 0.992 * np.sum(HEAVY**2) / 12.0))
@@ -210,16 +223,20 @@ LINE = 0.6 * 280.0 - 60.0
 """Evidence from which on a candidate converges beside a leader of 280."""
 
 TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
-    "margin": (selected({"sensor_lag": PRICE}), 19.9, 20.1),
+    "false_alarms": (selected({"sensor_lag": PRICE}), 0.0099, 0.0101),
+    "imperfection": (selected({"sensor_lag": PRICE}), 21.9, 22.1),
+    "indifference": (lambda p: long_level(p) > 90.0, 0.0299, 0.0301),
+    # 13 mN beside a noise of half a newton are 2.6 % of it.
+    "indifference_n": (lambda p: long_level(replace(p, indifference=0.0)) > 39.0, 0.0, 0.013),
     "tie": (selected({"sensor_lag": 300.0, "sensor_drift": 292.0}), 7.9, 8.1),
     "most_effects": (rounds, 4, 5),
     "least_left_out_gain": (lambda p: left_out_confirms(30.0, 0.5, 1.0, p), 0.49, 0.51),
     "least_better_runs": (lambda p: left_out_confirms(99.0, -1.0, 0.66, p), 0.65, 0.67),
     "weak": (lambda p: left_out_confirms(60.0, 0.1, 0.0, p), 59.0, 61.0),
     "least_score": (
-        selected({"sensor_lag": 300.0}, scores={frozenset(["sensor_lag"]): 10.0}),
-        9.9,
-        10.1,
+        selected({"sensor_lag": 300.0}, scores={frozenset(["sensor_lag"]): 0.3 * PRICE}),
+        0.29,
+        0.31,
     ),
     "refused_rms": (refused, 0.989, 0.991),
     "late_apart": (apart, 0.079, 0.081),

@@ -17,10 +17,10 @@ from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candida
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.noise import WHITE
-from made_up import BARE_N, SAMPLES, MadeUp, N, sets
+from made_up import BARE_N, SAMPLES, MadeUp, N, price, sets
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
-PRICE = 20.0 + np.log(N) + 2.0 * np.log(4)
+PRICE = price(1, 4)
 """Of one parameter in a thousand samples, the best of four candidates."""
 
 
@@ -41,13 +41,13 @@ def outcomes(found: Round) -> dict[str, str]:
 
 def test_the_leader_is_added_and_those_close_behind_tie() -> None:
     found = tried(
-        made({"sensor_offset": 200, "sensor_drift": 193, "sensor_lag": 190, "inertia_leak": 20})
+        made({"sensor_offset": 200, "sensor_drift": 193, "sensor_lag": 190, "inertia_leak": 9})
     )
     assert found.leader == "sensor_offset"
     assert [t.effect for t in found.trials] == FOUR
     assert outcomes(found) == dict(zip(FOUR, ("added", "ties", "rejected", "no gain"), strict=True))
     evidence = [t.evidence for t in found.trials]
-    assert evidence == pytest.approx([g - PRICE for g in (200, 193, 190, 20)], abs=1e-6)
+    assert evidence == pytest.approx([g - PRICE for g in (200, 193, 190, 9)], abs=1e-6)
     assert found.trials[1].reason == "fits as well as sensor_offset"
     assert found.trials[2].reason == "sensor_offset leads by 10 in evidence"
 
@@ -62,12 +62,12 @@ def test_nothing_is_added_where_nothing_gains_more_than_chance() -> None:
 
 
 def test_a_fit_that_is_much_better_is_not_called_chance() -> None:
-    """2 N down to 1.8 N in twenty samples at a time: a gain of 200 is worth but a few."""
+    """2 N down to 1.8 N in a hundred samples at a time: a gain of 200 is worth but a few."""
     for gain, words in (
         (2.0 * N * np.log(2.0 / 1.8), "fits better, but"),
         (50.0, "no more than chance"),
     ):
-        (trial,) = tried(made({"sensor_lag": gain}, names=["sensor_lag"], smooth=20)).trials
+        (trial,) = tried(made({"sensor_lag": gain}, names=["sensor_lag"], smooth=100)).trials
         assert trial.outcome == "no gain"
         assert trial.evidence < 0.0
         assert words in trial.reason
@@ -77,7 +77,9 @@ def test_the_price_rises_with_candidates_and_parameters() -> None:
     gains = {"sensor_lag": 100.0}
     few, many = made(gains), made(gains, names=[*FOUR, "wear_in", "backlash", "time_delay"])
     gap = tried(few).trials[0].evidence - tried(many).trials[0].evidence
-    assert gap == pytest.approx(2.0 * np.log(7 / 4))
+    assert gap == pytest.approx(price(1, 7) - price(1, 4))
+    # One in a hundred, shared among seven: exceeded by a chi-square 14 times in 10,000.
+    assert price(1, 7) == pytest.approx(32.17, abs=0.01)
     assert tried(few).trials[0].evidence == pytest.approx(100.0 - PRICE)
 
 
@@ -163,7 +165,8 @@ def fitted(candidates: MadeUp, what: str) -> set[str]:
 
 
 def test_an_effect_whose_score_promises_nothing_is_not_fitted() -> None:
-    scores = {frozenset(["sensor_lag"]): 9.9, frozenset(["sensor_drift"]): 10.1}
+    scores = {frozenset(["sensor_lag"]): 0.29 * PRICE}
+    scores |= {frozenset(["sensor_drift"]): 0.31 * PRICE}
     candidates = made({"sensor_lag": 500.0, "sensor_drift": 40.0}, scores=scores)
     found = tried(candidates)
     assert "sensor_lag" not in fitted(candidates, "rank")
@@ -171,11 +174,12 @@ def test_an_effect_whose_score_promises_nothing_is_not_fitted() -> None:
     assert outcomes(found)["sensor_lag"] == "no gain"
     # It has gained nothing, and pays for no parameter.
     last = next(t for t in found.trials if t.effect == "sensor_lag")
-    assert last.evidence == pytest.approx(-(20.0 + 2.0 * np.log(4)))
+    assert last.evidence == pytest.approx(-PRICE)
 
 
 def test_a_score_of_a_smooth_error_counts_for_less() -> None:
-    scores = {frozenset(["sensor_lag"]): 16.0, frozenset(["sensor_drift"]): 17.0}
+    scores = {frozenset(["sensor_lag"]): 0.49 * PRICE}
+    scores |= {frozenset(["sensor_drift"]): 0.51 * PRICE}
     candidates = made({"sensor_lag": 500.0, "sensor_drift": 500.0}, scores=scores, smooth=3)
     tried(candidates)
     assert {"sensor_lag", "sensor_drift"} & fitted(candidates, "rank") == {"sensor_drift"}
@@ -202,11 +206,10 @@ def test_a_candidate_converges_where_its_next_step_promises_enough() -> None:
 
 def test_an_effect_of_many_peaks_gets_a_second_look_where_it_could_lead() -> None:
     names = ["sensor_offset", "drive_compliance"]
-    price = 20.0 + np.log(N) + 2.0 * np.log(2)
     for share, leader in ((0.55, "drive_compliance"), (0.45, "sensor_offset")):
-        ring = price + share * 200.0
+        ring = price(1, 2) + share * 200.0
         candidates = made(
-            {"sensor_offset": price + 200.0, "drive_compliance": ring},
+            {"sensor_offset": price(1, 2) + 200.0, "drive_compliance": ring},
             names=names,
             peaks=sets({"drive_compliance": 900.0}),
         )

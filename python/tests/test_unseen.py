@@ -9,6 +9,7 @@ from jbf import Rig, effects
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.unseen import chance_to_name, unseen
 from jbf.estimation.campaign import Campaign
+from scipy import stats
 
 
 def hidden(noise_n: float) -> tuple[str, ...]:
@@ -19,7 +20,7 @@ def hidden(noise_n: float) -> tuple[str, ...]:
 def test_an_offset_hides_where_noise_makes_it_cheaper_than_its_price() -> None:
     (usual_n,) = next(p for p in effects()["sensor_offset"].parameters).starts
     samples, candidates = 2004, 12
-    price = 20.0 + np.log(samples) + 2.0 * np.log(candidates)
+    price = stats.chi2.isf(0.01 / candidates, 1) + 22.0
     # Two runs go each way, so the law cannot take the offset for its own.
     turns_n = usual_n * np.sqrt(samples / price)
     assert "sensor_offset" not in hidden(0.85 * turns_n)

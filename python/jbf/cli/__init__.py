@@ -21,8 +21,8 @@ from typing import Any, NoReturn
 from jbf.errors import InputError, did_you_mean
 
 COMMANDS = (
-    "demo", "import", "compare", "fit", "diagnose", "power", "predict", "export", "effects",
-    "control",
+    "demo", "import", "compare", "fit", "diagnose", "power", "check", "plan", "predict", "export",
+    "effects", "control",
 )  # fmt: skip
 """Modules of this package, in the order in which help lists them."""
 _MODULES = {"import": "import_files"}

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jbf.cli import diagnose_many, hold_out, inputs, outputs
+from jbf.cli import diagnose_many, hold_out, inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -34,6 +34,7 @@ def add(commands: Commands) -> None:
     parser.set_defaults(law=None)
     add_own(parser)
     hold_out.add(parser)
+    level.add(parser)
     _add_next_run(parser)
     diagnose_many.add(parser)
 
@@ -90,6 +91,7 @@ def _limits(arguments: argparse.Namespace) -> Limits:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
+    policy = level.policy(arguments)
     if arguments.many is not None:
         if arguments.hold_out:
             raise InputError(
@@ -123,6 +125,7 @@ def run(arguments: argparse.Namespace) -> int:
             law=inputs.law_for(rig, arguments.law),
             clock=arguments.clock,
             limits=limits,
+            policy=policy,
             progress=report,
         )
         if arguments.report:

@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jbf.cli import outputs
+from jbf.cli import level, outputs
 from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.records.folder import campaigns_in
@@ -60,6 +60,7 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
             law=arguments.law or "journal",
             clock=arguments.clock,
             limits=limits,
+            policy=level.policy(arguments),
         )
     texts: dict[str, str] = {}
     for name, result in found.items():

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
-from jbf.cli import inputs, outputs
+from jbf.cli import inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_runs, command
 from jbf.errors import InputError
 from jbf.models.catalogue import parameters_of
 from jbf.models.model import Model
 from jbf.records.run_files import read_runs
 from jbf.reporting.json import json_text
+
+if TYPE_CHECKING:
+    from jbf.cli import Parser
 
 
 def add(commands: Commands) -> None:
@@ -21,6 +25,16 @@ def add(commands: Commands) -> None:
         "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
     )
     add_runs(parser)
+    add_noise(parser)
+    level.add(parser)
+    add_json(parser)
+    add_law(parser)
+    parser.set_defaults(law=None)
+    add_own(parser)
+
+
+def add_noise(parser: Parser) -> None:
+    """--noise-n."""
     parser.add_argument(
         "--noise-n",
         metavar="X",
@@ -28,9 +42,21 @@ def add(commands: Commands) -> None:
         help="standard deviation of the noise on the friction (of a rotary drive in N m); of a "
         "model that was fitted what the fit left",
     )
-    add_json(parser)
-    add_law(parser)
-    add_own(parser)
+
+
+def noise_n(arguments: argparse.Namespace, model: Model) -> float:
+    """The noise that is asked for, or that a fit left.
+
+    Raises
+    ------
+    InputError
+        Neither is there.
+    """
+    left = model.fit.get("rms_n")  # N
+    found = left if arguments.noise_n is None else arguments.noise_n
+    if found is None or isinstance(found, str):
+        raise InputError(problem="--noise-n is missing", mend="say how large the noise will be")
+    return float(found)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -39,23 +65,27 @@ def run(arguments: argparse.Namespace) -> int:
 
     wanted = {"--json": arguments.json}
     outputs.check(wanted, [arguments.rig, *arguments.runs])
-    model = _model(arguments)
-    left = model.fit.get("rms_n")  # N
-    noise_n = left if arguments.noise_n is None else arguments.noise_n
-    if noise_n is None or isinstance(noise_n, str):
-        raise InputError(problem="--noise-n is missing", mend="say how large the noise will be")
+    model = machine(arguments)
+    size_n = noise_n(arguments, model)
     runs = read_runs(arguments.runs, model.rig, need_friction=False)
-    found = planned_power(model, runs, noise_n=noise_n)
+    found = planned_power(model, runs, noise_n=size_n, policy=level.policy(arguments))
     if arguments.json:
         outputs.write({arguments.json: json_text(found.to_dict())})
     outputs.say(found.summary(), wanted)
     return 0
 
 
-def _model(arguments: argparse.Namespace) -> Model:
+def machine(arguments: argparse.Namespace) -> Model:
     """A model file, or a rig under a law at the catalogue's usual values."""
     if inputs.is_model(arguments.rig):
+        if arguments.law is not None:
+            raise InputError(
+                file="--law",
+                problem="goes with a rig, and a model has its law",
+                mend="leave it out",
+            )
         return inputs.model(arguments.rig)
-    rig = inputs.rig(arguments.rig, arguments.law)
-    values = {name: page.starts[0] for name, page in parameters_of(arguments.law, ()).items()}
-    return Model(rig, arguments.law, (), values, arguments.clock)
+    law = arguments.law or "journal"
+    rig = inputs.rig(arguments.rig, law)
+    values = {name: page.starts[0] for name, page in parameters_of(law, ()).items()}
+    return Model(rig, law, (), values, arguments.clock)

@@ -15,11 +15,12 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from jbf.diagnosis.level import Directions, Level, calibrated, score_test
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
 from jbf.estimation.left_out import left_out_by_run
-from jbf.estimation.likelihood import likelihood_gain, score_gain
+from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import approach, search_peaks, settle
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -51,6 +52,8 @@ class Fitted:
     score
         What its score test promised beside the first model that asked, in twice the log
         likelihood; infinite where the null is out of a step's reach.
+    directions
+        Where its score was tested; until the level of the tests has been calibrated by them.
     peaks_searched
         True once its other peaks were looked for.
     left_out
@@ -62,6 +65,7 @@ class Fitted:
     state: State = "posed"
     solution: Solution | None = None
     score: float | None = None
+    directions: Directions | None = None
     peaks_searched: bool = False
     left_out: dict[bool, tuple[Array, Array]] = field(default_factory=dict)
 
@@ -97,6 +101,8 @@ class Candidates:
         self.before = before
         self.policy, self.progress = policy, progress
         self._fitted: dict[frozenset[str], Fitted] = {}
+        self._level: Level | None = None
+        self._levels: dict[frozenset[str], Level] = {}
 
     # ---- which effects ----------------------------------------------------------------------
 
@@ -163,8 +169,33 @@ class Candidates:
             else:
                 known = self._values_of(near)
                 starts = fitted.problem.starts({**known, **nulls})
-                fitted.score = max(score_gain(fitted.problem, s, near) for s in starts)
+                fitted.score, fitted.directions = score_test(fitted.problem, starts, near, added)
         return fitted.score
+
+    # ---- the level of the tests -------------------------------------------------------------
+
+    @property
+    def level(self) -> Level:
+        """What a gain must exceed; beside the bare law, until it was calibrated."""
+        if self._level is None:
+            self._level = self._beside(())
+        return self._level
+
+    def calibrate(self, present: Sequence[str]) -> None:
+        """Ask the residual of a model how often it makes so large a gain by chance."""
+        key = frozenset(present)
+        if key not in self._levels:
+            tested = [self.fitted((*present, name)) for name in self.names if name not in key]
+            directions = [f.directions for f in tested if f.directions is not None]
+            self._levels[key] = calibrated(self._beside(present), directions)
+            for fitted in tested:
+                fitted.directions = None
+        self._level = self._levels[key]
+
+    def _beside(self, present: Sequence[str]) -> Level:
+        base = self.converge(present)
+        samples = effective_share(base) * base.samples.count
+        return Level.shared(self.policy, len(self.names), samples, base.rms_n)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit these effects well enough to rank them, from a smaller model's solution."""
@@ -267,7 +298,8 @@ class Candidates:
             return np.inf
         square = self.fitted(near.effects).problem.square(near.values)
         samples = self.campaign.samples.count
-        return square * float(np.exp(-self.policy.least_score / samples))
+        shows = self.policy.least_score * self.level.price(1, samples)
+        return square * float(np.exp(-shows / samples))
 
     def tell(self, message: str, done: int, total: int) -> None:
         """Report progress."""

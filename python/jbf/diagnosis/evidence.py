@@ -1,15 +1,11 @@
-"""Evidence: what a model gains over another, less what it would gain by chance.
+"""Evidence: what a model gains over another, less what it must gain to be kept (`level`).
 
-In twice the log likelihood. The price of a model is the Bayesian information criterion's for its
-parameters, and two more terms: for the number of candidates tried, and for the prior odds.
+In twice the log likelihood.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
-from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
     effective_share,
@@ -22,16 +18,9 @@ from jbf.estimation.samples import least_weights
 from jbf.estimation.solution import Solution
 
 
-def price(parameters: int, samples: int, candidates: int, policy: Policy) -> float:
-    """What so many parameters of the best of all candidates gain by chance."""
-    tried = 2.0 * np.log(max(candidates, 1))
-    return policy.margin + float(parameters * np.log(samples) + tried)
-
-
 def price_of(candidates: Candidates, parameters: int) -> float:
-    """The same in a campaign."""
-    samples, tried = candidates.campaign.samples.count, len(candidates.names)
-    return price(parameters, samples, tried, candidates.policy)
+    """What so many parameters must gain in a campaign."""
+    return candidates.level.price(parameters, candidates.campaign.samples.count)
 
 
 def evidence(
@@ -98,9 +87,10 @@ def swap_cost(
 
     policy = candidates.policy
     score = candidates.score_test(effects, near)
+    shows = policy.least_score * price_of(candidates, 1)
     # Where the law has a step of its own to make yet, that is no promise of the effect's.
     least = policy.least_swap * likelihood_gain(whole, near)
-    if score <= policy.least_score or score - next_step_gain(near) <= least:
+    if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
     first = cost(candidates.rank(effects, near))
     if first >= policy.contender:

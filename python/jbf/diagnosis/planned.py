@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
@@ -36,6 +38,8 @@ class PlannedPower(Result):
         Effects that go with the law but that such runs cannot show, and why.
     runs
         Names of the runs.
+    level
+        What an effect must gain.
     """
 
     model: Model
@@ -43,6 +47,7 @@ class PlannedPower(Result):
     power: tuple[Power, ...]
     not_tried: dict[str, str]
     runs: tuple[str, ...]
+    level: Level
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -52,13 +57,16 @@ class PlannedPower(Result):
             "effects": list(self.model.effects),
             "noise_n": self.noise_n,
             "runs": list(self.runs),
+            "level": self.level.to_dict(),
             "power": [p.to_dict() for p in self.power],
             "not_tried": dict(self.not_tried),
         }
 
 
 @one_blas_thread
-def planned_power(model: Model, runs: Iterable[Run], *, noise_n: float) -> PlannedPower:
+def planned_power(
+    model: Model, runs: Iterable[Run], *, noise_n: float, policy: Policy = DEFAULT
+) -> PlannedPower:
     """How strong an effect must be for planned runs to show it.
 
     The model's friction under the runs' motion, with white noise, is what would be recorded.
@@ -71,6 +79,8 @@ def planned_power(model: Model, runs: Iterable[Run], *, noise_n: float) -> Plann
         Motions to play; friction in them is ignored.
     noise_n
         Standard deviation of the noise on the friction, N (of a rotary drive N m).
+    policy
+        The numbers by which an effect will be named.
 
     Raises
     ------
@@ -95,7 +105,7 @@ def planned_power(model: Model, runs: Iterable[Run], *, noise_n: float) -> Plann
         for run, friction in zip(planned, model.predict_many(planned), strict=True)
     ]
     campaign = Campaign.prepare(model.rig, recorded)
-    candidates = Candidates(campaign, model.law, model.clock)
+    candidates = Candidates(campaign, model.law, model.clock, policy)
     found = power(candidates, model.effects)
     names = tuple(run.name for run in planned)
-    return PlannedPower(model, noise_n, found, candidates.not_tried, names)
+    return PlannedPower(model, noise_n, found, candidates.not_tried, names, candidates.level)

@@ -21,11 +21,27 @@ class Policy:
     """The numbers behind a verdict; evidence is in units of twice the log likelihood."""
 
     # ---- evidence for an effect -------------------------------------------------------------
-    margin: float = _number(
-        20.0,
-        "evidence that even a candidate without parameters must bring",
-        "prior odds against any one effect, and room for noise that is not quite as described; "
-        "set before any campaign was seen",
+    false_alarms: float = _number(
+        0.01,
+        "share of campaigns with nothing hidden in which noise may make a name",
+        "one in a hundred; the user's to choose",
+    )
+    imperfection: float = _number(
+        22.0,
+        "what an effect must gain more than noise does, in twice the log likelihood, for what "
+        "recordings do to a record and no finding tells",
+        "simulated recordings with nothing hidden (benches/recorded); none where the recording is "
+        "known to be clean",
+    )
+    indifference: float = _number(
+        0.03,
+        "share of the residual's RMS by which an effect must change the friction to be named",
+        "what nobody would act on; of long recordings any description is wrong by as much",
+    )
+    indifference_n: float = _number(
+        0.0,
+        "force, N RMS, by which an effect must change the friction to be named",
+        "the user's to choose; none by default",
     )
     tie: float = _number(
         8.0,
@@ -67,9 +83,10 @@ class Policy:
     )
     # ---- which candidates are fitted --------------------------------------------------------
     least_score: float = _number(
-        10.0,
-        "gain that a score test must promise before an effect is fitted at all",
-        "half of what the cheapest effect must bring in the end",
+        0.3,
+        "share of what one parameter must gain that a score test must promise before an effect is "
+        "fitted at all",
+        "a step from the null rarely falls short of the fit by more",
     )
     least_swap: float = _number(
         0.05,

@@ -135,7 +135,7 @@ class _Seen:
         if np.isfinite(found[1]):
             left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
             if left < NEARLY_ALL:
-                near = found[0] / float(np.sqrt(left))
+                near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
                 found = _found(runs, model, [wanted / left for wanted in least], near)
         at = found[0] if np.isfinite(found[0]) else 1.0
         changes = runs.change(model, at)
@@ -148,6 +148,10 @@ def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 
     """How many times its usual strength an effect has that is worth so much, of each."""
     found, times, last = [], near, least[0]
     for wanted in least:
+        if not np.isfinite(wanted):
+            # Nothing is seen of it, however strong.
+            found.append(np.nan)
+            continue
         # What an effect is worth grows as its square, nearly.
         times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
         found.append(times)

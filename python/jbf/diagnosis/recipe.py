@@ -152,6 +152,7 @@ def diagnose(
         before=before,
         after=compare_prepared(fit.model, campaign),
         elapsed_s=time.monotonic() - begun,
+        level=candidates.level,
         not_tried=candidates.not_tried,
         unseen=hidden,
         policy=policy,

@@ -9,6 +9,7 @@ from jbf.comparison.comparison import Comparison
 from jbf.comparison.patterns import Failure
 from jbf.diagnosis.experiment import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
+from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power
 from jbf.diagnosis.verdict import Verdict
@@ -48,6 +49,8 @@ class Diagnosis(Result):
         Effects that go with the law but that these runs cannot show, and why.
     unseen
         Effects that could be there at a usual strength, and that these runs would still not show.
+    level
+        What an effect had to gain to be named, and how seldom noise makes one gain that.
     power
         How strong each effect that is not in the model would have had to be for these runs to show
         it; empty where something remains that is no noise.
@@ -79,6 +82,7 @@ class Diagnosis(Result):
     before: Comparison
     after: Comparison
     elapsed_s: float
+    level: Level
     not_tried: dict[str, str] = field(default_factory=dict)
     unseen: tuple[str, ...] = ()
     experiment: Experiment | None = None
@@ -113,6 +117,7 @@ class Diagnosis(Result):
             "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
+            "level": self.level.to_dict(),
             "power": [p.to_dict() for p in self.power],
             "policy": self.policy.to_dict(),
             "elapsed_s": self.elapsed_s,

@@ -24,6 +24,8 @@ Names = tuple[str, ...]
 
 LESS = 0.95
 """Share of an RMS below which another is less for anybody who reads the ledger."""
+CHANCE = "gains no more than chance would"
+SLIGHT = "gains more than noise would, but no more than what recordings do to a record"
 SMOOTH = "fits better, but by no more than so smooth a residual strays: too few independent samples"
 
 
@@ -84,7 +86,9 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         rms = min(found.solution.rms_n, bare)
         outcome: Outcome
         outcome = "no gain"
-        reason = SMOOTH if rms < LESS * bare else "gains no more than chance would"
+        reason = SMOOTH if rms < LESS * bare else CHANCE
+        if gain > candidates.level.critical - price_of(candidates, 1):
+            reason = SLIGHT
         if gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name), apart=True)
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
@@ -132,12 +136,15 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
     share = effective_share(base)
+    scores = {name: candidates.score_test((*present, name), base) for name in rivals}
+    candidates.calibrate(present)
+    least = policy.least_score * price_of(candidates, 1)
     first: dict[str, float] = {}
     for i, name in enumerate(rivals):
         candidates.tell(f"trying {name}", i, len(rivals))
         effects = (*present, name)
         # Of a smooth error a sample tells less, and anything gains a little.
-        if candidates.score_test(effects, base) * share <= policy.least_score:
+        if scores[name] * share <= least:
             first[name] = -np.inf
         else:
             first[name] = evidence(candidates, candidates.rank(effects, base), base)
@@ -160,8 +167,8 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     # One that might lead from a higher peak gets its chance.
     for i, r in enumerate(found):
         effects = (*present, r.effect)
-        least = max(policy.peaks_share * found[0].evidence, 0.0)
-        if many_peaks(effects) and r.evidence > least:
+        likely = max(policy.peaks_share * found[0].evidence, 0.0)
+        if many_peaks(effects) and r.evidence > likely:
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     # Of two that are one in these runs the one nearer to the record supposes less of the machine.

@@ -18,6 +18,7 @@ from jbf.estimation.likelihood import unexplained_square
 from jbf.models.chain import core_load_n, core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
+from jbf.records.rig import Rig
 from jbf.records.run import Run, run_on
 
 Array = npt.NDArray[np.float64]
@@ -69,23 +70,23 @@ def motions(
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
     """Every motion that the rig can make, as a run to play."""
     rig = candidates.campaign.rig
+    linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
     for excitation in excitations(limits, step_s, rig.quantities.speed):
-        run = _run(candidates, excitation, step_s)
+        run = played(rig, excitation, step_s, linear=linear)
         yield excitation, run, core_motion(rig, run, imposed(rig, run))
 
 
-def _run(candidates: Candidates, excitation: Excitation, step_s: float) -> Run:
-    campaign = candidates.campaign
+def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
+    """A motion as a run to play, with the position of a slide or the angle of a shaft."""
     velocity = excitation.velocity_m_s
     time = np.arange(len(velocity)) * step_s
     path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))
-    linear = any(p.run.position_m is not None for p in campaign.prepared)
-    bearing = campaign.rig.bearing
+    bearing = rig.bearing
     radius = 1.0 if bearing is None else bearing.radius_m
     place = {"position_m": path} if linear else {"angle_rad": path / radius}
-    load_n = excitation.load_n or core_load_n(campaign.rig)
+    load_n = excitation.load_n or core_load_n(rig)
     load = None if load_n is None else np.full(len(time), load_n)
     warmth = excitation.temperature_c
     celsius = None if warmth is None else np.full(len(time), warmth)
     run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
-    return run_on(campaign.rig, run)
+    return run_on(rig, run)

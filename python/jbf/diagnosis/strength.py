@@ -26,21 +26,32 @@ DRAWS = 12
 
 @dataclass(frozen=True)
 class Strength:
-    """A model with one effect more, by how strong that is; 1 at its usual strength."""
+    """A model with one effect more, by how strong that is; 1 at its usual strength.
+
+    Attributes
+    ----------
+    which, page
+        The parameter by which the strength is told.
+    sizes
+        That one and the others of the effect that are a size, too: each has a null.
+    """
 
     name: str
     problem: Problem
     usual: Array
     which: int
     page: Parameter
+    sizes: tuple[int, ...]
 
     def values(self, times: float) -> Array:
         """Parameter values at so many times the usual strength, within bounds."""
-        null, values = self.page.null, self.usual.copy()
-        assert null is not None
-        there = null + times * (values[self.which] - null) if np.isfinite(null) else None
-        there = values[self.which] / times if there is None else there
-        values[self.which] = np.clip(there, self.page.lower, self.page.upper)
+        values, pages = self.usual.copy(), list(self.problem.parameters.values())
+        for i in self.sizes:
+            null, page = pages[i].null, pages[i]
+            assert null is not None
+            far = not np.isfinite(null)
+            there = values[i] / times if far else null + times * (values[i] - null)
+            values[i] = np.clip(there, page.lower, page.upper)
         return np.asarray(values)
 
 
@@ -142,7 +153,12 @@ def strength_of(candidates: Candidates, present: Names, name: str) -> Strength |
     base = candidates.fitted(present).named_values()
     problem = candidates.fitted((*present, name)).problem
     usual = next(iter(problem.starts({**base, **problem.fixed})))
-    for i, (full, page) in enumerate(problem.parameters.items()):
-        if full.startswith(f"{name}.") and page.null is not None and full not in problem.fixed:
-            return Strength(name, problem, usual, i, page)
-    return None
+    sizes = tuple(
+        i
+        for i, (full, page) in enumerate(problem.parameters.items())
+        if full.startswith(f"{name}.") and page.null is not None and full not in problem.fixed
+    )
+    if not sizes:
+        return None
+    pages = list(problem.parameters.values())
+    return Strength(name, problem, usual, sizes[0], pages[sizes[0]], sizes)

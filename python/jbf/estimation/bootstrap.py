@@ -152,14 +152,20 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
 def recorded_again(
     prepared: Prepared, friction_n: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
-    """The run as its instruments would show it once more, were the prediction right.
+    """The run as its instruments would show it once more, were the prediction right."""
+    error = noise.coloured(random.normal(0.0, sigma_n, len(prepared.run)), prepared.step_s)
+    return read_again(prepared, friction_n + error, random)
+
+
+def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generator) -> Run:
+    """The run with this reading of its friction, and its motion as its instruments would show it
+    once more.
 
     A column that is not believed tells nothing, and stays as it was: to be left aside again.
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
-    error = noise.coloured(random.normal(0.0, sigma_n, n), prepared.step_s)
-    friction = np.where(np.isfinite(prepared.friction_n), friction_n + error, np.nan)
+    friction = np.where(np.isfinite(prepared.friction_n), friction_n, np.nan)
     # The recorded errors of the speed with other signs: as large as they were, where they were.
     off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
@@ -168,16 +174,16 @@ def recorded_again(
         velocity = run.velocity_m_s
     angle, position = run.angle_rad, run.position_m
     if angle is not None and "angle_rad" not in motion.aside:
-        angle = _read_again(np.unwrap(angle), motion.angle_rad, moving, random)
+        angle = _path_again(np.unwrap(angle), motion.angle_rad, moving, random)
     if position is not None and "position_m" not in motion.aside:
         arm = prepared.rig.bearing.radius_m if prepared.rig.bearing is not None else 1.0
-        position = _read_again(position, motion.angle_rad * arm, moving, random)
+        position = _path_again(position, motion.angle_rad * arm, moving, random)
     return replace(
         run, velocity_m_s=velocity, friction_n=friction, angle_rad=angle, position_m=position
     )
 
 
-def _read_again(
+def _path_again(
     recorded: Array, true: Array, moving: npt.NDArray[np.bool_], random: np.random.Generator
 ) -> Array:
     """A path read off an encoder whose lines lie elsewhere; off a scale without lines, with its

@@ -9,7 +9,7 @@ force is shifted along time; the parts of a run tell whether it grows.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,24 +127,22 @@ def lateness(
 
 def _scans(
     problem: Problem, solution: Solution, grid: Array, reach: float
-) -> list[tuple[Array, Array]]:
+) -> Iterator[tuple[Array, Array]]:
     """Of each run its samples' squared residuals by lateness, (len(grid), n), and their times.
 
-    Not whitened: a filter that takes a late force for colour moves it, too.
+    Not whitened: a filter that takes a late force for colour moves it, too. One run at a time: of a
+    recording of days all of them would fill a machine's memory.
     """
-    samples = solution.samples
-    fine = [_fine(p) for p in problem.campaign.prepared]
-    forces = problem.chain.predict(solution.values, [driven for _, driven in fine])
-    slopes = [
-        np.interp(p.run.time_s, instants, np.gradient(force, instants))
-        for p, (instants, _), force in zip(problem.campaign.prepared, fine, forces, strict=True)
-    ]
+    samples, runs = solution.samples, problem.campaign.prepared
+    forces = [problem.chain.predict(solution.values, [_fine(p)])[0] for p in runs]
+    slopes = []
+    for p, force in zip(runs, forces, strict=True):
+        instants = _instants(p)
+        slopes.append(np.interp(p.run.time_s, instants, np.gradient(force, instants)))
     share = min(independent_share(_on_time(problem, solution, slopes), samples.steps_s), 1.0)
-    found = []
     left_over = samples.without_deviations(solution.residuals, solution.noise)
-    for i, (p, (instants, _), force) in enumerate(
-        zip(problem.campaign.prepared, fine, forces, strict=True)
-    ):
+    for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
+        instants = _instants(p)
         # A zero or a gain of the run's own is no lateness.
         read = p.friction_n - (solution.residuals[i] - left_over[i])
         # The same samples at every lateness: those no reversal comes nearer than the reach.
@@ -162,8 +160,7 @@ def _scans(
         squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
         # Of coloured residuals a sample tells less.
         squares *= share
-        found.append((squares, p.run.time_s[kept] - p.run.time_s[0]))
-    return found
+        yield squares, p.run.time_s[kept] - p.run.time_s[0]
 
 
 def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[Array]:
@@ -181,14 +178,20 @@ def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[
     return left
 
 
-def _fine(p: Prepared) -> tuple[Array, Driven]:
-    """Instants of a run close enough for a shift, and its motion there."""
+def _instants(p: Prepared) -> Array:
+    """Instants of a run close enough for a shift, s."""
     times = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
     place = np.linspace(0.0, len(p.run) - 1.0, times * (len(p.run) - 1) + 1)
-    instants = np.interp(place, samples, p.run.time_s)
+    found: Array = np.interp(place, samples, p.run.time_s)
+    return found
+
+
+def _fine(p: Prepared) -> Driven:
+    """A run's motion there."""
+    instants = _instants(p)
     run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction_n))
-    return instants, core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
+    return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
 
 
 def _place(grid: Array, costs: Array, count: int) -> _Place:

@@ -13,6 +13,7 @@ from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
 from jbf.estimation.solution import Solution
+from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
 
@@ -126,7 +127,9 @@ def _predicted(
         there = problem.encode(solution.values) + way
         step = problem.decode(there, solution.values)
         inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
-        if inside and solution.converged and square <= SHORT**2 * len(way):
+        # Of a likelihood with peak beside peak no step tells which one the rest would climb.
+        smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
+        if inside and smooth and square <= SHORT**2 * len(way):
             residuals = problem.residuals(step, group)
             if _straight(solution, way, group, residuals):
                 return residuals

@@ -4,6 +4,7 @@ a step would gain, before it is made."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -29,11 +30,16 @@ def likelihood_gain(richer: Solution, simpler: Solution) -> float:
     return simpler_cost - richer_cost
 
 
+_shares: WeakKeyDictionary[Solution, float] = WeakKeyDictionary()
+
+
 def effective_share(solution: Solution) -> float:
     """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
-    samples = solution.samples
-    left = samples.weighted_innovations(solution.residuals, solution.noise)
-    return independent_share(left, samples.steps_s)
+    if solution not in _shares:
+        samples = solution.samples
+        left = samples.weighted_innovations(solution.residuals, solution.noise)
+        _shares[solution] = independent_share(left, samples.steps_s)
+    return _shares[solution]
 
 
 def share_of_gain(richer: Solution, simpler: Solution) -> float:
@@ -82,16 +88,17 @@ def score_gain(problem: Problem, values: Array, near: Solution) -> float:
     """The score test of a model at its null: the gain in twice the log likelihood that one full
     Gauss-Newton step from `values` promises, under the noise of a solution nearby."""
     samples = problem.campaign.samples
-    return _promised(*problem.gauss_newton_rows(values, samples, near.noise))
+    return promised_gain(*problem.gauss_newton_rows(values, samples, near.noise))
 
 
 def next_step_gain(solution: Solution) -> float:
     """The same of a step from a solution: nothing where it has converged."""
     r, j = solution.stacked()
-    return _promised(r, j, len(r))
+    return promised_gain(r, j, len(r))
 
 
-def _promised(r: Array, j: Array, count: int) -> float:
+def promised_gain(r: Array, j: Array, count: int) -> float:
+    """The same from rows of a likelihood of so many innovations: residual, derivatives."""
     left = max(unexplained_square(j, r), 1e-300)
     return count * float(np.log(max(float(r @ r), 1e-300) / left))
 

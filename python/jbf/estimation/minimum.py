@@ -26,8 +26,10 @@ Method = Literal["dogbox", "trf"]
 
 MAX_EVALUATIONS = 60
 """Steps of a search that converges."""
-TRIAL_EVALUATIONS = 3
-"""Steps given to each starting point before the best goes on alone."""
+TRIAL_EVALUATIONS = 6
+"""Steps given to each starting point of a fit, or peak, before the best goes on alone,"""
+RANKING_TRIALS = 3
+"""and to each of a candidate that is ranked."""
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked,"""
 FOLLOWED_IN_A_FIT = 6
@@ -98,7 +100,7 @@ def approach(
     *,
     each: bool = False,
     followed: int = FOLLOWED,
-    steps: int = TRIAL_EVALUATIONS,
+    steps: int = RANKING_TRIALS,
     method: Method = "dogbox",
 ) -> Solution:
     """Search from the best of all starting points, as if the noise were white.
@@ -188,7 +190,13 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Approach, settle, and look for a higher peak."""
     if find_law(problem.law).has_film:
-        near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
+        near = approach(
+            problem,
+            seeds,
+            MAX_EVALUATIONS,
+            followed=FOLLOWED_IN_A_FIT,
+            steps=TRIAL_EVALUATIONS,
+        )
     else:
         near = approach(
             problem,

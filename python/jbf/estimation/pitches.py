@@ -164,7 +164,7 @@ def _known_of(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knot
 
 def _less_means(rows: Array, speed: Array) -> Array:
     """Rows less their means in each direction of motion."""
-    found = rows.copy()
+    found: Array = rows.copy()
     for way in (speed > 0.0, speed < 0.0):
         if way.any():
             found[way] -= np.mean(rows[way], axis=0)

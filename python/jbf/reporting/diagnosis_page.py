@@ -11,6 +11,7 @@ from jbf.reporting.comparison_plots import plot_run
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.effect_words import known_mass, limits_of, summary_of
 from jbf.reporting.page import import_rows, measurement, page, pattern_rows, picture
+from jbf.reporting.power_text import level_words
 from jbf.reporting.tables import (
     correlation_pairs,
     finding_rows,
@@ -78,6 +79,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         before_picture=picture(plot_run(before)) if diagnosis.failures else "",
         failures=pattern_rows(diagnosis.failures),
         trials=trials,
+        level=level_words(diagnosis.level),
         power=power_rows(diagnosis.power, diagnosis.model.law, said),
         unit=said.force,
         effects=[_effect(diagnosis, name) for name in diagnosis.effects],

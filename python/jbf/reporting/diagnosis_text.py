@@ -7,7 +7,7 @@ from jbf.records.counts import count_of
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.power_text import power_lines
+from jbf.reporting.power_text import level_words, power_lines
 from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
@@ -48,6 +48,7 @@ def _power_lines(diagnosis: Diagnosis) -> list[str]:
         "",
         "What these runs would have shown, in 80 of 100 campaigns like this one",
         *power_lines(diagnosis.power, model),
+        *hanging("    ", f"({level_words(diagnosis.level)})", 0),
     ]
 
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 from jbf.comparison.comparison import Comparison
 from jbf.control.run import Result as LoopRun
+from jbf.diagnosis.check import Check
+from jbf.diagnosis.plan import Plan
 from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
@@ -18,11 +20,12 @@ from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.importing.result import Import
 from jbf.reporting import frames, import_text, short, small_tables
+from jbf.reporting.check_text import check_report, short_check
 from jbf.reporting.comparison_text import comparison_report
 from jbf.reporting.control_run_text import runs_text
 from jbf.reporting.diagnosis_text import diagnosis_report
 from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
-from jbf.reporting.power_text import planned_report, short_power
+from jbf.reporting.power_text import plan_report, planned_report, short_plan, short_power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +45,8 @@ summary.register(Diagnosis, diagnosis_report)
 summary.register(LoopRun, lambda run: runs_text([run]))
 summary.register(Import, import_text.import_report)
 summary.register(PlannedPower, planned_report)
+summary.register(Check, check_report)
+summary.register(Plan, plan_report)
 
 
 @singledispatch
@@ -57,6 +62,8 @@ short_words.register(Comparison, short.short_comparison)
 short_words.register(Diagnosis, short.short_diagnosis)
 short_words.register(Import, import_text.short_import)
 short_words.register(PlannedPower, short_power)
+short_words.register(Check, short_check)
+short_words.register(Plan, short_plan)
 
 
 @singledispatch

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.plan import Plan
 from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.power import Power
 from jbf.models.model import Model
@@ -20,6 +22,22 @@ def power_lines(power: Iterable[Power], model: Model) -> list[str]:
     return columns([head, *rows], "<<>><", 4)
 
 
+def level_words(level: Level) -> str:
+    """How seldom noise makes a name, and what an effect must gain for one."""
+    said = (
+        f"noise makes a name in at most {100.0 * level.false_alarms:.3g} % of such campaigns: of "
+        f"{count_of(level.candidates, 'candidate')} one must gain {number(level.critical)} in "
+        "twice the log likelihood"
+    )
+    if level.blocks:
+        said += f", by the residual itself, {level.blocks} blocks of it turned at random"
+    if level.imperfection:
+        said += f"; what recordings do to a record may add {number(level.imperfection)}"
+    if level.worth > level.critical + level.imperfection:
+        said += f"; to be worth a name it must gain {number(level.worth)}"
+    return said
+
+
 def planned_report(planned: PlannedPower) -> str:
     """What planned runs would show."""
     model = planned.model
@@ -31,12 +49,26 @@ def planned_report(planned: PlannedPower) -> str:
         "",
         "What such runs show, in 80 of 100 campaigns",
         *power_lines(planned.power, model),
+        *hanging("    ", f"({level_words(planned.level)})", 0),
     ]
     if planned.not_tried:
         lines += ["", "Not asked for: these runs cannot show"]
         for name, reason in planned.not_tried.items():
             lines += hanging(f"    {name}: ", reason, 0)
     return "\n".join(lines)
+
+
+def plan_report(plan: Plan) -> str:
+    """Which runs to record, and what they would show."""
+    rows = [("run", "motion")]
+    rows += [(run.name, words) for run, words in zip(plan.runs, plan.words, strict=True)]
+    lines = ["Record, those that tell most first", ""]
+    return "\n".join([*lines, *columns(rows, "<<", 4), "", planned_report(plan.planned)])
+
+
+def short_plan(plan: Plan) -> str:
+    """In a line."""
+    return f"Plan: {count_of(len(plan.runs), 'run')}; {short_power(plan.planned)}"
 
 
 def short_power(planned: PlannedPower) -> str:

@@ -1,0 +1,121 @@
+"""`jbf check MODEL RUN...`: how often the diagnosis of campaigns like this one is right."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jbf.cli import inputs, level, outputs
+from jbf.cli.arguments import Commands, add_json, add_own, add_runs, command
+from jbf.cli.progress import shown
+from jbf.errors import InputError
+from jbf.records.run_files import read_runs
+from jbf.reporting.json import json_text
+from jbf.text_files import write_text
+
+if TYPE_CHECKING:
+    from jbf.diagnosis.check import Answer
+
+
+def add(commands: Commands) -> None:
+    """Put the command on the command line."""
+    does = "how often the diagnosis of campaigns like this one is right, by simulating them"
+    parser = command(commands, "check", does, run)
+    parser.add_argument("model", metavar="MODEL", help="model of the runs (jbf diagnose --out)")
+    add_runs(parser)
+    parser.add_argument(
+        "-n",
+        "--campaigns",
+        metavar="N",
+        type=int,
+        default=200,
+        help="campaigns with the model's effects, and so many without; 200",
+    )
+    parser.add_argument("--jobs", metavar="N", type=int, help="campaigns at a time; all cores")
+    parser.add_argument(
+        "--resume",
+        metavar="FILE.jsonl",
+        help="keep each answer in this file as it comes, and go on from what is there",
+    )
+    level.add(parser)
+    add_json(parser)
+    add_own(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it."""
+    from jbf.diagnosis.check import check, identity
+
+    wanted = {"--json": arguments.json, "--resume": arguments.resume}
+    outputs.check(wanted, [arguments.model, *arguments.runs])
+    policy = level.policy(arguments)
+    jobs = arguments.jobs if arguments.jobs is not None else os.cpu_count() or 1
+    if jobs < 1:
+        raise InputError(file="--jobs", problem=f"{jobs} campaigns at a time", mend="1 or more")
+    model = inputs.model(arguments.model)
+    runs = read_runs(arguments.runs, model.rig)
+    name = identity(model, runs, policy)
+    done = [] if arguments.resume is None else _known(Path(arguments.resume), name)
+
+    def keep(answer: Answer) -> None:
+        if arguments.resume is not None:
+            with Path(arguments.resume).open("a", encoding="utf-8") as file:
+                file.write(json.dumps({"of": name, **answer.to_dict()}) + "\n")
+
+    with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
+        found = check(
+            model,
+            runs,
+            campaigns=arguments.campaigns,
+            policy=policy,
+            executor=executor,
+            progress=report,
+            done=done,
+            keep=keep,
+        )
+    if arguments.json:
+        outputs.write({arguments.json: json_text(found.to_dict())})
+    outputs.say(found.summary(), {"--json": arguments.json})
+    return 0
+
+
+def _known(file: Path, name: str) -> Sequence[Answer]:
+    """The answers that are in a file already.
+
+    Raises
+    ------
+    InputError
+        They are of another model, other runs or another level, or no answers.
+    """
+    from jbf.diagnosis.check import answer_of
+
+    if not file.exists():
+        return []
+    found = []
+    lines = file.read_text(encoding="utf-8").splitlines()
+    for row, line in enumerate(lines, 1):
+        try:
+            told = json.loads(line)
+            of, answer = told["of"], answer_of(told)
+        except (ValueError, KeyError, TypeError, AttributeError):
+            # A line that was cut off while it was written is asked for again.
+            if row == len(lines):
+                write_text(file, "".join(f"{kept}\n" for kept in lines[:-1]))
+                break
+            raise InputError(
+                file=file, row=row, problem="is no answer of jbf check", mend="name another file"
+            ) from None
+        if of != name:
+            raise InputError(
+                file=file,
+                row=row,
+                problem="is of another model, other runs or another level",
+                mend="name another file, or remove this one",
+            )
+        found.append(answer)
+    return found

@@ -1,0 +1,212 @@
+"""The level of the tests: what an effect must gain so that noise seldom makes a name.
+
+One level holds for a campaign: in so many of a hundred of them with nothing hidden any of the
+candidates may get a name. Shared among them (Bonferroni) it gives the probability at which a gain
+is no chance. Where the campaign's own residual makes large gains more often than that, the
+probability sinks until it does not: the residual's signs are turned block by block (a wild
+bootstrap: Wu 1986; of blocks: Shao 2010), which keeps its size, its tails and its memory and takes
+away whatever it has of an effect.
+
+Recordings do to a record what no finding tells: to be named, an effect must gain so much more than
+noise does as simulated recordings with nothing hidden make effects gain. And what is so little that
+nobody would act on it gets no name, however sure it is: of a day of samples any description of a
+machine is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.blocks import Places, blocks_of
+from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
+from jbf.estimation.long_run import score_inflation
+from jbf.estimation.problem import Problem
+from jbf.estimation.rows import triangular
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+DRAWS = 4000
+"""Campaigns whose signs are drawn; forty of them are beyond a level of one in a hundred."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """What a gain in twice the log likelihood must exceed.
+
+    Attributes
+    ----------
+    false_alarms
+        Share of campaigns with nothing hidden in which noise may make a name.
+    candidates
+        Effects that are tried.
+    chance
+        Probability of a single candidate's gain at which that is kept.
+    blocks
+        Blocks of the residual whose signs were turned; none before there is a residual.
+    imperfection
+        What recordings may add to a gain.
+    worth
+        What an effect gains that is just worth a name.
+    """
+
+    false_alarms: float
+    candidates: int
+    chance: float
+    blocks: int = 0
+    imperfection: float = 0.0
+    worth: float = 0.0
+
+    @classmethod
+    def shared(cls, policy: Policy, candidates: int, samples: float, noise_n: float) -> Level:
+        """The level shared among candidates, of noise as white as it can be.
+
+        Parameters
+        ----------
+        samples
+            Independent ones.
+        noise_n
+            RMS of the residual, N.
+        """
+        least = max(policy.indifference, policy.indifference_n / max(noise_n, 1e-300))
+        chance = policy.false_alarms / max(candidates, 1)
+        worth = least**2 * samples
+        return cls(policy.false_alarms, candidates, chance, 0, policy.imperfection, worth)
+
+    @property
+    def critical(self) -> float:
+        """What noise makes one parameter gain with just that probability."""
+        return float(stats.chi2.isf(self.chance, 1))
+
+    def price(self, parameters: int, samples: int) -> float:
+        """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
+        more = max(parameters, 1) - 1
+        least = max(self.critical + self.imperfection, self.worth)
+        return least + more * float(np.log(max(samples, 1)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {**vars(self), "critical": self.critical}
+
+
+@dataclass(frozen=True, eq=False)
+class Directions:
+    """In which directions of the innovations an effect's own parameters show.
+
+    Attributes
+    ----------
+    ways
+        Orthonormal, and to what the model without the effect can do, shape (n, k).
+    innovations
+        Under that model, of unit variance, shape (n,).
+    counted
+        By how much less than in white noise the square of a score counts, shape (k,).
+    blocks
+        Where blocks of the rows begin.
+    """
+
+    ways: Array
+    innovations: Array
+    counted: Array
+    blocks: Places
+
+    @classmethod
+    def of(
+        cls, innovations: Array, own: Array, law: Array, samples: Samples, share: float
+    ) -> Directions:
+        """From rows of a likelihood.
+
+        Parameters
+        ----------
+        innovations
+            Under the model without the effect, shape (n,).
+        own, law
+            Derivatives by the effect's parameters, (n, k), and by those of that model.
+        share
+            How many independent samples one is worth.
+        """
+        size = np.linalg.norm(law, axis=0)
+        law = law[:, size > 0.0] / size[size > 0.0]
+        step, *_ = np.linalg.lstsq(law, own, rcond=1e-10)
+        left = own - law @ step
+        length = np.linalg.norm(left, axis=0)
+        told = length > 1e-8 * np.maximum(np.linalg.norm(own, axis=0), 1e-300)
+        ways = np.linalg.qr(left[:, told] / length[told])[0]
+        ends = _ends(samples)
+        unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
+        parts = np.split(unit, ends)
+        more = [score_inflation(np.split(way, ends), parts, samples.steps_s) for way in ways.T]
+        counted = np.array([min(share, 1.0 / m) for m in more])
+        return cls(ways, unit, counted, blocks_of(samples, share))
+
+    def by_block(self, innovations: Array) -> Array:
+        """What noise of a model that has all that any candidate could explain scores, block by
+        block, shape (blocks, k); of unit variance in noise as the evidence takes it to be."""
+        scores: Array = np.add.reduceat(self.ways * innovations[:, None], self.blocks, axis=0)
+        return scores * np.sqrt(self.counted)
+
+
+def _ends(samples: Samples) -> Places:
+    """Where one run's samples end and the next one's begin, among those that have weight."""
+    counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
+    return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
+
+
+def score_test(
+    problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
+) -> tuple[float, Directions]:
+    """What the best of some starts, at each of which the model is a smaller one still, promises
+    (`score_gain`), and where the added effects show; of many long runs, in some."""
+    few = problem.thinned
+    samples = few.campaign.samples
+    best: tuple[float, Array, Array] | None = None
+    for start in starts:
+        r, j = samples.stacked(*few.linearise(start), near.noise)
+        gain = promised_gain(*triangular(r, j), len(r))
+        if few is not problem:
+            gain = score_gain(problem, start, near)
+        if best is None or gain > best[0]:
+            best = gain, r, j
+    assert best is not None
+    gain, r, j = best
+    own = [few.names[i].split(".")[0] in added for i in few.open]
+    mine = np.array(own, dtype=bool)
+    return gain, Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
+
+
+def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
+    """The level at which turned signs of the residual give no more names than it allows.
+
+    Of the residual that is taken away first which any of the candidates could explain: that is
+    what is asked for. Candidates that have no direction (one that moves the instants of jumps shows
+    nothing at its null) keep their share of the level.
+    """
+    told = [d for d in directions if d.ways.size]
+    if not told:
+        return level
+    every = np.column_stack([d.ways for d in told])
+    explained, *_ = np.linalg.lstsq(every, told[0].innovations, rcond=1e-8)
+    noise = told[0].innovations - every @ explained
+    noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
+    blocks = len(told[0].blocks)
+    random = np.random.default_rng(blocks)
+    signs = random.integers(0, 2, (DRAWS, blocks)).astype(np.int8) * 2.0 - 1.0
+    least = np.ones(DRAWS)
+    for one in told:
+        gain = np.sum((signs @ one.by_block(noise)) ** 2, axis=1)
+        least = np.minimum(least, stats.chi2.sf(gain, one.ways.shape[1]))
+    least.sort()
+    silent = max(level.candidates - len(told), 0)
+    # So many draws have a name, and those that say nothing may have one besides.
+    false = np.arange(1, DRAWS + 1) / DRAWS + silent * least
+    allowed = np.flatnonzero(false <= level.false_alarms)
+    own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
+    return replace(level, chance=min(level.chance, own), blocks=blocks)

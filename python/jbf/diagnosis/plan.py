@@ -1,0 +1,221 @@
+"""Which runs to record: of the motions that a rig can make, those that show most of what could be
+missing, and tell it apart.
+
+What each motion tells of the law's parameters and of each effect at its usual strength adds up over
+runs (Fisher's information). Runs are chosen one after the other (a greedy exact design: Atkinson,
+Donev & Tobias 2007, ch. 12), so that every effect, apart from the law and from the effect most like
+it, is worth as many times its price as can be, and is so without any one run as well: a diagnosis
+asks runs left out to confirm it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Excitation, Limits, excitations
+from jbf.diagnosis.planned import PlannedPower, planned_power
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, played
+from jbf.diagnosis.strength import Strength, strength_of
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.likelihood import effective_share
+from jbf.models.catalogue import find_effect
+from jbf.models.chain import core_motion, imposed
+from jbf.models.model import Model
+from jbf.records.arguments import of_kind
+from jbf.records.run import Run
+from jbf.records.toml_file import number
+from jbf.results import Result
+from jbf.threads import one_blas_thread
+
+Array = npt.NDArray[np.float64]
+
+ENOUGH, MORE = 4.0, 0.05
+"""Times its price that an effect is worth and from which on more of it counts for this share."""
+LEAST_RUNS = 3
+"""Fewer leave nothing to predict from where one is left out."""
+
+
+@dataclass(frozen=True, repr=False)
+class Plan(Result):
+    """Runs to record.
+
+    Attributes
+    ----------
+    runs
+        Motions to play, in the order in which they tell most: time, speed, position or angle, load;
+        no friction.
+    words
+        Each in words.
+    planned
+        What they would show.
+    """
+
+    runs: tuple[Run, ...]
+    words: tuple[str, ...]
+    planned: PlannedPower
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        motions = [
+            {"run": run.name, "motion": words}
+            for run, words in zip(self.runs, self.words, strict=True)
+        ]
+        return {"plan": motions, **self.planned.to_dict()}
+
+
+@one_blas_thread
+def plan(
+    model: Model,
+    *,
+    limits: Limits,
+    minutes: float,
+    noise_n: float,
+    step_s: float = 0.02,
+    policy: Policy = DEFAULT,
+) -> Plan:
+    """The runs that show most of what could be missing from a model.
+
+    Parameters
+    ----------
+    model
+        What the machine is taken to be: of a fit, or `Model` with values of a data sheet.
+    limits
+        What the rig may be asked to do; its speed must be given, and `duration_s` is that of each
+        run.
+    minutes
+        How long all runs may take together.
+    noise_n
+        Standard deviation of the noise on the friction, N (of a rotary drive N m).
+    step_s
+        From sample to sample, s.
+    policy
+        The numbers by which an effect will be named.
+
+    Raises
+    ------
+    InputError
+        No speed is given, a number is not above zero, or there is no time for three runs.
+    """
+    of_kind(model, Model, "model", "give a jbf.Model")
+    of_kind(limits, Limits, "limits", "give a jbf.Limits")
+    for name, value in (("minutes", minutes), ("noise_n", noise_n), ("step_s", step_s)):
+        if not (np.isfinite(number(value, name)) and value > 0.0):
+            raise InputError(key=name, problem=f"{value:g} is not above zero", mend="give more")
+    if limits.velocity_m_s is None:
+        raise InputError(
+            problem="the limit velocity_m_s is missing", mend="say how fast the rig may go"
+        )
+    if limits.acceleration_m_s2 is None:
+        limits = replace(limits, acceleration_m_s2=USUAL_RATE_RAD_S * limits.velocity_m_s)
+    count = int(60.0 * minutes / limits.duration_s + 1e-9)
+    if count < LEAST_RUNS:
+        raise InputError(
+            key="minutes",
+            problem=f"{minutes:g} hold {count} runs of {limits.duration_s:g} s",
+            mend=f"give time for {LEAST_RUNS} runs or more, or make them shorter",
+        )
+    step_s = max(step_s, limits.duration_s / MOST_SAMPLES)
+    rig = model.rig
+    linear = rig.bearing is None and (rig.drive is None or rig.drive.motion == "linear")
+    motions = [
+        (e, played(rig, e, step_s, linear=linear))
+        for e in excitations(limits, step_s, rig.quantities.speed)
+    ]
+    candidates = _candidates(model, motions, noise_n, policy)
+    effects = _effects(candidates, model)
+    told = [_told(candidates, model, effects, run, noise_n) for _, run in motions]
+    own = len(candidates.fitted(model.effects).problem.open)
+    prices = np.array([price_of(candidates, max(len(e.problem.open) - own, 1)) for e in effects])
+    chosen = _chosen(told, own, prices, count)
+    runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
+    words = tuple(motions[k][0].words for k in chosen)
+    return Plan(runs, words, planned_power(model, runs, noise_n=noise_n, policy=policy))
+
+
+def _candidates(
+    model: Model, motions: Sequence[tuple[Excitation, Run]], noise_n: float, policy: Policy
+) -> Candidates:
+    """The model and what could be beside it, in a few of the motions: slow and fast, of each load
+    and temperature."""
+    few = [run for _, run in motions[:: max(len(motions) // 7, 1)]]
+    random = np.random.default_rng(0)
+    runs = [
+        replace(run, name=f"{i}", friction_n=f + noise_n * random.standard_normal(len(run)))
+        for i, (run, f) in enumerate(zip(few, model.predict_many(few), strict=True))
+    ]
+    return Candidates(Campaign.prepare(model.rig, runs), model.law, model.clock, policy)
+
+
+def _effects(candidates: Candidates, model: Model) -> list[Strength]:
+    """Effects that motions could show."""
+    found = []
+    for name in candidates.names:
+        if name in model.effects or set(find_effect(name).columns) - SIMULATED:
+            continue
+        strength = strength_of(candidates, model.effects, name)
+        if strength is not None:
+            found.append(strength)
+    return found
+
+
+def _told(
+    candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_n: float
+) -> Array:
+    """What a motion tells of the parameters and of each effect, (p + e, p + e)."""
+    fitted = candidates.fitted(model.effects)
+    problem, values = fitted.problem, fitted.found().values
+    motion = core_motion(model.rig, run, imposed(model.rig, run))
+    ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
+    scale = np.where(problem.log, values, 1.0)[problem.open]
+    changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
+    rows = np.column_stack([slopes * scale, *changes])
+    # Of a residual that remembers a sample tells less.
+    rows *= np.sqrt(effective_share(fitted.found())) / noise_n
+    told: Array = rows.T @ rows
+    return told
+
+
+def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[int]:
+    """The motions that together are worth most."""
+    chosen: list[int] = []
+    whole = np.zeros_like(told[0])
+    for _ in range(count):
+        worth = [
+            _worth(whole + one, own, prices) + _least_worth([*chosen, k], told, own, prices)
+            for k, one in enumerate(told)
+        ]
+        best = int(np.argmax(worth))
+        chosen.append(best)
+        whole = whole + told[best]
+    return chosen
+
+
+def _least_worth(chosen: Sequence[int], told: Sequence[Array], own: int, prices: Array) -> float:
+    """What motions are worth without the one that tells most."""
+    whole = np.sum([told[k] for k in chosen], axis=0)
+    return min(_worth(whole - told[k], own, prices) for k in set(chosen))
+
+
+def _worth(told: Array, own: int, prices: Array) -> float:
+    """How many times its price each effect is worth, apart from the law and from its likest rival;
+    logarithms, added."""
+    known = np.linalg.pinv(told[:own, :own], rcond=1e-10, hermitian=True)
+    left = told[own:, own:] - told[own:, :own] @ known @ told[:own, own:]
+    size = np.maximum(np.diag(left), 0.0)
+    shared = left**2 / np.maximum(size, 1e-300)[None, :]
+    np.fill_diagonal(shared, 0.0)
+    alone = np.maximum(size - np.max(shared, axis=1, initial=0.0), 0.0)
+    times = alone / prices
+    return float(
+        np.sum(np.log1p(np.minimum(times, ENOUGH)))
+        + MORE * np.sum(np.log(np.maximum(times, ENOUGH)))
+    )

@@ -1,0 +1,31 @@
+"""How often diagnoses are right, as plain text."""
+
+from __future__ import annotations
+
+from jbf.diagnosis.check import Check
+from jbf.reporting.paragraphs import columns
+from jbf.reporting.words import law_and_effects
+
+
+def check_report(check: Check) -> str:
+    """A rate a line, with its interval."""
+    rows = [("campaigns like this one", "so often", "share", "95 % interval")]
+    for rate in check.rates:
+        share = 100.0 * rate.count / rate.campaigns
+        rows.append(
+            (
+                rate.what,
+                f"{rate.count} of {rate.campaigns}",
+                f"{share:.3g} %",
+                f"{100.0 * rate.low:.3g} to {100.0 * rate.high:.3g} %",
+            )
+        )
+    return "\n".join(
+        [f"Recorded again by {law_and_effects(check.model)}", "", *columns(rows, "<>>>", 0)]
+    )
+
+
+def short_check(check: Check) -> str:
+    """In a line."""
+    right = sum(a.right for a in check.answers)
+    return f"Check: {right} of {len(check.answers)} campaigns diagnosed right"

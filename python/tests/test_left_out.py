@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Parameter, Rig, Run, forget_effect, register_effect
+from jbf.estimation import left_out as left_out_module
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_rms
-from jbf.estimation.minimum import minimum
+from jbf.estimation.minimum import minimum, search
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 
@@ -151,3 +153,45 @@ def test_a_solution_keeps_record_minus_prediction(problem: Problem) -> None:
     n = sum(map(len, solution.residuals))
     assert solution.cost == pytest.approx(2.0 * n * np.log(solution.rms_n))
     assert problem.square(values) == pytest.approx(n * solution.rms_n**2)
+
+
+# ---- one step in place of a search ------------------------------------------------------------
+
+
+def searched(problem: Problem, monkeypatch: pytest.MonkeyPatch, short: float) -> tuple[float, int]:
+    """The left-out error with steps up to so many standard deviations, and how many searches."""
+    searches = []
+
+    def counted(*given: Any) -> Any:
+        searches.append(1)
+        return search(*given)
+
+    solution = minimum(problem, [{}])
+    monkeypatch.setattr(left_out_module, "search", counted)
+    monkeypatch.setattr(left_out_module, "SHORT", short)
+    return left_out_rms(problem, solution), len(searches)
+
+
+def test_of_runs_that_agree_a_step_is_the_whole_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=NOISE_N))
+    problem = Problem(campaign, "coulomb", "journal", ())
+    stepped, none = searched(problem, monkeypatch, 3.0)
+    whole, all_four = searched(problem, monkeypatch, 0.0)
+    assert (none, all_four) == (0, 4)
+    assert stepped == pytest.approx(whole, rel=1e-4)
+
+
+def test_where_the_way_is_long_or_bends_a_search_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = four_runs(coulomb, noise_n=NOISE_N)
+    name, v, f = runs[0].name, runs[0].velocity_m_s, np.asarray(runs[0].friction_n)
+    off = Run.from_arrays(runs[0].time_s, v, f + 3.0 * np.sign(v), name=name)
+    campaign = Campaign.prepare(Rig(), [off, *runs[1:]])
+    far, searches = searched(Problem(campaign, "stribeck", "journal", ()), monkeypatch, 3.0)
+    assert searches > 0
+    exact, every = searched(Problem(campaign, "stribeck", "journal", ()), monkeypatch, 0.0)
+    assert every == 4
+    assert far == pytest.approx(exact, rel=1e-3)
+    # Only the wish for a straight way is left.
+    bent, some = searched(Problem(campaign, "stribeck", "journal", ()), monkeypatch, 1e9)
+    assert some > 0
+    assert bent == pytest.approx(exact, rel=1e-3)

@@ -136,7 +136,10 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
     share = effective_share(base)
-    scores = {name: candidates.score_test((*present, name), base) for name in rivals}
+    scores = {}
+    for i, name in enumerate(rivals):
+        candidates.tell(f"testing {name}", i, len(rivals))
+        scores[name] = candidates.score_test((*present, name), base)
     candidates.calibrate(present)
     least = policy.least_score * price_of(candidates, 1)
     first: dict[str, float] = {}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -12,10 +13,11 @@ from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Parameter, Rig, Run, forget_effect, register_effect
 from jbf.estimation import left_out as left_out_module
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.left_out import _straight, left_out_rms
 from jbf.estimation.minimum import minimum, search
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 
 NOISE_N = 0.1
 PUSH = Parameter("k_n", "N", lower=-10.0, upper=10.0, null=0.0, starts=(0.5,))
@@ -191,7 +193,19 @@ def test_where_the_way_is_long_or_bends_a_search_goes_on(monkeypatch: pytest.Mon
     exact, every = searched(Problem(campaign, "stribeck", "journal", ()), monkeypatch, 0.0)
     assert every == 4
     assert far == pytest.approx(exact, rel=1e-3)
-    # Only the wish for a straight way is left.
-    bent, some = searched(Problem(campaign, "stribeck", "journal", ()), monkeypatch, 1e9)
-    assert some > 0
-    assert bent == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize(("bend", "straight"), [(0.0, True), (0.04, True), (0.06, False)])
+def test_a_way_is_straight_where_predictions_go_as_their_derivatives_say(
+    bend: float, straight: bool
+) -> None:
+    random = np.random.default_rng(0)
+    slope, here = random.standard_normal((500, 1)), 1e-6 * random.standard_normal(500)
+    counted = np.arange(500) < 400
+    change = slope[:, 0] * 0.3
+    there = here - change + np.where(counted, bend, 7.0) * np.abs(change)
+    solution = SimpleNamespace(
+        residuals=[here], jacobian=[slope], samples=SimpleNamespace(counted=[counted])
+    )
+    way = np.array([0.3])
+    assert _straight(cast(Solution, solution), way, [0], [there]) == straight

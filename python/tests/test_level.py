@@ -107,6 +107,18 @@ def test_what_a_candidate_could_explain_is_no_noise() -> None:
     )
 
 
+def test_a_direction_is_what_the_law_cannot_make_up_for() -> None:
+    law = np.stack([np.ones_like(TIME), np.cos(0.2 * TIME)], axis=1)
+    noise = white(np.random.default_rng(3))
+    own = (law @ [2.0, 3.0] + effects()[2])[:, None]
+    found = Directions.of(noise, own, law, SAMPLES, 1.0).ways
+    assert found.shape == own.shape
+    np.testing.assert_allclose(found.T @ law, 0.0, atol=1e-9)
+    np.testing.assert_allclose(found.T @ found, 1.0)
+    # Of what the law does itself nothing is left.
+    assert Directions.of(noise, law[:, :1], law, SAMPLES, 1.0).ways.shape[1] == 0
+
+
 def test_signs_turn_from_second_to_second_and_within_runs() -> None:
     weight = np.ones(N)
     weight[:30] = 0.0

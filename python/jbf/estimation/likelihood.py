@@ -50,15 +50,17 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
     samples = least_weights(richer.samples, simpler.samples)
     left, ways = [], []
     for i in range(len(samples.runs)):
-        own, before = (_whitened(samples, s.residuals, richer.noise, i) for s in (richer, simpler))
+        own, before = (
+            _whitened(samples, s.residuals[i], richer.noise, i) for s in (richer, simpler)
+        )
         left.append(own)
         ways.append(before - own)
     return min(share, 1.0 / score_inflation(ways, left, samples.steps_s))
 
 
-def _whitened(samples: Samples, residuals: Sequence[Array], noise: Noise, run: int) -> Array:
+def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:
     """Innovations of a run, free of the correlation that its deviations make."""
-    return samples.stacked(residuals, [np.zeros((len(r), 0)) for r in residuals], noise, [run])[0]
+    return samples.only([run]).stacked([residual], [np.zeros((len(residual), 0))], noise)[0]
 
 
 def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jbf.cli import diagnose_many, hold_out, inputs, level, outputs
+from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -16,7 +16,6 @@ from jbf.reporting.json import json_text
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
-    from jbf.diagnosis import Limits
 
 
 def add(commands: Commands) -> None:
@@ -46,47 +45,8 @@ def _add_next_run(parser: Parser) -> None:
     group.add_argument(
         "--next-run", metavar="CSV", help="write its motion, to be played; needs a tie"
     )
-    group.add_argument(
-        "--max-velocity-m-s",
-        metavar="X",
-        type=float,
-        help="of the rig (of a rotary drive in rad/s); as recorded",
-    )
-    group.add_argument(
-        "--max-acceleration-m-s2",
-        metavar="X",
-        type=float,
-        help="of the rig (of a rotary drive in rad/s^2); as recorded",
-    )
     group.add_argument("--next-duration-s", metavar="X", type=float, default=60.0, help="60")
-    group.add_argument(
-        "--loads-n",
-        metavar=("LOW", "HIGH"),
-        nargs=2,
-        type=float,
-        help="loads that the rig can be put under; as recorded",
-    )
-    group.add_argument(
-        "--temperatures-c",
-        metavar=("LOW", "HIGH"),
-        nargs=2,
-        type=float,
-        help="temperatures that it can be recorded at; as recorded",
-    )
-
-
-def _limits(arguments: argparse.Namespace) -> Limits:
-    from jbf.diagnosis import Limits
-
-    return Limits(
-        velocity_m_s=arguments.max_velocity_m_s,
-        acceleration_m_s2=arguments.max_acceleration_m_s2,
-        duration_s=arguments.next_duration_s,
-        load_n=None if arguments.loads_n is None else tuple(arguments.loads_n),
-        temperature_c=(
-            None if arguments.temperatures_c is None else tuple(arguments.temperatures_c)
-        ),
-    )
+    limits.add(group, otherwise="as recorded", sharpest="as recorded")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -97,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise InputError(
                 file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
             )
-        return diagnose_many.run(arguments, _limits(arguments))
+        return diagnose_many.run(arguments, limits.limits(arguments, arguments.next_duration_s))
     alone = arguments.rig is not None and Path(arguments.rig).is_dir()
     if arguments.rig is None or not (arguments.runs or alone):
         raise InputError(
@@ -107,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
     wanted["--next-run"] = arguments.next_run
-    limits = _limits(arguments)
+    asked = limits.limits(arguments, arguments.next_duration_s)
     outputs.check(wanted, [arguments.rig, *arguments.runs])
     if arguments.law not in (None, AUTO):
         find_law(arguments.law)
@@ -124,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
             runs,
             law=inputs.law_for(rig, arguments.law),
             clock=arguments.clock,
-            limits=limits,
+            limits=asked,
             policy=policy,
             progress=report,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from jbf.cli import level, outputs, power
+from jbf.cli import level, limits, outputs, power
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, command
 from jbf.reporting.json import json_text
 
@@ -21,28 +21,12 @@ def add(commands: Commands) -> None:
         "--minutes", metavar="X", type=float, default=10.0, help="all runs together; 10"
     )
     parser.add_argument("--run-s", metavar="X", type=float, default=60.0, help="each run; 60")
-    parser.add_argument(
-        "--max-velocity-m-s",
-        metavar="X",
-        type=float,
-        required=True,
-        help="of the rig (of a rotary drive in rad/s)",
+    limits.add(
+        parser,
+        otherwise="one",
+        sharpest="that of a sine of the largest speed at 2 rad/s",
+        needed=True,
     )
-    parser.add_argument(
-        "--max-acceleration-m-s2",
-        metavar="X",
-        type=float,
-        help="of the rig (of a rotary drive in rad/s^2); that of a sine of the largest speed at "
-        "2 rad/s",
-    )
-    for option, what in (("--loads-n", "loads"), ("--temperatures-c", "temperatures")):
-        parser.add_argument(
-            option,
-            metavar=("LOW", "HIGH"),
-            nargs=2,
-            type=float,
-            help=f"{what} that the rig can be put under; one",
-        )
     power.add_noise(parser)
     parser.add_argument(
         "--step-s", metavar="X", type=float, default=0.02, help="from sample to sample; 0.02"
@@ -57,24 +41,14 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
-    from jbf.diagnosis.excitations import Limits
     from jbf.diagnosis.plan import plan
 
     wanted = {"--json": arguments.json}
     outputs.check(wanted, [arguments.rig])
     model = power.machine(arguments)
-    limits = Limits(
-        velocity_m_s=arguments.max_velocity_m_s,
-        acceleration_m_s2=arguments.max_acceleration_m_s2,
-        duration_s=arguments.run_s,
-        load_n=None if arguments.loads_n is None else tuple(arguments.loads_n),
-        temperature_c=(
-            None if arguments.temperatures_c is None else tuple(arguments.temperatures_c)
-        ),
-    )
     found = plan(
         model,
-        limits=limits,
+        limits=limits.limits(arguments, arguments.run_s),
         minutes=arguments.minutes,
         noise_n=power.noise_n(arguments, model),
         step_s=arguments.step_s,

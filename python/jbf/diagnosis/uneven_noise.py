@@ -7,7 +7,6 @@ import numpy.typing as npt
 from scipy import stats
 
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
@@ -34,11 +33,6 @@ def _white(residual: Array) -> Array:
     third = np.diff(residual, 3) / np.sqrt(20.0)
     found: Array = np.pad(third, (1, len(residual) - len(third) - 1), mode="edge")
     return found
-
-
-def _step_n(run: Prepared) -> float:
-    """The step of a run's converter, N; zero where it is none to speak of."""
-    return max((f.size for f in run.examined.findings if f.kind == "steps"), default=0.0)
 
 
 def noise_sizes(
@@ -89,7 +83,7 @@ def noise_sizes(
         for v in (e, told)
     )
     # Equal readings of a coarse converter have no noise among them, and its rounding between them.
-    rounding = np.array([_step_n(p) for p in problem.campaign.prepared]) / np.sqrt(12.0)
+    rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
     white, whole = np.maximum(white, rounding), np.maximum(whole, rounding)
     sampled = np.array([int(c.sum()) for c in samples.counted])
     some = (sampled > LEAST) & (white > 0.0) & (whole > 0.0)

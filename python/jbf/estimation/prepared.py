@@ -48,6 +48,11 @@ class Prepared:
     """The instants at which the motion was recorded, s, and the motion there, where the force was
     read at others."""
 
+    @property
+    def converter_step_n(self) -> float:
+        """The step of the run's converter, N; zero where it is none to speak of."""
+        return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
+
     @classmethod
     def of(cls, rig: Rig, run: Run) -> Prepared:
         """Estimate the motion of a run.

@@ -1,0 +1,128 @@
+"""What is promised of a diagnosis, and what it delivered: `python benches/promises.py FILE...`.
+
+The files are JSON lines of `benches/hidden_effects` and `benches/recorded` (`--out`). Each promise
+is told with its nominal rate, how often it was kept, the standard error of that share, an interval
+that holds it in 95 of 100 cases (Clopper & Pearson 1934), and how many campaigns say so; each
+campaign in which it was broken stands below. Prints Markdown; `--least N` fails where a promise
+rests on fewer.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scipy import stats
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Promise:
+    """A promise, of which campaigns it speaks, and in which it was kept."""
+
+    words: str
+    nominal: str
+    of: Callable[[Row], bool]
+    kept: Callable[[Row], bool]
+
+
+def recorded(row: Row) -> bool:
+    """Whether a logger had its hands on it."""
+    return "artefacts" in row
+
+
+def hidden(row: Row) -> set[str]:
+    """What was hidden, of the catalogue."""
+    return set(row["effects"] if recorded(row) else filter(None, row["hidden"].split("+")))
+
+
+def false_name(row: Row) -> bool:
+    """A name that was not hidden, not even as an honest alternative."""
+    true = set() if row["kind"] == "foreign" else hidden(row)
+    could = [{name, *row["alternatives"].get(name, ())} for name in row["named"]]
+    return any(not names & true for names in could)
+
+
+def right(row: Row) -> bool:
+    """All was named and nothing else, or stands in an honest tie."""
+    return row["judged"] in ("right", "tied")
+
+
+def _kind(kind: str, *, logged: bool) -> Callable[[Row], bool]:
+    return lambda row: row["kind"] == kind and recorded(row) == logged
+
+
+def _promises() -> Iterator[Promise]:
+    def quiet(row: Row) -> bool:
+        return not false_name(row)
+
+    for where, logged in (("tidy", False), ("recorded", True)):
+        none = _kind("none", logged=logged)
+        yield Promise(f"nothing hidden, {where}: no name", "99 %", none, quiet)
+        yield Promise(f"nothing hidden, {where}: `adequate`", "95 %", none, right)
+        for words, kind in (("one effect", "single"), ("two effects", "pair")):
+            own = _kind(kind, logged=logged)
+            nominal = "90 %" if logged else "98 %"
+            yield Promise(f"{words}, {where}: named, nothing false", nominal, own, right)
+    foreign = _kind("foreign", logged=False)
+    yield Promise(
+        "what no catalogue has: `unexplained`",
+        "95 %",
+        foreign,
+        lambda row: bool(row["verdict"] == "unexplained"),
+    )
+    yield Promise("what no catalogue has: no name", "95 %", foreign, lambda row: not row["named"])
+
+
+PROMISES = tuple(_promises())
+
+
+def page(rows: Sequence[Row]) -> Iterator[str]:
+    """The table, and every broken promise."""
+    yield "| promise | nominal | delivered | standard error | 95 % interval | campaigns |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    broken = []
+    for promise in PROMISES:
+        own = [row for row in rows if promise.of(row)]
+        if not own:
+            yield f"| {promise.words} | {promise.nominal} | - | | | 0 |"
+            continue
+        count = sum(promise.kept(row) for row in own)
+        share = count / len(own)
+        error = math.sqrt(share * (1.0 - share) / len(own))
+        sure = stats.binomtest(count, len(own)).proportion_ci(0.95, method="exact")
+        delivered = f"{100.0 * share:.1f} % | {100.0 * error:.1f} %"
+        interval = f"{100.0 * sure.low:.1f} to {100.0 * sure.high:.1f} %"
+        yield f"| {promise.words} | {promise.nominal} | {delivered} | {interval} | {len(own)} |"
+        broken += [(promise.words, row) for row in own if not promise.kept(row)]
+    yield ""
+    for words, row in broken:
+        named = ", ".join(row["named"]) or "nothing"
+        yield f"- {words}: `{row['key']}` is `{row['verdict']}`, named {named}"
+
+
+def main() -> int:
+    """Read, print."""
+    parser = argparse.ArgumentParser(prog="promises", description=__doc__.split(":")[0])
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    parser.add_argument("--least", type=int, default=0, metavar="N", help="campaigns of each; 0")
+    asked = parser.parse_args()
+    rows = [
+        json.loads(line)
+        for file in asked.files
+        for line in file.read_text(encoding="utf-8").splitlines()
+    ]
+    print("\n".join(page(rows)))
+    fewest = min(sum(map(promise.of, rows)) for promise in PROMISES)
+    return 0 if fewest >= asked.least else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

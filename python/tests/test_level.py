@@ -131,6 +131,13 @@ def test_signs_turn_from_second_to_second_and_within_runs() -> None:
     assert set(starts[:: len(starts) // RUNS].tolist()) == {k * (N - 30) for k in range(RUNS)}
 
 
+def test_scores_of_several_models_go_together() -> None:
+    """One was tested beside a model whose residual remembers longer: its blocks hold for all."""
+    told = directions(white(np.random.default_rng(6)))
+    longer = replace(told[1], blocks=blocks_of(SAMPLES, 1.0 / 100.0))
+    assert calibrated(level(), [told[0], longer, *told[2:]]).blocks == len(longer.blocks)
+
+
 def test_a_candidate_without_a_score_keeps_its_share() -> None:
     told = directions(white(np.random.default_rng(2)))
     some = calibrated(level(), told[:2])

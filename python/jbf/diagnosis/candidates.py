@@ -188,7 +188,8 @@ class Candidates:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
             self._levels[key] = calibrated(self._beside(present), directions)
-            for fitted in tested:
+            # As large as the records: nobody asks for them again.
+            for fitted in self._fitted.values():
                 fitted.directions = None
         self._level = self._levels[key]
 

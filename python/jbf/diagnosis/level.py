@@ -147,10 +147,10 @@ class Directions:
         counted = np.array([min(share, 1.0 / m) for m in more])
         return cls(ways, unit, counted, blocks_of(samples, share))
 
-    def by_block(self, innovations: Array) -> Array:
+    def by_block(self, innovations: Array, blocks: Places) -> Array:
         """What noise of a model that has all that any candidate could explain scores, block by
         block, shape (blocks, k); of unit variance in noise as the evidence takes it to be."""
-        scores: Array = np.add.reduceat(self.ways * innovations[:, None], self.blocks, axis=0)
+        scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
         return scores * np.sqrt(self.counted)
 
 
@@ -196,12 +196,13 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     explained, *_ = np.linalg.lstsq(every, told[0].innovations, rcond=1e-8)
     noise = told[0].innovations - every @ explained
     noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
-    blocks = len(told[0].blocks)
-    random = np.random.default_rng(blocks)
-    signs = random.integers(0, 2, (DRAWS, blocks)).astype(np.int8) * 2.0 - 1.0
+    # Scores may have been tested beside models whose residuals remember more or less.
+    blocks = min((d.blocks for d in told), key=len)
+    random = np.random.default_rng(len(blocks))
+    signs = random.integers(0, 2, (DRAWS, len(blocks))).astype(np.int8) * 2.0 - 1.0
     least = np.ones(DRAWS)
     for one in told:
-        gain = np.sum((signs @ one.by_block(noise)) ** 2, axis=1)
+        gain = np.sum((signs @ one.by_block(noise, blocks)) ** 2, axis=1)
         least = np.minimum(least, stats.chi2.sf(gain, one.ways.shape[1]))
     least.sort()
     silent = max(level.candidates - len(told), 0)
@@ -209,4 +210,4 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     false = np.arange(1, DRAWS + 1) / DRAWS + silent * least
     allowed = np.flatnonzero(false <= level.false_alarms)
     own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
-    return replace(level, chance=min(level.chance, own), blocks=blocks)
+    return replace(level, chance=min(level.chance, own), blocks=len(blocks))

@@ -32,7 +32,7 @@ Progress = Callable[[str, int, int], None]
 State = Literal["posed", "ranked", "converged"]
 Array = npt.NDArray[np.float64]
 
-RANKING_EVALUATIONS = 4
+RANKING_EVALUATIONS = 6
 """Steps after which candidates are ranked; only those that could win go on."""
 
 

@@ -27,9 +27,8 @@ Method = Literal["dogbox", "trf"]
 MAX_EVALUATIONS = 60
 """Steps of a search that converges."""
 TRIAL_EVALUATIONS = 6
-"""Steps given to each starting point of a fit, or peak, before the best goes on alone,"""
-RANKING_TRIALS = 3
-"""and to each of a candidate that is ranked."""
+"""Steps given to each starting point before the best goes on alone: with half of them an effect
+whose null is a flat place stays there."""
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked,"""
 FOLLOWED_IN_A_FIT = 6
@@ -100,7 +99,7 @@ def approach(
     *,
     each: bool = False,
     followed: int = FOLLOWED,
-    steps: int = RANKING_TRIALS,
+    steps: int = TRIAL_EVALUATIONS,
     method: Method = "dogbox",
 ) -> Solution:
     """Search from the best of all starting points, as if the noise were white.
@@ -190,13 +189,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Approach, settle, and look for a higher peak."""
     if find_law(problem.law).has_film:
-        near = approach(
-            problem,
-            seeds,
-            MAX_EVALUATIONS,
-            followed=FOLLOWED_IN_A_FIT,
-            steps=TRIAL_EVALUATIONS,
-        )
+        near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
     else:
         near = approach(
             problem,

@@ -179,6 +179,11 @@ def test_a_half_written_answer_is_asked_for_again(rig: Path) -> None:
     kept.write_text(first[: len(first) // 2])
     assert main(command) == 0
     assert kept.read_text() == first
+    # Only the end of its line is missing: it is whole, and the next one begins another line.
+    kept.write_text(first.rstrip("\n"))
+    assert main([*command[:-1], "2"]) == 0
+    assert kept.read_text().startswith(first)
+    assert len(kept.read_text().splitlines()) == 2
 
 
 def test_a_campaign_is_known_by_model_runs_and_level(runs: list[Run]) -> None:

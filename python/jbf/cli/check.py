@@ -97,7 +97,8 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
     if not file.exists():
         return []
     found = []
-    lines = file.read_text(encoding="utf-8").splitlines()
+    text = file.read_text(encoding="utf-8")
+    lines = text.splitlines()
     for row, line in enumerate(lines, 1):
         try:
             told = json.loads(line)
@@ -118,4 +119,7 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
                 mend="name another file, or remove this one",
             )
         found.append(answer)
+    if len(found) == len(lines) and lines and not text.endswith("\n"):
+        # Cut off just before the end of its line: the next answer begins a new one.
+        write_text(file, text + "\n")
     return found

@@ -19,13 +19,12 @@ import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
-from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Excitation, Limits, excitations
-from jbf.diagnosis.planned import PlannedPower, planned_power
+from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Limits, excitations
+from jbf.diagnosis.planned import PlannedPower, as_recorded, planned_power
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, played
 from jbf.diagnosis.strength import Strength, strength_of
 from jbf.errors import InputError
-from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share
 from jbf.models.catalogue import find_effect
 from jbf.models.chain import core_motion, imposed
@@ -130,7 +129,10 @@ def plan(
         (e, played(rig, e, step_s, linear=linear))
         for e in excitations(limits, step_s, rig.quantities.speed)
     ]
-    candidates = _candidates(model, motions, noise_n, policy)
+    # A few of them, slow and fast, of each load and temperature, tell what could be there.
+    few = motions[:: max(len(motions) // 7, 1)]
+    named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
+    candidates = as_recorded(model, named, noise_n, policy)
     effects = _effects(candidates, model)
     told = [_told(candidates, model, effects, run, noise_n) for _, run in motions]
     own = len(candidates.fitted(model.effects).problem.open)
@@ -139,20 +141,6 @@ def plan(
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)
     return Plan(runs, words, planned_power(model, runs, noise_n=noise_n, policy=policy))
-
-
-def _candidates(
-    model: Model, motions: Sequence[tuple[Excitation, Run]], noise_n: float, policy: Policy
-) -> Candidates:
-    """The model and what could be beside it, in a few of the motions: slow and fast, of each load
-    and temperature."""
-    few = [run for _, run in motions[:: max(len(motions) // 7, 1)]]
-    random = np.random.default_rng(0)
-    runs = [
-        replace(run, name=f"{i}", friction_n=f + noise_n * random.standard_normal(len(run)))
-        for i, (run, f) in enumerate(zip(few, model.predict_many(few), strict=True))
-    ]
-    return Candidates(Campaign.prepare(model.rig, runs), model.law, model.clock, policy)
 
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -63,6 +63,16 @@ class PlannedPower(Result):
         }
 
 
+def as_recorded(model: Model, runs: Sequence[Run], noise_n: float, policy: Policy) -> Candidates:
+    """What could be beside a model in runs that it would record with white noise, N."""
+    random = np.random.default_rng(0)
+    recorded = [
+        replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
+        for run, friction in zip(runs, model.predict_many(runs), strict=True)
+    ]
+    return Candidates(Campaign.prepare(model.rig, recorded), model.law, model.clock, policy)
+
+
 @one_blas_thread
 def planned_power(
     model: Model, runs: Iterable[Run], *, noise_n: float, policy: Policy = DEFAULT
@@ -99,13 +109,7 @@ def planned_power(
     planned = list_of_runs(runs)
     if not planned:
         raise InputError(problem="no run was given", mend="give at least one motion to play")
-    random = np.random.default_rng(0)
-    recorded = [
-        replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
-        for run, friction in zip(planned, model.predict_many(planned), strict=True)
-    ]
-    campaign = Campaign.prepare(model.rig, recorded)
-    candidates = Candidates(campaign, model.law, model.clock, policy)
+    candidates = as_recorded(model, planned, noise_n, policy)
     found = power(candidates, model.effects)
     names = tuple(run.name for run in planned)
     return PlannedPower(model, noise_n, found, candidates.not_tried, names, candidates.level)

@@ -14,6 +14,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, non_centrality, power
 from jbf.diagnosis.strength import RunsAtHand, strength_of
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.problem import Problem
 from scipy import stats
 
 NOISE_N = 0.1
@@ -180,3 +181,20 @@ def test_a_diagnosis_says_it_where_nothing_remains() -> None:
         return coulomb(t, v, a) + np.sin(40.0 * t)
 
     assert diagnose(Rig(), runs(unknown), law="coulomb").power == ()
+
+
+def test_all_sizes_of_an_effect_grow_together() -> None:
+    """Six knots of one curve: the curve grows, not one of its knots."""
+    tried = candidates(runs())
+    problem = Problem(tried.campaign, "coulomb", "journal", ("stroke_dependence",))
+    pages = list(problem.parameters.values())
+    sizes = tuple(
+        i for i, name in enumerate(problem.names) if ".a_" in name and pages[i].null is not None
+    )
+    found = strength_of(tried, (), "stroke_dependence")
+    assert found is not None
+    assert (len(sizes), found.sizes) == (6, sizes)
+    twice = found.values(2.0)
+    for i, page in enumerate(pages):
+        known = 2.0 * found.usual[i] if i in sizes else found.usual[i]
+        assert twice[i] == pytest.approx(np.clip(known, page.lower, page.upper)), page.name

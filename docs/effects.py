@@ -64,6 +64,7 @@ SHOWN = {
     "viscous_temperature_dependence": Shown(
         {"B": 600.0, "C": -95.0, "T_0": 20.0}, "eight periods of 1 rad/s", warms_c=(20.0, 70.0)
     ),
+    "viscous_thinning": Shown({"w": 16.0}),
     "dry_asymmetry": Shown({"a": 0.25}),
     "stribeck_asymmetry": Shown({"c": 4.0, "v_s": 0.02, "n": 1.0}),
     "stroke_dependence": Shown(
@@ -216,7 +217,7 @@ def page(effect: Effect) -> str:
     ]
     if effect.needs:
         needs = [words for need, words in NEEDS.items() if need in effect.needs]
-        lines += ["", f"**Needs.** {'; '.join(needs)}."]
+        lines += ["", f"**Needs.** {'; '.join(needs)}."] if needs else []
     if effect.refused:
         lines += ["", f"**Not with these laws.** {refused_words(effect)}."]
     lines += [

@@ -21,6 +21,7 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "dry_load_dependence": {"mu": Spread(0.01, 0.03, "-", 1.0)},
     "viscous_load_dependence": {"c": Spread(0.06, 0.2, "s/m", 1.0)},
     "zero_load_dependence": {"k": Spread(0.006, 0.02, "-", 1.0, signed=True)},
+    "viscous_thinning": {"w": Spread(5.0, 20.0, "s/m", 1.0)},
     "viscous_asymmetry": {"b": Spread(6.0, 15.0, "N s/m", 1.0, signed=True)},
     "dry_asymmetry": {"a": Spread(0.06, 0.15, "-", 1.0, signed=True)},
     "stribeck_asymmetry": {
@@ -189,6 +190,8 @@ def _force(
         level = level * (1.0 + of("dry_temperature_dependence", "a") * (celsius - REFERENCE_C))
         b_k = of("viscous_temperature_dependence", "B")
         slope = slope * np.array([thinner(b_k, c) for c in celsius.tolist()])
+    # Springs in a row: the straight line, and the level at which it ends.
+    slope = 1.0 / (1.0 / slope + of("viscous_thinning", "w") * np.abs(v) / slope)
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
     carried = weight + of("inertia_leak", "m_e") * a

@@ -32,6 +32,8 @@ pub enum Start {
     StribeckSpeed,
     /// A usual speed.
     UsualSpeed,
+    /// One over a usual speed.
+    Slowness,
     /// Friction over the distance in which a contact bends.
     Stiffness,
     /// Friction over a usual speed, a small share of it.
@@ -69,6 +71,7 @@ impl Start {
             Start::Viscous => "viscous",
             Start::StribeckSpeed => "stribeck_speed",
             Start::UsualSpeed => "usual_speed",
+            Start::Slowness => "slowness",
             Start::Stiffness => "stiffness",
             Start::Damping => "damping",
             Start::Drag => "drag",

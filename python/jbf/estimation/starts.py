@@ -38,6 +38,7 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
     "viscous": lambda s: (s.viscous_n_s_m, 0.0),
     "stribeck_speed": lambda s: (s.slow_m_s, 0.3 * s.usual_m_s, s.usual_m_s),
     "usual_speed": lambda s: (s.usual_m_s,),
+    "slowness": lambda s: (0.5 / s.usual_m_s, 5.0 / s.usual_m_s),
     "stiffness": _stiffness,
     "damping": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),
     "drag": lambda s: (0.1 * s.kinetic_n,),

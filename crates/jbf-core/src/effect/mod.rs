@@ -40,6 +40,7 @@ pub mod torque_proportional;
 pub mod viscous_asymmetry;
 pub mod viscous_load_dependence;
 pub mod viscous_temperature_dependence;
+pub mod viscous_thinning;
 pub mod vogel_viscosity;
 pub mod warm_up;
 pub mod wear_in;

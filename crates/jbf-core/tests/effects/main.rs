@@ -41,6 +41,7 @@ mod torque_proportional;
 mod viscous_asymmetry;
 mod viscous_load_dependence;
 mod viscous_temperature_dependence;
+mod viscous_thinning;
 mod vogel_viscosity;
 mod warm_up;
 mod wear_in;

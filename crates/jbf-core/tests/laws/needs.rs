@@ -22,6 +22,7 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
         "viscous_asymmetry",
         "dry_temperature_dependence",
         "viscous_temperature_dependence",
+        "viscous_thinning",
         "dry_asymmetry",
         "stribeck_asymmetry",
         "stroke_dependence",

@@ -1,0 +1,57 @@
+//! Viscous friction that grows less than the speed: `F_v v -> F_v v / (1 + w |v|)`.
+//!
+//! Source: Cross (1965) with the exponent one, of grease that thins in shear; Grotjahn, Daemi &
+//! Heimann (2001) and Bona & Indri (2005) for robots' joints, whose viscous friction flattens (they
+//! take a power below one, whose slope at rest has no bound).
+//!
+//! w is one over the speed at which half of the straight line is left: so its null is in a fit's
+//! reach, where that speed's is at infinity.
+
+use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
+use crate::error::ParameterError;
+use crate::friction::Friction;
+use crate::motion::{JournalMotion, Motion};
+use crate::page::Start;
+use crate::real::Real;
+
+/// One over the speed at which half of a straight line is left.
+#[derive(Clone, Copy, Debug)]
+pub struct ViscousThinning<T> {
+    slowness_s_m: T,
+}
+
+impl<T: Real> Effect<T> for ViscousThinning<T> {
+    const INFO: Info = Info::new("viscous_thinning", Stage::Contact)
+        .summary("viscous friction that flattens as the speed grows: grease thins in shear")
+        .equation("F_v v -> F_v v / (1 + w |v|)")
+        .source("Cross 1965; Grotjahn, Daemi & Heimann 2001; Bona & Indri 2005")
+        .limits("one shape: it levels off at F_v/w; a lubricant that warms up flattens, too")
+        .parameters(&[Parameter::new(
+            "w_s_m",
+            "s/m",
+            "one over the speed at which the viscous friction is half of what it would be",
+            [0.0, 1e6],
+            &[10.0],
+        )
+        .null(0.0)
+        .start(Start::Slowness)])
+        .needs(&[Need::NoFilm]);
+    type State = ();
+
+    fn new(parameters: &[T]) -> Result<Self, ParameterError> {
+        Self::INFO.check(parameters)?;
+        Ok(Self {
+            slowness_s_m: parameters[0],
+        })
+    }
+
+    fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
+}
+
+impl<T: Real> Contact<T> for ViscousThinning<T> {
+    #[inline(always)]
+    fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
+        let thinner = T::ONE + journal.velocity_m_s.abs() * self.slowness_s_m;
+        sliding.smooth = sliding.smooth / thinner;
+    }
+}

@@ -20,6 +20,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import find_noisy_load, steady_load
 from jbf.records.findings.own_clock import own_clock
 from jbf.records.findings.pushing import find_pushing
+from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import find_slow_temperature
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
@@ -62,7 +63,7 @@ class Prepared:
         InputError
             The run has no friction, or nothing moves in it.
         """
-        run = run_on(rig, run)
+        run = as_read(run_on(rig, run))
         require(run, "friction_n", "a comparison with the model")
         instants, motion = imposed_as_read(rig, run)
         recorded = None

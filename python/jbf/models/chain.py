@@ -26,6 +26,7 @@ from jbf.models.own_laws import OwnLaw
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
+from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
@@ -151,7 +152,7 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
 def imposed_as_read(rig: Rig, run: Run) -> tuple[Array, ImposedMotion]:
     """The motion, and the instants at which it was read, s: those of a clock of its own, where it
     has one."""
-    run = run_on(rig, one_run(run))
+    run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
     if there is not None:
         run = run.select(there)

@@ -18,6 +18,9 @@ Array = npt.NDArray[np.float64]
 
 HALF_WIDTHS = (2, 4, 8)
 """Half widths of the windows, in samples: the path is coarse, or not."""
+WIDE = (*HALF_WIDTHS, 16, 32, 64)
+"""The same where a ratio is asked, which no width bends: a slow motion logged fast goes by a count
+in tens of samples."""
 WHOLE = 1.2
 """A window that is longer than so many times the usual has a gap in it."""
 LEAST = 60
@@ -35,11 +38,12 @@ class Compared:
     count: float
 
 
-def compared(time: Array, path: Array, speed: Array) -> Iterator[Compared]:
+def compared(
+    time: Array, path: Array, speed: Array, half_widths: tuple[int, ...] = HALF_WIDTHS
+) -> Iterator[Compared]:
     """Path and speed over windows of several widths, wide ones last."""
     whole = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
-    usual = float(np.median(np.diff(time)))
-    for half in HALF_WIDTHS:
+    for half in half_widths:
         if len(time) < 4 * half + LEAST:
             return
         lasts = time[2 * half :] - time[: -2 * half]
@@ -47,7 +51,8 @@ def compared(time: Array, path: Array, speed: Array) -> Iterator[Compared]:
         by_speed = (whole[2 * half :] - whole[: -2 * half]) / lasts
         apart = time[3 * half : -half] - time[half : -3 * half]
         acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / apart
-        kept = time[4 * half :] - time[: -4 * half] < WHOLE * 4 * half * usual
+        lengths = time[4 * half :] - time[: -4 * half]
+        kept = lengths < WHOLE * np.median(lengths)
         inner = slice(half, -half)
         if kept.sum() >= LEAST:
             count = step_of(path) / float(np.median(lasts))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.compared import Compared, compared
+from jbf.records.motion.compared import WIDE, Compared, compared
 
 Array = npt.NDArray[np.float64]
 
@@ -24,7 +24,7 @@ SAME = 0.02
 def factor_between(time: Array, path: Array, speed: Array) -> float | None:
     """How many times as fast the path changes as the speed says; None where they agree, or where
     they are no multiples of one another."""
-    for c in compared(time, path, speed):
+    for c in compared(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * abs(ratio) and abs(ratio - 1.0) > max(OFF, SPREADS * spread):
             return ratio
@@ -34,7 +34,7 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
 def way_per_unit(time: Array, path: Array, speed: Array) -> float | None:
     """Metres of way, by the speed, for a unit of the path, where nobody says how many; None where
     they are no multiples of one another, or run against one another."""
-    for c in compared(time, path, speed):
+    for c in compared(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * ratio:
             exact = slope_near(time, path, speed, ratio)
@@ -44,7 +44,7 @@ def way_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
 def slope_near(time: Array, path: Array, speed: Array, near: float) -> float:
     """The ratio by least squares, over the windows that show one near a first one."""
-    for c in compared(time, path, speed):
+    for c in compared(time, path, speed, WIDE):
         ratio, _ = _middle(c)
         if abs(ratio / near - 1.0) < OFF:
             close = np.abs(c.by_path - near * c.by_speed) < OFF * np.abs(c.by_path) + c.count

@@ -154,3 +154,16 @@ def test_a_long_recording_asks_for_more_than_chance() -> None:
     assert Level.shared(newtons, 20, 1e3, 0.5).price(1, 1000) == pytest.approx(
         float(stats.chi2.isf(0.01 / 20, 1)) + 22.0
     )
+
+
+def test_what_the_residual_shows_counts_towards_what_recordings_do() -> None:
+    told = Level.shared(DEFAULT, 20, 1e4, 1.0)
+    white = told.critical
+    assert told.white == white
+    assert told.price(1, 10_000) == pytest.approx(white + DEFAULT.imperfection)
+    # A residual that makes large gains asks for them, and not for the allowance besides.
+    for critical in (white + 5.0, white + 60.0):
+        rough = replace(told, chance=float(stats.chi2.sf(critical, 1)))
+        asked = max(critical, white + DEFAULT.imperfection)
+        assert rough.price(1, 10_000) == pytest.approx(asked)
+        assert rough.to_dict()["white"] == white

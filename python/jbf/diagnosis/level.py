@@ -8,7 +8,8 @@ bootstrap: Wu 1986; of blocks: Shao 2010), which keeps its size, its tails and i
 away whatever it has of an effect.
 
 Recordings do to a record what no finding tells: to be named, an effect must gain so much more than
-noise does as simulated recordings with nothing hidden make effects gain. And what is so little that
+white noise makes it as simulated recordings with nothing hidden do; or, if that is more, what the
+campaign's own residual makes it gain, in which what its recording did is seen already. And what is so little that
 nobody would act on it gets no name, however sure it is: of a day of samples any description of a
 machine is wrong.
 """
@@ -53,7 +54,7 @@ class Level:
     blocks
         Blocks of the residual whose signs were turned; none before there is a residual.
     imperfection
-        What recordings may add to a gain.
+        What recordings may add to what white noise makes an effect gain.
     worth
         What an effect gains that is just worth a name.
     """
@@ -86,15 +87,20 @@ class Level:
         """What noise makes one parameter gain with just that probability."""
         return float(stats.chi2.isf(self.chance, 1))
 
+    @property
+    def white(self) -> float:
+        """The same of white noise: what the level alone asks, shared among the candidates."""
+        return float(stats.chi2.isf(self.false_alarms / max(self.candidates, 1), 1))
+
     def price(self, parameters: int, samples: int) -> float:
         """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
         more = max(parameters, 1) - 1
-        least = max(self.critical + self.imperfection, self.worth)
+        least = max(self.critical, self.white + self.imperfection, self.worth)
         return least + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {**vars(self), "critical": self.critical}
+        return {**vars(self), "critical": self.critical, "white": self.white}
 
 
 @dataclass(frozen=True, eq=False)

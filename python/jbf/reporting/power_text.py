@@ -31,9 +31,10 @@ def level_words(level: Level) -> str:
     )
     if level.blocks:
         said += f", by the residual itself, {level.blocks} blocks of it turned at random"
+    allowed = level.white + level.imperfection
     if level.imperfection:
-        said += f"; what recordings do to a record may add {number(level.imperfection)}"
-    if level.worth > level.critical + level.imperfection:
+        said += f"; with what recordings do to a record at least {number(allowed)}"
+    if level.worth > max(level.critical, allowed):
         said += f"; to be worth a name it must gain {number(level.worth)}"
     return said
 

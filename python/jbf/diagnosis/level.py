@@ -9,9 +9,9 @@ away whatever it has of an effect.
 
 Recordings do to a record what no finding tells: to be named, an effect must gain so much more than
 white noise makes it as simulated recordings with nothing hidden do; or, if that is more, what the
-campaign's own residual makes it gain, in which what its recording did is seen already. And what is so little that
-nobody would act on it gets no name, however sure it is: of a day of samples any description of a
-machine is wrong.
+campaign's own residual makes it gain, in which what its recording did is seen already. And what is
+so little that nobody would act on it gets no name, however sure it is: of a day of samples any
+description of a machine is wrong.
 """
 
 from __future__ import annotations

@@ -151,6 +151,7 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         verdict=verdict,
         effects=effects,
         alternatives=dict.fromkeys(effects, ties),
+        weights={e: {e: 0.62, **dict.fromkeys(ties, 0.38)} if ties else {e: 1.0} for e in effects},
         steps=steps,
         failures=before.failures if verdict != "adequate" else (),
         unexplained=LEFT if verdict == "unexplained" else (),

@@ -170,7 +170,11 @@ def test_effects_that_fit_equally_well_tie() -> None:
     assert d.verdict == "ambiguous"
     assert d.alternatives == {first.effect: (second.effect,)}
     assert d.next_experiment
-    assert f"{first.effect} or {second.effect}" in d.summary()
+    weights = d.weights[first.effect]
+    odds = np.exp(0.5 * (first.evidence - second.evidence))
+    assert weights[first.effect] / weights[second.effect] == pytest.approx(odds, rel=1e-6)
+    shares = [f"{e} ({100.0 * weights[e]:.0f} %)" for e in (first.effect, second.effect)]
+    assert " or ".join(shares) in " ".join(d.summary().split())
 
 
 def test_an_effect_that_explains_most_is_kept_beside_a_tone() -> None:

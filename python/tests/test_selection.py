@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
@@ -13,7 +14,7 @@ from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.selection import Round, alternatives, reconsider, try_candidates
+from jbf.diagnosis.selection import Round, reconsider, try_candidates, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.noise import WHITE
@@ -279,20 +280,34 @@ def test_a_single_effect_is_not_questioned() -> None:
 # ---- alternatives -----------------------------------------------------------------------------
 
 
-def test_alternatives_are_those_that_would_fit_as_well() -> None:
+def weighed(candidates: MadeUp) -> dict[str, float]:
+    return weights(cast(Candidates, candidates), ("sensor_lag",))["sensor_lag"]
+
+
+def test_alternatives_are_those_that_would_fit_as_well_by_their_posterior_weight() -> None:
     candidates = made({"sensor_lag": 300.0, "sensor_drift": 293.0, "sensor_offset": 291.0})
-    found = alternatives(cast(Candidates, candidates), ("sensor_lag",))
-    assert found == {"sensor_lag": ("sensor_drift",)}
-    wide = replace(candidates, policy=replace(DEFAULT, tie=10.0))
-    found = alternatives(cast(Candidates, wide), ("sensor_lag",))
-    assert found == {"sensor_lag": ("sensor_offset", "sensor_drift")}
+    # Odds are those of the likelihoods; all three have one parameter.
+    odds = math.exp(-3.5)
+    assert weighed(candidates) == pytest.approx(
+        {"sensor_lag": 1.0 / (1.0 + odds), "sensor_drift": odds / (1.0 + odds)}
+    )
+    wide = replace(candidates, policy=replace(DEFAULT, least_weight=0.01))
+    found = weighed(wide)
+    assert list(found) == ["sensor_lag", "sensor_drift", "sensor_offset"]
+    assert sum(found.values()) == pytest.approx(1.0)
+    assert found["sensor_offset"] / found["sensor_lag"] == pytest.approx(math.exp(-4.5))
+
+
+def test_one_that_fits_better_weighs_more() -> None:
+    candidates = made({"sensor_lag": 300.0, "sensor_drift": 304.0})
+    assert weighed(candidates)["sensor_drift"] == pytest.approx(1.0 / (1.0 + math.exp(-2.0)))
 
 
 def test_an_alternative_whose_score_promises_nothing_is_none() -> None:
     candidates = made(
         {"sensor_lag": 300.0, "sensor_drift": 300.0}, scores={frozenset(["sensor_drift"]): 5.0}
     )
-    assert alternatives(cast(Candidates, candidates), ("sensor_lag",)) == {"sensor_lag": ()}
+    assert weighed(candidates) == {"sensor_lag": 1.0}
 
 
 # ---- whose gain it is -------------------------------------------------------------------------

@@ -6,6 +6,7 @@ JSON prints; a study that asks what a number does gives it another (`diagnose(..
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
@@ -43,11 +44,11 @@ class Policy:
         "force, N RMS, by which an effect must change the friction to be named",
         "the user's to choose; none by default",
     )
-    tie: float = _number(
-        8.0,
-        "candidates closer in evidence than this fit equally well, and one replaces another only "
-        "if it gains more",
-        "odds of 55 : 1; less than one parameter costs",
+    least_weight: float = _number(
+        0.018,
+        "posterior weight, of two effects of equal odds before, with which one could stand in the "
+        "other's place; and one replaces another only where that one has less",
+        "odds of 55 : 1 (Kass & Raftery 1995: strong); less than one parameter costs",
     )
     most_effects: int = _number(
         5, "effects after which no more are added", "a record that asks for more tells otherwise"
@@ -239,6 +240,11 @@ class Policy:
         "would show what could hide",
         "five standard deviations",
     )
+
+    @property
+    def tie(self) -> float:
+        """The difference in evidence of an effect and one with that weight."""
+        return 2.0 * math.log(1.0 / self.least_weight - 1.0)
 
     def to_dict(self) -> dict[str, float]:
         """For JSON."""

@@ -19,7 +19,7 @@ from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import select, step
 from jbf.diagnosis.second_look import second_look
-from jbf.diagnosis.selection import Names, alternatives
+from jbf.diagnosis.selection import Names, weights
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
@@ -122,7 +122,8 @@ def diagnose(
     if doubted and not _remainder(candidates, named):
         # What some runs asked for and others did not, nothing asks for once it is gone.
         present, remains = named, refused
-    equal = alternatives(candidates, named)
+    posterior = weights(candidates, named)
+    equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     kept = best_predicting(candidates, present, named)
     if kept != steps[-1].effects:
         steps.append(step(candidates, kept, before.noise_n, ()))
@@ -143,6 +144,7 @@ def diagnose(
         verdict=answer,
         effects=named,
         alternatives=equal,
+        weights=posterior,
         steps=tuple(steps),
         failures=before.failures,
         unexplained=remains,

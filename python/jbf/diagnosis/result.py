@@ -32,7 +32,9 @@ class Diagnosis(Result):
     effects
         What was added and rests on its own evidence, in the order found.
     alternatives
-        For each added effect, those that would fit as well in its place.
+        For each added effect, those that would fit as well in its place, the likeliest first.
+    weights
+        For each added effect its posterior weight and theirs, at equal odds before.
     steps
         The ledger, from the bare law on.
     failures
@@ -92,6 +94,7 @@ class Diagnosis(Result):
     laws: tuple[LawTried, ...] = ()
     simpler_law: LawTried | None = None
     power: tuple[Power, ...] = ()
+    weights: dict[str, dict[str, float]] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -105,6 +108,7 @@ class Diagnosis(Result):
             "verdict": self.verdict,
             "effects": list(self.effects),
             "alternatives": {k: list(v) for k, v in self.alternatives.items()},
+            "weights": {k: dict(v) for k, v in self.weights.items()},
             "steps": [s.to_dict() for s in self.steps],
             "failures": [f.to_dict() for f in self.failures],
             "unexplained": [r.to_dict() for r in self.unexplained],

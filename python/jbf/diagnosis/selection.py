@@ -225,18 +225,26 @@ def reconsider(
     return current
 
 
-def alternatives(candidates: Candidates, present: Names) -> dict[str, Names]:
-    """For each effect, the candidates that would fit as well in its place."""
+def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
+    """For each effect its posterior weight and those of the candidates that could stand in its
+    place.
+
+    At equal odds before, among those that have at least `least_weight` beside it alone (Kass &
+    Raftery 1995); the effect first, the others as they weigh. An effect that nothing could replace
+    weighs one.
+    """
     whole = candidates.converge(present)
-    found: dict[str, Names] = {}
+    found: dict[str, dict[str, float]] = {}
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.converge(rest)
-        found[name] = tuple(
-            other
+        costs = {
+            other: swap_cost(candidates, (*rest, other), whole, simpler)
             for other in candidates.names
-            if other not in present
-            and may_come(other, rest)
-            and swap_cost(candidates, (*rest, other), whole, simpler) < candidates.policy.tie
-        )
+            if other not in present and may_come(other, rest)
+        }
+        close = {other: cost for other, cost in costs.items() if cost < candidates.policy.tie}
+        odds = {name: 1.0} | {other: float(np.exp(-0.5 * cost)) for other, cost in close.items()}
+        order = [name, *sorted(close, key=lambda other: close[other])]
+        found[name] = {other: odds[other] / sum(odds.values()) for other in order}
     return found

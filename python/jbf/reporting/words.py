@@ -127,6 +127,12 @@ def _law_sentence(diagnosis: Diagnosis) -> str:
     )
 
 
+def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
+    """Effects that tie, each with its posterior weight."""
+    weights = diagnosis.weights.get(tied[0], {})
+    return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
+
+
 def _found(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
@@ -145,7 +151,7 @@ def _found(diagnosis: Diagnosis, place: str) -> str:
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
         ties = "; ".join(
-            f"{listed((effect, *others), 'or')}"
+            f"{listed(_weighed(diagnosis, (effect, *others)), 'or')}"
             for effect, others in diagnosis.alternatives.items()
             if others
         )

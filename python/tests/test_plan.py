@@ -112,3 +112,20 @@ def test_nothing_is_planned_without_a_noise(
     command = ["plan", str(tmp_path / "rig.toml"), "--law", "coulomb", "--max-velocity-m-s", "1"]
     assert main(command) == 2
     assert "--noise-n is missing" in capsys.readouterr().err
+
+
+def test_a_plan_does_not_claim_what_only_exact_instants_would_show(planned: Plan) -> None:
+    found = {p.effect: p for p in planned_power(MODEL, planned.runs, noise_n=NOISE_N).power}
+    # A jump of ten newtons in a noise of 0.2 N shows on which side of a reversal a sample lies, and
+    # a recorded reversal has no such instant: play must be there for a sample, or nearly.
+    step_s, slope = 0.02, SHARP_M_S2
+    play_m, late_s, lag_s = (
+        found[name].found_80 for name in ("backlash", "time_delay", "sensor_lag")
+    )
+    assert play_m is not None
+    assert play_m > 0.1 * 0.5 * slope * step_s**2
+    assert late_s is not None
+    assert late_s > 0.2 * step_s
+    # Of a lag within a sample nothing is left at the next but one.
+    assert lag_s is not None
+    assert 0.1 * step_s < lag_s < step_s

@@ -14,8 +14,10 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.samples import Samples
 from jbf.models.model import Model
 from jbf.records.arguments import list_of_runs, of_kind
+from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.run import Run
 from jbf.records.toml_file import number
 from jbf.results import Result
@@ -70,7 +72,20 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_n: float, policy: Polic
         replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
         for run, friction in zip(runs, model.predict_many(runs), strict=True)
     ]
-    return Candidates(Campaign.prepare(model.rig, recorded), model.law, model.clock, policy)
+    exact = Campaign.prepare(model.rig, recorded)
+    prepared = tuple(replace(p, motion=_as_read(p.motion)) for p in exact.prepared)
+    campaign = replace(exact, prepared=prepared, samples=Samples.of(prepared))
+    return Candidates(campaign, model.law, model.clock, policy)
+
+
+def _as_read(motion: ImposedMotion) -> ImposedMotion:
+    """A planned motion as one that was recorded: on which side of a reversal the samples next to it
+    lie, nobody knows. Known exactly they would tell the least play or delay."""
+    way = np.sign(motion.velocity_m_s)
+    turns = np.flatnonzero(way[1:] != way[:-1])
+    known = motion.sign_known.copy()
+    known[turns] = known[turns + 1] = False
+    return replace(motion, sign_known=known)
 
 
 @one_blas_thread

@@ -31,7 +31,7 @@ Names = tuple[str, ...]
 
 LEVELS = (0.80, 0.95)
 """Chances of being found."""
-LOOKS = 8
+LOOKS = 14
 """Strengths tried for each."""
 AGREES = 0.05
 """Relative difference in strength that ends it."""
@@ -174,7 +174,12 @@ def non_centrality(price: float, parameters: int, chance: float) -> float:
 
 
 def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
-    """How many times its usual strength an effect has that is worth so much; nan where none is."""
+    """How many times its usual strength an effect has that is worth so much; nan where none is.
+
+    What an effect is worth grows as its square, nearly; where it grows all at once (a lag within a
+    sample shows nothing) the search halves what is left between too little and enough.
+    """
+    little, enough = 0.0, np.inf
     for _ in range(LOOKS):
         left = runs.shown(runs.change(model, times))
         worth = float(np.sum(left**2))
@@ -184,7 +189,17 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
         # At a bound there is no more to be had.
         if np.array_equal(model.values(times * further), model.values(times)):
             return times if further < 1.0 else np.nan
+        if further > 1.0:
+            little = max(little, times)
+        else:
+            enough = min(enough, times)
+        if enough < little * (1.0 + AGREES):
+            return enough
         times *= further
+        if not little < times < enough:
+            times = float(np.sqrt(little * enough))
+    if np.isfinite(enough):
+        return enough
     return times if worth > 0.5 * wanted else np.nan
 
 

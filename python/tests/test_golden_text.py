@@ -7,9 +7,10 @@ from textwrap import dedent
 
 import numpy as np
 import pytest
-from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
+from by_hand import TRIALS, comparison_by_hand, diagnosis_by_hand, fit_by_hand
 from jbf import Run
 from jbf.diagnosis import Remainder
+from jbf.diagnosis.ledger import Trial
 from jbf.records.counts import count_of
 from jbf.records.findings.gaps import find_gaps
 from jbf.reporting.diagnosis_page import diagnosis_page
@@ -182,3 +183,16 @@ def test_what_remains_is_named() -> None:
             frequency   12 %  a 3.00 Hz tone
             time         4 %  2 bursts
     """)
+
+
+def test_what_runs_left_out_did_not_confirm_is_said() -> None:
+    d = diagnosis_by_hand("adequate")
+    doubted = Trial("time_delay", 2.4, 31.0, "rejected", "fits better but predicts no better")
+    (bare,) = d.steps
+    told = replace(d, steps=(replace(bare, trials=(doubted, *bare.trials)),))
+    said_of_it = "runs left out do not confirm it, so it is not named: time_delay."
+    assert verdict_sentence(told).endswith(said_of_it)
+    assert "confirm" not in verdict_sentence(d)
+    # Beside one that was added it is that round's, and not the end's.
+    added = replace(bare, trials=(TRIALS[0], doubted))
+    assert "confirm" not in verdict_sentence(replace(d, steps=(added,)))

@@ -112,12 +112,28 @@ def selected(gains: dict[str, float], **more: Any) -> Callable[[Policy], object]
     return decide
 
 
+EFFECTS = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak", "wear_in", "backlash"]
+
+
 def rounds(policy: Policy) -> object:
     """Effects added where each gains alone what it gains beside any other."""
-    names = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak", "wear_in", "backlash"]
-    gains = {frozenset(names[:k]): 200.0 * k for k in range(len(names) + 1)}
-    candidates = MadeUp(names, gains, policy=policy)
+    gains = {frozenset(EFFECTS[:k]): 200.0 * k for k in range(len(EFFECTS) + 1)}
+    candidates = MadeUp(EFFECTS, gains, policy=policy)
     return select(cast(Candidates, candidates), 1.0).present
+
+
+def test_a_search_that_ends_with_a_leader_in_hand_says_so() -> None:
+    gains = {frozenset(EFFECTS[:k]): 200.0 * k for k in range(len(EFFECTS) + 1)}
+    for most, said in ((5, 1), (6, 0)):
+        made = MadeUp(EFFECTS, gains, policy=with_number("most_effects", most))
+        found = select(cast(Candidates, made), 1.0)
+        assert len(found.present) == most
+        assert len(found.refused) == said
+    made = MadeUp(EFFECTS, gains)
+    (left,) = select(cast(Candidates, made), 1.0).refused
+    assert left.where.startswith(f"{EFFECTS[5]} would bring ")
+    assert left.where.endswith("beside 5 effects, and no more are searched for")
+    assert left.share > 0.0
 
 
 def swapped(policy: Policy) -> object:

@@ -50,13 +50,24 @@ def select(candidates: Candidates, noise_n: float, start: Selected | None = None
         if found.leader is None:
             return Selected(present, steps, _refused(candidates, present))
         if len(present) >= candidates.policy.most_effects:
-            return Selected(present, steps)
+            return Selected(present, steps, (_one_more(candidates, present, found.leader),))
         candidates.search_peaks((*present, found.leader))
         grown = reconsider(candidates, (*present, found.leader), found.unconfirmed)
         if frozenset(grown) in visited:
             return Selected(present, steps)
         visited.add(frozenset(grown))
         present = grown
+
+
+def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
+    """What a search that ends with a leader in hand leaves unsaid."""
+    base, richer = candidates.converge(present), candidates.converge((*present, leader))
+    unit = candidates.campaign.rig.quantities.force
+    where = (
+        f"{leader} would bring {base.rms_n:.3g} {unit} down to {richer.rms_n:.3g} {unit} beside "
+        f"{len(present)} effects, and no more are searched for"
+    )
+    return Remainder("effects", where, max(1.0 - (richer.rms_n / base.rms_n) ** 2, 0.0))
 
 
 def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campaign | None:

@@ -101,9 +101,21 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
     """
     return (
         _found(diagnosis, place)
+        + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
         + _law_sentence(diagnosis)
     )
+
+
+def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
+    """Effects with evidence that runs left out did not confirm: too weak to be named, and told."""
+    if diagnosis.verdict not in ("adequate", "missing"):
+        return ""
+    asked = [t for t in diagnosis.steps[-1].trials if t.outcome == "rejected" and t.evidence > 0.0]
+    if not asked or any(t.outcome == "added" for t in diagnosis.steps[-1].trials):
+        return ""
+    names = listed(t.effect for t in asked)
+    return f" Fits better, but runs left out do not confirm it, so it is not named: {names}."
 
 
 def _law_sentence(diagnosis: Diagnosis) -> str:

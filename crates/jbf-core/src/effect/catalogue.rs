@@ -12,7 +12,8 @@ use super::{
     presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
     stribeck_asymmetry, stribeck_excess, stroke_dependence, thermal_thinning, time_delay,
     torque_proportional, viscous_asymmetry, viscous_load_dependence,
-    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, wear_in, zero_load_dependence,
+    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, wear_in,
+    zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
 use crate::error::ParameterError;

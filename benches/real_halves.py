@@ -131,6 +131,7 @@ def row(title: str, halves: Halves, law: str, whole: bool = False) -> None:
     names = ", ".join(found.effects) or "-"
     kinds = ", ".join(sorted({f.kind for f in found.findings})) or "-"
     rms = campaign.samples.rms(errors)
+    law = law if law == found.model.law else f"{law}: {found.model.law}"
     print(f"| {title} | {law} | {rms:.3g} | {found.verdict} | {names} | {kinds} | {took:.0f} |")
     sys.stdout.flush()
 

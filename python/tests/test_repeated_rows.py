@@ -10,6 +10,7 @@ import pytest
 from jbf import Rig, Run, fit
 from jbf.models.chain import imposed
 from jbf.records.findings.repeated_rows import as_read, repeated_rows
+from jbf.records.motion.ratio import way_per_unit
 from rigsim import axis_campaign
 
 Index = npt.NDArray[np.intp]
@@ -94,3 +95,23 @@ def test_a_rest_is_no_silence() -> None:
     assert again is not None
     assert again[: len(run)].mean() > 0.7
     assert not again[-rest + 1 :].any()
+
+
+def test_the_motion_is_the_same_where_no_force_was_recorded() -> None:
+    _, (run, *_), _ = logged(46)
+    assert run.position_m is not None
+    bare = Run.from_arrays(run.time_s, run.velocity_m_s, position_m=run.position_m)
+    one, other = (imposed(Rig(), r).velocity_m_s for r in (run, bare))
+    np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_a_slow_motion_that_is_logged_fast_or_unevenly_tells_its_way_a_radian(even: bool) -> None:
+    rng = np.random.default_rng(9)
+    steps = np.full(8000, 0.003) if even else rng.choice([0.005, 0.05], 4000)
+    time = np.cumsum(steps)
+    angle, speed = 0.1 * np.sin(0.5 * time), 0.05 * np.cos(0.5 * time)
+    counts = 4e-4 * np.round(angle / 4e-4)
+    noisy = speed + 1e-3 * rng.standard_normal(len(time))
+    assert way_per_unit(time, counts, noisy) == 1.0
+    assert way_per_unit(time, counts, 0.03 * noisy) == pytest.approx(0.03, rel=0.01)

@@ -33,7 +33,7 @@ LONGER = 2.0
 def repeated_rows(run: Run) -> Mask | None:
     """True at rows that repeat the one before; None where the record has none to speak of."""
     place = run.angle_rad if run.angle_rad is not None else run.position_m
-    if place is None or run.friction_n is None or not run.speed_recorded or run.read:
+    if place is None or not run.speed_recorded or run.read:
         return None
     place = np.unwrap(place) if place is run.angle_rad else place
     steps, way = np.diff(run.time_s), np.abs(np.diff(place))

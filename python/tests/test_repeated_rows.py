@@ -108,7 +108,7 @@ def test_the_motion_is_the_same_where_no_force_was_recorded() -> None:
 @pytest.mark.parametrize("even", [True, False])
 def test_a_slow_motion_that_is_logged_fast_or_unevenly_tells_its_way_a_radian(even: bool) -> None:
     rng = np.random.default_rng(9)
-    steps = np.full(8000, 0.003) if even else rng.choice([0.005, 0.05], 4000)
+    steps = np.full(8000, 0.003) if even else rng.choice([0.005, 0.05], 4000, p=[0.7, 0.3])
     time = np.cumsum(steps)
     angle, speed = 0.1 * np.sin(0.5 * time), 0.05 * np.cos(0.5 * time)
     counts = 4e-4 * np.round(angle / 4e-4)

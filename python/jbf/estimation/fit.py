@@ -13,6 +13,7 @@ from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
+from jbf.estimation.exact_delay import exact_delay
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem, named_values
@@ -23,6 +24,7 @@ from jbf.estimation.uncertainty import correlations, parameter_values
 from jbf.estimation.weighting import best_weighting
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
+from jbf.models.late_reading import TAU
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
@@ -116,8 +118,14 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     """A solution with its errors, as a model; `start` is what the user had it start from."""
     known = spread(problem, solution)
     found = put_back(problem, solution, known, start or {})
+    delay = exact_delay(problem, solution, known, found.values)
+    if delay is not None:
+        found = replace(found, values=delay.values, residuals=delay.residuals)
     named = parameter_values(problem, found, known)
-    campaign, rms, samples = problem.campaign, solution.rms_n, solution.samples.count
+    if delay is not None and not named[TAU].held:
+        named[TAU] = replace(named[TAU], stderr=delay.sd_s)
+    campaign, samples = problem.campaign, solution.samples.count
+    rms = solution.samples.rms(found.residuals)
     model = Model(
         campaign.rig,
         problem.law,

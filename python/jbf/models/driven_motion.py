@@ -1,15 +1,12 @@
 """A run's motion as the core takes it: between the samples, too, where friction jumps.
 
 A motion sets in, and ends, between two samples: when, its acceleration tells, and a step of the
-core ends there. Where an effect makes the record late the core keeps the force at the ends of its
-steps, with straight lines between: in a fit a jump is a ramp with a slope, in a prediction a sample
-within it would be neither what was nor what is. Steps that end close to either side of each jump
-make that ramp shorter than any sample.
+core ends there.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -23,32 +20,59 @@ from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 
-BESIDE = 0.02
-"""Share of the delay so close to a jump; a delay line keeps steps of a sixtieth apart."""
 INSIDE = 1e-3
 """Share of a step that an instant must be off both its ends."""
+LONGEST_S = 1.0
+"""No instant of a reversal is less sure than that, s."""
 
 
-def driven_motion(rig: Rig, run: Run, motion: ImposedMotion, *, delay_s: float = 0.0) -> Driven:
-    """A run's motion for the core.
+@dataclass(frozen=True)
+class Reversals:
+    """Where a motion changes its sign, sets in or ends.
+
+    Attributes
+    ----------
+    at_s
+        The instants, s, shape (k,).
+    sd_s
+        Their standard errors, s.
+    between
+        True for those at which the motion sets in or ends between two samples.
+    interval
+        The samples before them.
+    """
+
+    at_s: Array
+    sd_s: Array
+    between: npt.NDArray[np.bool_]
+    interval: npt.NDArray[np.intp]
+
+
+def driven_motion(rig: Rig, run: Run, motion: ImposedMotion) -> Driven:
+    """A run's motion for the core."""
+    return with_instants(rig, run, motion, np.zeros(0))[1]
+
+
+def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> tuple[Array, Driven]:
+    """A run's motion for the core, at more instants; and all instants of the core, s.
 
     Parameters
     ----------
-    delay_s
-        How late the record of the force is, s, for jumps that stay sharp; zero in a fit.
+    more_s
+        Instants beside the run's, s: the speed there lies on straight lines.
     """
     time, v = run.time_s, motion.velocity_m_s
-    zero, starts = _zeros(time, v, motion.acceleration_m_s2)
-    new, speed = zero[starts], np.zeros(int(starts.sum()))
-    if delay_s > 0.0:
+    turns = reversals(time, motion)
+    new = turns.at_s[turns.between]
+    speed = np.zeros(len(new))
+    if len(more_s):
         lines = np.argsort(np.concatenate([time, new]))
         knots = np.concatenate([time, new])[lines], np.concatenate([v, speed])[lines]
-        beside = np.concatenate([zero - BESIDE * delay_s, zero + BESIDE * delay_s])
-        new = np.concatenate([new, beside])
-        speed = np.concatenate([speed, np.interp(beside, *knots)])
+        new = np.concatenate([new, more_s])
+        speed = np.concatenate([speed, np.interp(more_s, *knots)])
     inside = (new > time[0]) & (new < time[-1]) & ~np.isin(new, time)
     if not inside.any():
-        return core_motion(rig, run, motion)
+        return time, core_motion(rig, run, motion)
     whole, first = np.unique(np.concatenate([time, new[inside]]), return_index=True)
     velocity = np.concatenate([v, speed[inside]])[first]
     if run.load_n is not None:
@@ -66,14 +90,15 @@ def driven_motion(rig: Rig, run: Run, motion: ImposedMotion, *, delay_s: float =
     )
     friction = np.zeros(len(whole)) if run.friction_n is None else run.friction_n[before]
     driven = core_motion(rig, run.at(whole, friction), there)
-    return Driven(driven.motion, np.searchsorted(whole, time))
+    return whole, Driven(driven.motion, np.searchsorted(whole, time))
 
 
-def _zeros(time: Array, v: Array, a: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Instants at which the speed changes its sign, sets in or ends, s; and True for those of the
-    latter two that lie between two samples."""
+def reversals(time_s: Array, motion: ImposedMotion) -> Reversals:
+    """Where a motion changes its sign, sets in or ends: an error of the speed is one of the instant
+    by the acceleration."""
+    v, a = motion.velocity_m_s, motion.acceleration_m_s2
     k = np.flatnonzero(np.sign(v[:-1]) != np.sign(v[1:]))
-    t0, t1, v0, v1 = time[k], time[k + 1], v[k], v[k + 1]
+    t0, t1, v0, v1 = time_s[k], time_s[k + 1], v[k], v[k + 1]
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = t0 + (t1 - t0) * v0 / (v0 - v1)
         start = np.where(v1 * a[k + 1] > 0.0, t1 - v1 / a[k + 1], t0)
@@ -82,4 +107,7 @@ def _zeros(time: Array, v: Array, a: Array) -> tuple[Array, npt.NDArray[np.bool_
     zero = np.clip(zero, t0, t1)
     edge = INSIDE * (t1 - t0)
     between = ((v0 == 0.0) | (v1 == 0.0)) & (zero > t0 + edge) & (zero < t1 - edge)
-    return zero, between
+    slope = np.maximum(np.maximum(np.abs(a[k]), np.abs(a[k + 1])), np.abs(v1 - v0) / (t1 - t0))
+    error = np.maximum(motion.velocity_error_m_s[k], motion.velocity_error_m_s[k + 1])
+    sd = error / np.maximum(slope, 1e-12)
+    return Reversals(zero, np.minimum(sd, LONGEST_S), between, k)

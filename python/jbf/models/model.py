@@ -28,9 +28,11 @@ from jbf.models.chain import (
     core_load_n,
     core_refusals,
     imposed,
+    imposed_as_read,
     warn_of_fast_film,
 )
 from jbf.models.driven_motion import driven_motion
+from jbf.models.late_reading import TAU, LateChain
 from jbf.models.model_file import model_file_text, read_model_file, write_model_file
 from jbf.models.own_laws import OwnLaw
 from jbf.models.parameter_units import shown
@@ -128,6 +130,9 @@ class Model:
     def predict(self, run: Run) -> Array:
         """Friction reading of one bearing under the run's motion, N, shape (n,).
 
+        Of a model with `time_delay` a sample close to a reversal reads the mean of what comes
+        before it and after it, weighed by the errors of the reversal's instant and of the delay.
+
         Warns (:class:`jbf.FilmWarning`) where the film is faster than 28,000 1/s: that is held
         inside the bearing, and the friction is not to be relied on.
         """
@@ -138,15 +143,20 @@ class Model:
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
-        delay = self.parameters.get("time_delay.tau_s")
-        delay_s = 0.0 if delay is None else delay.value
-        motions = [
-            driven_motion(self.rig, run, imposed(self.rig, run), delay_s=delay_s) for run in runs
-        ]
+        motions = [driven_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
+        delay = self.parameters.get(TAU)
         with core_refusals():
-            return core.predict(self.values, motions)
+            if delay is None or delay.value <= 0.0:
+                return core.predict(self.values, motions)
+            late = LateChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
+            return [
+                late.read(
+                    self.values, run, *imposed_as_read(self.rig, run), delay.stderr or 0.0
+                ).mean_n
+                for run in runs
+            ]
 
     def require_columns(self, run: Run) -> None:
         """An InputError where a run lacks a column that an effect of this model needs."""

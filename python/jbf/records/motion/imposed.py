@@ -90,9 +90,17 @@ class ImposedMotion:
         v0, v1 = self.velocity_m_s[k], self.velocity_m_s[k + 1]
         a0, a1 = self.acceleration_m_s2[k], self.acceleration_m_s2[k + 1]
         rest = self.resting[k] & self.resting[k + 1]
-        # Beside a rest the speed is a line from where the shaft starts.
+        # Beside a rest the speed is a line from where the shaft starts, or to where it ends.
         corner = self.resting[k] | self.resting[k + 1]
-        line = v0 + u * (v1 - v0)
+        from_s, to_s = time_s[k].copy(), time_s[k + 1].copy()
+        with np.errstate(divide="ignore", invalid="ignore"):
+            starts = (v0 == 0.0) & corner & (v1 * a1 > 0.0)
+            from_s = np.where(starts, np.maximum(to_s - v1 / a1, from_s), from_s)
+            ends = (v1 == 0.0) & corner & (v0 * a0 < 0.0)
+            to_s = np.where(ends, np.minimum(from_s - v0 / a0, to_s), to_s)
+            gone = np.clip((instants_s - from_s) / (to_s - from_s), 0.0, 1.0)
+        line = v0 + np.where(to_s > from_s, gone, u) * (v1 - v0)
+        rest |= corner & (line == 0.0)
         cubic = (
             (1.0 + 2.0 * u) * (1.0 - u) ** 2 * v0
             + u * (1.0 - u) ** 2 * h * a0
@@ -100,6 +108,7 @@ class ImposedMotion:
             - u**2 * (1.0 - u) * h * a1
         )
         velocity = np.where(corner, line, cubic)
+        acceleration = np.where(corner, np.where(self.resting[k], a1, a0), a0 + u * (a1 - a0))
         known = self.sign_known[k] & self.sign_known[k + 1] & (v0 * v1 >= 0.0)
         between = np.abs(u - 0.5) < 0.5
         at_sample = np.where(u < 0.5, self.sign_known[k], self.sign_known[k + 1])
@@ -107,7 +116,7 @@ class ImposedMotion:
         return replace(
             self,
             velocity_m_s=np.where(rest, 0.0, velocity),
-            acceleration_m_s2=np.where(rest, 0.0, a0 + u * (a1 - a0)),
+            acceleration_m_s2=np.where(rest, 0.0, acceleration),
             angle_rad=np.interp(instants_s, time_s, self.angle_rad),
             velocity_error_m_s=np.maximum(
                 self.velocity_error_m_s[k], self.velocity_error_m_s[k + 1]

@@ -1,0 +1,160 @@
+"""The delay of a record, told by its jumps.
+
+A search draws the late force in lines between samples: that has a slope, so it finds its way, and
+samples beside a jump count for little. They tell the delay best, though: whether a sample was read
+before a reversal or after it shows in every one of them. So once the search has ended the chain is
+read so long before each sample, and the likelihood of the delay is scanned: a sample close to a
+reversal is a mixture of both sides of the jump, the others follow the delay along the valley that
+the search found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.likelihood import independent_share
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.estimation.spread import Spread
+from jbf.models.late_reading import TAU, LateChain
+
+Array = npt.NDArray[np.float64]
+
+LEAST_STEPS = 0.05
+"""A delay of less than so many steps moves no jump from one sample to another."""
+REACH = 5.0
+"""So many standard errors of the search are scanned to either side, and"""
+LEAST_REACH_STEPS = 0.2
+"""at least so many steps."""
+COARSE, FINE = 31, 17
+"""Delays looked at in all of this, and once more round the likeliest of them."""
+CLIPPED = 5.0
+"""A residual counts no more than at so many standard deviations."""
+BLURRED = 3.5
+"""A jump is in doubt within so many standard errors of its instant."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExactDelay:
+    """The delay that the jumps tell.
+
+    Attributes
+    ----------
+    values
+        All parameter values, the others moved along with the delay.
+    sd_s
+        Standard deviation of the delay's likelihood, s: no curvature tells it.
+    residuals
+        Record minus what is expected there, N, one array a run.
+    """
+
+    values: Array
+    sd_s: float
+    residuals: list[Array]
+
+
+def exact_delay(
+    problem: Problem, solution: Solution, spread: Spread, values: Array
+) -> ExactDelay | None:
+    """The delay by the likelihood of all samples; None where the model has none that is open."""
+    if TAU not in problem.names or problem.names.index(TAU) not in problem.open:
+        return None
+    which = problem.names.index(TAU)
+    k = problem.open.index(which)
+    steps = [p.step_s for p in problem.campaign.prepared]
+    step_s, tau_s = float(np.median(steps)), float(values[which])
+    if not spread.moved[k] or tau_s < LEAST_STEPS * step_s:
+        return None
+    sd_s = spread.error(k)
+    if not np.isfinite(sd_s):
+        return None
+    scan = _Scan.of(problem, solution, spread, values, k)
+    reach = max(REACH * sd_s, LEAST_REACH_STEPS * step_s)
+    delays = np.linspace(-reach, reach, COARSE) + tau_s
+    delays = delays[delays > 0.0]
+    costs = np.array([scan.cost(delay) for delay in delays])
+    best, gap = float(delays[np.argmin(costs)]), 2.0 * reach / (COARSE - 1)
+    finer = np.linspace(-gap, gap, FINE)[1:-1] + best
+    finer = finer[(finer > 0.0) & ~np.isin(finer, delays)]
+    costs = np.append(costs, [scan.cost(delay) for delay in finer])
+    delays, first = np.unique(np.append(delays, finer), return_index=True)
+    likely = np.exp(-0.5 * (costs[first] - np.min(costs))) * np.gradient(delays)
+    likely /= np.sum(likely)
+    mean = float(np.sum(likely * delays))
+    spread_s = float(np.sqrt(np.sum(likely * (delays - mean) ** 2) + gap**2 / (12.0 * FINE**2)))
+    found = scan.along(mean)
+    return ExactDelay(found, spread_s, scan.residuals(found, spread_s))
+
+
+@dataclass(frozen=True, eq=False)
+class _Scan:
+    """The likelihood of a delay, the other parameters following it."""
+
+    problem: Problem
+    chain: LateChain
+    friction_n: list[Array]
+    values: Array
+    way: Array
+    """Change of the search's variables by the delay, 1/s."""
+    noise_n: float
+    share: float
+
+    @classmethod
+    def of(
+        cls, problem: Problem, solution: Solution, spread: Spread, values: Array, k: int
+    ) -> _Scan:
+        rig, samples = problem.campaign.rig, solution.samples
+        chain = LateChain(rig, problem.law, problem.clock, problem.effects, problem.names)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            way = spread.correlation[:, k] * spread.sd / spread.sd[k] / spread.scale[k]
+        left = samples.without_deviations(solution.residuals, solution.noise)
+        # A zero or a gain of the run's own is no delay.
+        friction = [
+            p.friction_n - (r - own)
+            for p, r, own in zip(problem.campaign.prepared, solution.residuals, left, strict=True)
+        ]
+        # Of coloured residuals a sample tells less.
+        counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
+        share = min(independent_share(counted, samples.steps_s), 1.0)
+        noise_n = max(samples.rms(left), 1e-300)
+        way = np.where(np.isfinite(way) & spread.moved, way, 0.0)
+        return cls(problem, chain, friction, values, way, noise_n, share)
+
+    def along(self, delay_s: float) -> Array:
+        """The values that the parameters take with a delay."""
+        late = delay_s - float(self.values[self.chain.tau])
+        moved = self.problem.encode(self.values) + self.way * late
+        there = self.problem.decode(moved, self.values)
+        there[self.chain.tau] = delay_s
+        return there
+
+    def cost(self, delay_s: float) -> float:
+        """Minus twice the log likelihood."""
+        values, total = self.along(delay_s), 0.0
+        for p, friction_n in zip(self.problem.campaign.prepared, self.friction_n, strict=True):
+            instants, motion = p.recorded or (p.run.time_s, p.motion)
+            reading = self.chain.read(values, p.run, instants, motion, 0.0)
+            far = [
+                np.minimum(((friction_n - f) / self.noise_n) ** 2, CLIPPED**2)
+                for f in (reading.before_n, reading.after_n)
+            ]
+            over = reading.over
+            doubt = np.minimum(over, 1.0 - over) > 0.5 * np.exp(-0.5 * BLURRED**2)
+            near = (1.0 - over) * np.exp(-0.5 * far[0]) + over * np.exp(-0.5 * far[1])
+            sure = np.where(over > 0.5, far[1], far[0])
+            with np.errstate(divide="ignore"):
+                each = np.where(doubt, -2.0 * np.log(near), self.share * sure)
+            total += float(np.sum(each[p.examined.usable]))
+        return total
+
+    def residuals(self, values: Array, sd_s: float) -> list[Array]:
+        """Record minus what is expected, N."""
+        left = []
+        for p in self.problem.campaign.prepared:
+            instants, motion = p.recorded or (p.run.time_s, p.motion)
+            reading = self.chain.read(values, p.run, instants, motion, sd_s)
+            left.append(p.friction_n - reading.mean_n)
+        return left

@@ -335,7 +335,7 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
 
     monkeypatch.setattr(recipe, "_weighed", seen)
     monkeypatch.setattr(recipe, "select", selected)
-    monkeypatch.setattr(recipe, "unseen", lambda candidates, present: ())
+    monkeypatch.setattr(recipe, "unseen", lambda candidates, present, powers: ())
     runs = four_runs(coulomb, noise_n=0.1)
     diagnose(Rig(), runs, law="coulomb", policy=with_number("most_looks", most))
     assert len(looks) == most

@@ -17,8 +17,9 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.selection import Round, reconsider, try_candidates, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
+from jbf.estimation.likelihood import effective_share
 from jbf.estimation.noise import WHITE
-from made_up import BARE_N, SAMPLES, MadeUp, N, price, sets
+from made_up import BARE_N, SAMPLES, MadeUp, N, price, sets, solution
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
 PRICE = price(1, 4)
@@ -301,6 +302,21 @@ def test_alternatives_are_those_that_would_fit_as_well_by_their_posterior_weight
 def test_one_that_fits_better_weighs_more() -> None:
     candidates = made({"sensor_lag": 300.0, "sensor_drift": 304.0})
     assert weighed(candidates)["sensor_drift"] == pytest.approx(1.0 / (1.0 + math.exp(-2.0)))
+
+
+def test_where_the_error_is_smooth_samples_say_less_of_rivals_too() -> None:
+    gains = {"sensor_lag": 300.0, "sensor_drift": 294.0}
+    whole = solution(["sensor_lag"], 300.0, smooth=3)
+    share = effective_share(whole)
+    assert 0.2 < share < 0.8
+    odds = math.exp(-0.5 * share * 6.0)
+    found = weighed(replace(made(gains), smooth=3))
+    assert found["sensor_drift"] == pytest.approx(odds / (1.0 + odds))
+
+
+def test_one_that_fits_far_better_weighs_all() -> None:
+    candidates = made({"sensor_lag": 300.0, "sensor_drift": 9000.0})
+    assert weighed(candidates) == pytest.approx({"sensor_lag": 0.0, "sensor_drift": 1.0})
 
 
 def test_an_alternative_whose_score_promises_nothing_is_none() -> None:

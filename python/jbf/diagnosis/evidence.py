@@ -81,8 +81,11 @@ def swap_cost(
         The model without the effect that is exchanged.
     """
 
+    # As for evidence: where even the whole leaves a smooth error, samples count for less.
+    share = effective_share(whole)
+
     def cost(solution: Solution) -> float:
-        lost = likelihood_gain(whole, solution)
+        lost = share * likelihood_gain(whole, solution)
         return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
 
     policy = candidates.policy

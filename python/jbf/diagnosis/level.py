@@ -172,7 +172,8 @@ def score_test(
     """What the best of some starts, at each of which the model is a smaller one still, promises
     (`score_gain`), and where the added effects show; of many long runs, in some."""
     few = problem.thinned
-    samples = few.campaign.samples
+    # What a smaller model sets aside beside its jumps would seem to ask for anything.
+    samples = near.samples if few is problem else few.campaign.samples
     best: tuple[float, Array, Array] | None = None
     for start in starts:
         r, j = samples.stacked(*few.linearise(start), near.noise)

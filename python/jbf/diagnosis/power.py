@@ -64,6 +64,9 @@ class Power:
         always could.
     like
         Effects that could stand in its place at `found_80`, those that need the most to part first.
+    hidden
+        True where it could be there at the catalogue's usual strength and not be found in 80 of 100
+        such campaigns.
     """
 
     effect: str
@@ -75,6 +78,7 @@ class Power:
     share_80: float | None
     alone_80: float | None
     like: Names
+    hidden: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -247,6 +251,7 @@ def _power(
         share_80=own.share if np.isfinite(own.times[0]) else None,
         alone_80=strength(own.times[0] * most) if most < NEVER else None,
         like=tuple(like),
+        hidden=not own.times[0] <= 1.0,
     )
 
 

@@ -130,7 +130,8 @@ def diagnose(
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others}
     answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))
-    hidden = () if remains else unseen(candidates, present)
+    strengths = () if remains else power(candidates, present)
+    hidden = unseen(candidates, present, strengths)
     instead = None
     if not laws and (len(named) > 1 or remains):
         instead = simpler_law(candidates, kept, clock)
@@ -162,7 +163,7 @@ def diagnose(
         confounders=tuple(name for name in doubted if name in kept),
         laws=laws,
         simpler_law=instead,
-        power=() if remains else power(candidates, present),
+        power=strengths,
     )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
@@ -244,7 +245,7 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
             if other not in present and may_come(other, rest)
         }
         close = {other: cost for other, cost in costs.items() if cost < candidates.policy.tie}
-        odds = {name: 1.0} | {other: float(np.exp(-0.5 * cost)) for other, cost in close.items()}
         order = [name, *sorted(close, key=lambda other: close[other])]
-        found[name] = {other: odds[other] / sum(odds.values()) for other in order}
+        share = special.softmax([-0.5 * close.get(other, 0.0) for other in order])
+        found[name] = dict(zip(order, share.tolist(), strict=True))
     return found

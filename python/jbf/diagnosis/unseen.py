@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +12,15 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.excitations import Excitation, Limits
 from jbf.diagnosis.experiment import Experiment
+from jbf.diagnosis.power import Power
 from jbf.diagnosis.separation import (
     SIMULATED,
     Rival,
     filled_limits,
     motions,
 )
-from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import Problem
-from jbf.models.catalogue import find_effect, may_come
+from jbf.models.catalogue import find_effect
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -30,29 +30,29 @@ STRENGTHS = (0.6, 1.0, 1.5)
 """What an effect may be of its usual strength."""
 
 
-def unseen(candidates: Candidates, present: Names) -> Names:
-    """Candidates that could be at work at their usual strength and yet leave no evidence in these
-    runs: what the law's own parameters can absorb, or the noise covers."""
-    base = candidates.converge(present)
-    now = candidates.fitted(present).problem.predict(base.values)
-    noise, slopes = base.stacked()
-    level = max(float(noise @ noise) / len(noise), 1e-300)
+def unseen(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
+    """Candidates that could be at work at their usual strength and not be found in these runs: what
+    the law's own parameters can absorb, the noise covers, or only samples show that do not count.
+    """
+    hidden = {p.effect for p in powers if p.hidden}
     found = []
     for name in candidates.names:
-        if name in present or not may_come(name, present):
+        page = find_effect(name)
+        if name not in hidden or set(page.columns) - SIMULATED:
             continue
-        if set(find_effect(name).columns) - SIMULATED:
-            continue
-        richer, values = _with_usual(candidates, present, name)
-        gaps = [a - b for a, b in zip(richer.predict(values), now, strict=True)]
-        if "transmitted" in find_effect(name).needs and not any(np.any(gap) for gap in gaps):
+        if "transmitted" in page.needs and not _changes(candidates, present, name):
             # It changes nothing beside this model, whatever the motion.
             continue
-        gap, _ = base.samples.stacked(gaps, base.jacobian, base.noise)
-        evidence = unexplained_square(slopes, gap) / level
-        if evidence < price_of(candidates, len(richer.open) - base.free):
-            found.append(name)
+        found.append(name)
     return tuple(found)
+
+
+def _changes(candidates: Candidates, present: Names, name: str) -> bool:
+    """Whether an effect at its usual strength changes any prediction of these runs."""
+    now = candidates.fitted(present).problem.predict(candidates.converge(present).values)
+    richer, values = _with_usual(candidates, present, name)
+    there = richer.predict(values)
+    return any(bool(np.any(a != b)) for a, b in zip(there, now, strict=True))
 
 
 def propose_to_see(

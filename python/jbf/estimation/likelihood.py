@@ -89,8 +89,7 @@ def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> f
 def score_gain(problem: Problem, values: Array, near: Solution) -> float:
     """The score test of a model at its null: the gain in twice the log likelihood that one full
     Gauss-Newton step from `values` promises, under the noise of a solution nearby."""
-    samples = problem.campaign.samples
-    return promised_gain(*problem.gauss_newton_rows(values, samples, near.noise))
+    return promised_gain(*problem.gauss_newton_rows(values, near.samples, near.noise))
 
 
 def next_step_gain(solution: Solution) -> float:

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.level import Directions, Level, calibrated, score_test
+from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
@@ -187,7 +187,8 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            self._levels[key] = calibrated(self._beside(present), directions)
+            level = calibrated(self._beside(present), directions)
+            self._levels[key] = with_decoys(level, directions, self.campaign.samples.count)
             # As large as the records: nobody asks for them again.
             for fitted in self._fitted.values():
                 fitted.directions = None

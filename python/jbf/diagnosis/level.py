@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import stats
 
+from jbf.diagnosis.decoys import decoy_gains
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.blocks import Places, blocks_of
 from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
@@ -57,6 +58,9 @@ class Level:
         What recordings may add to what white noise makes an effect gain.
     worth
         What an effect gains that is just worth a name.
+    decoys, decoys_named
+        Campaigns of candidates in the wrong place (`decoys`), and in how many of them one would
+        have got a name.
     """
 
     false_alarms: float
@@ -65,6 +69,8 @@ class Level:
     blocks: int = 0
     imperfection: float = 0.0
     worth: float = 0.0
+    decoys: int = 0
+    decoys_named: int = 0
 
     @classmethod
     def shared(cls, policy: Policy, candidates: int, samples: float, noise_n: float) -> Level:
@@ -117,12 +123,15 @@ class Directions:
         By how much less than in white noise the square of a score counts, shape (k,).
     blocks
         Where blocks of the rows begin.
+    ends
+        Where one run's rows end and the next one's begin.
     """
 
     ways: Array
     innovations: Array
     counted: Array
     blocks: Places
+    ends: Places
 
     @classmethod
     def of(
@@ -151,7 +160,7 @@ class Directions:
         parts = np.split(unit, ends)
         more = [score_inflation(np.split(way, ends), parts, samples.steps_s) for way in ways.T]
         counted = np.array([min(share, 1.0 / m) for m in more])
-        return cls(ways, unit, counted, blocks_of(samples, share))
+        return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
         """What noise of a model that has all that any candidate could explain scores, block by
@@ -218,3 +227,14 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     allowed = np.flatnonzero(false <= level.false_alarms)
     own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
     return replace(level, chance=min(level.chance, own), blocks=len(blocks))
+
+
+def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
+    """The level, and how often candidates in the wrong place would have got a name at it."""
+    told = [d for d in directions if d.ways.size]
+    if not told:
+        return level
+    gains = decoy_gains(told)
+    prices = [level.price(d.ways.shape[1], samples) for d in told]
+    named = np.any([g > price for g, price in zip(gains, prices, strict=True)], axis=0)
+    return replace(level, decoys=len(named), decoys_named=int(np.sum(named)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from jbf.diagnosis.decoys import rate_below
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.plan import Plan
 from jbf.diagnosis.planned import PlannedPower
@@ -36,6 +37,12 @@ def level_words(level: Level) -> str:
         said += f"; with what recordings do to a record at least {number(allowed)}"
     if level.worth > max(level.critical, allowed):
         said += f"; to be worth a name it must gain {number(level.worth)}"
+    if level.decoys:
+        below = 100.0 * rate_below(level.decoys_named, level.decoys)
+        said += (
+            f"; of {level.decoys} campaigns of decoys, candidates in the wrong place along these "
+            f"runs, {level.decoys_named} would have made a name (false names below {below:.2g} %)"
+        )
     return said
 
 

@@ -1,6 +1,7 @@
 """What is promised of a diagnosis, and what it delivered: `python benches/promises.py FILE...`.
 
-The files are JSON lines of `benches/hidden_effects` and `benches/recorded` (`--out`). Each promise
+The files are JSON lines of `benches/hidden_effects`, `benches/recorded` and `benches/power_kept.py`
+(`--out`). Each promise
 is told with its nominal rate, how often it was kept, the standard error of that share, an interval
 that holds it in 95 of 100 cases (Clopper & Pearson 1934), and how many campaigns say so; each
 campaign in which it was broken stands below. Prints Markdown; `--least N` fails where a promise
@@ -79,6 +80,11 @@ def _promises() -> Iterator[Promise]:
         lambda row: bool(row["verdict"] == "unexplained"),
     )
     yield Promise("what no catalogue has: no name", "95 %", foreign, lambda row: not row["named"])
+    for words, kind in (
+        ("an effect at its `found_80`: found", "power_found"),
+        ("an effect at its `alone_80`: named alone", "power_alone"),
+    ):
+        yield Promise(words, "80 %", lambda row, kind=kind: bool(row["kind"] == kind), right)
 
 
 PROMISES = tuple(_promises())

@@ -1,0 +1,133 @@
+"""Whether effects are found as often as their power says: `python benches/power_kept.py`.
+
+Campaigns of the independent simulator with nothing hidden tell, effect by effect, from which
+strength 80 of 100 campaigns like them would show it (`found_80`), and from which it would be named
+alone (`alone_80`). The fitted model then records the same motions again with the effect at just
+that strength, with noise like theirs, and the campaign is diagnosed whole. `--out F` keeps one JSON
+line a campaign, as `benches/promises.py` reads them; a second call with the same file goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jbf
+from jbf.diagnosis.power import Power
+from jbf.estimation.wild_bootstrap import recorded_by
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
+
+from rigruns import simulated
+from scipy import stats
+
+PROMISED = 0.80
+
+
+def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
+    """The model with the effect as strong as that; what else is a size of it grows alike."""
+    page = jbf.effects()[power.effect]
+    usual = {p.name: (p.starts[0], p.null) for p in page.parameters}
+    start, null = usual[power.parameter]
+    assert null is not None
+    times = start / value if math.isinf(null) else (value - null) / (start - null)
+    own = {}
+    for name, (size, zero) in usual.items():
+        there = size
+        if zero is not None:
+            there = size / times if math.isinf(zero) else zero + times * (size - zero)
+        own[f"{power.effect}.{name}"] = there
+    return jbf.Model(bare.rig, bare.law, [power.effect], {**bare.parameters, **own}, bare.clock)
+
+
+def with_effect(
+    bare: jbf.Model, strong: jbf.Model, runs: list[jbf.Run], draw: int
+) -> list[jbf.Run]:
+    """The runs recorded again, with what the effect changes."""
+    again = recorded_by(bare, runs, (), draw)
+    changes = [
+        a - b for a, b in zip(strong.predict_many(runs), bare.predict_many(runs), strict=True)
+    ]
+    return [
+        replace(run, friction_n=run.friction_n + change)
+        for run, change in zip(again, changes, strict=True)
+    ]
+
+
+def campaign(seed: int) -> Iterator[dict[str, Any]]:
+    """Every effect that this campaign says something of, at both strengths."""
+    rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
+    found = jbf.diagnose(rig, runs)
+    if found.effects:
+        return
+    bare = found.model
+    for power in found.power:
+        for kind, value in (("found", power.found_80), ("alone", power.alone_80)):
+            if value is None or power.always:
+                continue
+            yield answer(seed, kind, power, value, bare, runs)
+
+
+def answer(
+    seed: int, kind: str, power: Power, value: float, bare: jbf.Model, runs: list[jbf.Run]
+) -> dict[str, Any]:
+    """What a diagnosis says of it."""
+    strong = at_strength(bare, power, value)
+    again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, seed))
+    could = {other for name in again.effects for other in (name, *again.alternatives[name])}
+    alone = again.effects == (power.effect,) and not again.alternatives[power.effect]
+    return {
+        "key": f"power/{kind}/{power.effect}/{seed}",
+        "kind": f"power_{kind}",
+        "hidden": power.effect,
+        "verdict": again.verdict,
+        "named": list(again.effects),
+        "alternatives": {k: list(v) for k, v in again.alternatives.items()},
+        "judged": "right" if (alone if kind == "alone" else power.effect in could) else "wrong",
+    }
+
+
+def _all(seed: int) -> list[dict[str, Any]]:
+    return list(campaign(seed))
+
+
+def main() -> int:
+    """Run, print a line an effect."""
+    parser = argparse.ArgumentParser(prog="power_kept", description=__doc__.split(":")[0])
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--seeds", type=int, default=4, help="campaigns with nothing hidden; 4")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--out", type=Path, help="JSON lines, one a diagnosis")
+    asked = parser.parse_args()
+    rows: list[dict[str, Any]] = []
+    if asked.out is not None and asked.out.exists():
+        rows = [json.loads(line) for line in asked.out.read_text(encoding="utf-8").splitlines()]
+    done = {int(row["key"].rsplit("/", 1)[1]) for row in rows}
+    seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        for future in as_completed([pool.submit(_all, s) for s in seeds if s not in done]):
+            rows += future.result()
+            if asked.out is not None:
+                with asked.out.open("a", encoding="utf-8") as file:
+                    file.writelines(json.dumps(row) + "\n" for row in future.result())
+            print(f"{len(rows)} diagnoses", flush=True)
+    for kind in ("power_found", "power_alone"):
+        print(f"\n{kind}: {PROMISED:.0%} promised")
+        own = [row for row in rows if row["kind"] == kind]
+        for effect in sorted({row["hidden"] for row in own}):
+            told = [row["judged"] == "right" for row in own if row["hidden"] == effect]
+            sure = stats.binomtest(sum(told), len(told)).proportion_ci(0.95, method="exact")
+            share = f"{sure.low:.0%} to {sure.high:.0%}"
+            print(f"{effect:24}{sum(told):4} of {len(told):3}   {share}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

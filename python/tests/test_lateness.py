@@ -279,3 +279,21 @@ def test_no_shift_leaves_the_known_signs(prepared: Prepared) -> None:
     known = prepared.motion.sign_known
     assert not known.all()
     np.testing.assert_array_equal(prepared.shifted(0.0, 0.0).motion.sign_known, known)
+
+
+def test_what_runs_that_differ_are_all_late_besides_is_found() -> None:
+    late_s = np.array([13e-3, 4e-3, 19e-3, 7e-3])
+    problem, solution = fitted(campaign(late_s.tolist()))
+    short = late_s - 6e-3
+    moved = late_channels._moved(problem, short, 0.0)
+    found = late_channels._Shifted(
+        moved, fitted(moved)[1], short, 0.0
+    )  # all of them 6 ms short of what they are
+    whole = late_channels._all_alike(problem, found)
+    np.testing.assert_allclose(whole.late_s, late_s, atol=1.2e-3)
+    assert whole.solution.rms_n < found.solution.rms_n < solution.rms_n
+    # Where nothing is left to find, what was found stays.
+    right = late_channels._Shifted(
+        late_channels._moved(problem, late_s, 0.0), whole.solution, late_s, 0.0
+    )
+    np.testing.assert_allclose(late_channels._all_alike(problem, right).late_s, late_s, atol=1.2e-3)

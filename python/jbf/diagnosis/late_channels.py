@@ -25,6 +25,9 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 DELAY = "time_delay"
+TAU = "time_delay.tau_s"
+AHEAD_S = 20e-3
+"""So much too little runs are shifted where it is asked what all are late besides, or a step."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 
@@ -57,6 +60,7 @@ def on_time(
     worth_it = _gains(solution, found.solution) if rms_n is None else found.solution.rms_n <= rms_n
     if not worth_it:
         return None
+    found = _all_alike(problem, found)
     campaign, late_s = found.campaign, found.late_s
     apart = np.abs(late_s - np.median(late_s))
     if (rms_n is not None or problem.campaign.samples.between is not None) and float(
@@ -91,8 +95,8 @@ def _shifted(
 ) -> _Shifted | None:
     """The runs shifted by their lateness until there is none; None where there was none."""
     campaign = problem.campaign
-    old, prepared = campaign, campaign.prepared
-    late_s, drift = np.zeros(len(prepared)), 0.0
+    old, first = campaign, problem
+    late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.most_shifts):
         found = lateness(problem, solution, look, policy.deviation_chance, one_clock, at_jumps)
         if look == 0 and found is not None:
@@ -104,12 +108,48 @@ def _shifted(
         shared = known.get(f"{DELAY}.tau_s", 0.0) if found.spread_s > 0.0 else 0.0
         late_s = late_s + np.array(found.late_s) + shared
         drift += found.drift
-        shifted = [
-            p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)
-        ]
-        campaign = _settled(problem, shifted)
+        campaign = _moved(first, late_s, drift)
         problem, solution = _refitted(problem, campaign, known, solution)
     return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
+
+
+def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
+    """The runs shifted by what all of them are late besides.
+
+    A law takes a delay of all runs for its own memory, nearly: how late each is tells how they
+    differ, and little of what they share. That is fitted together with the law, on runs shifted
+    too little, so that none is early.
+    """
+    if found.drift != 0.0:
+        # A clock of its own was right when it was started.
+        return found
+    steps = [p.step_s for p in problem.campaign.prepared]
+    ahead_s = max(AHEAD_S, float(np.median(steps)))
+    late_s = found.late_s - ahead_s
+    campaign = _moved(problem, late_s, 0.0)
+    effects = [name for name in problem.effects if name != DELAY]
+    late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
+    last = Problem(found.campaign, problem.law, problem.clock, effects)
+    known = dict(zip(last.names, found.solution.values.tolist(), strict=True))
+    start = np.array([{**known, TAU: ahead_s}[name] for name in late.names])
+    samples = late.samples_at(start)
+    values, *_ = search(late, samples, start, found.solution.noise, EVALUATIONS)
+    shared_s = float(values[late.names.index(TAU)]) - ahead_s
+    late_s = found.late_s + shared_s
+    campaign = _moved(problem, late_s, 0.0)
+    near = {**dict(zip(late.names, values.tolist(), strict=True))}
+    _, solution = _refitted(problem, campaign, near, found.solution)
+    if solution.rms_n >= found.solution.rms_n:
+        return found
+    return _Shifted(campaign, solution, late_s, 0.0)
+
+
+def _moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
+    """The campaign with each run's force compared so much earlier."""
+    prepared = problem.campaign.prepared
+    return _settled(
+        problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
+    )
 
 
 def _gains(simpler: Solution, shifted: Solution) -> bool:

@@ -39,6 +39,8 @@ WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
     (("warm_up",), "wandering"),
 )
 """What is hidden where a thermometer is read, and how the temperature goes."""
+PULLEY_M = 0.05
+"""Radius of what turns with a drive, where something foreign asks for an angle."""
 FITTED, PREDICTED = 6, 2
 NONE_A_ROUND, PAIRS_A_ROUND = 6, 8
 
@@ -119,7 +121,10 @@ def simulated(task: Task) -> tuple[list[jbf.Run], float]:
         rng = np.random.default_rng([task.seed, 16])
         strange = draw_foreign(task.foreign, rng)
         records = [
-            replace(r, force_n=strange.apply(r.time_s, r.path, r.velocity_m_s, r.force_n, rng))
+            replace(
+                r,
+                force_n=strange.apply(r.time_s, r.path / PULLEY_M, r.velocity_m_s, r.force_n, rng),
+            )
             for r in records
         ]
     return [recorded(r, joint) for r in records], float(str(truth["noise_n"]))

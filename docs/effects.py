@@ -101,6 +101,8 @@ SHOWN = {
         "a sine of 0.5 rad/s",
         beside={"cogging.A": 2.0, "cogging.pitch": 0.02, "cogging.phase": 0.5},
     ),
+    "sensor_hysteresis": Shown({"w": 2.0}),
+    "sensor_nonlinearity": Shown({"c": 5e-4}, "a sine of 0.1 rad/s"),
     "sensor_lag": Shown({"tau": 0.15}),
     "time_delay": Shown({"tau": 0.12}),
     "sensor_offset": Shown({"b": 4.0}),

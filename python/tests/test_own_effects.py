@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import jbf
@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from conftest import make_runs
-from jbf import InputError, Model, Parameter, Rig, Run
+from jbf import InputError, Model, Parameter, Rig, Run, _core
 from jbf.cli import main
 from jbf.models import catalogue
 from jbf.models.chain import chain, core_motion, imposed
+from jbf.models.own_chain import BENDING
 
 HEAT = Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
 TRUTH = 0.35
@@ -101,6 +102,62 @@ def test_derivatives_go_through_the_instrument(stage: str) -> None:
     scale = np.max(np.abs(found), axis=0)
     assert np.all(scale > 0.0)
     assert np.max(np.abs(slopes - found) / scale) < 1e-5
+
+
+def _held(force: np.ndarray, w_n: float) -> np.ndarray:
+    """A reading that the force takes along at the ends of a gap of half width `w_n`."""
+    found = [float(force[0])]
+    for f in force[1:].tolist():
+        found.append(min(max(found[-1], f - w_n), f + w_n))
+    return np.array(found)
+
+
+@pytest.mark.parametrize(
+    ("effect", "value", "read"),
+    [
+        ("sensor_nonlinearity.c_1_n2", -4e-4, lambda f: f - 4e-4 * f**3),
+        ("sensor_hysteresis.w_n", 0.7, lambda f: _held(f, 0.7)),
+    ],
+)
+def test_a_cell_that_bends_sees_the_whole_force(
+    effect: str, value: float, read: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    run = warm(make_runs()[0], 0)
+    jbf.register_effect(cooler, parameters=[HEAT])
+    own, name = {"cooler.k_n_k": 2.0}, effect.split(".")[0]
+    force = Model(Rig.thesis(), effects=["cooler"], parameters=own).predict(run)
+    both = Model(Rig.thesis(), effects=[name, "cooler"], parameters={**own, effect: value})
+    plain = Model(Rig.thesis(), effects=[name], parameters={effect: value}).predict(run)
+    got, expected = both.predict(run), read(force)
+    # The play knows a peak between two samples.
+    np.testing.assert_allclose(got, expected, atol=1e-2 if name == "sensor_hysteresis" else 1e-6)
+    # Not what the cell makes of either force by itself.
+    alone = Model(Rig.thesis(), effects=[]).predict(run)
+    assert np.max(np.abs(plain + force - alone - got)) > 0.1
+    values = np.array([0.26, 0.055, 6.5e5, 33.0, value, 2.0])
+    slopes, found = _slopes([name, "cooler"], values, run)
+    wrong = np.abs(slopes - found) > 1e-4 * np.max(np.abs(found), axis=0)
+    # A difference looks across a kink where the force turns round.
+    assert np.max(np.mean(wrong, axis=0)) < 0.02
+
+
+def test_every_effect_of_the_instrument_that_bends_is_known() -> None:
+    """What the instrument makes of two forces is the sum of what it makes of each, or is told."""
+    time = np.linspace(0.0, 10.0, 400)
+    one, other = 8.0 * np.sin(time), 3.0 * np.cos(2.7 * time)
+    for effect in catalogue.built_in().values():
+        if effect.stage != "instrument":
+            continue
+        with_usual = [(effect.name, [p.starts[0] for p in effect.parameters])]
+
+        def read(force: np.ndarray, chosen: list[tuple[str, list[float]]]) -> np.ndarray:
+            return _core.read_force(chosen, time, force)[0]
+
+        none = read(np.zeros_like(time), with_usual)
+        whole = read(one + other, with_usual) - none
+        parts = read(one, with_usual) + read(other, with_usual) - 2.0 * none
+        adds_up = bool(np.max(np.abs(whole - parts)) < 1e-9)
+        assert adds_up != (effect.name in BENDING), effect.name
 
 
 def test_the_lag_sees_what_acts_before_it() -> None:

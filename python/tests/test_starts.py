@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
@@ -60,3 +63,20 @@ def test_a_time_starts_within_a_usual_run() -> None:
     whole = sorted(p.run.duration_s for p in data.prepared)
     starts = found["warm_up.tau_s"].starts
     assert all(0.05 * whole[0] < start < 0.5 * whole[-1] for start in starts)
+
+
+def test_a_cells_errors_start_as_a_share_of_the_largest_force() -> None:
+    """Of a watch and of a press alike, and whatever the law."""
+    rig, runs, _ = campaign(7)
+    names = ("sensor_hysteresis.w_n", "sensor_nonlinearity.c_1_n2")
+    pages = parameters_of("journal", ("sensor_hysteresis", "sensor_nonlinearity"))
+    for scale in (1.0, 1e3):
+        scaled = [replace(run, friction_n=scale * run.friction_n) for run in runs]
+        data = Campaign.prepare(rig, scaled)
+        largest = max(float(np.max(np.abs(p.friction_n))) for p in data.prepared)
+        for in_newtons in (False, True):
+            found = with_starts(pages, data, in_newtons=in_newtons)
+            (play,), (cubic,) = (found[name].starts for name in names)
+            assert 0.01 * largest < play < 0.05 * largest
+            # The same share of the reading, there.
+            assert cubic * (play / 0.03) ** 2 == pytest.approx(0.03)

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .catalogue import Spread
+from .instrument import BENT, through_cell
 from .warmth import REFERENCE_C, Kind, Warmth, draw_warmth, read_by, thinner
 
 Vector = npt.NDArray[np.float64]
@@ -63,6 +64,8 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     },
     "warm_up": {"a": Spread(0.08, 0.25, "-", 1.0), "tau": Spread(6.0, 20.0, "s")},
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
+    "sensor_hysteresis": {"w": Spread(0.3, 0.9, "N", 1.0)},
+    "sensor_nonlinearity": {"c": Spread(0.8e-3, 1.6e-3, "1/N^2", 1.0, signed=True)},
     "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
@@ -206,6 +209,10 @@ def _force(
         push = push + of(effect, "A") * _wave(hidden, effect, path, 0.0)
     sliding = (np.sign(v) * level + slope * v) * cold * place
     found: Vector = sliding + carried + lost + push
+    if any(effect in hidden for effect in BENT):
+        # The zero is the amplifier's, after the cell.
+        zero = of("sensor_offset", "b")
+        found = through_cell(found - zero, hidden) + zero
     return found
 
 

@@ -27,6 +27,7 @@ PUSHES_N = {
     "inertia_leak": ("m_e",),
     "sensor_offset": ("b",),
     "sensor_drift": ("d",),
+    "sensor_hysteresis": ("w",),
 }
 """Parameters in newtons, or newtons for something."""
 
@@ -96,6 +97,8 @@ def draw_effect(name: str, base: Base, rng: Rng, strength: float = 1.0) -> dict[
     share = base.f_m * base.load_n / USUAL_FORCE_N
     for key in PUSHES_N.get(name, ()):
         values[key] *= share
+    if name == "sensor_nonlinearity":  # the same share of the reading at the rig's own force
+        values["c"] /= share**2
     if name == "drive_compliance":  # the drive is sized for the torque; its modes stay
         turned = share * base.bearing.radius_m / USUAL_RADIUS_M
         values = {key: value * turned for key, value in values.items()}

@@ -62,26 +62,6 @@ class Cogging:
 
 
 @dataclass(frozen=True)
-class Backlash:
-    """Play in the force path: the record follows the force only at the ends of a gap."""
-
-    name: ClassVar[str] = "backlash"
-    half_width_n: float
-
-    @classmethod
-    def draw(cls, rng: Rng, strength: float) -> Backlash:
-        return cls(strength * rng.uniform(0.6, 1.3))
-
-    def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        out = np.empty(len(force))
-        held = float(force[0])
-        for i, f in enumerate(force.tolist()):
-            held = min(max(held, f - self.half_width_n), f + self.half_width_n)
-            out[i] = held
-        return out
-
-
-@dataclass(frozen=True)
 class LevelStep:
     """Friction changes by a share at one instant of every run."""
 
@@ -123,23 +103,73 @@ class Bursts:
 
 
 @dataclass(frozen=True)
-class CubicCell:
-    """A load cell with a cubic term: F + c F^3."""
+class Creep:
+    """A load cell that creeps: a share of the reading is late by tens of seconds."""
 
-    name: ClassVar[str] = "cubic_cell"
-    cubic_per_n2: float
+    name: ClassVar[str] = "creep"
+    share: float
+    tau_s: float
 
     @classmethod
-    def draw(cls, rng: Rng, strength: float) -> CubicCell:
-        sign = 1.0 if rng.random() < 0.5 else -1.0
-        return cls(sign * strength * rng.uniform(3.0e-4, 6.0e-4))
+    def draw(cls, rng: Rng, strength: float) -> Creep:
+        return cls(strength * rng.uniform(0.3, 0.6), rng.uniform(20.0, 60.0))
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        extra: Vector = self.cubic_per_n2 * force**3
-        return force + extra
+        late = np.zeros(len(force))
+        for i in range(1, len(force)):
+            part = math.exp(-float(time[i] - time[i - 1]) / self.tau_s)
+            # Between the force and what was late: never beyond the largest force.
+            late[i] = part * late[i - 1] + (1.0 - part) * 0.5 * float(force[i] + force[i - 1])
+        return force + self.share * late
 
 
-FOREIGN = {f.name: f for f in (Hum, Cogging, Backlash, LevelStep, Bursts, CubicCell)}
+@dataclass(frozen=True)
+class Scratch:
+    """A groove or a burr: more friction at one or two places of a turn, narrow."""
+
+    name: ClassVar[str] = "scratch"
+    height_n: float
+    place_rad: float
+    second: float  # height of the one at the other place over the first's; 0 where there is none
+    second_rad: float
+    kappa: float
+
+    @classmethod
+    def draw(cls, rng: Rng, strength: float) -> Scratch:
+        height, first = strength * rng.uniform(2.0, 4.0), rng.uniform(0.0, 2.0 * math.pi)
+        second = rng.uniform(0.5, 1.0) if rng.random() < 0.5 else 0.0
+        beyond = first + rng.uniform(1.0, 5.0)
+        return cls(height, first, second, beyond, rng.uniform(60.0, 200.0))
+
+    def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
+        bumps = np.exp(self.kappa * (np.cos(angle - self.place_rad) - 1.0))
+        bumps += self.second * np.exp(self.kappa * (np.cos(angle - self.second_rad) - 1.0))
+        out: Vector = force + self.height_n * bumps * np.sign(speed)
+        return out
+
+
+@dataclass(frozen=True)
+class StrokeScatter:
+    """No stroke is like another: each between two reversals has a level of its own."""
+
+    name: ClassVar[str] = "stroke_scatter"
+    share: float
+
+    @classmethod
+    def draw(cls, rng: Rng, strength: float) -> StrokeScatter:
+        return cls(strength * rng.uniform(0.06, 0.12))
+
+    def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
+        # What trembles about a rest turns round nowhere.
+        moving = np.flatnonzero(np.abs(speed) > 0.02 * np.max(np.abs(speed)))
+        ways = np.sign(speed[moving])
+        turned = moving[1:][ways[1:] != ways[:-1]]
+        stroke = np.searchsorted(turned, np.arange(len(speed)), side="right")
+        levels = 1.0 + self.share * rng.standard_normal(len(turned) + 1)
+        return force * levels[stroke]
+
+
+FOREIGN = {f.name: f for f in (Hum, Cogging, LevelStep, Bursts, Creep, Scratch, StrokeScatter)}
 
 
 def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:

@@ -12,7 +12,7 @@ from .catalogue import check
 from .chain import Chain
 from .drive import CompliantDrive
 from .foreign import Foreign
-from .instrument import read_out
+from .instrument import BENT, FILTERS, filtered, finer, read_out, through_cell
 from .lubricant import Parameters
 from .motions import Motion
 from .noise import Noise
@@ -55,6 +55,12 @@ def cell_force(
 
     With a `film_start` the rig is under way: a compliant drive has the twist of its friction.
     """
+    if any(name in effects for name in BENT):
+        # What bends the force stands before the filter and the delay.
+        plain = {k: v for k, v in effects.items() if k not in (*BENT, *FILTERS)}
+        grid = finer(times, np.array([p.t1 for p in motion.pieces]))
+        bare = cell_force(base, plain, motion, grid, start_angle_rad, film_start, warmth)
+        return np.interp(times, grid, filtered(through_cell(bare, effects), grid, effects))
     radius = base.bearing.radius_m
     journal = motion
     if "backlash" in effects:

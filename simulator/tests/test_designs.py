@@ -69,8 +69,11 @@ def test_effects_are_scaled_to_the_rig(name):
     small, large = (draw_effect(name, d.base, np.random.default_rng(1)) for d in (light, heavy))
     ratio = heavy.base.f_m * heavy.base.load_n / (light.base.f_m * light.base.load_n)
     pushed = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia_leak": "m_e"}
+    pushed["sensor_hysteresis"] = "w"
     if name in pushed:
         assert large[pushed[name]] / small[pushed[name]] == pytest.approx(ratio)
+    if name == "sensor_nonlinearity":
+        assert large["c"] / small["c"] == pytest.approx(ratio**-2)
     assert set(small) == set(CATALOGUE[name])
 
 

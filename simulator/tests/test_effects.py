@@ -153,6 +153,39 @@ def test_load_dependence_turns_one_table_into_the_other():
     np.testing.assert_array_equal(force({"load_dependence": p}), force({}))
 
 
+def test_a_cell_with_hysteresis_has_two_branches():
+    width = 0.8
+    record, plain = force({"sensor_hysteresis": {"w": width}}), force({})
+    gap = record - plain
+    assert record[0] == plain[0]
+    assert np.max(np.abs(gap)) <= width + 1e-6
+    # Once the force has gone far enough one way, the record trails it by all of the gap's half.
+    way = np.convolve(np.diff(plain), np.ones(25))[24:-24]
+    for sign in (1.0, -1.0):
+        far = np.flatnonzero(sign * way > 3.0 * width) + 25
+        assert len(far) > 5
+        straight = [i for i in far if np.all(sign * np.diff(plain[i - 25 : i + 1]) > 0.0)]
+        np.testing.assert_allclose(gap[straight], -sign * width, atol=1e-6)
+    np.testing.assert_allclose(
+        force({"sensor_hysteresis": {"w": width}}, rate_hz=400.0)[::8], record, atol=0.05
+    )
+
+
+def test_a_cell_bends_after_its_play_and_before_its_zero():
+    play, bend = {"sensor_hysteresis": {"w": 0.8}}, {"sensor_nonlinearity": {"c": -3e-4}}
+    zero = {"sensor_offset": {"b": 0.5}}
+    held = force(play)
+    np.testing.assert_allclose(force(play | bend | zero), held - 3e-4 * held**3 + 0.5, atol=1e-6)
+
+
+def test_a_bent_cell_is_filtered_and_late_as_a_straight_one():
+    """By another way: a grid, not a state."""
+    straight = {"sensor_nonlinearity": {"c": 1e-12}}
+    for other in ({"sensor_lag": {"tau": 0.1}}, {"time_delay": {"tau": 0.1}}):
+        gap = np.abs(force(straight | other) - force(other))
+        assert np.max(gap) < 5e-3
+
+
 def test_wrong_names_are_refused():
     with pytest.raises(ValueError, match="no effect named"):
         force({"magic": {}})

@@ -48,6 +48,10 @@ pub enum Start {
     RunTime,
     /// The temperature at which a rig's viscosity holds, or else the mean of those on record, C.
     ReferenceTemperature,
+    /// A small share of the largest force on record.
+    CellPlay,
+    /// What bends a cell's line by a small share at the largest force on record.
+    CellCubic,
     /// The middle of the way that the runs cover.
     StrokeMiddle,
     /// Half of that way.
@@ -79,6 +83,8 @@ impl Start {
             Start::RipplePitch => "ripple_pitch",
             Start::RunTime => "run_time",
             Start::ReferenceTemperature => "reference_temperature",
+            Start::CellPlay => "cell_play",
+            Start::CellCubic => "cell_cubic",
             Start::StrokeMiddle => "stroke_middle",
             Start::StrokeHalf => "stroke_half",
             Start::DriveStiffness => "drive_stiffness",

@@ -20,6 +20,8 @@ from jbf.models.catalogue import Parameter
 from jbf.records.findings.slow_temperature import recorded_temperature
 
 Starts = tuple[float, ...]
+CELL_ERROR = 0.03
+"""What a search first takes a load cell to be off by, as a share of the largest force."""
 FASTEST_FILM = 5.0
 """A search looks for transition speeds up to so many times the fastest on record."""
 
@@ -75,6 +77,12 @@ def _reference_temperature(campaign: Campaign) -> Starts:
     return (float(np.round(np.mean(means))),) if means else ()
 
 
+def _largest_n(campaign: Campaign) -> float:
+    """The largest force on record but for a hundredth of the samples, N."""
+    every = np.concatenate([p.friction_n[np.isfinite(p.friction_n)] for p in campaign.prepared])
+    return max(float(np.quantile(np.abs(every), 0.99)), 1e-5)
+
+
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "pitch": lambda c: (*pitches(c, along=False), *known_pitches(c.rig)),
     "ripple_pitch": lambda c: (*pitches(c, along=True), *known_pitches(c.rig)),
@@ -85,8 +93,10 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
     "reference_temperature": _reference_temperature,
+    "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
+    "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
 }
-"""What asks for no newtons."""
+"""What does not ask whether the law's parameters are newtons: the records are."""
 
 
 PITCHES = ("pitch", "ripple_pitch")

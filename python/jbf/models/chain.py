@@ -20,7 +20,7 @@ from jbf.models.catalogue import (
     in_chain_order,
 )
 from jbf.models.driven import Driven, DrivenChain
-from jbf.models.own_chain import OwnChain
+from jbf.models.own_chain import BENDING, OwnChain
 from jbf.models.own_effects import OwnEffect
 from jbf.models.own_laws import OwnLaw
 from jbf.records.arguments import one_run, the_rig
@@ -140,7 +140,10 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
         if page.stage == "instrument" and page not in own
     ]
     carrier = None if own_law is None else of_core([])
-    return DrivenChain(OwnChain(core, instrument, own, own_law, held, carrier))
+    bends = any(name in BENDING for name, _ in instrument)
+    before = [p.name for p in pages if p not in own and p.stage != "instrument"]
+    bare = of_core(before) if bends else None
+    return DrivenChain(OwnChain(core, instrument, own, own_law, held, carrier, bare))
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:

@@ -1,8 +1,9 @@
 """The core's chain with effects, or a law, of one's own beside it.
 
-A force beside the bearing's passes through the instrument, whose effects are linear in the force:
-what they make of the bearing's force and of this one adds up. So does a law of one's own: the
-core's chain then carries the effects, round a law that is held at next to nothing.
+A force beside the bearing's passes through the instrument. Where its effects are linear in the
+force, what they make of the bearing's force and of this one adds up; where one bends (`BENDING`),
+this one comes on top of the bearing's. So does a law of one's own: the core's chain then carries
+the effects, round a law that is held at next to nothing.
 """
 
 from __future__ import annotations
@@ -17,6 +18,15 @@ from jbf import _core
 from jbf.models.own_effects import OwnEffect
 
 Array = npt.NDArray[np.float64]
+
+BENDING = ("sensor_hysteresis", "sensor_nonlinearity")
+"""Effects of the instrument whose reading of two forces is not the sum of their readings."""
+SMALL = 1e-6
+"""The step of a difference along a slope, as a share of the largest force."""
+
+
+Read = tuple[Array, Array]
+"""A reading, and its derivatives by the instrument's parameters, shape (n, parameters)."""
 
 
 class OwnChain:
@@ -36,6 +46,8 @@ class OwnChain:
         What the parameters of the core's law are held at, where there is a law of one's own.
     carrier
         The core's law alone, then.
+    bare
+        The core's chain without the instrument, where that has an effect of `BENDING`.
     """
 
     def __init__(
@@ -46,7 +58,9 @@ class OwnChain:
         law: OwnEffect | None = None,
         held: Sequence[float] = (),
         carrier: _core.Chain | None = None,
+        bare: _core.Chain | None = None,
     ) -> None:
+        self.bare = bare
         self.core, self.instrument, self.carrier = core, list(instrument), carrier
         self.held = np.array(held, dtype=np.float64)
         first = 0 if law is None else len(law.parameters)
@@ -87,10 +101,12 @@ class OwnChain:
         found = []
         for (values, slopes), motion in zip(rows, motions, strict=True):
             added, by_instrument = self._added(parameters, motion)
+            bent = self._bent(parameters, motion, of_core)
             whole = np.empty((len(values), len(which)))
             for k, w in enumerate(which):
                 if w in self.of_core:
                     whole[:, k] = slopes[:, of_core.index(w)] + by_instrument.get(w, 0.0)
+                    whole[:, k] += bent.get(w, 0.0)
                 else:
                     whole[:, k] = self._slope(parameters, motion, w)
             found.append((values + added, whole))
@@ -106,6 +122,17 @@ class OwnChain:
 
     def _added(self, parameters: Array, motion: _core.Motion) -> tuple[Array, dict[int, Array]]:
         """What one's own effects add to the reading, and how that hangs on the instrument."""
+        beside, beyond = self._own_forces(parameters, motion)
+        if not self.instrument:
+            return beside + beyond, {}
+        loaded, empty = self._read(parameters, motion, beside)
+        order = [place for _, places in self.instrument for place in places]
+        slopes = loaded[1] - empty[1]
+        by_place = {place: slopes[:, k] for k, place in enumerate(order)}
+        return loaded[0] - empty[0] + beyond, by_place
+
+    def _own_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
+        """What one's own effects add before the instrument and after it, N."""
         n = len(motion.columns["time_s"])
         beside, beyond = np.zeros(n), np.zeros(n)
         for i, effect in enumerate(self.own):
@@ -118,25 +145,76 @@ class OwnChain:
             # What the core's law has at its bounds is not the law's.
             assert self.carrier is not None
             beside -= self.carrier.predict(self.held, [motion])[0]
-        read, slopes = self._read(parameters, motion, beside)
-        return read + beyond, slopes
+        return beside, beyond
 
     def _slope(self, parameters: Array, motion: _core.Motion, place: int) -> Array:
         number = next(i for i, places in enumerate(self.places) if place in places)
         effect, first = self.own[number], self.places[number][0]
         slope = effect.slope(motion.columns, self._values(parameters, number), place - first)
-        return slope if effect.stage == "instrument" else self._read(parameters, motion, slope)[0]
+        if effect.stage == "instrument" or not self.instrument:
+            return slope
+        if self.bare is None:
+            loaded, empty = self._read(parameters, motion, slope)
+            return loaded[0] - empty[0]
+        beside, _ = self._own_forces(parameters, motion)
+        return self._along(parameters, motion, self._borne(parameters, motion) + beside, slope)
 
-    def _read(
-        self, parameters: Array, motion: _core.Motion, force: Array
-    ) -> tuple[Array, dict[int, Array]]:
-        """The part of a reading that goes with the force, and its derivatives by place."""
-        if not self.instrument:
-            return force, {}
+    def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
+        """What the instrument makes of a force on top of the bearing's, and of that alone; of none
+        where the instrument is linear."""
+        borne = self._borne(parameters, motion)
+        return (
+            self._through(parameters, motion, borne + force),
+            self._through(parameters, motion, borne),
+        )
+
+    def _through(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
+        """What the instrument makes of a force, and the derivatives by its parameters."""
         effects = [(name, parameters[list(places)].tolist()) for name, places in self.instrument]
         time = np.ascontiguousarray(motion.columns["time_s"])
-        loaded = _core.read_force(effects, time, np.ascontiguousarray(force))
-        empty = _core.read_force(effects, time, np.zeros_like(time))
-        order = [place for _, places in self.instrument for place in places]
-        slopes = loaded[1] - empty[1]
-        return loaded[0] - empty[0], {place: slopes[:, k] for k, place in enumerate(order)}
+        return _core.read_force(effects, time, np.ascontiguousarray(force))
+
+    def _borne(self, parameters: Array, motion: _core.Motion) -> Array:
+        """The bearing's force, N, where the instrument bends; else none."""
+        if self.bare is None:
+            return np.zeros(len(motion.columns["time_s"]))
+        found: Array = self.bare.predict(self._before_the_cell(parameters), [motion])[0]
+        return found
+
+    def _before_the_cell(self, parameters: Array) -> Array:
+        """The parameters of the core's chain but for the instrument's."""
+        instrument = {place for _, places in self.instrument for place in places}
+        kept = [place for place in self.of_core if place not in instrument]
+        return np.ascontiguousarray(np.concatenate((self.held, parameters[kept])))
+
+    def _along(self, parameters: Array, motion: _core.Motion, force: Array, slope: Array) -> Array:
+        """The reading's derivative where the force goes along a slope."""
+        largest = float(np.max(np.abs(slope)))
+        if largest == 0.0:
+            return slope
+        step = SMALL * max(float(np.max(np.abs(force))), 1e-9) / largest
+        above, below = (
+            self._through(parameters, motion, force + sign * step * slope)[0] for sign in (1, -1)
+        )
+        found: Array = (above - below) / (2.0 * step)
+        return found
+
+    def _bent(
+        self, parameters: Array, motion: _core.Motion, which: Sequence[int]
+    ) -> dict[int, Array]:
+        """How the bearing's part of the reading changes its derivatives by the core's parameters
+        under one's own force: none where the instrument is linear."""
+        if self.bare is None:
+            return {}
+        instrument = {place for _, places in self.instrument for place in places}
+        kept = [place for place in self.of_core if place not in instrument]
+        asked = [w for w in which if w not in instrument]
+        columns = [len(self.held) + kept.index(w) for w in asked]
+        before = self._before_the_cell(parameters)
+        ((borne, slopes),) = self.bare.jacobian(before, [motion], columns)
+        beside, _ = self._own_forces(parameters, motion)
+        found = {}
+        for k, w in enumerate(asked):
+            there = self._along(parameters, motion, borne + beside, slopes[:, k])
+            found[w] = there - self._along(parameters, motion, borne, slopes[:, k])
+        return found

@@ -20,6 +20,7 @@ _ROTARY = {
     "N/m": "N m/rad",
     "N s/m": "N m s/rad",
     "N s^2/m^2": "N m s^2/rad^2",
+    "1/N^2": "1/(N m)^2",
     "kg": "kg m^2",
 }
 _LINEAR = {"N m/rad": "N/m", "N m s/rad": "N s/m", "kg m^2": "kg"}

@@ -20,6 +20,9 @@ def summary_of(effect: Effect, said: Quantities) -> str:
         "(gravity on an inclined axis, a spring, a counterweight)",
         "sensor_drift": f"the zero of {said.sensor} wanders steadily during a run",
         "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} late",
+        "sensor_hysteresis": f"{said.sensor} reads less while the {said.noun} rises than while it "
+        "falls: play or friction on the way to it",
+        "sensor_nonlinearity": f"{said.sensor} reads a large {said.noun} too large or too small",
         "inertia_leak": f"the {inertia} that the drive accelerates, in what {said.sensor} reads",
         "drive_compliance": "a belt, coupling or shaft twists between the position sensor and what "
         "is driven",

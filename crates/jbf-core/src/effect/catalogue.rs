@@ -9,9 +9,9 @@ use super::{
     backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
     dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,
     gravity, inertia_leak, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
-    presliding, quadratic_drag, sensor_drift, sensor_lag, sensor_offset, shear_thinning,
-    stribeck_asymmetry, stribeck_excess, stroke_dependence, thermal_thinning, time_delay,
-    torque_proportional, viscous_asymmetry, viscous_load_dependence,
+    presliding, quadratic_drag, sensor_drift, sensor_hysteresis, sensor_lag, sensor_nonlinearity,
+    sensor_offset, shear_thinning, stribeck_asymmetry, stribeck_excess, stroke_dependence,
+    thermal_thinning, time_delay, torque_proportional, viscous_asymmetry, viscous_load_dependence,
     viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, wear_in,
     zero_load_dependence,
 };
@@ -64,6 +64,8 @@ signal_chain! {
         cogging_2::SecondCogging,
     ],
     instrument: InInstrument [
+        sensor_hysteresis::SensorHysteresis,
+        sensor_nonlinearity::SensorNonlinearity,
         sensor_lag::SensorLag,
         time_delay::TimeDelay,
         sensor_offset::SensorOffset,

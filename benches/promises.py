@@ -21,6 +21,10 @@ from typing import Any
 
 from scipy import stats
 
+sys.path.insert(0, str(Path(__file__).resolve().parent / "recorded"))
+
+from judge import FAIR
+
 Row = dict[str, Any]
 
 
@@ -47,6 +51,8 @@ def hidden(row: Row) -> set[str]:
 def false_name(row: Row) -> bool:
     """A name that was not hidden, not even as an honest alternative."""
     true = set() if row["kind"] == "foreign" else hidden(row)
+    # A late force is late, whoever made it so.
+    true = true.union(*(FAIR.get(name, set()) for name in row.get("artefacts", ())))
     could = [{name, *row["alternatives"].get(name, ())} for name in row["named"]]
     return any(not names & true for names in could)
 

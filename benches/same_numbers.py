@@ -43,7 +43,7 @@ def campaigns() -> dict[str, dict[str, Any]]:
     found["pair"] = {"effects": ("coulomb_drag", "sensor_lag")}
     found["pair with a drive"] = {"effects": ("presliding", "thermal_thinning"), "coloured": True}
     found["foreign"] = {"foreign": ("hum",)}
-    found["foreign cell"] = {"foreign": ("creep",), "strength": 1.5}
+    found["foreign chatter"] = {"foreign": ("chatter",), "strength": 1.5}
     found["tied"] = {"effects": ("coulomb_drag",), "campaign": "one_way"}
     found["slow"] = {"effects": ("sensor_lag",), "campaign": "slow"}
     found["stribeck"] = {"effects": ("coulomb_drag",), "law": "stribeck"}

@@ -103,24 +103,24 @@ class Bursts:
 
 
 @dataclass(frozen=True)
-class Creep:
-    """A load cell that creeps: a share of the reading is late by tens of seconds."""
+class Chatter:
+    """A slide squeals: a tone while it moves slower than some speed, its phase new each run."""
 
-    name: ClassVar[str] = "creep"
-    share: float
-    tau_s: float
+    name: ClassVar[str] = "chatter"
+    amplitude_n: float
+    frequency_hz: float
+    below_m_s: float
 
     @classmethod
-    def draw(cls, rng: Rng, strength: float) -> Creep:
-        return cls(strength * rng.uniform(0.3, 0.6), rng.uniform(20.0, 60.0))
+    def draw(cls, rng: Rng, strength: float) -> Chatter:
+        frequency, below = rng.uniform(3.0, 9.0), rng.uniform(0.01, 0.03)
+        return cls(strength * rng.uniform(0.8, 1.6), frequency, below)
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        late = np.zeros(len(force))
-        for i in range(1, len(force)):
-            part = math.exp(-float(time[i] - time[i - 1]) / self.tau_s)
-            # Between the force and what was late: never beyond the largest force.
-            late[i] = part * late[i - 1] + (1.0 - part) * 0.5 * float(force[i] + force[i - 1])
-        return force + self.share * late
+        phase = rng.uniform(0.0, 2.0 * math.pi)
+        tone = self.amplitude_n * np.sin(2.0 * math.pi * self.frequency_hz * time + phase)
+        slow = (np.abs(speed) < self.below_m_s) & (speed != 0.0)
+        return force + np.where(slow, tone, 0.0)
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,7 @@ class StrokeScatter:
         return force * levels[stroke]
 
 
-FOREIGN = {f.name: f for f in (Hum, Cogging, LevelStep, Bursts, Creep, Scratch, StrokeScatter)}
+FOREIGN = {f.name: f for f in (Hum, Cogging, LevelStep, Bursts, Chatter, Scratch, StrokeScatter)}
 
 
 def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:

@@ -114,7 +114,7 @@ class Chatter:
     @classmethod
     def draw(cls, rng: Rng, strength: float) -> Chatter:
         frequency, below = rng.uniform(3.0, 9.0), rng.uniform(0.01, 0.03)
-        return cls(strength * rng.uniform(0.8, 1.6), frequency, below)
+        return cls(strength * rng.uniform(2.0, 4.0), frequency, below)
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
         phase = rng.uniform(0.0, 2.0 * math.pi)

@@ -130,14 +130,14 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
     effects = [name for name in problem.effects if name != DELAY]
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
     last = Problem(found.campaign, problem.law, problem.clock, effects)
-    known = dict(zip(last.names, found.solution.values.tolist(), strict=True))
-    start = np.array([{**known, TAU: ahead_s}[name] for name in late.names])
+    known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
+    start = np.array([known[name] for name in late.names])
     samples = late.samples_at(start)
     values, *_ = search(late, samples, start, found.solution.noise, EVALUATIONS)
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
     late_s = found.late_s + shared_s
     campaign = _moved(problem, late_s, 0.0)
-    near = {**dict(zip(late.names, values.tolist(), strict=True))}
+    near = dict(zip(late.names, values.tolist(), strict=True))
     _, solution = _refitted(problem, campaign, near, found.solution)
     if solution.rms_n >= found.solution.rms_n:
         return found

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import LAW, Array
-from jbf import Model, ParameterValue, Rig, Run, fit
+from jbf import Model, ParameterValue, Rig, Run, compare, fit
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.campaign import Campaign
 from jbf.models.driven_motion import reversals
@@ -149,3 +149,13 @@ def test_beside_a_delay_the_score_of_another_effect_is_of_the_samples_that_count
     # The ramps beside the jumps seem to ask for a lag, and would for anything.
     for name in ("sensor_lag", "sensor_drift", "quadratic_drag"):
         assert candidates.score_test(["time_delay", name], near) < 12.0
+
+
+def test_a_comparison_is_of_what_the_model_predicts() -> None:
+    found = fit(Rig(), late_runs(3), ["time_delay"], law="coulomb")
+    beside = compare(found.model, late_runs(3))
+    for prediction, own in zip(
+        beside.predictions, found.model.predict_many(late_runs(3)), strict=True
+    ):
+        np.testing.assert_allclose(prediction, own, atol=1e-9)
+    assert beside.rms_n == pytest.approx(NOISE_N, rel=0.05)

@@ -88,7 +88,10 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
-    predictions = core.predict(model.values, motions)
+    if model.delay is None:
+        predictions = core.predict(model.values, motions)
+    else:
+        predictions = model.predict_late((p.run, *p.motion_as_read) for p in campaign.prepared)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
     samples = campaign.samples

@@ -135,8 +135,7 @@ class _Scan:
         """Minus twice the log likelihood."""
         values, total = self.along(delay_s), 0.0
         for p, friction_n in zip(self.problem.campaign.prepared, self.friction_n, strict=True):
-            instants, motion = p.recorded or (p.run.time_s, p.motion)
-            reading = self.chain.read(values, p.run, instants, motion, 0.0)
+            reading = self.chain.read(values, p.run, *p.motion_as_read, 0.0)
             far = [
                 np.minimum(((friction_n - f) / self.noise_n) ** 2, CLIPPED**2)
                 for f in (reading.before_n, reading.after_n)
@@ -154,7 +153,6 @@ class _Scan:
         """Record minus what is expected, N."""
         left = []
         for p in self.problem.campaign.prepared:
-            instants, motion = p.recorded or (p.run.time_s, p.motion)
-            reading = self.chain.read(values, p.run, instants, motion, sd_s)
+            reading = self.chain.read(values, p.run, *p.motion_as_read, sd_s)
             left.append(p.friction_n - reading.mean_n)
         return left

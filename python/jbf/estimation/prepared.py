@@ -54,6 +54,11 @@ class Prepared:
         """The step of the run's converter, N; zero where it is none to speak of."""
         return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
 
+    @property
+    def motion_as_read(self) -> tuple[Array, ImposedMotion]:
+        """The instants at which the motion was read, s, and the motion there."""
+        return self.recorded or (self.run.time_s, self.motion)
+
     @classmethod
     def of(cls, rig: Rig, run: Run) -> Prepared:
         """Estimate the motion of a run.
@@ -127,7 +132,7 @@ class Prepared:
         drift
             By how much later it gets in a second.
         """
-        instants, motion = self.recorded or (self.run.time_s, self.motion)
+        instants, motion = self.motion_as_read
         time = self.run.time_s
         middle = 0.5 * (time[0] + time[-1])
         read = time - late_s - drift * (time - middle)

@@ -40,6 +40,7 @@ from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock, ModelFile
 from jbf.records.arguments import by_name, list_of_runs, numbers, of_kind, one_run
+from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 
@@ -146,17 +147,24 @@ class Model:
         motions = [driven_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
-        delay = self.parameters.get(TAU)
         with core_refusals():
-            if delay is None or delay.value <= 0.0:
+            if self.delay is None:
                 return core.predict(self.values, motions)
-            late = LateChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
-            return [
-                late.read(
-                    self.values, run, *imposed_as_read(self.rig, run), delay.stderr or 0.0
-                ).mean_n
-                for run in runs
-            ]
+            return self.predict_late((run, *imposed_as_read(self.rig, run)) for run in runs)
+
+    @property
+    def delay(self) -> ParameterValue | None:
+        """How late the record of the force is, s; None where it is not."""
+        tau = self.parameters.get(TAU)
+        return None if tau is None or tau.value <= 0.0 else tau
+
+    def predict_late(self, read: Iterable[tuple[Run, Array, ImposedMotion]]) -> list[Array]:
+        """Readings of a force that is recorded late, N, one array a run: runs, the instants at
+        which their motion was read, s, and that motion."""
+        assert self.delay is not None
+        sd_s = self.delay.stderr or 0.0
+        late = LateChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
+        return [late.read(self.values, *one, sd_s).mean_n for one in read]
 
     def require_columns(self, run: Run) -> None:
         """An InputError where a run lacks a column that an effect of this model needs."""

@@ -100,7 +100,7 @@ HEAD = (
     "Simulated campaigns that no development had seen: *tidy* ones as a simulator makes them,",
     "*recorded* ones with what loggers do to them. Nominal is what is promised; the interval holds",
     "the rate in 95 of 100 cases (Clopper & Pearson 1934). Every campaign in which a promise was",
-    "broken stands below the table. Parameters' intervals are counted in [recovery.md](recovery.md).",
+    "broken stands below the table. Parameters' intervals: [recovery.md](recovery.md).",
     "",
 )
 
@@ -141,7 +141,8 @@ def main() -> int:
         for file in asked.files
         for line in file.read_text(encoding="utf-8").splitlines()
     ]
-    print("\n".join([*HEAD, *textwrap.wrap(asked.note, 110), "", *page(rows)]))
+    note = textwrap.wrap(asked.note, 100, break_on_hyphens=False)
+    print("\n".join([*HEAD, *note, "", *page(rows)]))
     fewest = min(sum(map(promise.of, rows)) for promise in PROMISES)
     return 0 if fewest >= asked.least else 1
 

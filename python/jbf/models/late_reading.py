@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr
 
 from jbf.models.chain import chain
 from jbf.models.driven import Driven, DrivenChain
@@ -89,6 +88,9 @@ class LateChain:
         sd_s
             Standard error of the delay, s.
         """
+        # Here, so that a model alone waits for no heavy import.
+        from scipy.special import ndtr
+
         tau_s = float(values[self.tau])
         # Before the run the force is taken to have been what it is at its start.
         read_s = np.maximum(run.time_s - tau_s, instants_s[0])

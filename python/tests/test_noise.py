@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from campaigns import campaign
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.noise import WHITE, Noise, estimate_noise
+from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.replicates import period_samples
 
@@ -68,3 +68,20 @@ def test_the_period_of_a_repeated_motion() -> None:
     assert period_samples(v) == pytest.approx(2.0 * np.pi / STEP_S, abs=2)
     assert period_samples(np.linspace(0.0, 1.0, 500)) is None
     assert period_samples(np.full(500, 0.1)) is None
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_other_description_fits_better(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    white, colour = random.uniform(0.1, 0.5, 2)
+    memory_s = float(np.exp(random.uniform(np.log(0.08), np.log(0.4))))
+    runs = [coloured(10 * seed + k, white, colour, memory_s, 3000) for k in range(2)]
+    masks = [random.random(len(r)) > 0.1 for r in runs]
+    steps = [STEP_S, STEP_S]
+
+    def cost(noise: Noise) -> float:
+        return innovation_cost(noise, runs, steps, masks)
+
+    found = cost(estimate_noise(runs, steps, masks))
+    grid = [Noise(m, c) for m in np.geomspace(0.04, 0.6, 25) for c in np.linspace(0.01, 0.99, 50)]
+    assert found < min(map(cost, grid)) + 0.1

@@ -93,6 +93,22 @@ def _promises() -> Iterator[Promise]:
     ):
         yield Promise(words, "80 %", lambda row, kind=kind: bool(row["kind"] == kind), right)
 
+    def proposed(row: Row) -> bool:
+        return bool(row.get("after_next_run"))
+
+    yield Promise(
+        "a tie, the proposed run recorded too: the one named",
+        "90 %",
+        proposed,
+        lambda row: bool(row["after_next_run"] == "right"),
+    )
+    yield Promise(
+        "the same, a run at random of equal length",
+        "less",
+        proposed,
+        lambda row: bool(row["after_random_run"] == "right"),
+    )
+
 
 PROMISES = tuple(_promises())
 HEAD = (
@@ -100,9 +116,25 @@ HEAD = (
     "Simulated campaigns that no development had seen: *tidy* ones as a simulator makes them,",
     "*recorded* ones with what loggers do to them. Nominal is what is promised; the interval holds",
     "the rate in 95 of 100 cases (Clopper & Pearson 1934). Every campaign in which a promise was",
-    "broken stands below the table. Parameters' intervals: [recovery.md](recovery.md).",
+    "broken stands below the table. Intervals effect by effect: [recovery.md](recovery.md).",
     "",
 )
+
+
+def coverage(rows: Sequence[Row]) -> str:
+    """How many of the parameters' intervals hold the truth, of right answers; those of one campaign
+    go together, so that the error is that of means over campaigns."""
+    known = [row for row in rows if row.get("intervals")]
+    words = "95 % intervals of a right answer's parameters: hold the truth"
+    if not known:
+        return f"| {words} | 95 % | - | | | 0 |"
+    count = sum(row["intervals"] for row in known)
+    share = sum(row["covered"] for row in known) / count
+    off = [row["covered"] - share * row["intervals"] for row in known]
+    error = math.sqrt(sum(x * x for x in off)) / count
+    low, high = (100.0 * min(max(share + z * error, 0.0), 1.0) for z in (-1.96, 1.96))
+    delivered = f"{100.0 * share:.1f} % | {100.0 * error:.1f} %"
+    return f"| {words} | 95 % | {delivered} | {low:.1f} to {high:.1f} % | {len(known)} |"
 
 
 def page(rows: Sequence[Row]) -> Iterator[str]:
@@ -123,6 +155,7 @@ def page(rows: Sequence[Row]) -> Iterator[str]:
         interval = f"{100.0 * sure.low:.1f} to {100.0 * sure.high:.1f} %"
         yield f"| {promise.words} | {promise.nominal} | {delivered} | {interval} | {len(own)} |"
         broken += [(promise.words, row) for row in own if not promise.kept(row)]
+    yield coverage(rows)
     yield ""
     for words, row in broken:
         named = ", ".join(row["named"]) or "nothing"

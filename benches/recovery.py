@@ -20,12 +20,11 @@ from pathlib import Path
 
 import jbf
 import numpy as np
-from jbf.models.catalogue import find_parameter, parameters_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 
 import rigsim
-from rigruns import rig_of, runs_of
+from rigruns import errors_in_sigma, rig_of, runs_of
 from rigsim.campaign import draw_base
 from rigsim.motions import Motion
 from rigsim.warmth import REFERENCE_C, draw_warmth
@@ -43,16 +42,6 @@ class Truth:
     base: rigsim.Base
     effects: dict[str, dict[str, float]]
     records: dict[str, rigsim.Record]
-
-    def values(self) -> dict[str, float]:
-        """Full parameter name to value."""
-        known = parameters_of("journal", tuple(self.effects))
-        b = self.base
-        found = {"f_m": b.f_m, "U_tr_m_s": b.U_tr, "K0": b.K0, "gamma": b.gamma}
-        for effect, parameters in self.effects.items():
-            for name, value in parameters.items():
-                found[find_parameter(f"{effect}.{name}", known)] = value
-        return found
 
 
 def motions_for(effect: str) -> rigsim.Campaign:
@@ -113,16 +102,7 @@ def errors_of(
     fitted = jbf.fit(rig_of(truth.base.load_n), runs, list(truth.effects), fixed=stated)
     if bootstrap is not None and fitted.doubtful:
         fitted = jbf.bootstrap(fitted, runs, repeats=bootstrap).fit
-    found = fitted.parameters
-    pages = parameters_of("journal", tuple(truth.effects))
-    errors = {}
-    for name, value in truth.values().items():
-        off, period = found[name].value - value, pages[name].period
-        if period is not None:
-            off -= period * round(off / period)
-        stderr = found[name].stderr
-        errors[name] = off / stderr if stderr else math.nan
-    return errors
+    return errors_in_sigma(fitted, vars(truth.base), truth.effects)
 
 
 def repeat(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import jbf
 import rigsim
+from jbf.models.catalogue import find_parameter, parameters_of
 from rigsim.warmth import REFERENCE_C
 
 
@@ -46,3 +49,22 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
 def rig_of(load_n: float) -> jbf.Rig:
     """The rig of a load that the simulator drew."""
     return jbf.Rig.thesis("4.2" if load_n == 104.0 else "4.3")
+
+
+def errors_in_sigma(
+    found: jbf.Fit, base: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
+) -> dict[str, float]:
+    """Estimate less truth in standard errors, by parameter; NaN where a fit gives no interval."""
+    pages = parameters_of("journal", tuple(effects))
+    values = {"f_m": base["f_m"], "U_tr_m_s": base["U_tr"], "K0": base["K0"]}
+    values["gamma"] = base["gamma"]
+    for effect, own in effects.items():
+        values |= {find_parameter(f"{effect}.{name}", pages): v for name, v in own.items()}
+    errors = {}
+    for name, value in values.items():
+        estimate, period = found.parameters[name], pages[name].period
+        off = estimate.value - value
+        if period is not None:
+            off -= period * round(off / period)
+        errors[name] = off / estimate.stderr if estimate.stderr else math.nan
+    return errors

@@ -78,7 +78,11 @@ def next_runs(rows: list[Row]) -> str:
     if not asked:
         return ""
     right = sum(said == "right" for said in asked)
-    return f"ties for which a run was proposed: {len(asked)}; that run names the one: {right}"
+    random = sum(row.get("after_random_run") == "right" for row in rows)
+    return (
+        f"ties for which a run was proposed: {len(asked)}; that run names the one: {right}; "
+        f"a run at random, as long: {random}"
+    )
 
 
 def shares(rows: list[Row], least: float) -> bool:

@@ -7,9 +7,13 @@ import time
 from typing import Any
 
 import jbf
+import numpy as np
+from jbf.diagnosis.excitations import Limits, excitations
+from jbf.diagnosis.separation import played
+from jbf.estimation.campaign import Campaign as Prepared
 from motion_errors import held_out
 from plan import Task
-from rigruns import simulated
+from rigruns import errors_in_sigma, simulated
 from rigsim import Campaign
 from rigsim.campaign import standard
 from rigsim.motions import polyline
@@ -17,6 +21,8 @@ from rivals import RULES, Rivals
 from score import judge
 
 Row = dict[str, Any]
+WIDTH = 1.959964
+"""Half of a 95 % interval, in standard errors."""
 
 
 def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
@@ -31,19 +37,36 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Ru
     )
 
 
-def after_next_run(task: Task, found: jbf.Diagnosis) -> str | None:
-    """What is said once the proposed run has been recorded too; None where none was proposed."""
-    if found.experiment is None:
-        return None
-    played = found.experiment.run
+def after_run(task: Task, run: jbf.Run) -> str:
+    """What is said once another run has been recorded too."""
     # Straight lines through every fifth sample are near enough to the motion asked for.
-    knots = zip(played.time_s[::5].tolist(), played.velocity_m_s[::5].tolist(), strict=True)
+    knots = zip(run.time_s[::5].tolist(), run.velocity_m_s[::5].tolist(), strict=True)
     first = standard(task.campaign)
     more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
     rig, runs, _ = simulate(task, more)
     again = jbf.diagnose(rig, runs)
     alternatives = {k: list(v) for k, v in again.alternatives.items()}
     return judge(task.effects, again.verdict, again.effects, alternatives)
+
+
+def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> jbf.Run:
+    """Another motion that the rig can make, as long as the proposed one."""
+    step_s = float(np.median(np.diff(like.time_s)))
+    limits = Limits(duration_s=len(like) * step_s).filled(Prepared.prepare(rig, runs))
+    every = list(excitations(limits, step_s))
+    chosen = every[int(np.random.default_rng(task.seed).integers(len(every)))]
+    return played(rig, chosen, step_s, linear=False)
+
+
+def next_runs(task: Task, found: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:
+    """What is said after the proposed run, and after one at random; nothing of a tie without."""
+    if found.experiment is None:
+        return {"after_next_run": None}
+    proposed = found.experiment.run
+    return {
+        "after_next_run": after_run(task, proposed),
+        "after_random_run": after_run(task, at_random(task, rig, runs, proposed)),
+    }
 
 
 def work(task: Task, with_rivals: bool) -> Row:
@@ -81,8 +104,12 @@ def work(task: Task, with_rivals: bool) -> Row:
         "holdout_over_rms": found.steps[-1].holdout_rms_n / found.steps[-1].rms_n,
         "seconds": seconds,
     }
+    if row["judged"] == "right" and not foreign:
+        errors = errors_in_sigma(found.fit, truth["base"], truth["effects"]).values()
+        known = [abs(z) for z in errors if math.isfinite(z)]
+        row["intervals"], row["covered"] = len(known), sum(z < WIDTH for z in known)
     if task.kind == "tied":
-        row["after_next_run"] = after_next_run(task, found)
+        row |= next_runs(task, found, rig, runs)
     if with_rivals:
         rivals = Rivals(rig, runs, others)
         row["rivals"] = {}

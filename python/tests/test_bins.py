@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from jbf import Fit, Run, compare
+from jbf import Fit, Rig, Run, compare
 from jbf.comparison.axes import all_axes
 from jbf.comparison.bins import Axis, Bin, Binned, label
 from jbf.comparison.patterns import Failure, pattern_words
+from jbf.estimation.campaign import Campaign
 from jbf.reporting.bin_axes import bin_axis
 
 WORDS: list[tuple[Axis, Bin, str]] = [
@@ -106,3 +107,13 @@ def test_samples_go_into_the_bin_of_their_motion(bare_fit: Fit, runs: list[Run])
                     assert np.all(v[places == i] > 0.0)
                 elif b.direction < 0 and not b.with_rest:
                     assert np.all(v[places == i] < 0.0)
+
+
+@pytest.mark.parametrize("speed", [2.2, 0.0375, 1e-7])
+def test_one_speed_is_one_bin(speed: float) -> None:
+    n = 24
+    force = 2.0 + 0.1 * np.random.default_rng(1).standard_normal(n)
+    run = Run.from_arrays(0.002 * np.arange(n), np.full(n, speed), force)
+    axes = {axis.axis: axis for axis in all_axes(Campaign.prepare(Rig(), [run]), None)}
+    centres = [b.centre for b in axes["velocity"].bins]
+    assert centres == pytest.approx([-speed, speed])

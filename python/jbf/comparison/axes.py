@@ -45,7 +45,10 @@ def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
 def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     speeds = np.concatenate([np.abs(p.motion.velocity_m_s) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
-    edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
+    edges = np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1])
+    # Of a speed that is held the quantiles are one, but for rounding; and no bin stays empty.
+    edges = edges[np.diff(edges, prepend=np.min(moving)) > 1e-9 * np.max(moving)]
+    edges = edges[np.unique(np.digitize(moving, edges))[1:] - 1]
     count = len(edges) + 1
     middle = [float(np.median(moving[np.digitize(moving, edges) == i])) for i in range(count)]
     unit = campaign.rig.quantities.speed

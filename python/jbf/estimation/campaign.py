@@ -71,7 +71,8 @@ class Campaign:
         Raises
         ------
         InputError
-            No run at all, a run without friction, or one in which nothing moves.
+            No run at all, a run without friction, one in which nothing moves, or a force that is
+            zero throughout.
         """
         runs = list_of_runs(runs)
         if not runs:
@@ -82,6 +83,13 @@ class Campaign:
             for i, run in enumerate(runs)
             if i not in again
         )
+        if not any(np.any(p.friction_n) for p in prepared):
+            raise InputError(
+                file=prepared[0].run.path or prepared[0].run.name,
+                column="friction_n",
+                problem="zero in every sample of every run",
+                mend="check that the force was connected, and its scale",
+            )
         samples = Samples.of(prepared)
         return cls(rig, prepared, samples, most_noise(prepared, samples))
 

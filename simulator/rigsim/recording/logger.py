@@ -42,6 +42,8 @@ def logged(
     meet("rig")
     draft.instants = draft.force_instants = draft.force_stamps = stamps
     meet("clock")
+    # A clock that runs slow may set two shaken instants back past each other by rounding.
+    draft.force_instants = np.maximum.accumulate(draft.force_instants)
     draft.clean = draft.signals.force(draft.force_instants)
     draft.force = draft.clean
     meet("cell")

@@ -82,7 +82,7 @@ def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: fl
     v0, v1 = velocity_m_s[before], velocity_m_s[after]
     # What rounding leaves of a speed is none.
     least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity_m_s)))
-    if min(abs(v0), abs(v1)) < least:
+    if min(abs(v0), abs(v1)) < least or v0 == v1 == 0.0:
         return False
     # A speed that grazes zero has its reversals, too, or none.
     rate = (abs(v0) + abs(v1)) / (time_s[after] - time_s[before])

@@ -1,0 +1,127 @@
+"""Whether fits and diagnoses of absurd campaigns end, and in a sane answer.
+
+`python benches/torture`.
+Every case is a rig and a campaign drawn at random (`draw.py`): scales over six decades, one run or
+four, ten samples or two thousand, no motion, one speed, noise alone, zeros. What is asked of each:
+an answer, or one line that says what these runs cannot show; no exception else, no warning of a
+library, no number that is not finite, no bound as a value, not `adequate` far off the noise, and
+all of it within `--limit` seconds of processor time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+import time
+import traceback
+import warnings
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from types import FrameType
+
+import jbf
+import numpy as np
+from draw import Case, draw
+from jbf.models.catalogue import parameters_of
+
+FAR_OFF = 3.0
+"""Times the noise from which on a model is not adequate, of a hundred samples and more."""
+
+
+def out_of_time(_signal: int, _frame: FrameType | None) -> None:
+    """The limit of processor time is reached."""
+    raise TimeoutError
+
+
+def complaints(case: Case, fitted: jbf.Fit) -> Iterator[str]:
+    """What is wrong with a fit's numbers."""
+    pages = parameters_of(fitted.model.law, tuple(fitted.model.effects))
+    for name, known in fitted.parameters.items():
+        page = pages[name]
+        if known.note is not None or known.held:
+            continue
+        if not np.isfinite(known.value) or (known.stderr is not None and known.stderr == np.inf):
+            yield f"{name} = {known.value} +/- {known.stderr} without a note"
+        elif known.stderr is None:
+            yield f"{name} = {known.value:g} has no error, and no note says why"
+        if known.value in (page.lower, page.upper):
+            yield f"{name} = {known.value:g} is its bound, and no note says so"
+
+
+def judge(case: Case) -> tuple[str, list[str]]:
+    """What was said, and what is wrong with it."""
+    wrong: list[str] = []
+    try:
+        fitted = jbf.fit(case.rig, case.runs, law="stribeck" if case.law == "auto" else case.law)
+        wrong += complaints(case, fitted)
+        found = jbf.diagnose(case.rig, case.runs, law=case.law)
+    except jbf.JbfError as error:
+        said = str(error)
+        return said, [*wrong, "more than one line"] if "\n" in said else wrong
+    wrong += complaints(case, found.fit)
+    last = found.steps[-1]
+    if not all(np.isfinite([last.rms_n, last.noise_n, last.holdout_rms_n])):
+        wrong.append(f"errors {last.rms_n:g}, {last.noise_n:g}, {last.holdout_rms_n:g}")
+    samples = sum(map(len, case.runs))
+    if found.verdict == "adequate" and samples > 100 and last.rms_n > FAR_OFF * case.noise_n > 0.0:
+        wrong.append(f"adequate at {last.rms_n / case.noise_n:.1f} times the noise")
+    json.dumps(found.to_dict(), allow_nan=False)
+    return found.verdict, wrong
+
+
+def tried(seed: int, limit_s: float) -> dict[str, object]:
+    """One case: what was said, what is wrong, how long it took."""
+    case = draw(seed)
+    signal.signal(signal.SIGPROF, out_of_time)
+    signal.setitimer(signal.ITIMER_PROF, limit_s)
+    begun = time.process_time()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            said, wrong = judge(case)
+        except TimeoutError:
+            said, wrong = "", [f"no end in {limit_s:g} s"]
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            said, wrong = "", [f"{error!r} ({Path(place.filename).name}:{place.lineno})"]
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+    wrong += sorted({f"{Path(w.filename).name}:{w.lineno}: {w.message}" for w in caught})
+    seconds = time.process_time() - begun
+    return {"seed": seed, "case": case.words, "said": said, "wrong": wrong, "seconds": seconds}
+
+
+def main() -> int:
+    """Try, tell, count."""
+    parser = argparse.ArgumentParser(prog="torture", description=__doc__.split(":")[0])
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--cases", type=int, default=100)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--limit", type=float, default=120.0, help="processor time, s a case; 120")
+    parser.add_argument("--out", type=Path, help="JSON lines, one a case")
+    asked = parser.parse_args()
+    rows = []
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        seeds = range(asked.first_seed, asked.first_seed + asked.cases)
+        for future in as_completed([pool.submit(tried, seed, asked.limit) for seed in seeds]):
+            row = future.result()
+            rows.append(row)
+            if asked.out is not None:
+                with asked.out.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(row) + "\n")
+            if row["wrong"]:
+                print(
+                    f"{row['seed']}: {row['case']}\n    {'; '.join(map(str, row['wrong']))}",
+                    flush=True,
+                )
+    bad = sum(bool(row["wrong"]) for row in rows)
+    longest = max(float(str(row["seconds"])) for row in rows)
+    print(f"{len(rows)} cases, {bad} with something wrong; the longest took {longest:.0f} s")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

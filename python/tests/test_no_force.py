@@ -1,4 +1,4 @@
-"""Runs in which there is nothing to fit are refused in a line; rests alone do not divide by zero."""
+"""Runs with nothing to fit are refused in a line; a rest alone does not divide by zero."""
 
 from __future__ import annotations
 

@@ -28,3 +28,13 @@ def test_a_run_at_rest_is_refused_without_a_warning() -> None:
         warnings.simplefilter("error")
         with pytest.raises(jbf.InputError, match=r"rest"):
             jbf.fit(jbf.Rig(), [run], law="stribeck")
+
+
+def test_a_speed_of_whose_sign_nothing_is_known_is_refused() -> None:
+    random = np.random.default_rng(1)
+    t, v = 5e-4 * np.arange(900), random.choice([-5.0, -1.5, 0.0, 1.5, 5.0], 900)
+    run = jbf.Run.from_arrays(t, v, np.sign(v) + 0.2 * v, name="jumps")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(jbf.InputError, match=r"jumps, column velocity_m_s: of no sample"):
+            jbf.fit(jbf.Rig(), [run], law="stribeck")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 
@@ -47,8 +48,21 @@ class Scales:
 
 
 def scales(campaign: Campaign) -> Scales:
-    """The sizes of a campaign's runs, from samples that move."""
+    """The sizes of a campaign's runs, from samples that move.
+
+    Raises
+    ------
+    InputError
+        There is no such sample.
+    """
     moving = moving_samples(campaign)
+    if not any(map(np.any, moving)):
+        raise InputError(
+            file=campaign.prepared[0].run.path or campaign.prepared[0].run.name,
+            column="velocity_m_s",
+            problem="of no sample that counts, in any run, is it known which way it moves",
+            mend="record strokes of many samples each, or check the unit of time",
+        )
     v = np.concatenate(
         [p.motion.velocity_m_s[m] for p, m in zip(campaign.prepared, moving, strict=True)]
     )

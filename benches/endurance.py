@@ -1,0 +1,63 @@
+"""Whether memory stays flat: `python benches/endurance.py`.
+
+Diagnoses campaign after campaign in one process and prints its resident memory as it goes. Fails
+where the last tenth holds more than `--growth-mib` above the second.
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import sys
+import time
+from pathlib import Path
+
+import jbf
+import numpy as np
+
+
+def resident_mib() -> float:
+    """Memory that the process holds now, MiB."""
+    status = Path("/proc/self/statm")
+    if status.exists():
+        return int(status.read_text().split()[1]) * resource.getpagesize() / 2**20
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
+
+
+def campaign(seed: int) -> list[jbf.Run]:
+    """Two runs of an axis with dry friction, and in every other campaign a zero that is off."""
+    random = np.random.default_rng(seed)
+    runs = []
+    for name, rate in (("slow", 0.7), ("fast", 2.9)):
+        t = 0.01 * np.arange(800)
+        v, path = 0.1 * np.cos(rate * t), 0.1 / rate * np.sin(rate * t)
+        force = 5.0 * np.sign(v) + 20.0 * v + (seed % 2) + random.normal(0.0, 0.2, len(t))
+        runs.append(jbf.Run.from_arrays(t, v, force, position_m=path, name=name))
+    return runs
+
+
+def main() -> int:
+    """Run, print, judge."""
+    parser = argparse.ArgumentParser(prog="endurance", description=__doc__.split(":")[0])
+    parser.add_argument("--diagnoses", type=int, default=1000)
+    parser.add_argument("--growth-mib", type=float, default=20.0)
+    asked = parser.parse_args()
+    held, verdicts, begun = [], {"adequate": 0, "missing": 0}, time.monotonic()
+    tenth = max(asked.diagnoses // 10, 1)
+    for k in range(asked.diagnoses):
+        found = jbf.diagnose(jbf.Rig(), campaign(k), law="stribeck")
+        verdicts[found.verdict] = verdicts.get(found.verdict, 0) + 1
+        if (k + 1) % tenth == 0:
+            held.append(resident_mib())
+            print(
+                f"{k + 1:6} diagnoses {held[-1]:8.1f} MiB {time.monotonic() - begun:7.0f} s",
+                flush=True,
+            )
+    print(", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()))
+    growth = held[-1] - held[min(1, len(held) - 1)]
+    print(f"grown by {growth:.1f} MiB")
+    return 0 if growth <= asked.growth_mib else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,5 +1,6 @@
 """Structure that nothing in the catalogue explains: patterns along an axis, tones, bursts, what
-comes again with the motion, and runs that disagree on the parameters.
+comes again with the motion, strokes of which each has a level of its own, and runs that disagree on
+the parameters.
 
 Everything is tested on innovations (the residual less what the noise's own memory foretells),
 so that coloured noise is no structure. A pattern must be both beyond chance and large enough to
@@ -21,6 +22,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.replicates import find_replicates
 from jbf.diagnosis.ripples import find_ripples
+from jbf.diagnosis.strokes import find_stroke_levels
 from jbf.diagnosis.tones import find_tones
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -44,6 +46,7 @@ def find_remainder(
     plain = samples.plain_innovations(solution.residuals, solution.noise)
     found += find_bursts(prepared, samples, plain, left, policy)
     found += find_disagreement(problem, solution, policy)
+    found += find_stroke_levels(problem, solution, policy)
     # Of steps as coarse as these no mean reading is right, along whatever axis and in each run.
     steps_n = problem.campaign.steps_rms_n(solution.rms_n)
     found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]

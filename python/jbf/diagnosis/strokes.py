@@ -1,0 +1,97 @@
+"""Is the friction as high in one stroke as in the next? Of a surface that wears, sheds debris or is
+lubricated afresh each stroke has a level of its own, that no parameter of a law has.
+
+An analysis of variance: between strokes of a run, what the friction is there as a share of the
+model's; within them, how the two halves of a stroke differ. Of a right model, and of a wrong one
+that is alike in all strokes, both tell the same variance, whatever the memory of the noise; their
+ratio is Fisher's F.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+from scipy import stats
+
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+Strokes = npt.NDArray[np.intp]
+
+LEAST_STROKES = 3
+"""Of a run with fewer nothing is asked."""
+LEAST_SAMPLES = 8
+"""Of half a stroke; shorter ones tell nothing of themselves."""
+
+
+def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
+    """That the level of the friction differs from stroke to stroke, if it does."""
+    friction = problem.predict(solution.values)
+    left = solution.samples.without_deviations(solution.residuals, solution.noise)
+    between = within = moved = 0.0
+    of_between = of_within = 0
+    for p, f, r, counted in zip(
+        problem.campaign.prepared, friction, left, solution.samples.counted, strict=True
+    ):
+        halves = np.array(list(_halves(stroke_of(p), f, r, counted))).reshape(-1, 2, 2)
+        if len(halves) < LEAST_STROKES:
+            continue
+        weight, pull = halves[..., 0], halves[..., 1]
+        level = pull / weight
+        whole = np.sum(pull, axis=1) / np.sum(weight, axis=1)
+        off = whole - np.sum(pull) / np.sum(weight)
+        between += float(np.sum(weight.sum(axis=1) * off**2))
+        of_between += len(off) - 1
+        apart = level[:, 1] - level[:, 0]
+        apart -= np.average(apart, weights=np.prod(weight, axis=1) / np.sum(weight, axis=1))
+        within += float(np.sum(np.prod(weight, axis=1) / np.sum(weight, axis=1) * apart**2))
+        of_within += len(off) - 1
+        moved += float(np.sum(weight))
+    square = sum(float(r[c] @ r[c]) for r, c in zip(left, solution.samples.counted, strict=True))
+    if not of_between or within <= 0.0 or square <= 0.0:
+        return []
+    ratio = (between / of_between) / (within / of_within)
+    share = (between - within * of_between / of_within) / square
+    if share < policy.pattern_share:
+        return []
+    if stats.f.sf(ratio, of_between, of_within) > policy.constancy_chance:
+        return []
+    size = 100.0 * float(np.sqrt(share * square / moved))
+    where = (
+        f"friction as high in no stroke as in the next: by {size:.2g} % from stroke to stroke "
+        f"({ratio:.0f} times as much as within one)"
+    )
+    return [Remainder("stroke", where, min(share, 1.0))]
+
+
+def stroke_of(p: Prepared) -> Strokes:
+    """The number of the stroke that a sample is in, -1 where it is not known to move: strokes end
+    where the motion turns round."""
+    motion = p.motion
+    moving = np.flatnonzero(motion.sign_known & ~motion.resting)
+    found = np.full(len(motion.velocity_m_s), -1, dtype=np.intp)
+    if len(moving):
+        sign = np.sign(motion.velocity_m_s[moving])
+        found[moving] = np.cumsum(np.diff(sign, prepend=sign[0]) != 0.0)
+    return found
+
+
+def _halves(
+    stroke: Strokes, friction: Array, residual: Array, counted: npt.NDArray[np.bool_]
+) -> Iterator[list[list[float]]]:
+    """Of each stroke its two halves: the square of the friction there, N^2, and its product with
+    the residual."""
+    for k in range(int(np.max(stroke, initial=-1)) + 1):
+        rows = np.flatnonzero((stroke == k) & counted)
+        if len(rows) < 2 * LEAST_SAMPLES:
+            continue
+        halves = np.array_split(rows, 2)
+        own = [[float(friction[h] @ friction[h]), float(friction[h] @ residual[h])] for h in halves]
+        if min(own[0][0], own[1][0]) > 0.0:
+            yield own

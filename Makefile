@@ -105,11 +105,13 @@ fuzz:
 	cd crates/jbf-core && for target in $$(cargo +nightly fuzz list); do \
 		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
 
-# Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower.
+# Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower,
+# and knows no assembly, so that roots are the standard library's.
+miri: export MIRIFLAGS := -Zmiri-disable-isolation
 miri:
 	@if cargo +nightly miri --version >/dev/null 2>&1; then \
-		MIRIFLAGS=-Zmiri-disable-isolation cargo +nightly miri test -p jbf-core --lib && \
-		MIRIFLAGS=-Zmiri-disable-isolation JBF_EACH=20 cargo +nightly miri test -p jbf-properties \
+		cargo +nightly miri test -p jbf-core --features std --lib -- controller compensator page error && \
+		JBF_EACH=20 cargo +nightly miri test -p jbf-properties --features jbf-core/std \
 			--test seeded -- encoder observers interface; \
 	else echo "SKIPPED: rustup toolchain install nightly --component miri"; fi
 

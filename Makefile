@@ -105,14 +105,14 @@ fuzz:
 	cd crates/jbf-core && for target in $$(cargo +nightly fuzz list); do \
 		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
 
-# Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower,
-# and knows no assembly, so that roots are the standard library's.
+# Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower.
+# It knows no assembly, so it plays a processor for which `libm` has none.
+MIRI := cargo +nightly miri test --target riscv64gc-unknown-linux-gnu
 miri: export MIRIFLAGS := -Zmiri-disable-isolation
 miri:
 	@if cargo +nightly miri --version >/dev/null 2>&1; then \
-		cargo +nightly miri test -p jbf-core --features std --lib -- controller compensator page error && \
-		JBF_EACH=20 cargo +nightly miri test -p jbf-properties --features jbf-core/std \
-			--test seeded -- encoder observers interface; \
+		$(MIRI) -p jbf-core --lib -- controller compensator page error && \
+		JBF_EACH=20 $(MIRI) -p jbf-properties --test seeded -- encoder observers interface; \
 	else echo "SKIPPED: rustup toolchain install nightly --component miri"; fi
 
 # The compiler's checks in the program, and in the library too where there is nightly Rust.

@@ -11,6 +11,8 @@ RUST := $(shell find crates -name '*.rs' -path '*/src/*') \
 RUSTFMT := rustfmt --edition 2021
 RUST_FILES = find $(wildcard crates benches examples firmware) -name '*.rs' -not -path '*/target/*'
 
+SANITIZED := $(or $(CARGO_TARGET_DIR),target)/sanitized
+
 MADE := $(VENV)/.made
 BUILT := $(VENV)/.built
 
@@ -19,7 +21,7 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz mutants firmware clean
+.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants firmware clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -30,7 +32,10 @@ help:
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
-	@echo "make fuzz    random input to laws, chains and driver, a minute each (nightly, cargo-fuzz)"
+	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
+	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
+	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
+	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny)"
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
@@ -55,7 +60,7 @@ test: $(BUILT)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 test-slow: $(BUILT)
-	cargo test --release -p jbf-core --test control_tracking -- --ignored
+	cargo test --release -p jbf-core --test control_tracking --test endless -- --ignored --nocapture
 	$(VENV)/bin/python -m pytest -n auto -m slow
 
 # Fuzz targets and firmware are no part of the workspace: rustfmt is given every file.
@@ -97,8 +102,43 @@ mutants: $(BUILT)
 
 # Needs nightly Rust and cargo-fuzz.
 fuzz:
-	cd crates/jbf-core && for target in film chain driver; do \
+	cd crates/jbf-core && for target in $$(cargo +nightly fuzz list); do \
 		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
+
+# Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower.
+# It knows no assembly, so it plays a processor for which `libm` has none.
+MIRI := cargo +nightly miri test --target riscv64gc-unknown-linux-gnu
+miri: export MIRIFLAGS := -Zmiri-disable-isolation
+miri:
+	@if cargo +nightly miri --version >/dev/null 2>&1; then \
+		$(MIRI) -p jbf-core --lib -- controller compensator page error && \
+		JBF_EACH=20 $(MIRI) -p jbf-properties --test seeded -- encoder observers interface; \
+	else echo "SKIPPED: rustup toolchain install nightly --component miri"; fi
+
+# The compiler's checks in the program, and in the library too where there is nightly Rust.
+HOST = $(shell rustc -vV | sed -n 's/^host: //p')
+sanitize:
+	@if ! echo 'int main(void){return 0;}' | \
+		$(CC) -x c - -fsanitize=address,undefined -o /dev/null 2>/dev/null; then \
+		echo "SKIPPED: $(CC) has no -fsanitize=address,undefined"; exit 0; fi; \
+	if cargo +nightly --version >/dev/null 2>&1; then \
+		toolchain=+nightly flags=-Zsanitizer=address; \
+	else echo "no nightly Rust: only the C side is watched"; toolchain= flags=; fi; \
+	RUSTFLAGS=$$flags CARGO_TARGET_DIR=$(SANITIZED) \
+		cargo $$toolchain build --quiet -p jbf-c --target $(HOST) && \
+	$(CC) -std=c11 -g -O1 -Wall -Wextra -Werror -fsanitize=address,undefined \
+		-fno-sanitize-recover=all -I crates/jbf-c/include crates/jbf-c/tests/every_function.c \
+		$(SANITIZED)/$(HOST)/debug/libjbf_c.a -lm -lpthread -ldl \
+		-o $(SANITIZED)/every_function && \
+	$(SANITIZED)/every_function
+
+# Known faults are on a server: without it licences, bans and sources are looked at alone.
+supply:
+	@if command -v cargo-deny >/dev/null; then \
+		cargo deny --all-features check bans licenses sources && \
+		{ cargo deny fetch db >/dev/null 2>&1 && cargo deny check advisories || \
+			echo "SKIPPED: the database of advisories cannot be had here"; }; \
+	else echo "SKIPPED: cargo install cargo-deny"; fi
 
 # Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
 firmware: $(BUILT)

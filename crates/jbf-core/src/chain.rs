@@ -100,6 +100,39 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         }
     }
 
+    /// What a speed (m/s) adds to friction at rest beside what jumps, N on one bearing: a law's
+    /// viscous part through the lubricant and the contact, and drags. Nothing behind a soft drive,
+    /// whose spring is felt instead.
+    #[inline]
+    pub(crate) fn viscous_n(&self, state: &State<T, L::State, E>, velocity_m_s: T) -> T {
+        if self.effects.has_drive() {
+            return T::ZERO;
+        }
+        let still = JournalMotion {
+            velocity_m_s: T::ZERO,
+            ..state.journal
+        };
+        let moving = JournalMotion {
+            velocity_m_s,
+            direction: velocity_m_s.sign(),
+            ..state.journal
+        };
+        let load_n = self.law.pressed_n(state.motion.load_n);
+        let film_m_s = velocity_m_s * self.film_factor(state, &moving);
+        let mut sliding = self.law.friction(&state.law, film_m_s);
+        // The contact may remember: asked on a copy, in a step of no length.
+        let mut effects = state.effects;
+        self.effects
+            .contact(&mut effects, &moving, &moving, &mut sliding, T::ZERO);
+        let beside_n = |journal| {
+            let (mut all_n, mut transmitted_n) = (Friction::NONE, T::ZERO);
+            self.effects
+                .other(&state.effects, journal, &mut all_n, &mut transmitted_n);
+            all_n.smooth
+        };
+        sliding.smooth * load_n + beside_n(&moving) - beside_n(&still)
+    }
+
     /// The state at the first sample of a run.
     pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, E> {
         let journal = JournalMotion::from(motion);

@@ -32,6 +32,10 @@ const MOST_TRIALS: u32 = 24;
 const NEAR_RAD_S: f64 = 1e-7;
 const NEAR: f64 = 1e-6;
 
+/// No shaft turns faster, rad/s: friction that has no root (one that falls with speed more than the
+/// shaft's inertia bears, or a force that leaves the number) holds the shaft for the step.
+const LOST_RAD_S: f64 = 1e9;
+
 /// Standing still needs no short steps: the film closes slowly.
 const LONGEST_STANDING_S: f64 = 0.02;
 
@@ -187,6 +191,10 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         };
         if !self.sliding_on(state, &before) {
             self.leave_rest(state, &before);
+        }
+        // True of a NaN too.
+        if !(state.speed_rad_s.abs() <= T::of(LOST_RAD_S)) {
+            self.attempt(state, &before, T::ZERO);
         }
         // What the step's motion needed: at rest, whatever holds the shaft.
         let friction_v = (free - state.speed_rad_s) / self.gain;

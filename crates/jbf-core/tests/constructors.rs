@@ -62,6 +62,22 @@ fn sizes_of_the_bearing_are_named() {
     }
 }
 
+/// A load that is a number, one over which is none.
+#[test]
+fn a_load_too_small_for_the_number_is_named() {
+    for load_n in [1e-39, 1e-310] {
+        let error = build(Bearing::THESIS, load_n, Parameters::TABLE_4_2);
+        let single = Journal::<f32>::new(
+            &Bearing::THESIS,
+            load_n,
+            &common::table_4_2(),
+            Clock::Journal,
+        );
+        assert_eq!(single.expect_err("too small").name(), "load_number");
+        assert_eq!(error.is_err(), load_n < 1e-300);
+    }
+}
+
 #[test]
 fn parameters_of_the_law_are_named() {
     let good = Parameters::TABLE_4_2;

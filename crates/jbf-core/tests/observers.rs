@@ -135,6 +135,15 @@ fn exponents_are_guarded() {
     }
 }
 
+/// An exponent just below one has a guard that reaches beyond every speed where the gain is too
+/// large; it overflowed, and phi was no number.
+#[test]
+fn a_guard_beyond_every_speed_is_refused() {
+    let error = CoulombObserver::<f32>::new(14.4, 0.991, 5.0, 0.3, 0.025).unwrap_err();
+    assert_eq!(error.name(), "gain");
+    assert!(CoulombObserver::<f32>::new(0.01, 0.991, 5.0, 0.3, 0.025).is_ok());
+}
+
 #[test]
 fn what_it_learns_is_limited() {
     let observer = CoulombObserver::<f32>::new(0.01, 1.0, 457.0, 2.0, DT_S).unwrap();

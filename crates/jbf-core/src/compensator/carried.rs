@@ -21,6 +21,15 @@ pub trait Carried<T: Real> {
 
     /// Friction at the speed that the model was last moved to, V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
+
+    /// How [`Friction::smooth`] would grow from rest to a speed (rad/s, not zero), per speed, V s/rad
+    /// and not below zero: its viscous part alone, no weight, no spring. A model of steep viscous
+    /// friction that does not tell makes an observer ring.
+    #[inline]
+    fn slope(&self, state: &Self::State, velocity_rad_s: T) -> T {
+        let _ = (state, velocity_rad_s);
+        T::ZERO
+    }
 }
 
 /// A law alone, without effects: the smallest and fastest. A law with a bristle is taken as if
@@ -85,6 +94,15 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
         let volts = self.volts_per_n * self.law.pressed_n(self.load_n);
         sliding.times(volts)
     }
+
+    #[inline]
+    fn slope(&self, state: &Self::State, velocity_rad_s: T) -> T {
+        let sliding = self
+            .law
+            .friction(&state.law, velocity_rad_s * self.radius_m);
+        let volts = self.volts_per_n * self.law.pressed_n(self.load_n);
+        (sliding.smooth * volts / velocity_rad_s).max(T::ZERO)
+    }
 }
 
 /// A whole chain: a law with the effects of a fitted model.
@@ -137,5 +155,12 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
     #[inline]
     fn friction(&self, state: &Self::State) -> Friction<T> {
         self.chain.felt(state).times(self.volts_per_n)
+    }
+
+    #[inline]
+    fn slope(&self, state: &Self::State, velocity_rad_s: T) -> T {
+        let speed_m_s = velocity_rad_s * self.chain.rig.radius_m;
+        let viscous_n = self.chain.viscous_n(state, speed_m_s);
+        (viscous_n * self.volts_per_n / velocity_rad_s).max(T::ZERO)
     }
 }

@@ -17,6 +17,9 @@
 use crate::error::{check, positive, Error};
 use crate::real::Real;
 
+/// No shaft turns faster, rad/s: a guard that reached as far would take phi's place everywhere.
+const FASTEST_RAD_S: f64 = 1e4;
+
 /// Gains of the Coulomb observer.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombObserver<T> {
@@ -50,7 +53,8 @@ impl<T: Real> CoulombObserver<T> {
     /// `b` (rad/s^2/V), and the most that may be learned, V.
     ///
     /// # Errors
-    /// All must be positive and finite; `p` at most 4; with p = 1 `k_F b dt` below 1.
+    /// All must be positive and finite; `p` at most 4; with p = 1 `k_F b dt` below 1, with p < 1 a
+    /// gain that some speed of a shaft bears.
     pub fn new(
         gain: f64,
         exponent: f64,
@@ -77,6 +81,12 @@ impl<T: Real> CoulombObserver<T> {
         } else {
             libm::pow(steepest / exponent, 1.0 / (exponent - 1.0))
         };
+        check(
+            exponent >= 1.0 || edge < FASTEST_RAD_S,
+            "gain",
+            gain,
+            "is too large for the time step: k_F phi' b dt would pass one half at every speed",
+        )?;
         Ok(Self {
             gain: T::of(gain),
             exponent: T::of(exponent),

@@ -10,6 +10,17 @@
 //! c' = mu d dir  (and d falls by as much: what keeps its sign with the motion is friction)
 //! ```
 //!
+//! `smooth` is taken as it was at the step's begin, but for a viscous friction that would stop the
+//! shaft within one step and turn it round. With a slope s of it (V s/rad) the step is
+//!
+//! ```text
+//! v+ = keep v + gain (u - s v - ...)            keep = exp(-a dt): rings beyond s = (1 + keep)/gain
+//! v+ = keep' v + gain' (u - ...)                keep' = exp(-(a + b s) dt): stable for any s
+//! ```
+//!
+//! and the second is taken where `gain s > keep`; both rest at the same speed. A blind observer has
+//! nothing else that holds it.
+//!
 //! The observer sticks as the plant does, so that rest teaches nothing that is not so. The
 //! compensator sends out F_hat with `dir` the direction that the motion is wanted in where the
 //! shaft is slow, and what the reference's motion asks of the plant.
@@ -17,6 +28,9 @@
 //! Source: extended state observers (Han 1995; Gao 2003); disturbance observers (Ohnishi 1987);
 //! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
 //! chapter 7.
+
+// `!(x <= y)` is true of a NaN too, and means to be.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod poles;
 mod settings;
@@ -35,6 +49,9 @@ use poles::poles;
 /// encoder doubtful.
 const FINDING_OUT: f64 = 3.0;
 
+/// No shaft turns faster, rad/s: an observer that does has lost its way and begins anew.
+const LOST_RAD_S: f64 = 1e6;
+
 /// The learned corrections: what is worth keeping over a power cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -52,6 +69,10 @@ pub struct Observed<T, M> {
     pub model: M,
     keep: T,
     gain: T,
+    /// The plant's damping a/b, V s/rad, and its input gain times the step b dt, rad/s/V: for a step
+    /// with steep friction.
+    damping_v_s_rad: T,
+    input_rad_s_v: T,
     correct: [T; 3],
     learning: T,
     level_limit_v: T,
@@ -74,6 +95,8 @@ pub struct Observed<T, M> {
 pub struct State<T, S> {
     model: S,
     friction: Friction<T>,
+    /// How its smooth part grows with speed where that is too steep for a step, V s/rad; else zero.
+    steep_v_s_rad: T,
     velocity_rad_s: T,
     slip_rad: T,
     /// How far the shaft has turned since the last count, as far as the observer knows, rad.
@@ -110,6 +133,8 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
             model,
             keep: T::of(1.0 - fall),
             gain: T::of(gain),
+            damping_v_s_rad: T::of(s.damping_1_s / s.input_rad_s2_v),
+            input_rad_s_v: T::of(s.input_rad_s2_v * s.dt_s),
             correct: correct.map(T::of),
             learning: T::of(s.learning_1_s * s.dt_s),
             level_limit_v: T::of(s.level_limit_v),
@@ -150,6 +175,35 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
+    /// How the model's smooth friction grows with speed, V s/rad, where one step of it would more
+    /// than stop the shaft; zero where a step bears it.
+    #[inline]
+    fn steep(&self, model: &M::State, velocity_rad_s: T) -> T {
+        let way = if velocity_rad_s < T::ZERO {
+            -T::ONE
+        } else {
+            T::ONE
+        };
+        let slope = self
+            .model
+            .slope(model, velocity_rad_s.abs().max(self.slow_rad_s) * way);
+        if self.gain * slope > self.keep {
+            slope
+        } else {
+            T::ZERO
+        }
+    }
+
+    /// From rest, with what was learned.
+    #[cold]
+    fn begin_anew(&self, state: &mut State<T, M::State>) {
+        let learned = state.learned;
+        *state = self.start();
+        if learned.level_v.is_finite() && learned.rest_v.is_finite() {
+            state.learned = self.held(learned);
+        }
+    }
+
     /// The level that the model and the observer agree on, V.
     #[inline]
     fn level_v(&self, state: &State<T, M::State>) -> T {
@@ -164,6 +218,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         let model = self.model.start();
         State {
             friction: self.model.friction(&model),
+            steep_v_s_rad: self.steep(&model, T::ZERO),
             model,
             velocity_rad_s: T::ZERO,
             slip_rad: T::ZERO,
@@ -183,16 +238,29 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
     ) -> T {
         let v = state.velocity_rad_s;
         let net_v = applied_v - state.friction.smooth - state.learned.rest_v;
-        let push = self.keep * v + self.gain * net_v;
-        let hold = self.gain * self.level_v(state);
+        let s = state.steep_v_s_rad;
+        let (keep, gain, net_v) = if s > T::ZERO {
+            let damping = self.damping_v_s_rad + s;
+            let keep = (-damping * self.input_rad_s_v).exp();
+            (keep, (T::ONE - keep) / damping, net_v + s * v)
+        } else {
+            (self.keep, self.gain, net_v)
+        };
+        let push = keep * v + gain * net_v;
+        let hold = gain * self.level_v(state);
         // The proximal step of the plant: friction takes what it can hold, and no more.
-        let predicted = if push > hold {
+        let mut predicted = if push > hold {
             push - hold
         } else if push < -hold {
             push + hold
         } else {
             T::ZERO
         };
+        // True of a NaN too.
+        if !(predicted.abs() <= T::of(LOST_RAD_S)) {
+            predicted = T::ZERO;
+            self.begin_anew(state);
+        }
         if blind || moved_rad != T::ZERO {
             state.turned_rad = T::ZERO;
         } else if predicted.abs() > self.slow_rad_s {
@@ -231,6 +299,12 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         self.model
             .advance(&mut state.model, v, sense.angle_rad, self.dt_s);
         state.friction = self.model.friction(&state.model);
+        // Asked of the model only where it may be so, or was.
+        if state.steep_v_s_rad > T::ZERO
+            || (self.gain * state.friction.smooth).abs() > self.keep * v.abs()
+        {
+            state.steep_v_s_rad = self.steep(&state.model, v);
+        }
         // A slow shaft goes where it is wanted, not where noise says that it goes.
         let wish = sense.wanted_rad_s - self.approach_1_s * sense.error;
         let asked = (wish * self.inverse_slow).max(-T::ONE).min(T::ONE);

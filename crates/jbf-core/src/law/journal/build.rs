@@ -50,8 +50,13 @@ impl<T: Real> Journal<T> {
             .iter()
             .all(|x| x.is_finite());
         let load_number = law.nominal.load_number;
+        // One over the lightest load that the law will compute with, too.
+        let lightest = law.under(T::ZERO);
         check(
-            folded && load_number > T::ZERO && load_number.is_finite(),
+            folded
+                && load_number > T::ZERO
+                && load_number.is_finite()
+                && lightest.inverse_load_number.is_finite(),
             "load_number",
             load_number.value(),
             "or another group of the sizes overflows: check their units",

@@ -1,0 +1,4 @@
+//! `jbf_properties::law` on the fuzzer's bytes.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| jbf_properties::law(data));

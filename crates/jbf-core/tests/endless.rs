@@ -1,0 +1,145 @@
+//! A billion steps of the loop, 23 days of it, in single precision: the last laps are as the early
+//! ones were. In the ordinary run a million.
+//!
+//! One lap of the target is a whole number of steps and brings the shaft back or on by the same
+//! angle, so that laps may be compared: the mean of an error that drifts moves, its RMS grows where
+//! something rings or forgets.
+
+mod common;
+
+use common::bench::{controller, coulomb, learning, observed, plant, Bench, Control, DT_S};
+use jbf_core::compensator::Compensator;
+use jbf_core::controller::Controller;
+use std::time::Instant;
+
+/// Steps of a lap, and laps that are compared.
+const LAP: u64 = 1000;
+const LAPS: u64 = 50;
+
+/// Laps until the loop has learned what there is.
+const SETTLED: u64 = 200;
+
+/// Mean and RMS of an error.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    sum: f64,
+    squares: f64,
+}
+
+impl Errors {
+    fn add(&mut self, error: f64) {
+        self.sum += error;
+        self.squares += error * error;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / (LAP * LAPS) as f64
+    }
+
+    fn rms(&self) -> f64 {
+        (self.squares / (LAP * LAPS) as f64).sqrt()
+    }
+}
+
+/// `steps` steps; true errors of the settled laps and of the last.
+fn run<C: Compensator<f32>>(
+    control: Control,
+    controller: Controller<f32, C>,
+    steps: u64,
+) -> [Errors; 2] {
+    let mut bench = Bench::new(plant(&[]), controller);
+    let mut seen = [Errors::default(); 2];
+    let targets: Vec<(f64, f64)> = (0..LAP)
+        .map(|i| {
+            let rate = core::f64::consts::TAU / (LAP as f64 * DT_S);
+            let phase = rate * i as f64 * DT_S;
+            match control {
+                // Off zero: the shaft turns on and on, and the counter rolls over.
+                Control::Velocity => (2.0 + 3.0 * phase.sin(), 3.0 * rate * phase.cos()),
+                Control::Position => (phase.sin(), rate * phase.cos()),
+            }
+        })
+        .collect();
+    let windows = [SETTLED * LAP, steps - LAPS * LAP];
+    for i in 0..steps {
+        let (value, rate) = targets[(i % LAP) as usize];
+        let there = match control {
+            Control::Position => bench.shaft.angle_rad,
+            Control::Velocity => bench.shaft.speed_rad_s,
+        };
+        let error = there - value;
+        for (errors, from) in seen.iter_mut().zip(windows) {
+            if (from..from + LAPS * LAP).contains(&i) {
+                errors.add(error);
+            }
+        }
+        bench.step(value, rate);
+    }
+    seen
+}
+
+fn as_it_was<C: Compensator<f32>>(
+    name: &str,
+    control: Control,
+    controller: Controller<f32, C>,
+    steps: u64,
+) {
+    let begun = Instant::now();
+    let [early, late] = run(control, controller, steps);
+    println!(
+        "{name}: {steps} steps in {:.0} s; mean {:.6} then {:.6}, RMS {:.6} then {:.6}",
+        begun.elapsed().as_secs_f64(),
+        early.mean(),
+        late.mean(),
+        early.rms(),
+        late.rms()
+    );
+    assert!(
+        (late.rms() / early.rms() - 1.0).abs() < 0.02,
+        "{name}: {early:?} {late:?}"
+    );
+    assert!(
+        (late.mean() - early.mean()).abs() < 0.01 * early.rms(),
+        "{name}: {early:?} {late:?}"
+    );
+}
+
+#[test]
+fn a_million_steps() {
+    for control in [Control::Velocity, Control::Position] {
+        as_it_was(
+            "observed",
+            control,
+            controller(control, observed(control)),
+            1_000_000,
+        );
+    }
+    let control = Control::Velocity;
+    as_it_was(
+        "coulomb",
+        control,
+        controller(control, coulomb()),
+        1_000_000,
+    );
+    as_it_was(
+        "learning",
+        control,
+        controller(control, learning(control)),
+        1_000_000,
+    );
+}
+
+/// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; `JBF_STEPS` takes
+/// fewer.
+#[test]
+#[ignore = "ten minutes: make test-slow"]
+fn a_billion_steps() {
+    let asked = std::env::var("JBF_STEPS").map(|n| n.parse().expect("a number"));
+    let control = Control::Velocity;
+    as_it_was(
+        "observed",
+        control,
+        controller(control, observed(control)),
+        asked.unwrap_or(1_000_000_000),
+    );
+}

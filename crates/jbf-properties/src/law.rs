@@ -1,0 +1,93 @@
+//! Friction of a bare law resists: what jumps is not negative, the rest has the sign of the motion,
+//! and a bristle pulls no harder than the level it bends towards.
+
+use crate::bytes::{between, clock, number, parameters, step_s};
+use crate::steps::seen;
+use arbitrary::{Result, Unstructured};
+use jbf_core::chain::SHORTEST_STEP_S;
+use jbf_core::effect::Effects;
+use jbf_core::law::{self, with_law, Named, Visitor};
+use jbf_core::{Bearing, Chain, Motion, Real};
+
+/// Largest speed and load, SI.
+const LARGEST: f64 = 1e4;
+
+/// The laws whose bristle has a damper of its own, or whose level falls late: their force may pass
+/// the level of the moment.
+const FREER: [&str; 2] = ["lugre", "seven_parameter"];
+
+struct Along<'a, 'b>(&'a mut Unstructured<'b>);
+
+impl<T: Real> Visitor<T> for Along<'_, '_> {
+    type Output = Result<()>;
+
+    fn visit<L: Named<T>>(self, law: L) -> Result<()> {
+        let bytes = self.0;
+        let bearing = Some(&Bearing::THESIS);
+        let chain = Chain::round(law, Effects::NONE, bearing);
+        let mut motion = Motion::at_rest(T::of(104.0));
+        let mut state = chain.start(&motion);
+        let mut highest = T::ZERO;
+        while !bytes.is_empty() {
+            let dt_s = T::of(step_s(bytes)?.min(1e3));
+            motion.time_s += dt_s;
+            motion.velocity_m_s = T::of(number(bytes, LARGEST)?);
+            motion.angle_rad += motion.velocity_m_s * dt_s / chain.rig.radius_m;
+            if bytes.ratio(1, 8)? {
+                motion.load_n = T::of(between(bytes, 0.0, LARGEST)?);
+            }
+            chain.step(&mut state, &motion, dt_s);
+            if dt_s < T::of(SHORTEST_STEP_S) {
+                // Of no length: nothing happens.
+                continue;
+            }
+            seen();
+            let v = motion.velocity_m_s;
+            let told = || format!("{}: {motion:?} {dt_s:?} {:?}", L::INFO.name, state.force_n);
+            let sliding = chain.law.friction(&state.law, v);
+            assert!(sliding.jump >= T::ZERO, "{sliding:?} {}", told());
+            assert!(sliding.smooth * v >= T::ZERO, "{sliding:?} {}", told());
+            assert!(state.force_n.is_finite(), "{}", told());
+            if !L::HAS_BRISTLE {
+                let power_w = state.force_n * v;
+                assert!(power_w >= T::ZERO, "{power_w:?} {}", told());
+            } else if !FREER.contains(&L::INFO.name) {
+                // A spring that has bent keeps what it bent to.
+                highest = highest.max(sliding.jump);
+                let bent_n = (state.force_n - sliding.smooth).abs();
+                let rounding = T::of(1e-3) * (highest + sliding.smooth.abs());
+                assert!(
+                    bent_n <= highest + rounding,
+                    "{bent_n:?} {highest:?} {}",
+                    told()
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
+    let page = bytes.choose(law::CATALOGUE)?;
+    let values = parameters::<T>(bytes, page.parameters)?;
+    let clock = clock(bytes)?;
+    let bearing = Some(&Bearing::THESIS);
+    with_law(
+        page.name,
+        bearing,
+        Some(104.0),
+        &values,
+        clock,
+        Along(bytes),
+    )
+    .unwrap_or(Ok(()))
+}
+
+/// Any law, in parameters anywhere in their bounds, along speeds that jump.
+pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
+    if bytes.arbitrary()? {
+        run::<f32>(bytes)
+    } else {
+        run::<f64>(bytes)
+    }
+}

@@ -46,6 +46,8 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     speeds = np.concatenate([np.abs(p.motion.velocity_m_s) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
     edges = np.unique(np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1]))
+    # Of few samples, or of one speed, a bin may hold none: it is joined to the one below.
+    edges = edges[np.unique(np.digitize(moving, edges))[1:] - 1]
     count = len(edges) + 1
     middle = [float(np.median(moving[np.digitize(moving, edges) == i])) for i in range(count)]
     unit = campaign.rig.quantities.speed

@@ -171,18 +171,21 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
     records: list[list[str]] = []
     numbers: list[int] = []
     line = first
+
+    def wrong(row: int, problem: str) -> InputError:
+        mend = "correct the row; one line is one row"
+        return InputError(file=path, row=row, problem=problem, mend=mend)
+
     try:
         for cells in reader:
             line += 1
             if first + reader.line_num > line:
-                raise csv.Error("a quote is not closed")
+                raise wrong(line, "a quote is not closed")
             if cells:
                 records.append(cells)
                 numbers.append(line)
     except csv.Error as error:
-        raise InputError(
-            file=path, row=line, problem=str(error), mend="correct the row; one line is one row"
-        ) from None
+        raise wrong(line + 1, str(error)) from None
     header = [name.strip() for name in records[0]]
     return header, numbers[0], records[1:], numbers[1:]
 
@@ -253,7 +256,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             continue
         if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
-    check_columns(path.stem, columns, path, numbers)
+    check_columns(path.stem, columns, path, numbers, known)
     for name, there in gaps.items():
         columns[name] = filled(columns["time_s"], columns[name], there)
     if of_drive is None:

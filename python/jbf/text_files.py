@@ -9,7 +9,7 @@ import stat
 from collections.abc import Mapping
 from pathlib import Path
 
-from jbf.errors import InputError, closest, quoted
+from jbf.errors import InputError, closest, printable, quoted
 
 PIPE_S = 10.0
 """How long a pipe is waited for."""
@@ -43,6 +43,13 @@ def os_error(path: Path, error: OSError, doing: str) -> InputError:
         problem=f"cannot be {doing} ({reason})",
         mend="check the path and its permissions",
     )
+
+
+def name_of(path: Path, depth: int = 1) -> str:
+    """What a file is called, without its ending and with so many parent folders: characters that
+    move a terminal, and bytes that are no UTF-8, are escaped."""
+    text = "/".join(path.with_suffix("").parts[-depth:])
+    return printable(os.fsencode(text).decode("utf-8", errors="backslashreplace"))
 
 
 def path_of(value: object) -> Path:

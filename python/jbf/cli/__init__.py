@@ -40,8 +40,11 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As argparse's, with the option that an unknown one is a slip of."""
         found, rest = super().parse_known_args(args, namespace)
+        known = list(self._option_string_actions)
         for word in rest:
-            guess = closest(word.partition("=")[0], self._option_string_actions)
+            option = word.partition("=")[0]
+            longer = [name for name in known if len(option) > 3 and name.startswith(option)]
+            guess = longer[0] if longer else closest(option, known)
             if word.startswith("--") and guess is not None:
                 self.error(f"unrecognized arguments: {' '.join(rest)}; did you mean {guess}?")
         return found, rest

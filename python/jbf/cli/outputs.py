@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import secrets
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from jbf.errors import InputError
+from jbf.errors import InputError, printable
 from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
@@ -19,7 +18,6 @@ _READ = (
     "many",
 )  # fmt: skip
 """Arguments of all commands that name what is read."""
-_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 def read_by(arguments: argparse.Namespace) -> Iterator[Path]:
@@ -83,6 +81,8 @@ def _check_writable(option: str, path: str) -> None:
     if not path:
         raise wrong("is not a file name", "name a file")
     try:
+        if real_path(target).is_symlink():
+            raise wrong("is a link that leads to itself", "name another file")
         if target.is_dir():
             raise wrong("is a folder", "name a file in it")
         if target.exists() and not target.is_file():
@@ -155,16 +155,27 @@ def complain(text: object) -> None:
         print(f"jbf: {printable(str(text))}", file=sys.stderr)
 
 
-def printable(text: str) -> str:
-    """A text whose control characters, such as those of a file's name, move no terminal."""
-    return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
-
-
 def flush() -> None:
     """What was printed goes out; an InputError where it cannot, such as on a full disk."""
+    _put("")
+
+
+def drop_stdout() -> None:
+    """Nothing more comes out: Python would complain again when it closes stdout."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def _put(text: str, *, data: bool = False) -> None:
     if sys.stdout is None:
         return
     try:
+        raw = getattr(sys.stdout, "buffer", None) if data else None
+        if raw is None:
+            sys.stdout.write(text)
+        else:
+            # The same bytes as in a file, whatever the terminal's encoding.
+            sys.stdout.flush()
+            raw.write(text.encode("utf-8", errors="replace"))
         sys.stdout.flush()
     except BrokenPipeError:
         raise
@@ -175,24 +186,3 @@ def flush() -> None:
             problem=f"cannot be written ({(error.strerror or type(error).__name__).lower()})",
             mend="let it go elsewhere",
         ) from None
-
-
-def drop_stdout() -> None:
-    """Nothing more comes out: Python would complain again when it closes stdout."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-
-
-def _put(text: str, *, data: bool = False) -> None:
-    try:
-        raw = getattr(sys.stdout, "buffer", None) if data else None
-        if raw is None:
-            sys.stdout.write(text)
-        else:
-            # The same bytes as in a file, whatever the terminal's encoding.
-            sys.stdout.flush()
-            raw.write(text.encode("utf-8", errors="replace"))
-    except BrokenPipeError:
-        raise
-    except OSError:
-        pass  # `flush` tells of it, with all that is still to come
-    flush()

@@ -63,6 +63,11 @@ class Limits:
         named["duration_s"] = self.duration_s
         pairs = [(name, value) for name, value in named.items() if value is not None]
         pairs += [("load_n", value) for value in self.load_n or ()]
+        if self.duration_s > LONGEST_S:
+            raise InputError(
+                problem=f"the limit duration_s = {self.duration_s:g} is more than a day",
+                mend=f"ask for {LONGEST_S:g} or less",
+            )
         for name, value in pairs:
             if not (np.isfinite(value) and value > 0.0):
                 raise InputError(problem=f"the limit {name} = {value:g}", mend="must be above zero")
@@ -71,11 +76,6 @@ class Limits:
                     problem=f"the limit {name} = {value:g} is beyond what any machine does",
                     mend="give it in SI units",
                 )
-        if self.duration_s > LONGEST_S:
-            raise InputError(
-                problem=f"the limit duration_s = {self.duration_s:g} is more than a day",
-                mend=f"ask for {LONGEST_S:g} or less",
-            )
         if self.load_n and self.load_n[0] > self.load_n[1]:
             raise InputError(
                 problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",

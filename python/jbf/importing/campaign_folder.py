@@ -48,9 +48,9 @@ def check_folder(path: Path, *, replace: bool) -> None:
         if not replace:
             raise wrong("holds an import already", "name a new folder, or say --force")
     parent = real_path(path).parent
-    if not parent.is_dir():
-        raise wrong("its parent folder does not exist", "make it or correct the path")
     try:
+        if not parent.is_dir():
+            raise wrong("its parent folder does not exist", "make it or correct the path")
         TemporaryDirectory(prefix=".jbf-import-", dir=parent).cleanup()
     except OSError as error:
         raise os_error(path, error, "written") from None

@@ -140,8 +140,8 @@ def read_recording(
 
 
 def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
-    if isinstance(files, str | os.PathLike):
-        files = [files]
+    if isinstance(files, str | os.PathLike) or not isinstance(files, Iterable):
+        files = [path_of(files)]
     paths = [path_of(file) for file in files]
     if not paths:
         raise InputError(problem="no file is given", mend="name at least one recording")

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.rig import Rig
-from jbf.records.run import Run
+from jbf.records.run import Run, check_run
 
 Kind = TypeVar("Kind")
 Word = TypeVar("Word", bound=str)
@@ -83,6 +83,7 @@ def list_of_runs(value: object) -> list[Run]:
             if isinstance(run, str | os.PathLike):
                 mend = f"read it: jbf.read_run({quoted(os.fspath(run))})"
             raise InputError(problem=f"runs holds {described(run)} at place {i}", mend=mend)
+        check_run(run)
     return runs
 
 

@@ -9,7 +9,7 @@ from textwrap import shorten
 import numpy as np
 import numpy.typing as npt
 
-from jbf.errors import InputError
+from jbf.errors import InputError, quoted
 from jbf.records.counts import count_of
 
 Array = npt.NDArray[np.float64]
@@ -64,6 +64,10 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
         # Text, dates and complex numbers would convert to something nobody meant.
         if array.dtype.kind not in "biufO":
             raise wrong(f"holds {array.dtype}, not numbers")
+        if array.dtype.kind == "O":
+            text = [x for x in array.flat if isinstance(x, str | bytes)]
+            if text:
+                raise wrong(f"holds the text {quoted(text[0])}, not numbers")
         array = frozen(array)
     except InputError:
         raise

@@ -144,6 +144,15 @@ class Rig:
     drive: Drive | None = None
 
     def __post_init__(self) -> None:
+        sections = {"bearing": Bearing, "lubricant": Lubricant, "load": Load, "drive": Drive}
+        for name, kind in sections.items():
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise InputError(
+                    key=name,
+                    problem=f"the {name} is no jbf.{kind.__name__} but of {type(value).__name__}",
+                    mend=f"give jbf.{kind.__name__}(...), or read a file: jbf.read_rig(PATH)",
+                )
         if self.bearing is not None and self.drive is not None:
             raise InputError(
                 key="drive",

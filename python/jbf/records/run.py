@@ -132,7 +132,7 @@ class Run:
             index: Any = which
         else:
             index = np.asarray(which)
-            if index.dtype != np.bool_ or index.shape != (len(self),):
+            if np.ma.is_masked(which) or index.dtype != np.bool_ or index.shape != (len(self),):
                 raise InputError(
                     file=self.name,
                     problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
@@ -186,6 +186,10 @@ class Run:
                     problem="is a known column, not an extra one",
                     mend="pass it as its own argument",
                 )
+        if time_s is None:
+            raise InputError(
+                file=name, column="time_s", problem="is None", mend="give the instants, s"
+            )
         columns = {
             column: as_array(values, column, name)
             for column, values in (given | dict(extra or {})).items()
@@ -332,6 +336,21 @@ def _made_speed(columns: Mapping[str, Array]) -> Array:
     if "position_m" in columns:
         return frozen(np.gradient(columns["position_m"], columns["time_s"]))
     return frozen(np.full(len(columns["time_s"]), np.nan))
+
+
+def check_run(run: Run) -> None:
+    """An InputError where a run holds what `Run.from_arrays` would have refused: a constructor that
+    trusts its arguments, or a selection, made it."""
+    for column, values in run._arrays().items():
+        good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
+        if not good or np.ma.is_masked(values):
+            raise InputError(
+                file=run.name,
+                column=column,
+                problem="is no array of float64, shape (N,)",
+                mend="make the run with jbf.Run.from_arrays, which converts and checks",
+            )
+    check_columns(run.name, run.columns(), None, None)
 
 
 def require(run: Run, columns: str | Iterable[str], why: str) -> None:

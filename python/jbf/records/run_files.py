@@ -12,7 +12,7 @@ from jbf.errors import InputError
 from jbf.records.csv_file import read_run
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.text_files import path_of, real_path
+from jbf.text_files import name_of, path_of, real_path
 
 
 def _expanded(item: PathLike) -> list[Path]:
@@ -37,7 +37,7 @@ def _unique_names(paths: Sequence[Path]) -> list[str]:
     whole = [real_path(path) for path in paths]
 
     def name(path: Path, depth: int) -> str:
-        return "/".join(path.with_suffix("").parts[-depth:])
+        return name_of(path, depth)
 
     names = []
     for path in whole:

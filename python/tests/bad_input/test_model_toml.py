@@ -164,3 +164,11 @@ def test_one_line_names_the_key_of_a_map(name: str, capfd: Capture) -> None:
     content, fragment = MAPS[name]
     write(content)
     refused(["import", "a.csv", "--map", "bad.toml", "--out", "new"], fragment, capfd)
+
+
+def test_a_header_of_a_time_in_metres_a_second_is_no_time(capfd: Capture) -> None:
+    """Found by broken files: a name that says time, a unit that says speed."""
+    text = Path("a.csv").read_text().replace("time_s", "time_m_s", 1)
+    Path("odd.csv").write_text(text)
+    Path("map.toml").unlink()
+    refused(["import", "odd.csv", "--out", "new"], "odd.csv", capfd)

@@ -338,21 +338,6 @@ def _made_speed(columns: Mapping[str, Array]) -> Array:
     return frozen(np.full(len(columns["time_s"]), np.nan))
 
 
-def check_run(run: Run) -> None:
-    """An InputError where a run holds what `Run.from_arrays` would have refused: a constructor that
-    trusts its arguments, or a selection, made it."""
-    for column, values in run._arrays().items():
-        good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
-        if not good or np.ma.is_masked(values):
-            raise InputError(
-                file=run.name,
-                column=column,
-                problem="is no array of float64, shape (N,)",
-                mend="make the run with jbf.Run.from_arrays, which converts and checks",
-            )
-    check_columns(run.name, run.columns(), None, None)
-
-
 def require(run: Run, columns: str | Iterable[str], why: str) -> None:
     """Raise the one-line error when a run lacks a column that someone needs.
 

@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from jbf._core import __version__
+from jbf.cores import cap_threads
 from jbf.errors import FilmWarning, InputError, JbfError
 from jbf.models.batch import batch
 from jbf.models.catalogue import Parameter, effects, laws
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from jbf.importing.import_files import import_files, look, read_recording
     from jbf.importing.mapping import Map, read_map
     from jbf.importing.result import Import
+
+cap_threads()
 
 # These need scipy, which takes most of a second to import: they come at first use, so that a
 # prediction or `jbf effects` does not wait for them.

@@ -4,12 +4,14 @@ and the mend."""
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
 _LONGEST_QUOTE = 40
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class JbfError(Exception):
@@ -73,7 +75,7 @@ class InputError(JbfError, ValueError):
         if self.mend:
             line = f"{line}; {self.mend}"
         # A file name or a quoted cell may hold a line break; the promise is one line.
-        return " ".join(line.split())
+        return printable(" ".join(line.split()))
 
     def within(
         self, *, file: str | os.PathLike[str] | None = None, key_prefix: str = ""
@@ -100,6 +102,11 @@ class InputError(JbfError, ValueError):
         # The default would call the class with a positional argument, so an error raised in a
         # worker process could not travel back.
         return partial(type(self), **self._fields()), ()
+
+
+def printable(text: str) -> str:
+    """A text whose control characters are escaped: they move no terminal."""
+    return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def quoted(text: object) -> str:

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 import os
 import secrets
+import select
+import stat
+from collections.abc import Mapping
 from pathlib import Path
 
-from jbf.errors import InputError, closest, quoted
+from jbf.errors import InputError, closest, printable, quoted
+
+PIPE_S = 10.0
+"""How long a pipe is waited for."""
+PIPE_BYTES = 1 << 30
+"""More than this out of a pipe is taken to have no end."""
+_PACKED = {
+    b"\x1f\x8b": ("is compressed (gzip), not text", "unpack it"),
+    b"PK\x03\x04": (
+        "is an archive or a spreadsheet, not text",
+        "unpack it, or save the sheet as CSV; jbf import reads spreadsheets",
+    ),
+}
+"""First bytes of files that people take for text."""
 
 
-def _os_error(path: Path, error: OSError, doing: str) -> InputError:
+def os_error(path: Path, error: OSError, doing: str) -> InputError:
     if isinstance(error, FileNotFoundError):
         try:
             guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)
@@ -29,12 +45,91 @@ def _os_error(path: Path, error: OSError, doing: str) -> InputError:
     )
 
 
+def name_of(path: Path, depth: int = 1) -> str:
+    """What a file is called, without its ending and with so many parent folders: characters that
+    move a terminal, and bytes that are no UTF-8, are escaped."""
+    text = "/".join(path.with_suffix("").parts[-depth:])
+    return printable(os.fsencode(text).decode("utf-8", errors="backslashreplace"))
+
+
 def path_of(value: object) -> Path:
     """A path; an InputError where something else stands for one."""
     if not isinstance(value, str | os.PathLike):
         shown = "None" if value is None else type(value).__name__
         raise InputError(problem=f"{shown} is not a path", mend="name a file or a folder")
     return Path(value)
+
+
+def real_path(path: str | os.PathLike[str]) -> Path:
+    """The file behind links, which a loop of them does not keep from an answer."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:  # a null character in the name itself
+        raise InputError(
+            file=quoted(path), problem="is not a file name", mend="correct it"
+        ) from None
+
+
+def check_readable(path: Path, *, pipes: bool = True) -> None:
+    """An InputError where this is no file that has an end: a device, or what cannot be opened."""
+    try:
+        kind = path.stat().st_mode
+    except OSError as error:
+        raise os_error(path, error, "read") from None
+    except ValueError:  # a null character in the name itself
+        raise InputError(
+            file=quoted(path), problem="is not a file name", mend="correct it"
+        ) from None
+    if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
+        raise InputError(file=path, problem="is a device, not a file", mend="name a file")
+    if stat.S_ISFIFO(kind):
+        if not pipes:
+            mend = "write what comes out of it to a file"
+            raise InputError(file=path, problem="is a pipe, not a file", mend=mend)
+        return
+    try:
+        path.open("rb").close()
+    except OSError as error:
+        raise os_error(path, error, "read") from None
+
+
+def read_bytes(path: Path) -> bytes:
+    """What a file holds, or what comes out of a pipe.
+
+    Raises
+    ------
+    InputError
+        The file is missing, a folder, a device or unreadable; a pipe has no end, or no beginning.
+    """
+    check_readable(path)
+    try:
+        return _from_pipe(path) if path.is_fifo() else path.read_bytes()
+    except OSError as error:
+        raise os_error(path, error, "read") from None
+
+
+def _from_pipe(path: Path) -> bytes:
+    # Opened so that it does not wait for a writer, who may never come.
+    pipe = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        if not select.select([pipe], [], [], PIPE_S)[0]:
+            raise InputError(
+                file=path,
+                problem=f"nothing comes out of this pipe within {PIPE_S:g} s",
+                mend="start what fills it first",
+            )
+        os.set_blocking(pipe, True)
+        parts, size = [], 0
+        while part := os.read(pipe, 1 << 20):
+            parts.append(part)
+            size += len(part)
+            if size > PIPE_BYTES:
+                mend = "write it to a file"
+                problem = f"is longer than {PIPE_BYTES} bytes and still comes"
+                raise InputError(file=path, problem=problem, mend=mend)
+        return b"".join(parts)
+    finally:
+        os.close(pipe)
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
@@ -46,16 +141,12 @@ def read_text(path: str | os.PathLike[str]) -> str:
         The file is missing, a folder, unreadable, binary, or not UTF-8.
     """
     path = path_of(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise _os_error(path, error, "read") from None
-    except ValueError:  # a null character in the name itself
-        raise InputError(
-            file=quoted(path), problem="is not a file name", mend="correct it"
-        ) from None
+    data = read_bytes(path)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise InputError(file=path, problem="is UTF-16 text", mend="save it as UTF-8")
+    for first, (problem, mend) in _PACKED.items():
+        if data.startswith(first):
+            raise InputError(file=path, problem=problem, mend=mend)
     if b"\0" in data:
         raise InputError(file=path, problem="is binary, not text", mend="name a text file")
     try:
@@ -70,28 +161,45 @@ def read_text(path: str | os.PathLike[str]) -> str:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a UTF-8 file whole or not at all.
+    """Write a UTF-8 file whole or not at all; as `write_texts`."""
+    write_texts({path: text})
 
-    A reader sees the old file or the new one, never a part: the text goes to a temporary file
-    in the same folder, which then takes the name. A pipe or device is written to directly.
+
+def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
+    """Write UTF-8 files, each whole, and all of them or none.
+
+    A reader sees the old file or the new one, never a part: each text goes to a temporary file
+    in the same folder, and once all are there they take their names. A pipe or device is written
+    to directly.
 
     Raises
     ------
     InputError
-        The file cannot be written; nothing is left behind.
+        A file cannot be written; nothing is left behind, nor is it after Ctrl-C.
     """
-    path = path_of(path)
-    data = text.encode("utf-8", errors="replace")
-    temporary: Path | None = None
+    staged: list[tuple[Path, Path]] = []
+    try:
+        for path, text in texts.items():
+            _stage(path_of(path), text.encode("utf-8", errors="replace"), staged)
+        for temporary, target in staged:
+            try:
+                os.replace(temporary, target)
+            except OSError as error:
+                raise os_error(target, error, "written") from None
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+
+
+def _stage(path: Path, data: bytes, staged: list[tuple[Path, Path]]) -> None:
+    """Write to a temporary file, which `staged` holds before it is there."""
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
             return
-        target = path.resolve()  # a link keeps pointing to its file
+        target = real_path(path)  # a link keeps pointing to its file
         temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.tmp")
+        staged.append((temporary, target))
         temporary.write_bytes(data)
-        os.replace(temporary, target)
     except OSError as error:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
-        raise _os_error(path, error, "written") from None
+        raise os_error(path, error, "written") from None

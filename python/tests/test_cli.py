@@ -166,7 +166,7 @@ def test_an_interrupt_is_quiet(
     out = campaign / "m.toml"
     command = ["diagnose", str(campaign / "rig.toml"), str(campaign / "runs"), "--out", str(out)]
     assert main(command) == 130
-    assert capsys.readouterr() == ("", "")
+    assert capsys.readouterr() == ("", "jbf: interrupted\n")
     assert not out.exists()
 
 

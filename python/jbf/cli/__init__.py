@@ -16,9 +16,11 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
+from io import TextIOWrapper
 from typing import Any, NoReturn
 
-from jbf.errors import InputError, did_you_mean
+from jbf.cli import outputs
+from jbf.errors import InputError, closest, did_you_mean
 
 COMMANDS = (
     "demo", "import", "compare", "fit", "diagnose", "power", "check", "plan", "predict", "export",
@@ -29,10 +31,23 @@ _MODULES = {"import": "import_files"}
 """Of a command whose name is a word of Python."""
 
 _PIPE_CLOSED = 141
+_INTERRUPTED = 130
 
 
 class Parser(argparse.ArgumentParser):
     """argparse whose errors are one line, like every other."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse's, with the option that an unknown one is a slip of."""
+        found, rest = super().parse_known_args(args, namespace)
+        known = list(self._option_string_actions)
+        for word in rest:
+            option = word.partition("=")[0]
+            longer = [name for name in known if len(option) > 3 and name.startswith(option)]
+            guess = longer[0] if longer else closest(option, known)
+            if word.startswith("--") and guess is not None:
+                self.error(f"unrecognized arguments: {' '.join(rest)}; did you mean {guess}?")
+        return found, rest
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
@@ -65,18 +80,32 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv
         Arguments without the program's name; those of the process by default.
     """
+    if argv is None:
+        _own_process()
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         code = _dispatch(arguments)
-        sys.stdout.flush()
+        outputs.flush()
     except BrokenPipeError:
-        # Whoever read the output has had enough (`jbf effects | head`); that is no failure of
-        # ours, but Python would complain again when it closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        # Whoever read the output has had enough (`jbf effects | head`); that is no failure.
+        outputs.drop_stdout()
         return _PIPE_CLOSED
     except KeyboardInterrupt:
-        return 130
+        outputs.complain("interrupted")
+        return _INTERRUPTED
+    except InputError as error:
+        return _refuse(error)
     return code
+
+
+def _own_process() -> None:
+    """What the environment can break, where the process is a command's and nobody else's."""
+    # Pictures go to files: no window, whatever backend the environment asks for.
+    os.environ["MPLBACKEND"] = "agg"
+    for stream in (sys.stdout, sys.stderr):
+        # A name that the terminal's encoding lacks is escaped.
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _dispatch(arguments: list[str]) -> int:
@@ -101,11 +130,11 @@ def _dispatch(arguments: list[str]) -> int:
 
 def _show(message: Warning | str, *_: Any, **__: Any) -> None:
     """A warning as one line, like an error."""
-    print(f"jbf: {message}", file=sys.stderr)
+    outputs.complain(message)
 
 
 def _refuse(error: InputError) -> int:
-    print(f"jbf: {error}", file=sys.stderr)
+    outputs.complain(error)
     return 2
 
 

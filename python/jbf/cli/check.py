@@ -16,7 +16,7 @@ from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.records.run_files import read_runs
 from jbf.reporting.json import json_text
-from jbf.text_files import write_text
+from jbf.text_files import read_text, write_text
 
 if TYPE_CHECKING:
     from jbf.diagnosis.check import Answer
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.diagnosis.check import check, identity
 
     wanted = {"--json": arguments.json, "--resume": arguments.resume}
-    outputs.check(wanted, [arguments.model, *arguments.runs])
+    outputs.check(wanted, outputs.read_by(arguments))
     policy = level.policy(arguments)
     jobs = arguments.jobs if arguments.jobs is not None else os.cpu_count() or 1
     if jobs < 1:
@@ -97,7 +97,7 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
     if not file.exists():
         return []
     found = []
-    text = file.read_text(encoding="utf-8")
+    text = read_text(file)
     lines = text.splitlines()
     for row, line in enumerate(lines, 1):
         try:

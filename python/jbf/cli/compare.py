@@ -27,7 +27,7 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     wanted = {"--json": arguments.json, "--report": arguments.report}
-    outputs.check(wanted, [arguments.model, *arguments.runs])
+    outputs.check(wanted, outputs.read_by(arguments))
     model = inputs.model(arguments.model)
     if arguments.map is None:
         runs = inputs.runs(arguments.runs, model.rig, first="MODEL")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+import os
 from typing import TYPE_CHECKING
 
 from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
                 file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
             )
         return diagnose_many.run(arguments, limits.limits(arguments, arguments.next_duration_s))
-    alone = arguments.rig is not None and Path(arguments.rig).is_dir()
+    alone = arguments.rig is not None and os.path.isdir(arguments.rig)
     if arguments.rig is None or not (arguments.runs or alone):
         raise InputError(
             file="jbf diagnose",
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
     wanted["--next-run"] = arguments.next_run
     asked = limits.limits(arguments, arguments.next_duration_s)
-    outputs.check(wanted, [arguments.rig, *arguments.runs])
+    outputs.check(wanted, outputs.read_by(arguments))
     if arguments.law not in (None, AUTO):
         find_law(arguments.law)
     rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)

@@ -48,10 +48,13 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
     if jobs < 1:
         raise InputError(file="--jobs", problem=f"{jobs} campaigns at a time", mend="1 or more")
     campaigns = campaigns_in(arguments.many)
-    outputs.check({"--json": arguments.json})
+    read = list(outputs.read_by(arguments))
+    outputs.check({"--json": arguments.json}, read)
     for option in ("out", "report"):
         if getattr(arguments, option):
             outputs.check_folder(f"--{option}", Path(getattr(arguments, option)))
+    for name in campaigns:
+        outputs.check({"--json": arguments.json} | _paths(arguments, name), read)
     with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
         found = diagnose_many(
             campaigns,
@@ -73,18 +76,28 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
     return 0
 
 
+def _paths(arguments: argparse.Namespace, name: str) -> dict[str, str]:
+    """The files of one campaign, by their options."""
+    found = {}
+    if arguments.out:
+        found["--out"] = str(Path(arguments.out) / f"{name}.toml")
+    if arguments.report:
+        found["--report"] = str(Path(arguments.report) / f"{name}.html")
+    return found
+
+
 def _files(
     arguments: argparse.Namespace, name: str, result: Diagnosis | JbfError
 ) -> dict[str, str]:
     if isinstance(result, Exception):
         return {}
-    found = {}
-    if arguments.out:
-        found[str(Path(arguments.out) / f"{name}.toml")] = result.model.to_toml()
-    if arguments.report:
+    paths, found = _paths(arguments, name), {}
+    if "--out" in paths:
+        found[paths["--out"]] = result.model.to_toml()
+    if "--report" in paths:
         from jbf.reporting.diagnosis_page import diagnosis_page
 
-        found[str(Path(arguments.report) / f"{name}.html")] = diagnosis_page(result)
+        found[paths["--report"]] = diagnosis_page(result)
     return found
 
 

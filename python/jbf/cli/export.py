@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(
             problem="nothing to write", mend="name a file: --rust FILE.rs or --c FILE.h"
         )
-    outputs.check(wanted, [arguments.model])
+    outputs.check(wanted, outputs.read_by(arguments))
     model = inputs.model(arguments.model)
     name = Path(arguments.model).name
     texts = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+import os
 
 from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
@@ -49,11 +49,11 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     wanted = {"--out": arguments.out}
-    if not arguments.runs and not Path(arguments.rig).is_dir():
+    if not arguments.runs and not os.path.isdir(arguments.rig):
         raise InputError(
             file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
         )
-    outputs.check(wanted, [arguments.rig, *arguments.runs])
+    outputs.check(wanted, outputs.read_by(arguments))
     effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
     check_applies(arguments.law, effects)
     fixed = _fixed(arguments.fix, arguments.law, effects)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
 from jbf.cli.progress import shown
 from jbf.errors import InputError
-from jbf.text_files import write_text
+from jbf.text_files import real_path, write_text
 
 if TYPE_CHECKING:
     from jbf.importing.result import Import
@@ -42,7 +41,7 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
-    outputs.check({"--plot": arguments.plot}, arguments.files)
+    outputs.check({"--plot": arguments.plot}, outputs.read_by(arguments))
     if arguments.map is None and arguments.out is None:
         return _look(arguments)
     from jbf.importing.import_files import OpenQuestions, import_files
@@ -59,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
     except OpenQuestions as questions:
         for line in questions.lines:
-            print(f"jbf: {line}", file=sys.stderr)
+            outputs.complain(line)
         return 2
     if arguments.plot is not None:
         _draw(found, arguments.plot)
@@ -82,7 +81,7 @@ def _look(arguments: argparse.Namespace) -> int:
                 problem="goes with --map or --out",
                 mend="jbf import FILE alone looks at the file",
             )
-    target = Path(arguments.files[0]).resolve().parent / "map.toml"
+    target = real_path(arguments.files[0]).parent / "map.toml"
     shown_path = Path(arguments.files[0]).parent / "map.toml"
     if target.exists() and not arguments.force:
         raise InputError(

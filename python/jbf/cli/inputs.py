@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,7 +35,7 @@ def law_for(on: Rig, asked: str | None) -> str:
 def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:
     """The rig and the runs: of `rig.toml` and CSV files, of a folder that an import wrote, or of a
     map and recordings as they are."""
-    if Path(rig_or_map).is_dir():
+    if os.path.isdir(rig_or_map):
         found = rig(str(Path(rig_or_map) / "rig.toml"), law)
         return found, runs(items or [rig_or_map], found, first="RIG")
     if is_map(rig_or_map):

@@ -2,16 +2,46 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import secrets
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from jbf.errors import InputError
-from jbf.text_files import write_text
+from jbf.errors import InputError, printable
+from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
+_READ = (
+    "rig", "model", "runs", "map", "motion", "files", "cut", "carried", "settings", "effects_from",
+    "many",
+)  # fmt: skip
+"""Arguments of all commands that name what is read."""
+
+
+def read_by(arguments: argparse.Namespace) -> Iterator[Path]:
+    """Every file that a command may read: those named, and in folders the rigs and the runs."""
+    for name in _READ:
+        value = getattr(arguments, name, None)
+        for item in value if isinstance(value, list) else [value]:
+            if item is None:
+                continue
+            yield Path(item)
+            if os.path.isdir(item):
+                yield from _read_in(Path(item), deeper=name == "many")
+
+
+def _read_in(folder: Path, *, deeper: bool) -> Iterator[Path]:
+    try:
+        inside = list(folder.iterdir())
+    except OSError:
+        return  # told where it is read
+    for path in inside:
+        if path.suffix.lower() == ".csv" or path.name == "rig.toml":
+            yield path
+        if deeper and path.is_dir():
+            yield from _read_in(path, deeper=False)
 
 
 def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -29,11 +59,11 @@ def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[
     InputError
         Names the option and the path; nothing has been written.
     """
-    taken = {Path(item).resolve(): "is also an input" for item in inputs}
+    taken = {real_path(item): "is also an input" for item in inputs}
     for option, path in outputs.items():
         if path is None:
             continue
-        target = Path(path) if path == STDOUT else Path(path).resolve()
+        target = Path(path) if path == STDOUT else real_path(path)
         if target in taken:
             raise InputError(
                 file=f"{option} {path}", problem=taken[target], mend="name another file"
@@ -51,16 +81,20 @@ def _check_writable(option: str, path: str) -> None:
     if not path:
         raise wrong("is not a file name", "name a file")
     try:
+        if real_path(target).is_symlink():
+            raise wrong("is a link that leads to itself", "name another file")
         if target.is_dir():
             raise wrong("is a folder", "name a file in it")
         if target.exists() and not target.is_file():
             return  # a pipe or a device
-        if not target.resolve().parent.is_dir():
+        if not real_path(target).parent.is_dir():
             raise wrong("its folder does not exist", "make the folder or correct the path")
         # Permission bits do not tell of read-only disks or of too long names; a try does.
-        trial = target.resolve().with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
-        trial.touch(exist_ok=False)
-        trial.unlink()
+        trial = real_path(target).with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
+        try:
+            trial.touch(exist_ok=False)
+        finally:
+            trial.unlink(missing_ok=True)
     except InputError:
         raise
     except (OSError, ValueError) as error:
@@ -99,15 +133,56 @@ def check_folder(argument: str, path: Path) -> None:
 
 
 def write(texts: Mapping[str, str]) -> None:
-    """Write each text to its path; `-` is standard output."""
-    for path, text in texts.items():
-        if path == STDOUT:
-            sys.stdout.write(text)
-        else:
-            write_text(path, text)
+    """Write each text to its path, all or none; `-` is standard output."""
+    write_texts({path: text for path, text in texts.items() if path != STDOUT})
+    if STDOUT in texts:
+        if sys.stdout is None:
+            raise InputError(
+                file="standard output", problem="is closed", mend="name a file in the place of -"
+            )
+        _put(texts[STDOUT], data=True)
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:
-    """Print for people, unless an output has taken standard output."""
-    if STDOUT not in outputs.values():
-        print(text)
+    """Print for people, unless an output has taken standard output, or it is closed."""
+    if STDOUT not in outputs.values() and sys.stdout is not None:
+        _put(printable(text) + "\n")
+
+
+def complain(text: object) -> None:
+    """One line on stderr, where that is open."""
+    if sys.stderr is not None:
+        print(f"jbf: {printable(str(text))}", file=sys.stderr)
+
+
+def flush() -> None:
+    """What was printed goes out; an InputError where it cannot, such as on a full disk."""
+    _put("")
+
+
+def drop_stdout() -> None:
+    """Nothing more comes out: Python would complain again when it closes stdout."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def _put(text: str, *, data: bool = False) -> None:
+    if sys.stdout is None:
+        return
+    try:
+        raw = getattr(sys.stdout, "buffer", None) if data else None
+        if raw is None:
+            sys.stdout.write(text)
+        else:
+            # The same bytes as in a file, whatever the terminal's encoding.
+            sys.stdout.flush()
+            raw.write(text.encode("utf-8", errors="replace"))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        drop_stdout()
+        raise InputError(
+            file="standard output",
+            problem=f"cannot be written ({(error.strerror or type(error).__name__).lower()})",
+            mend="let it go elsewhere",
+        ) from None

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.diagnosis.plan import plan
 
     wanted = {"--json": arguments.json}
-    outputs.check(wanted, [arguments.rig])
+    outputs.check(wanted, outputs.read_by(arguments))
     model = power.machine(arguments)
     found = plan(
         model,

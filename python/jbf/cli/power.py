@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.diagnosis.planned import planned_power
 
     wanted = {"--json": arguments.json}
-    outputs.check(wanted, [arguments.rig, *arguments.runs])
+    outputs.check(wanted, outputs.read_by(arguments))
     model = machine(arguments)
     size_n = noise_n(arguments, model)
     runs = read_runs(arguments.runs, model.rig, need_friction=False)

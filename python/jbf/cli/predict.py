@@ -22,7 +22,7 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     wanted = {"--out": arguments.out}
-    outputs.check(wanted, [arguments.model, arguments.motion])
+    outputs.check(wanted, outputs.read_by(arguments))
     model = inputs.model(arguments.model)
     motion = inputs.motion(arguments.motion, model.rig)
     try:

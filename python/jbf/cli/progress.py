@@ -12,7 +12,7 @@ Report = Callable[[str, int, int], None]
 @contextmanager
 def shown(message: str) -> Iterator[Report | None]:
     """A line that lives as long as the work; yields `report(message, done, total)`, or None."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console

@@ -22,6 +22,10 @@ STOP_SHARES = (0.4, 1.0)
 REST_S = 8.0
 USUAL_RATE_RAD_S = 2.0
 """A drive that reaches a speed is taken to reach it in a sine of this rate, too."""
+MOST = 1e6
+"""No speed, acceleration or load of a rig, SI, is larger."""
+LONGEST_S = 86400.0
+"""The longest run that is planned."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +61,21 @@ class Limits:
     def __post_init__(self) -> None:
         named = {name: getattr(self, name) for name in ("velocity_m_s", "acceleration_m_s2")}
         named["duration_s"] = self.duration_s
-        named["load_n"] = min(self.load_n) if self.load_n else None
-        for name, value in named.items():
-            if value is not None and not (np.isfinite(value) and value > 0.0):
+        pairs = [(name, value) for name, value in named.items() if value is not None]
+        pairs += [("load_n", value) for value in self.load_n or ()]
+        if self.duration_s > LONGEST_S:
+            raise InputError(
+                problem=f"the limit duration_s = {self.duration_s:g} is more than a day",
+                mend=f"ask for {LONGEST_S:g} or less",
+            )
+        for name, value in pairs:
+            if not (np.isfinite(value) and value > 0.0):
                 raise InputError(problem=f"the limit {name} = {value:g}", mend="must be above zero")
+            if value > MOST:
+                raise InputError(
+                    problem=f"the limit {name} = {value:g} is beyond what any machine does",
+                    mend="give it in SI units",
+                )
         if self.load_n and self.load_n[0] > self.load_n[1]:
             raise InputError(
                 problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",

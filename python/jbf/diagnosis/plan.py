@@ -41,6 +41,8 @@ ENOUGH, MORE = 4.0, 0.05
 """Times its price that an effect is worth and from which on more of it counts for this share."""
 LEAST_RUNS = 3
 """Fewer leave nothing to predict from where one is left out."""
+MOST_RUNS = 200
+"""More are no plan for a person, and each is simulated."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -115,12 +117,18 @@ def plan(
         )
     if limits.acceleration_m_s2 is None:
         limits = replace(limits, acceleration_m_s2=USUAL_RATE_RAD_S * limits.velocity_m_s)
-    count = int(60.0 * minutes / limits.duration_s + 1e-9)
+    count = int(min(60.0 * minutes / limits.duration_s, 2.0 * MOST_RUNS) + 1e-9)
     if count < LEAST_RUNS:
         raise InputError(
             key="minutes",
             problem=f"{minutes:g} hold {count} runs of {limits.duration_s:g} s",
             mend=f"give time for {LEAST_RUNS} runs or more, or make them shorter",
+        )
+    if count > MOST_RUNS:
+        raise InputError(
+            key="minutes",
+            problem=f"{minutes:g} hold more than {MOST_RUNS} runs of {limits.duration_s:g} s",
+            mend="give less time, or make the runs longer",
         )
     step_s = max(step_s, limits.duration_s / MOST_SAMPLES)
     rig = model.rig

@@ -19,7 +19,7 @@ from jbf.models.model import Model
 from jbf.records.arguments import list_of_runs, of_kind
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.run import Run
-from jbf.records.toml_file import number
+from jbf.records.toml_file import MOST, number
 from jbf.results import Result
 from jbf.threads import one_blas_thread
 
@@ -121,6 +121,9 @@ def planned_power(
             problem=f"{noise_n:g} is not above zero",
             mend="give its standard deviation",
         )
+    if noise_n > MOST:
+        problem = f"{noise_n:g} is beyond what any machine does"
+        raise InputError(key="noise_n", problem=problem, mend="give its standard deviation")
     planned = list_of_runs(runs)
     if not planned:
         raise InputError(problem="no run was given", mend="give at least one motion to play")

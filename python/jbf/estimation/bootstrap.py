@@ -38,6 +38,8 @@ Array = npt.NDArray[np.float64]
 
 LEAST_REPEATS = 19
 """The middle 68 % of fewer answers are too few to tell a width."""
+MOST_REPEATS = 100_000
+"""More would take for ever, and tell nothing more."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,6 +69,10 @@ def check_repeats(repeats: int, name: str = "repeats") -> None:
         raise InputError(
             problem=f"{name} {repeats} is too few to tell an error",
             mend=f"ask for {LEAST_REPEATS} or more; 40 tell it better",
+        )
+    if repeats > MOST_REPEATS:
+        raise InputError(
+            problem=f"{name} {repeats} is too many", mend=f"ask for {MOST_REPEATS} or less"
         )
 
 

@@ -8,6 +8,7 @@ import secrets
 import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from jbf.errors import InputError
@@ -18,6 +19,7 @@ from jbf.importing.mapping import Map
 from jbf.importing.run_text import run_text
 from jbf.importing.spool import Recording
 from jbf.records.rig import Rig
+from jbf.text_files import os_error, real_path
 
 Report = Callable[[str, int, int], None]
 
@@ -34,15 +36,24 @@ def check_folder(path: Path, *, replace: bool) -> None:
     def wrong(problem: str, mend: str) -> InputError:
         return InputError(file=path, problem=problem, mend=mend)
 
-    if path.exists() and not path.is_dir():
+    if os.path.exists(path) and not os.path.isdir(path):
         raise wrong("is a file, not a folder", "name a folder")
-    if path.is_dir() and any(path.iterdir()):
+    try:
+        holds = os.path.isdir(path) and any(path.iterdir())
+    except OSError as error:
+        raise os_error(path, error, "read") from None
+    if holds:
         if not (path / NAME).is_file():
             raise wrong("holds other files", "name a new folder")
         if not replace:
             raise wrong("holds an import already", "name a new folder, or say --force")
-    if not path.resolve().parent.is_dir():
-        raise wrong("its parent folder does not exist", "make it or correct the path")
+    parent = real_path(path).parent
+    try:
+        if not parent.is_dir():
+            raise wrong("its parent folder does not exist", "make it or correct the path")
+        TemporaryDirectory(prefix=".jbf-import-", dir=parent).cleanup()
+    except OSError as error:
+        raise os_error(path, error, "written") from None
 
 
 def write_campaign(
@@ -62,7 +73,7 @@ def write_campaign(
     InputError
         It cannot be written; nothing is left behind.
     """
-    target = path.resolve()
+    target = real_path(path)
     temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.tmp")
     runs = [piece for piece in pieces if piece.keep]
     by_file = {recording.path.name: recording for recording in recordings}

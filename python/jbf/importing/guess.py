@@ -163,6 +163,8 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     kind, why = header.kind, "its name"
     if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
         # A name of two letters is no witness against a unit.
+        if kind == "time":
+            return None  # a time that is none: what is one is looked for elsewhere
         if kind is not None and header.sure:
             ask = f"{header.unit} is no unit of a {kind}; write the one that it is"
             return Candidate(_key(kind, header), column, header, False, why, ask)

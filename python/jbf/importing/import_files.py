@@ -27,7 +27,7 @@ from jbf.importing.rig_columns import check_rig_columns
 from jbf.importing.spool import Recording
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.text_files import path_of, read_text
+from jbf.text_files import check_readable, path_of, read_text
 
 Report = Callable[[str, int, int], None]
 
@@ -140,14 +140,14 @@ def read_recording(
 
 
 def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
-    if isinstance(files, str | os.PathLike):
-        files = [files]
+    if isinstance(files, str | os.PathLike) or not isinstance(files, Iterable):
+        files = [path_of(files)]
     paths = [path_of(file) for file in files]
     if not paths:
         raise InputError(problem="no file is given", mend="name at least one recording")
     for at, path in enumerate(paths):
-        if not path.exists():
-            raise InputError(file=path, problem="the file does not exist", mend="correct the path")
+        if not os.path.isdir(path):
+            check_readable(path, pipes=False)
         if path.name in [other.name for other in paths[:at]]:
             raise InputError(
                 file=path, problem="another file has the same name", mend="rename one of them"

@@ -19,6 +19,7 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.table import Options
 from jbf.importing.targets import FRICTION, MOTION, wanted_unit
+from jbf.records.checks import LARGEST
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
@@ -172,7 +173,7 @@ def _options(section: Mapping[str, Any]) -> Options:
         elif key == "dates":
             good = value in ("day_first", "month_first")
         elif key == "rate_hz":
-            good = good and 0.0 < float(value) < float("inf")
+            good = good and 0.0 < value <= LARGEST
         elif key in ("header", "units"):
             good = good and value >= 0
         elif key == "delimiter":

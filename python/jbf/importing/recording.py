@@ -23,6 +23,7 @@ from jbf.importing.targets import wanted_unit
 from jbf.importing.time_line import TimeLine
 from jbf.importing.turns import unwrapped
 from jbf.importing.units import ONE, Unit
+from jbf.records.checks import LARGEST
 
 Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
@@ -176,6 +177,7 @@ def _read_stream(
             columns.append(np.broadcast_to(_values(channel, values, units, words), (count,)))
         rows = np.column_stack(columns)
         kept = rows[line.keep(rows[:, 0])]
+        _check_sizes(stream.columns, kept)
         _check_load(stream.columns, kept, recording, line)
         stream.append(kept)
         if report is not None:
@@ -258,6 +260,18 @@ class _Words:
                 self.labels.append(word)
         known = {word: float(code) for code, word in enumerate(self.labels)}
         return np.array([known[word] for word in words.tolist()], dtype=np.float64)
+
+
+def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
+    """Refuse what no machine does, such as what a division by zero makes; nan is a gap."""
+    beyond = np.abs(rows) > LARGEST
+    if beyond.any():
+        row, column = np.argwhere(beyond)[0]
+        raise InputError(
+            key=f"columns.{columns[column]}",
+            problem=f"{rows[row, column]:g} is beyond what any machine does",
+            mend="correct the unit, or the expression",
+        )
 
 
 def _check_load(

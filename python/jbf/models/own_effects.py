@@ -127,7 +127,7 @@ class OwnEffect(Effect):
             return self.function(**self._arguments(columns, values))
         except JbfError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise InputError(
                 problem=f"the {self.called} {self.name} fails: {type(error).__name__}: {error}",
                 mend="correct its function",

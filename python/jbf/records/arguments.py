@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError, did_you_mean, quoted
+from jbf.records.checks import check_columns
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -59,6 +60,21 @@ def one_run(value: object) -> Run:
     return of_kind(value, Run, "the run", mend)
 
 
+def check_run(run: Run) -> None:
+    """An InputError where a run holds what `Run.from_arrays` would have refused: a constructor that
+    trusts its arguments, or a selection, made it."""
+    for column, values in ({"velocity_m_s": run.velocity_m_s} | run.columns()).items():
+        good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
+        if not good or np.ma.is_masked(values):
+            raise InputError(
+                file=run.name,
+                column=column,
+                problem="is no array of float64, shape (N,)",
+                mend="make the run with jbf.Run.from_arrays, which converts and checks",
+            )
+    check_columns(run.name, run.columns(), None, None)
+
+
 def list_of_runs(value: object) -> list[Run]:
     """Runs as a list, none of them anything else.
 
@@ -83,6 +99,7 @@ def list_of_runs(value: object) -> list[Run]:
             if isinstance(run, str | os.PathLike):
                 mend = f"read it: jbf.read_run({quoted(os.fspath(run))})"
             raise InputError(problem=f"runs holds {described(run)} at place {i}", mend=mend)
+        check_run(run)
     return runs
 
 

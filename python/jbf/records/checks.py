@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from textwrap import shorten
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.errors import InputError
+from jbf.errors import InputError, quoted
 from jbf.records.counts import count_of
 
 Array = npt.NDArray[np.float64]
@@ -27,6 +27,11 @@ COLUMNS = (
 """Columns with a meaning, in the order in which `Run.write_csv` writes them."""
 SLOW = "temperature_c"
 """A column that may have gaps."""
+LARGEST = 1e12
+"""Beyond it no instant, force, speed, place or temperature in SI units is one of a machine: the
+cell is broken or the unit another (nanoseconds since 1970). Sums of fourth powers stay finite."""
+SHORTEST_S = 1e-12
+"""The same of the time from sample to sample."""
 MOTION = ("velocity_m_s", "position_m", "angle_rad")
 """Columns any one of which tells the motion."""
 
@@ -59,6 +64,10 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
         # Text, dates and complex numbers would convert to something nobody meant.
         if array.dtype.kind not in "biufO":
             raise wrong(f"holds {array.dtype}, not numbers")
+        if array.dtype.kind == "O":
+            text = [x for x in array.flat if isinstance(x, str | bytes)]
+            if text:
+                raise wrong(f"holds the text {quoted(text[0])}, not numbers")
         array = frozen(array)
     except InputError:
         raise
@@ -70,7 +79,11 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
 
 
 def check_columns(
-    name: str, columns: Mapping[str, Array], path: Path | None, rows: Sequence[int] | None
+    name: str,
+    columns: Mapping[str, Array],
+    path: Path | None,
+    rows: Sequence[int] | None,
+    known: Collection[str] = COLUMNS,
 ) -> None:
     """An InputError where a column does not hold what its name promises.
 
@@ -82,6 +95,8 @@ def check_columns(
         Column name to values.
     path, rows
         The file they came from, and each sample's line in it.
+    known
+        Columns with a meaning, whose values must be those of a machine.
     """
     file = path if rows is not None and path is not None else name
 
@@ -118,6 +133,14 @@ def check_columns(
                 f"{values[bad[0]]} is not a finite number",
                 "correct the cell or drop the row",
             )
+        bad = np.flatnonzero(np.abs(values) > LARGEST) if column in known else bad
+        if bad.size:
+            raise wrong(
+                column,
+                int(bad[0]),
+                f"{values[bad[0]]} is beyond what any machine does",
+                "correct the cell, or the unit",
+            )
     time_s = columns["time_s"]
     bad = np.flatnonzero(np.diff(time_s) <= 0.0)
     if bad.size:
@@ -127,6 +150,14 @@ def check_columns(
             int(bad[0]) + 1,
             f"time repeats at {now}" if now == before else f"time runs back from {before} to {now}",
             "sort the rows and drop repeats; one file is one run",
+        )
+    bad = np.flatnonzero(np.diff(time_s) < SHORTEST_S)
+    if bad.size:
+        raise wrong(
+            "time_s",
+            int(bad[0]) + 1,
+            f"a step of {time_s[bad[0] + 1] - time_s[bad[0]]} s is shorter than any logger's",
+            "give the time in seconds",
         )
     if "load_n" in columns:
         bad = np.flatnonzero(columns["load_n"] <= 0.0)

@@ -33,7 +33,7 @@ from jbf.records.drive_columns import ALIASES as DRIVE_ALIASES
 from jbf.records.drive_columns import DriveColumns
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.text_files import path_of, read_text
+from jbf.text_files import name_of, path_of, read_text
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -171,18 +171,21 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
     records: list[list[str]] = []
     numbers: list[int] = []
     line = first
+
+    def wrong(row: int, problem: str) -> InputError:
+        mend = "correct the row; one line is one row"
+        return InputError(file=path, row=row, problem=problem, mend=mend)
+
     try:
         for cells in reader:
             line += 1
             if first + reader.line_num > line:
-                raise csv.Error("a quote is not closed")
+                raise wrong(line, "a quote is not closed")
             if cells:
                 records.append(cells)
                 numbers.append(line)
     except csv.Error as error:
-        raise InputError(
-            file=path, row=line, problem=str(error), mend="correct the row; one line is one row"
-        ) from None
+        raise wrong(line + 1, str(error)) from None
     header = [name.strip() for name in records[0]]
     return header, numbers[0], records[1:], numbers[1:]
 
@@ -213,6 +216,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         The file or a cell of it is wrong; the message names file, row, column and the mend.
     """
     path = path_of(path)
+    name_of_run = name_of(path)
     header, header_row, rows, numbers = _read_table(path)
     drive = None if rig is None else the_rig(rig).drive
     of_drive = None if drive is None else DriveColumns.of(drive)
@@ -253,14 +257,14 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             continue
         if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
-    check_columns(path.stem, columns, path, numbers)
+    check_columns(name_of_run, columns, path, numbers, known)
     for name, there in gaps.items():
         columns[name] = filled(columns["time_s"], columns[name], there)
     if of_drive is None:
-        return replace(Run.of_columns(path.stem, columns, path), read=gaps)
+        return replace(Run.of_columns(name_of_run, columns, path), read=gaps)
     called = of_drive.called(columns)
-    columns, findings = of_drive.converted(path.stem, columns)
-    run = Run.of_columns(path.stem, columns, path)
+    columns, findings = of_drive.converted(name_of_run, columns)
+    run = Run.of_columns(name_of_run, columns, path)
     findings = (*findings, *run.reading)
     read = {called.get(name, name): there for name, there in gaps.items()}
     read = {name: there for name, there in read.items() if name in columns}

@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.quantities import LINEAR, ROTARY, Quantities
-from jbf.records.toml_file import number, refuse_unknown, table
+from jbf.records.toml_file import positive, refuse_unknown, table
 
 Kind = Literal["rotary", "linear"]
 Friction = Literal["force", "torque", "current", "percent"]
@@ -74,10 +74,7 @@ class Drive:
             value = getattr(self, name)
             if name in ("motion", "friction") or value is None:
                 continue
-            value = number(value, name)
-            if not 0.0 < value < math.inf:
-                raise _wrong(name, f"{value} is not above zero and finite", "correct the value")
-            object.__setattr__(self, name, value)
+            object.__setattr__(self, name, positive(value, name))
         self._check_constants()
         other = "mass_kg" if self.motion == "rotary" else "inertia_kg_m2"
         strangers = (other, "pitch_m") if self.motion == "rotary" else (other,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from jbf.errors import InputError
@@ -21,7 +22,7 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
     """
     folder = path_of(folder)
     path = folder / "rig.toml"
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise InputError(
             file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
         )
@@ -37,9 +38,10 @@ def campaigns_in(folder: PathLike) -> dict[str, Path]:
     InputError
         There is none.
     """
+    folder = path_of(folder)
     found = {
         path.name: path
-        for path in sorted(Path(folder).iterdir() if Path(folder).is_dir() else ())
+        for path in sorted(folder.iterdir() if os.path.isdir(folder) else ())
         if path.is_dir() and ((path / "rig.toml").is_file() or any(path.glob("*.csv")))
     }
     if not found:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from typing import Any, TypeVar
@@ -13,9 +12,10 @@ from jbf import _core
 from jbf.errors import InputError, quoted
 from jbf.records.drive import Drive
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
-from jbf.records.toml_file import PathLike, number, read_toml, refuse_unknown, table
+from jbf.records.toml_file import PathLike, number, positive, read_toml, refuse_unknown, table
 from jbf.text_files import write_text
 
+MOST_BEARINGS = 1000
 COLDEST_C, WARMEST_C = -100.0, 1000.0
 """Temperatures of a lubricant."""
 
@@ -24,12 +24,7 @@ _Section = TypeVar("_Section", "Bearing", "Lubricant", "Load")
 
 def _make_positive(section: object, *names: str) -> None:
     for name in names:
-        value = number(getattr(section, name), name)
-        if not (0.0 < value < math.inf):
-            raise InputError(
-                key=name, problem=f"{value} is not above zero and finite", mend="correct the value"
-            )
-        object.__setattr__(section, name, value)
+        object.__setattr__(section, name, positive(getattr(section, name), name))
 
 
 @dataclass(frozen=True)
@@ -65,6 +60,12 @@ class Bearing:
                 key="count",
                 problem=f"{self.count!r} is not a whole number of at least 1",
                 mend="write how many bearings the shaft has, such as 4",
+            )
+        if self.count > MOST_BEARINGS:
+            raise InputError(
+                key="count",
+                problem=f"{self.count} bearings are more than a shaft has",
+                mend=f"write {MOST_BEARINGS} or less",
             )
 
 
@@ -143,6 +144,15 @@ class Rig:
     drive: Drive | None = None
 
     def __post_init__(self) -> None:
+        sections = {"bearing": Bearing, "lubricant": Lubricant, "load": Load, "drive": Drive}
+        for name, kind in sections.items():
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise InputError(
+                    key=name,
+                    problem=f"the {name} is no jbf.{kind.__name__} but of {type(value).__name__}",
+                    mend=f"give jbf.{kind.__name__}(...), or read a file: jbf.read_rig(PATH)",
+                )
         if self.bearing is not None and self.drive is not None:
             raise InputError(
                 key="drive",

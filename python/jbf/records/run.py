@@ -132,7 +132,7 @@ class Run:
             index: Any = which
         else:
             index = np.asarray(which)
-            if index.dtype != np.bool_ or index.shape != (len(self),):
+            if np.ma.is_masked(which) or index.dtype != np.bool_ or index.shape != (len(self),):
                 raise InputError(
                     file=self.name,
                     problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
@@ -186,6 +186,10 @@ class Run:
                     problem="is a known column, not an extra one",
                     mend="pass it as its own argument",
                 )
+        if time_s is None:
+            raise InputError(
+                file=name, column="time_s", problem="is None", mend="give the instants, s"
+            )
         columns = {
             column: as_array(values, column, name)
             for column, values in (given | dict(extra or {})).items()

@@ -12,19 +12,19 @@ from jbf.errors import InputError
 from jbf.records.csv_file import read_run
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
-from jbf.text_files import path_of
+from jbf.text_files import name_of, path_of, real_path
 
 
 def _expanded(item: PathLike) -> list[Path]:
     path = Path(item)
-    if path.is_dir():
+    if os.path.isdir(path):
         found = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
         if not found:
             raise InputError(
                 file=path, problem="the folder holds no .csv file", mend="name another"
             )
         return found
-    if not path.exists() and glob.has_magic(str(path)):
+    if not os.path.lexists(path) and glob.has_magic(str(path)):
         found = sorted(Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file())
         if not found:
             raise InputError(file=path, problem="no file matches", mend="correct the pattern")
@@ -34,10 +34,10 @@ def _expanded(item: PathLike) -> list[Path]:
 
 def _unique_names(paths: Sequence[Path]) -> list[str]:
     """The stem of each path, with as many parent folders as tell equal stems apart."""
-    whole = [path.resolve() for path in paths]
+    whole = [real_path(path) for path in paths]
 
     def name(path: Path, depth: int) -> str:
-        return "/".join(path.with_suffix("").parts[-depth:])
+        return name_of(path, depth)
 
     names = []
     for path in whole:
@@ -73,9 +73,9 @@ def read_runs(
         raise InputError(problem="no run is given", mend="name at least one CSV file or folder")
     seen: set[Path] = set()
     for file in files:
-        if file.resolve() in seen:
+        if real_path(file) in seen:
             raise InputError(file=file, problem="is given twice", mend="name each run once")
-        seen.add(file.resolve())
+        seen.add(real_path(file))
     runs = [read_run(file, rig, need_friction=need_friction) for file in files]
     return [_named(run, name) for run, name in zip(runs, _unique_names(files), strict=True)]
 

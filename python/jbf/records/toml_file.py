@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import numbers
 import os
 from collections.abc import Iterable, Mapping
@@ -31,6 +32,25 @@ def number(value: object, key: str) -> float:
         return float(value)
     except OverflowError:
         raise InputError(key=key, problem="is too large", mend="correct the value") from None
+
+
+LEAST, MOST = 1e-12, 1e12
+"""No size, mass, viscosity, load or constant in SI units is beyond; what is made of several of
+them stays finite."""
+
+
+def positive(value: object, key: str) -> float:
+    """A number above zero of a size that a machine may have; raises as `number`."""
+    found = number(value, key)
+    if not (0.0 < found < math.inf):
+        raise InputError(
+            key=key, problem=f"{found} is not above zero and finite", mend="correct the value"
+        )
+    if not LEAST <= found <= MOST:
+        raise InputError(
+            key=key, problem=f"{found} is beyond what any machine has", mend="give it in SI units"
+        )
+    return found
 
 
 def table(value: object, key: str) -> Mapping[str, Any]:

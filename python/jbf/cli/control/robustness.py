@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.reporting.control_run_text import robustness_text
 
     wanted = {"--json": arguments.json, "--plot": arguments.plot}
-    outputs.check(wanted, [arguments.model] if arguments.model else [])
+    outputs.check(wanted, outputs.read_by(arguments))
     check_picture(arguments.plot)
     base = thesis_model(elastic="nothing") if arguments.model is None else model_of(arguments.model)
     with shown("robustness") as report:

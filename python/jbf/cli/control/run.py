@@ -50,8 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.reporting.control_run_text import runs_text
 
     wanted = {"--plot": arguments.plot, "--out": arguments.out}
-    inputs = (arguments.model, arguments.carried, arguments.settings, arguments.motion)
-    outputs.check(wanted, [p for p in inputs if p])
+    outputs.check(wanted, outputs.read_by(arguments))
     check_picture(arguments.plot)
     asked = arguments.scheme
     if asked is None:

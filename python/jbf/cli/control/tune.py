@@ -22,7 +22,7 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.control import tune
 
     wanted = {"--out": arguments.out}
-    outputs.check(wanted, [arguments.model])
+    outputs.check(wanted, outputs.read_by(arguments))
     text = tune(model_of(arguments.model), bench_of(arguments)).to_toml()
     if arguments.out:
         outputs.write({arguments.out: text})

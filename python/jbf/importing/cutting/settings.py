@@ -58,6 +58,9 @@ class CutSettings:
         refuse_unknown(section, [f.name for f in fields(cls)], "cut.")
         given = dict(section)
         by = given.get("by", ())
+        if not isinstance(by, str | list | tuple):
+            mend = 'write by = "rests", or a list of ways'
+            raise InputError(key="cut.by", problem=f"{by!r} is no way of cutting", mend=mend)
         ways = (by,) if isinstance(by, str) else tuple(by)
         for way in ways:
             if way not in WAYS:
@@ -78,5 +81,8 @@ class CutSettings:
                     problem = f"{given[key]} is below zero or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
         if "file" in given:
-            given["file"] = folder / str(given["file"])
+            if not isinstance(given["file"], str):
+                mend = 'write file = "cut.toml"'
+                raise InputError(key="cut.file", problem="is not text", mend=mend)
+            given["file"] = folder / given["file"]
         return cls(**(given | {"by": ways}))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from jbf.errors import InputError
 from jbf.importing.formats.table import Options, Source, library_errors
-from jbf.text_files import path_of
+from jbf.text_files import check_readable, path_of
 
 
 @dataclass(frozen=True)
@@ -95,19 +95,14 @@ def format_of(path: Path) -> Format:
     InputError
         The file cannot be read.
     """
-    if path.is_dir():
+    if os.path.isdir(path):
         # ROS 2 writes a folder.
         if (path / "metadata.yaml").is_file():
             return next(f for f in FORMATS if f.extra == "rosbag")
         raise InputError(file=path, problem="is a folder", mend="name the files in it")
-    try:
-        with path.open("rb") as file:
-            begin = file.read(520)
-    except OSError as error:
-        reason = (error.strerror or type(error).__name__).lower()
-        raise InputError(
-            file=path, problem=f"cannot be read ({reason})", mend="check the path"
-        ) from None
+    check_readable(path, pipes=False)
+    with path.open("rb") as file:
+        begin = file.read(520)
     for known in FORMATS:
         if any(begin.startswith(magic, known.magic_at) for magic in known.magic):
             return known
@@ -125,6 +120,4 @@ def open_source(path: str | os.PathLike[str], options: Options | None = None) ->
         The file is not there, is broken, or its library is not installed.
     """
     path = path_of(path)
-    if not path.exists():
-        raise InputError(file=path, problem="the file does not exist", mend="correct the path")
     return format_of(path).open(path, options or Options())

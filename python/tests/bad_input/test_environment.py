@@ -132,6 +132,11 @@ def test_the_threads_that_there_are() -> None:
     assert int(told.stdout) <= 2 * (os.cpu_count() or 1) + 2
 
 
+def hears_interrupts() -> None:
+    """In a child: what a shell starts in the background ignores them, and so would this."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_is_one_line_and_leaves_nothing(folder: Path) -> None:
     """While it waits for a pipe that nobody fills, which it does for seconds."""
     os.mkfifo("slow.csv")
@@ -140,6 +145,7 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(folder: Path) -> None:
         [*COMMAND, "compare", "model.toml", "slow.csv", "--json", "new.json"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
+        preexec_fn=hears_interrupts,
     )
     # Only once the pipe is read has the command begun.
     end = time.monotonic() + SECONDS
@@ -171,24 +177,33 @@ while True:
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGKILL])
 def test_two_writers_and_a_kill_leave_whole_files(kind: signal.Signals, folder: Path) -> None:
     writers = [
-        subprocess.Popen([sys.executable, "-c", WRITER, letter], stdout=subprocess.PIPE,
-                         stderr=subprocess.DEVNULL)
+        subprocess.Popen(
+            [sys.executable, "-c", WRITER, letter],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            preexec_fn=hears_interrupts,
+        )
         for letter in "ab"
-    ]  # fmt: skip
-    for writer in writers:
-        assert writer.stdout is not None
-        assert writer.stdout.readline() == b"ready\n"
+    ]
     wholes = {letter * 400_000 for letter in "ab"}
-    for _ in range(20):
-        time.sleep(0.01)
-        for name in ("one.txt", "two.txt"):
-            if (folder / name).exists():
-                assert (folder / name).read_text() in wholes
-    for writer in writers:
-        writer.send_signal(kind)
-        writer.wait(SECONDS)
-        assert writer.stdout is not None
-        writer.stdout.close()
+    try:
+        for writer in writers:
+            assert writer.stdout is not None
+            assert writer.stdout.readline() == b"ready\n"
+        for _ in range(20):
+            time.sleep(0.01)
+            for name in ("one.txt", "two.txt"):
+                if (folder / name).exists():
+                    assert (folder / name).read_text() in wholes
+        for writer in writers:
+            writer.send_signal(kind)
+            writer.wait(SECONDS)
+    finally:
+        for writer in writers:
+            writer.kill()
+            assert writer.stdout is not None
+            writer.stdout.close()
+            writer.wait()
     assert {(folder / name).read_text() for name in ("one.txt", "two.txt")} <= wholes
     if kind is signal.SIGINT:
         assert [p.name for p in folder.iterdir() if p.name.endswith(".tmp")] == []

@@ -52,7 +52,8 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"
         )
 
-    if np.ma.is_masked(values):
+    lists = isinstance(values, list | tuple)
+    if np.ma.is_masked(values) or (lists and any(x is np.ma.masked for x in values)):
         raise InputError(
             file=name,
             column=column,

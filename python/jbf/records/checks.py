@@ -52,8 +52,8 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"
         )
 
-    lists = isinstance(values, list | tuple)
-    if np.ma.is_masked(values) or (lists and any(x is np.ma.masked for x in values)):
+    listed = values if isinstance(values, list | tuple) else ()
+    if np.ma.is_masked(values) or any(x is np.ma.masked for x in listed):
         raise InputError(
             file=name,
             column=column,

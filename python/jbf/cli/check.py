@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from jbf.cli import inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_own, add_runs, command
 from jbf.cli.progress import shown
+from jbf.cores import check_jobs, processes
 from jbf.errors import InputError
 from jbf.records.run_files import read_runs
 from jbf.reporting.json import json_text
@@ -54,9 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json, "--resume": arguments.resume}
     outputs.check(wanted, outputs.read_by(arguments))
     policy = level.policy(arguments)
-    jobs = arguments.jobs if arguments.jobs is not None else os.cpu_count() or 1
-    if jobs < 1:
-        raise InputError(file="--jobs", problem=f"{jobs} campaigns at a time", mend="1 or more")
+    check_jobs(arguments.jobs)
+    jobs = processes(arguments.jobs, 2 * arguments.campaigns)
     model = inputs.model(arguments.model)
     runs = read_runs(arguments.runs, model.rig)
     name = identity(model, runs, policy)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import os
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jbf.cli import level, outputs
 from jbf.cli.progress import shown
+from jbf.cores import check_jobs, processes
 from jbf.errors import InputError
 from jbf.records.folder import campaigns_in
 from jbf.reporting.json import json_text
@@ -44,10 +44,9 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
             problem="takes neither RIG nor RUN nor --next-run",
             mend="each folder in it holds its own rig.toml and runs",
         )
-    jobs = arguments.jobs if arguments.jobs is not None else os.cpu_count() or 1
-    if jobs < 1:
-        raise InputError(file="--jobs", problem=f"{jobs} campaigns at a time", mend="1 or more")
+    check_jobs(arguments.jobs)
     campaigns = campaigns_in(arguments.many)
+    jobs = processes(arguments.jobs, len(campaigns))
     read = list(outputs.read_by(arguments))
     outputs.check({"--json": arguments.json}, read)
     for option in ("out", "report"):

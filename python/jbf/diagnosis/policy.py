@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from jbf.comparison.patterns import LEAST_SHARE, SIGNIFICANCE
+from jbf.errors import InputError
 
 
 def _number(value: Any, decides: str, source: str) -> Any:
@@ -240,6 +241,18 @@ class Policy:
         "would show what could hide",
         "five standard deviations",
     )
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            if math.isnan(value):
+                raise InputError(problem=f"the policy's {name} is nan", mend="give a number")
+        for name, most in (("false_alarms", 1.0), ("least_weight", 0.5)):
+            value = getattr(self, name)
+            if not 0.0 < value < most:
+                raise InputError(
+                    problem=f"the policy's {name} = {value:g}",
+                    mend=f"must be above zero and below {most:g}",
+                )
 
     @property
     def tie(self) -> float:

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 from bad_input.checking import HEADER, ROWS, SECONDS, table
-from jbf.cores import cap_threads
+from jbf.cores import cap_threads, check_jobs, processes
+from jbf.errors import InputError
 
 COMPARE = ("compare", "model.toml", "a.csv")
 COMMAND = (sys.executable, "-m", "jbf")
@@ -130,6 +131,17 @@ def test_the_threads_that_there_are() -> None:
     given = {**os.environ, "RAYON_NUM_THREADS": "100000", "OPENBLAS_NUM_THREADS": "1"}
     told = subprocess.run([sys.executable, "-c", code], env=given, capture_output=True, check=True)
     assert int(told.stdout) <= 2 * (os.cpu_count() or 1) + 2
+
+
+def test_no_more_processes_than_work() -> None:
+    """A pool starts all of them at once."""
+    assert processes(1_000_000, 3) == 3
+    assert processes(2, 100) == 2
+    assert processes(None, 1_000_000) == (os.cpu_count() or 1)
+    assert processes(4, 0) == 1
+    with pytest.raises(InputError, match="--jobs: 0 campaigns at a time"):
+        check_jobs(0)
+    check_jobs(None)
 
 
 def hears_interrupts() -> None:

@@ -53,3 +53,7 @@ def test_a_score_that_comes_and_goes_is_worth_less() -> None:
 def test_nothing_to_tell() -> None:
     assert score_inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0
     assert score_inflation([np.ones(50)], [np.zeros(50)], (STEP_S,)) == 1.0
+
+
+def test_of_no_sample_nothing_is_known() -> None:
+    assert np.array_equal(long_run_variance(np.zeros((0, 2)), 0.01), np.zeros((2, 2)))

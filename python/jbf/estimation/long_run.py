@@ -104,6 +104,8 @@ def _white(innovations: Sequence[Array]) -> float:
 def long_run_variance(scores: Array, step_s: float) -> Array:
     """Long-run variance, shape (q, q), of the sum of scores, shape (n, q)."""
     n = len(scores)
+    if n == 0:
+        return np.zeros((scores.shape[1], scores.shape[1]))
     length = int(np.clip(WINDOW_S / step_s, 1, max(n // LEAST_WINDOWS, 1)))
     sums = np.cumsum(np.vstack([np.zeros((1, scores.shape[1])), scores]), axis=0)
     windows = sums[length:] - sums[:-length]

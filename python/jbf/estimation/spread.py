@@ -92,7 +92,10 @@ def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
         for i in range(len(samples.runs))
     ]
     # A scale of its own for each parameter: their units have nothing to do with each other.
-    influence = [j[:, moved] @ (covariance / np.sqrt(np.diag(covariance))) for _, j in parts]
+    influence = [
+        j[:, moved] @ (covariance / np.sqrt(np.maximum(np.diag(covariance), 1e-300)))
+        for _, j in parts
+    ]
     innovations = [r for r, _ in parts]
     found = []
     for k in range(len(covariance)):

@@ -23,8 +23,8 @@ from jbf.cli import outputs
 from jbf.errors import InputError, closest, did_you_mean
 
 COMMANDS = (
-    "demo", "import", "compare", "fit", "diagnose", "power", "check", "plan", "predict", "export",
-    "effects", "control",
+    "demo", "workbench", "import", "compare", "fit", "diagnose", "power", "check", "plan",
+    "predict", "export", "effects", "control",
 )  # fmt: skip
 """Modules of this package, in the order in which help lists them."""
 _MODULES = {"import": "import_files"}

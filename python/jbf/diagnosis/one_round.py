@@ -1,0 +1,75 @@
+"""One round by hand: a model with named effects, and what each other effect would bring.
+
+Where `diagnose` decides, this leaves the choice to whoever looks on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from jbf.comparison.comparison import Comparison, compare_prepared
+from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.ledger import Step
+from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.rounds import step
+from jbf.diagnosis.selection import try_candidates
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_start import settled_campaign
+from jbf.estimation.fit import Fit, fit
+from jbf.models.vocabulary import Clock
+from jbf.records.rig import Rig
+from jbf.records.run import Run
+from jbf.threads import one_blas_thread
+
+
+@dataclass(frozen=True)
+class OneRound:
+    """A fit, its line of the ledger with the candidates tried beside it, and where it fails."""
+
+    fit: Fit
+    step: Step
+    comparison: Comparison
+
+
+@one_blas_thread
+def one_round(
+    rig: Rig,
+    runs: Sequence[Run],
+    effects: Sequence[str] = (),
+    *,
+    law: str = "journal",
+    clock: Clock = "journal",
+    policy: Policy = DEFAULT,
+    progress: Progress | None = None,
+) -> OneRound:
+    """Fit a law with named effects, and try every other effect beside them.
+
+    Parameters
+    ----------
+    rig, runs
+        What was recorded, and on what.
+    effects
+        Effects that the model is to have.
+    law, clock
+        The base law and its clock.
+    policy
+        The numbers by which a candidate is judged.
+    progress
+        Called with a message, and how many of how many candidates have been tried.
+
+    Raises
+    ------
+    InputError
+        An unknown name, a missing column, or runs in which nothing moves.
+    """
+    if progress is not None:
+        progress("fitting", 0, 0)
+    # The model is that of `fit`, to the last digit: who repeats the step by hand gets the same.
+    fitted = fit(rig, runs, effects, law=law, clock=clock)
+    chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs)
+    comparison = compare_prepared(fitted.model, campaign)
+    candidates = Candidates(settled_campaign(campaign, law, clock), law, clock, policy, progress)
+    trials = try_candidates(candidates, chosen).trials
+    ledger = step(candidates, chosen, comparison.noise_n, trials)
+    return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison)

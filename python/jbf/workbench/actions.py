@@ -1,0 +1,223 @@
+"""What each address does: plain functions of a session and what was asked."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from importlib.resources import as_file, files
+from typing import Any
+from urllib.parse import quote
+
+from starlette.responses import Response
+
+from jbf.errors import InputError
+from jbf.workbench import importer, kept, views
+from jbf.workbench.session import Session
+
+Asked = dict[str, Any]
+DEMO = "jbf-demo"
+MOST_PIXELS = 4000
+
+
+def _model(asked: Asked) -> int | None:
+    value = asked.get("model")
+    return None if value in (None, "", "null") else int(value)
+
+
+def _span(asked: Asked) -> tuple[float | None, float | None]:
+    ends = [asked.get(key) for key in ("from_s", "to_s")]
+    first, last = (None if v in (None, "") else float(v) for v in ends)
+    return first, last
+
+
+def _pixels(asked: Asked, key: str = "pixels", usual: int = 1000) -> int:
+    return min(max(int(asked.get(key, usual)), 10), MOST_PIXELS)
+
+
+def state(session: Session, asked: Asked) -> Any:
+    """Everything but the pictures."""
+    return session.told()
+
+
+def listing(session: Session, asked: Asked) -> Any:
+    """What is in the folder."""
+    return session.folder.listing()
+
+
+def series(session: Session, asked: Asked) -> Any:
+    """A stretch of a run."""
+    span = _span(asked)
+    return views.series(session, _model(asked), asked["run"], span, _pixels(asked))
+
+
+def signature(session: Session, asked: Asked) -> Any:
+    """What an effect would add to a run."""
+    number = _number(asked)
+    span, pixels = _span(asked), _pixels(asked)
+    return views.signature(session, number, asked["effect"], asked["run"], span, pixels)
+
+
+def map_of_runs(session: Session, asked: Asked) -> Any:
+    """The residual over runs and speeds."""
+    return views.map_of_runs(session, _number(asked))
+
+
+def _number(asked: Asked) -> int:
+    number = _model(asked)
+    if number is None:
+        raise InputError(problem="no model is chosen", mend="fit one")
+    return number
+
+
+def plane(session: Session, asked: Asked) -> Any:
+    """Friction against speed."""
+    size = (_pixels(asked, "columns", 400), _pixels(asked, "rows", 300))
+    names = [str(name) for name in asked["runs"]]
+    return views.plane(session, _model(asked), names, asked.get("selection"), size)
+
+
+def brush(session: Session, asked: Asked) -> Any:
+    """A selection everywhere."""
+    return views.brushed(session, _model(asked), dict(asked["selection"]))
+
+
+def open_campaign(session: Session, asked: Asked) -> Any:
+    """A rig and runs onto the bench."""
+    session.open(str(asked["rig"]), [str(name) for name in asked["runs"]])
+    return {}
+
+
+def demo(session: Session, asked: Asked) -> Any:
+    """The shipped data into the folder, and onto the bench."""
+    here = session.folder.root / DEMO
+    with as_file(files("jbf") / "data" / "demo") as shipped:
+        shutil.copytree(shipped / "hidden", here, dirs_exist_ok=True)
+    runs = sorted(path.name for path in here.glob("*.csv"))
+    session.open(f"{DEMO}/rig.toml", [f"{DEMO}/{name}" for name in runs])
+    return {}
+
+
+def look(session: Session, asked: Asked) -> Any:
+    """What a file's columns are."""
+    return importer.looked(session.folder, str(asked["file"]))
+
+
+def try_map(session: Session, asked: Asked) -> Any:
+    """What a map makes of a file."""
+    return importer.tried(session.folder, str(asked["file"]), str(asked["map"]))
+
+
+def import_file(session: Session, asked: Asked) -> Any:
+    """A file as runs, onto the bench."""
+    found = importer.imported(session.folder, str(asked["file"]), str(asked["map"]))
+    session.open(found["rig"], found["files"])
+    return found
+
+
+def trim(session: Session, asked: Asked) -> Any:
+    """Use a stretch of a run, or all of it."""
+    first, last = _span(asked)
+    span = None if first is None or last is None else (first, last)
+    with session.lock:
+        session.on_bench().trim(str(asked["run"]), span)
+    session.changed()
+    return {}
+
+
+def leave_out(session: Session, asked: Asked) -> Any:
+    """Leave a run out of fits, or take it in."""
+    with session.lock:
+        session.on_bench().leave_out(str(asked["run"]), bool(asked["out"]))
+    session.changed()
+    return {}
+
+
+def law(session: Session, asked: Asked) -> Any:
+    """The base law."""
+    session.choose_law(str(asked["law"]))
+    return {}
+
+
+def fit(session: Session, asked: Asked) -> Any:
+    """Fit a law with effects, and try the others beside it."""
+    session.begin("round", [str(e) for e in asked.get("effects", [])], _parent(asked))
+    return {}
+
+
+def diagnose(session: Session, asked: Asked) -> Any:
+    """All rounds."""
+    session.begin("diagnose", (), _parent(asked))
+    return {}
+
+
+def _parent(asked: Asked) -> int | None:
+    return None if asked.get("parent") is None else int(asked["parent"])
+
+
+def cancel(session: Session, asked: Asked) -> Any:
+    """Stop the fit."""
+    return {"cancelled": session.jobs.cancel()}
+
+
+def show(session: Session, asked: Asked) -> Any:
+    """Look at a model."""
+    session.show(_model(asked))
+    return {}
+
+
+def beside(session: Session, asked: Asked) -> Any:
+    """Draw another model beside it."""
+    session.models.put_beside(_model(asked))
+    session.changed()
+    return {}
+
+
+def undo(session: Session, asked: Asked) -> Any:
+    """Back to the parent."""
+    parent = session.models.node()["parent"]
+    session.show(parent)
+    return {}
+
+
+def keep(session: Session, asked: Asked) -> Any:
+    """Write something into the folder."""
+    return {"written": kept.keep(session, str(asked["what"]))}
+
+
+def text(session: Session, asked: Asked) -> Any:
+    """The same, sent."""
+    name, content = kept.text_of(session, str(asked["what"]))
+    said = f"attachment; filename*=UTF-8''{quote(name)}"
+    # Never shown as a page of this server: a report is opened from disk.
+    return Response(content, headers={"content-disposition": said}, media_type="text/plain")
+
+
+ASKED: dict[str, Callable[[Session, Asked], Any]] = {
+    "state": state,
+    "files": listing,
+    "series": series,
+    "signature": signature,
+    "map": map_of_runs,
+    "text": text,
+}
+"""What changes nothing, by GET."""
+DONE: dict[str, Callable[[Session, Asked], Any]] = {
+    "plane": plane,
+    "brush": brush,
+    "open": open_campaign,
+    "demo": demo,
+    "look": look,
+    "try": try_map,
+    "import": import_file,
+    "trim": trim,
+    "leave_out": leave_out,
+    "law": law,
+    "fit": fit,
+    "diagnose": diagnose,
+    "cancel": cancel,
+    "show": show,
+    "beside": beside,
+    "undo": undo,
+    "keep": keep,
+}
+"""What may, by POST."""

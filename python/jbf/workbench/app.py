@@ -1,0 +1,141 @@
+"""The addresses that the page asks, and what answers each."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+from collections.abc import AsyncIterator, Callable
+from importlib.resources import files
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from jbf.errors import JbfError
+from jbf.workbench import actions, vendored
+from jbf.workbench.guard import LARGEST_UPLOAD, Guard
+from jbf.workbench.session import Session
+
+TICK_S = 0.1
+"""How often it is looked whether there is news."""
+PULSE_S = 10.0
+"""A line in silence, by which a closed page is noticed."""
+
+Asked = dict[str, Any]
+Action = Callable[[Session, Asked], Any]
+
+
+def create_app(session: Session, token: str, port: int, largest: int = LARGEST_UPLOAD) -> Starlette:
+    """The application.
+
+    Parameters
+    ----------
+    session
+        What it shows.
+    token
+        The secret that each request under `/api/` must carry.
+    port
+        Where it listens: part of the name that it answers to.
+    largest
+        Bytes that an upload may have.
+    """
+
+    def endpoint(action: Action) -> Callable[[Request], Any]:
+        async def answer(request: Request) -> Response:
+            asked: Asked = dict(request.query_params)
+            if request.method == "POST":
+                body = await request.body()
+                try:
+                    content = json.loads(body or b"{}")
+                except ValueError:
+                    return _refused("the body is no JSON", 400)
+                if not isinstance(content, dict):
+                    return _refused("the body is no object", 400)
+                asked = content
+            return await run_in_threadpool(_answered, action, session, asked)
+
+        return answer
+
+    async def upload(request: Request) -> Response:
+        name = request.query_params.get("name", "")
+        try:
+            path = session.folder.new_file(name)
+        except JbfError as error:
+            return _refused(str(error))
+        part = path.with_name(f".{path.name}.part")
+        try:
+            with part.open("xb") as file:
+                async for block in request.stream():
+                    file.write(block)
+            os.replace(part, path)
+        finally:
+            part.unlink(missing_ok=True)
+        session.changed()
+        return JSONResponse({"file": name})
+
+    async def events(request: Request) -> Response:
+        return StreamingResponse(_news(session, request), media_type="text/event-stream")
+
+    routes = [
+        Route("/", _page),
+        Route("/api/events", events),
+        Route("/api/upload", upload, methods=["POST"]),
+        *(Route(f"/api/{n}", endpoint(a)) for n, a in actions.ASKED.items()),
+        *(Route(f"/api/{n}", endpoint(a), methods=["POST"]) for n, a in actions.DONE.items()),
+        Mount("/static", StaticFiles(packages=[("jbf.workbench", "static")])),
+        Route("/vendored/{name}", _vendored),
+    ]
+    guard = Middleware(Guard, token=token, port=port, largest=largest)
+    return Starlette(routes=routes, middleware=[guard])
+
+
+def _answered(action: Action, session: Session, asked: Asked) -> Response:
+    try:
+        found = action(session, asked)
+    except JbfError as error:
+        return _refused(str(error))
+    except (KeyError, TypeError, ValueError) as error:
+        return _refused(
+            f"the request is incomplete or wrong ({type(error).__name__}: {error})", 400
+        )
+    return found if isinstance(found, Response) else JSONResponse(found)
+
+
+def _refused(words: str, code: int = 422) -> JSONResponse:
+    return JSONResponse({"error": words}, code)
+
+
+async def _page(request: Request) -> Response:
+    page = files("jbf.workbench") / "static" / "index.html"
+    return Response(page.read_bytes(), media_type="text/html; charset=utf-8")
+
+
+async def _vendored(request: Request) -> Response:
+    found = vendored.file(request.path_params["name"])
+    if found is None:
+        return _refused("no such file", 404)
+    kind = "text/css" if found.suffix == ".css" else "text/javascript"
+    return Response(found.read_bytes(), media_type=kind)
+
+
+async def _news(session: Session, request: Request) -> AsyncIterator[str]:
+    """The state whenever it has changed, as server-sent events."""
+    told, quiet = -1, 0.0
+    while not await request.is_disconnected():
+        running = session.jobs.job is not None
+        # While a fit runs its clock goes on, too.
+        if session.version != told or (running and quiet >= 1.0):
+            told, quiet = session.version, 0.0
+            state = await run_in_threadpool(session.told)
+            yield f"data: {json.dumps(state)}\n\n"
+        elif quiet >= PULSE_S:
+            quiet = 0.0
+            yield ": still here\n\n"
+        quiet += TICK_S
+        await asyncio.sleep(TICK_S)

@@ -1,0 +1,155 @@
+"""What is on the bench: a rig and its runs, each with its trim, or left out."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from jbf.errors import InputError, JbfError
+from jbf.estimation.prepared import Prepared
+from jbf.records.checks import MIN_SAMPLES
+from jbf.records.rig import Rig, read_rig
+from jbf.records.run import Run
+from jbf.records.run_files import read_runs
+from jbf.workbench.files import Folder
+
+Span = tuple[float, float]
+
+
+@dataclass
+class Bench:
+    """A rig and its runs.
+
+    Attributes
+    ----------
+    rig_name, run_names
+        The files' names in the folder.
+    trims
+        Run to the instants, s, between which it is used.
+    excluded
+        Runs that fits leave out.
+    findings
+        Run to what its recording did, as far as it has been looked at.
+    """
+
+    rig_name: str
+    run_names: tuple[str, ...]
+    rig: Rig
+    runs: tuple[Run, ...]
+    trims: dict[str, Span] = field(default_factory=dict)
+    excluded: set[str] = field(default_factory=set)
+    findings: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, folder: Folder, rig_name: str, run_names: Sequence[str]) -> Bench:
+        """Read files of the folder.
+
+        Raises
+        ------
+        InputError
+            A name is not in the folder, or a file is wrong.
+        """
+        rig = read_rig(folder.path(rig_name))
+        runs = read_runs([folder.path(name) for name in run_names], rig, need_friction=False)
+        return cls(rig_name, tuple(run_names), rig, tuple(runs))
+
+    def run(self, name: str) -> Run:
+        """A run by its name.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        for run in self.runs:
+            if run.name == name:
+                return run
+        raise InputError(file=name, problem="no run on the bench is called so", mend="choose one")
+
+    def trim(self, name: str, span: Span | None) -> None:
+        """Use a stretch of a run; None puts all of it back.
+
+        Raises
+        ------
+        InputError
+            Too little would be left.
+        """
+        run = self.run(name)
+        if span is None:
+            self.trims.pop(name, None)
+            return
+        first, last = sorted(map(float, span))
+        if not math.isfinite(first + last):
+            raise InputError(file=name, problem="an end is no number", mend="give two instants, s")
+        left = int(((run.time_s >= first) & (run.time_s <= last)).sum())
+        if left < MIN_SAMPLES:
+            problem = f"{left} samples would be left"
+            raise InputError(file=name, problem=problem, mend=f"leave {MIN_SAMPLES} or more")
+        self.trims[name] = (first, last)
+
+    def leave_out(self, name: str, out: bool) -> None:
+        """Leave a run out of fits, or take it in again."""
+        self.run(name)
+        (self.excluded.add if out else self.excluded.discard)(name)
+
+    def taken(self) -> tuple[Run, ...]:
+        """The runs that fits use.
+
+        Raises
+        ------
+        InputError
+            None is left.
+        """
+        found = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
+        if not found:
+            raise InputError(problem="every run is left out", mend="take one in")
+        return found
+
+    def _trimmed(self, run: Run) -> Run:
+        if run.name not in self.trims:
+            return run
+        first, last = self.trims[run.name]
+        return run.select((run.time_s >= first) & (run.time_s <= last))
+
+    def files(self) -> list[str]:
+        """Names of the files whose runs are used."""
+        rows = zip(self.runs, self.run_names, strict=True)
+        return [name for run, name in rows if run.name not in self.excluded]
+
+    def looked_at(self, changed: Any) -> None:
+        """Look, in a thread, at what each recording did; `changed` is called after each run."""
+
+        def look() -> None:
+            for run in self.runs:
+                self.findings[run.name] = _findings(self.rig, run)
+                changed()
+
+        threading.Thread(target=look, daemon=True).start()
+
+    def told(self) -> list[Mapping[str, Any]]:
+        """The runs, for the page."""
+        return [
+            {
+                "name": run.name,
+                "file": file,
+                "samples": len(run),
+                "duration_s": run.duration_s,
+                "from_s": float(run.time_s[0]),
+                "to_s": float(run.time_s[-1]),
+                "columns": sorted(run.columns()),
+                "trim": self.trims.get(run.name),
+                "excluded": run.name in self.excluded,
+                "findings": self.findings.get(run.name),
+            }
+            for run, file in zip(self.runs, self.run_names, strict=True)
+        ]
+
+
+def _findings(rig: Rig, run: Run) -> list[dict[str, Any]]:
+    try:
+        return [f.to_dict() for f in Prepared.of(rig, run).examined.findings]
+    except JbfError as error:
+        return [{"kind": "unusable", "words": str(error), "run": run.name, "done": "none"}]

@@ -1,0 +1,140 @@
+"""The folder that the page may see: names in it, and nothing outside it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from jbf.errors import InputError, quoted
+from jbf.records.toml_file import read_toml
+
+MOST_FILES = 2000
+"""So many are listed; who has more names a smaller folder."""
+DEPTH = 4
+"""Folders within folders."""
+_LARGEST_TOML = 1 << 20
+_RIG = {"bearing", "lubricant", "load", "drive"}
+_RECORDINGS = {".mat", ".parquet", ".pq", ".tdms", ".mf4", ".mdf", ".mcap", ".bag", ".h5", ".hdf5",
+               ".xlsx", ".txt", ".tsv", ".dat", ".log"}  # fmt: skip
+_UPLOADS = _RECORDINGS | {".csv", ".toml"}
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A folder; every name is relative to it, with `/` between its parts."""
+
+    root: Path
+
+    @classmethod
+    def of(cls, path: str | os.PathLike[str]) -> Folder:
+        """The folder at a path.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        root = Path(os.path.realpath(path))
+        if not root.is_dir():
+            raise InputError(file=path, problem="is not a folder", mend="name one that is there")
+        return cls(root)
+
+    def path(self, name: str) -> Path:
+        """The path of a name in the folder, wherever links lead.
+
+        Raises
+        ------
+        InputError
+            It is no name, or leads outside.
+        """
+        parts = PurePosixPath(name).parts
+        odd = not parts or "\0" in name or "\\" in name or ".." in parts or name.startswith("/")
+        if not odd:
+            found = Path(os.path.realpath(self.root.joinpath(*parts)))
+            if found.is_relative_to(self.root) and found != self.root:
+                return found
+        raise InputError(
+            file=quoted(name), problem="is not a name in the folder", mend="choose one that is"
+        )
+
+    def name(self, path: Path) -> str:
+        """The name of a path in the folder."""
+        return Path(os.path.realpath(path)).relative_to(self.root).as_posix()
+
+    def new_file(self, name: str) -> Path:
+        """Where an uploaded file goes: a bare name, of a kind that jbf reads, that is not taken.
+
+        Raises
+        ------
+        InputError
+            It is none.
+        """
+        kind = PurePosixPath(name).suffix.lower()
+        if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
+            known = ", ".join(sorted(_UPLOADS))
+            raise InputError(
+                file=quoted(name), problem="is no recording, rig or map", mend=f"give {known}"
+            )
+        path = self.path(name)
+        if os.path.lexists(self.root / name):
+            raise InputError(
+                file=quoted(name), problem="is there already", mend="rename one of the two"
+            )
+        return path
+
+    def listing(self) -> dict[str, Any]:
+        """What is in the folder: campaigns (a rig with runs beside it), rigs, maps, models,
+        recordings."""
+        found: dict[str, Any] = {"rigs": [], "maps": [], "models": [], "csv": [], "other": []}
+        for number, path in enumerate(self._walk()):
+            if number == MOST_FILES:
+                found["more"] = True
+                break
+            suffix, name = path.suffix.lower(), self._listed(path)
+            if suffix == ".toml":
+                kind = _toml_kind(path)
+                if kind:
+                    found[kind].append(name)
+            elif suffix == ".csv":
+                found["csv"].append(name)
+            elif suffix in _RECORDINGS:
+                found["other"].append(name)
+        found["campaigns"] = [
+            {"rig": rig, "runs": runs}
+            for rig in found["rigs"]
+            if (runs := [c for c in found["csv"] if _parent(c) == _parent(rig)])
+        ]
+        return found
+
+    def _listed(self, path: Path) -> str:
+        return path.relative_to(self.root).as_posix()
+
+    def _walk(self) -> Iterator[Path]:
+        for here, folders, files in os.walk(self.root):
+            depth = len(Path(here).relative_to(self.root).parts)
+            folders[:] = sorted(f for f in folders if not f.startswith(".") and depth < DEPTH)
+            for file in sorted(files):
+                if not file.startswith("."):
+                    yield Path(here) / file
+
+
+def _parent(name: str) -> str:
+    return PurePosixPath(name).parent.as_posix()
+
+
+def _toml_kind(path: Path) -> str | None:
+    """`rigs`, `maps`, `models`; None of anything else."""
+    try:
+        if path.stat().st_size > _LARGEST_TOML:
+            return None
+        keys = set(read_toml(path))
+    except (InputError, OSError):
+        return None
+    if "law" in keys:
+        return "models"
+    if "columns" in keys:
+        return "maps"
+    return "rigs" if keys & _RIG else None

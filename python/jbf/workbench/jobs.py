@@ -1,0 +1,110 @@
+"""One job at a time, in a process of its own: it can be stopped, and a closed page does not."""
+
+from __future__ import annotations
+
+import multiprocessing
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from multiprocessing.process import BaseProcess
+from typing import Any, Literal
+
+from jbf.errors import InputError
+from jbf.workbench.work import Answer, Order, main
+
+Ending = Literal["done", "error", "cancelled"]
+Ended = Callable[[Ending, Any], None]
+
+
+@dataclass
+class Job:
+    """What runs now."""
+
+    words: str
+    begun: float = field(default_factory=time.monotonic)
+    message: str = "starting"
+    done: int = 0
+    total: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """For the page."""
+        return {
+            "words": self.words,
+            "message": self.message,
+            "done": self.done,
+            "total": self.total,
+            "elapsed_s": time.monotonic() - self.begun,
+        }
+
+
+class Jobs:
+    """The one job, if there is one.
+
+    Parameters
+    ----------
+    changed
+        Called, from another thread, whenever there is news.
+    """
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self.changed = changed
+        self.job: Job | None = None
+        self._process: BaseProcess | None = None
+        self._cancelled = False
+        self._lock = threading.Lock()
+
+    def start(self, words: str, order: Order, ended: Ended) -> None:
+        """Begin; `ended` is called once, with how it ended and the answer or the reason.
+
+        Raises
+        ------
+        InputError
+            A job runs already.
+        """
+        with self._lock:
+            if self.job is not None:
+                raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
+            # Not forked: the server has threads.
+            context = multiprocessing.get_context("spawn")
+            mine, theirs = context.Pipe(duplex=False)
+            process = context.Process(target=main, args=(theirs, order), daemon=True)
+            self.job, self._process, self._cancelled = Job(words), process, False
+        process.start()
+        theirs.close()
+        threading.Thread(target=self._follow, args=(mine, process, ended), daemon=True).start()
+
+    def cancel(self) -> bool:
+        """Stop it; False where nothing runs."""
+        with self._lock:
+            if self._process is None or self.job is None:
+                return False
+            self._cancelled = True
+            self._process.kill()
+            return True
+
+    def _follow(self, connection: Any, process: BaseProcess, ended: Ended) -> None:
+        ending: Ending = "error"
+        answer: Answer | str = "the fit's process ended without an answer (out of memory?)"
+        job = self.job
+        assert job is not None
+        try:
+            while True:
+                message = connection.recv()
+                if message[0] == "progress":
+                    job.message, job.done, job.total = message[1:]
+                    self.changed()
+                else:
+                    ending, answer = message
+                    break
+        except (EOFError, OSError):
+            if self._cancelled:
+                ending, answer = "cancelled", ""
+        process.join()
+        # Whoever waits for the end of the job finds what came of it.
+        try:
+            ended(ending, answer)
+        finally:
+            with self._lock:
+                self.job = self._process = None
+            self.changed()

@@ -1,0 +1,92 @@
+"""What is kept of a model: its file, its report, constants for firmware, the next run, the runs as
+they were trimmed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from jbf.comparison.comparison import compare
+from jbf.errors import InputError
+from jbf.export import c, rust
+from jbf.reporting.comparison_page import comparison_page
+from jbf.text_files import write_texts
+from jbf.workbench.session import Session
+from jbf.workbench.session_file import save
+
+TRIMMED = "trimmed"
+
+
+def model_text(session: Session) -> str:
+    """The model file."""
+    return str(session.models.node()["model"])
+
+
+def report_text(session: Session) -> str:
+    """The page: of a diagnosis its own, of a fit the comparison with the runs."""
+    node = session.models.node()
+    if "report" in node:
+        return str(node["report"])
+    model = session.model(int(node["id"]))
+    return comparison_page(compare(model, session.on_bench().taken()))
+
+
+def rust_text(session: Session) -> str:
+    """Constants for a controller in Rust."""
+    return rust(session.model(int(session.models.node()["id"])), "model.toml")
+
+
+def c_text(session: Session) -> str:
+    """The same in C."""
+    return c(session.model(int(session.models.node()["id"])), "model.toml")
+
+
+def next_run_text(session: Session) -> str:
+    """The motion of the next experiment."""
+    diagnosis = session.models.node().get("diagnosis") or {}
+    if not diagnosis.get("next_run"):
+        raise InputError(problem="no next run was proposed", mend="diagnose; a tie proposes one")
+    return str(diagnosis["next_run"])
+
+
+TEXTS: dict[str, tuple[str, Callable[[Session], str]]] = {
+    "model": ("model.toml", model_text),
+    "report": ("report.html", report_text),
+    "rust": ("model.rs", rust_text),
+    "c": ("model.h", c_text),
+    "next_run": ("next_run.csv", next_run_text),
+}
+"""What to the file's name and what makes it."""
+
+
+def text_of(session: Session, what: str) -> tuple[str, str]:
+    """Name and text of what is asked for.
+
+    Raises
+    ------
+    InputError
+        There is no such thing, or none of this model.
+    """
+    if what not in TEXTS:
+        raise InputError(problem=f"nothing is called {what!r}", mend=f"one of {', '.join(TEXTS)}")
+    name, text = TEXTS[what]
+    return name, text(session)
+
+
+def keep(session: Session, what: str) -> list[str]:
+    """Write it into the folder; names of what was written."""
+    if what == "session":
+        return [save(session).name]
+    if what == "trimmed":
+        return _keep_trimmed(session)
+    name, text = text_of(session, what)
+    write_texts({session.folder.root / name: text})
+    return [name]
+
+
+def _keep_trimmed(session: Session) -> list[str]:
+    folder = session.folder.root / TRIMMED
+    folder.mkdir(exist_ok=True)
+    runs = session.on_bench().taken()
+    names = [f"{run.name.replace('/', '-')}.csv" for run in runs]
+    write_texts({folder / name: run.to_csv() for name, run in zip(names, runs, strict=True)})
+    return [f"{TRIMMED}/{name}" for name in names]

@@ -1,0 +1,43 @@
+"""Where a model fails, as marks on the plots: for each pattern of the residual its worst bin."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from jbf.comparison.axes import all_axes
+from jbf.comparison.bins import labels
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.patterns import Failure
+from jbf.models.catalogue import transition_speed
+from jbf.workbench.thinning import ranges_of
+
+
+def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
+    """Each pattern in words, with the stretches of each run that lie in its worst bin.
+
+    `ranges_s` maps the number of a run to pairs of instants, s.
+    """
+    model, campaign = comparison.model, comparison.campaign
+    u_tr = transition_speed(model.law, model.values.tolist())
+    binned = {axis.axis: axis for axis in all_axes(campaign, u_tr)}
+    found = []
+    for failure in comparison.failures:
+        mark: dict[str, Any] = {**failure.to_dict(), "bin": "", "ranges_s": {}}
+        axis = binned.get(failure.axis)
+        if axis is not None:
+            worst = worst_bin(failure)
+            mark["bin"] = labels(failure.axis, failure.bins)[worst]
+            for number, (p, places) in enumerate(zip(campaign.prepared, axis.places, strict=True)):
+                time = p.run.time_s
+                here = [(time[a], time[b - 1]) for a, b in ranges_of(places == worst)]
+                if here:
+                    mark["ranges_s"][str(number)] = [(float(a), float(b)) for a, b in here]
+        found.append(mark)
+    return found
+
+
+def worst_bin(failure: Failure) -> int:
+    """The bin whose mean explains most of the residual's square."""
+    return int(np.argmax(failure.counts * failure.means_n**2))

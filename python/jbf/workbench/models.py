@@ -1,0 +1,86 @@
+"""Models on the bench: a tree, each with its parent, and the one that is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from jbf.errors import InputError
+
+LARGE = ("model", "report")
+"""What the page does not need until it asks."""
+
+
+@dataclass
+class Models:
+    """The history of models.
+
+    Attributes
+    ----------
+    nodes
+        Number to what is known of a model; `parent` is the one it came from.
+    current
+        The one that the plots show.
+    beside
+        Another that is drawn beside it.
+    """
+
+    nodes: dict[int, dict[str, Any]] = field(default_factory=dict)
+    current: int | None = None
+    beside: int | None = None
+
+    def add(self, parent: int | None, words: str, content: Mapping[str, Any]) -> int:
+        """A new model, which becomes the current one."""
+        number = max(self.nodes, default=0) + 1
+        self.nodes[number] = {"id": number, "parent": parent, "words": words, **content}
+        self.current = number
+        return number
+
+    def node(self, number: int | None = None) -> dict[str, Any]:
+        """A model; the current one by default.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        at = self.current if number is None else number
+        if at is None or at not in self.nodes:
+            raise InputError(problem="there is no such model", mend="fit one")
+        return self.nodes[at]
+
+    def choose(self, number: int | None) -> None:
+        """Look at a model, or at the records alone."""
+        self.current = None if number is None else int(self.node(number)["id"])
+
+    def put_beside(self, number: int | None) -> None:
+        """Draw another beside the current one."""
+        self.beside = None if number is None else int(self.node(number)["id"])
+
+    def undo(self) -> None:
+        """Back to where the current model came from; it stays in the tree."""
+        self.current = self.node()["parent"]
+
+    def ledger(self) -> list[dict[str, Any]]:
+        """The errors from the first model to the current one."""
+        line, at = [], self.current
+        while at is not None:
+            node = self.nodes[at]
+            line.append(node)
+            at = node["parent"]
+        keys = ("id", "words", "effects", "rms_n", "holdout_rms_n", "noise_n")
+        return [{key: node.get(key) for key in keys} for node in reversed(line)]
+
+    def told(self) -> dict[str, Any]:
+        """For the page."""
+        return {
+            "current": self.current,
+            "beside": self.beside,
+            "ledger": self.ledger(),
+            "nodes": [
+                {key: value for key, value in node.items() if key not in LARGE}
+                | {"has_report": "report" in node}
+                for node in self.nodes.values()
+            ],
+        }

@@ -1,0 +1,93 @@
+"""What the plots show of a run: the record as it was read, or as a model saw it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.run import Run
+from jbf.workbench.thinning import Stretch, thinned
+
+Array = npt.NDArray[np.float64]
+DIGITS = 6
+TIME_DIGITS = 11
+"""A day in microseconds."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One run; `model_n` and `counted` are there where a model saw it."""
+
+    time_s: Array
+    velocity_m_s: Array
+    friction_n: Array | None
+    model_n: Array | None = None
+    counted: Array | None = None
+
+    @property
+    def residual_n(self) -> Array | None:
+        """Record minus prediction, N; nan where the sample does not count."""
+        if self.model_n is None or self.friction_n is None or self.counted is None:
+            return None
+        return np.where(self.counted > 0, self.friction_n - self.model_n, np.nan)
+
+    def columns(self) -> dict[str, Array]:
+        """What there is, by name."""
+        found: Mapping[str, Array | None] = {
+            "velocity_m_s": self.velocity_m_s,
+            "friction_n": self.friction_n,
+            "model_n": self.model_n,
+            "residual_n": self.residual_n,
+        }
+        return {name: values for name, values in found.items() if values is not None}
+
+
+def as_read(run: Run) -> Seen:
+    """A run as its file has it."""
+    speed = run.velocity_m_s
+    if not np.any(np.isfinite(speed)):
+        path = run.position_m if run.position_m is not None else run.angle_rad
+        speed = np.zeros(len(run)) if path is None else np.gradient(path, run.time_s)
+    return Seen(run.time_s, speed, run.friction_n)
+
+
+@lru_cache(maxsize=64)
+def as_modelled(file: Path) -> Seen:
+    """A run as a model saw it, from the file that the fit left."""
+    time, speed, friction, model, counted = np.load(file, mmap_mode="r")
+    return Seen(time, speed, friction, model, counted)
+
+
+def drawn(seen: Seen, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
+    """A stretch of a run in as many points as its pixels can show."""
+    begin = seen.time_s[0] if from_s is None else from_s
+    end = seen.time_s[-1] if to_s is None else to_s
+    stretch = Stretch.between(seen.time_s, float(begin), float(end), pixels)
+    found = thinned(seen.time_s, seen.columns(), stretch)
+    return {
+        "samples": len(seen.time_s),
+        "from_s": float(seen.time_s[0]),
+        "to_s": float(seen.time_s[-1]),
+        "stride": stretch.stride,
+        **{name: listed(values, TIME_DIGITS if name == "time_s" else DIGITS)
+           for name, values in found.items()},
+    }  # fmt: skip
+
+
+def listed(values: Sequence[float] | Array, digits: int = DIGITS) -> list[float | None]:
+    """Numbers for JSON, rounded to what a screen shows; None where there is none."""
+    array = np.asarray(values, dtype=float)
+    finite = np.isfinite(array)
+    scale = float(np.max(np.abs(array[finite]), initial=0.0)) or 1.0
+    decimals = digits - 1 - int(np.floor(np.log10(scale)))
+    # Beyond, the factor that numpy rounds by is no number.
+    rounded = np.round(array, decimals) if abs(decimals) < 200 else array
+    if finite.all():
+        return rounded.tolist()  # type: ignore[no-any-return]
+    return [v if ok else None for v, ok in zip(rounded.tolist(), finite.tolist(), strict=True)]

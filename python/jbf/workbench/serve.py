@@ -1,0 +1,76 @@
+"""Opening the workbench: a port on loopback, a token, the server."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+from collections.abc import Callable
+
+from jbf.errors import InputError
+from jbf.workbench import vendored
+from jbf.workbench.files import Folder
+from jbf.workbench.session import Session
+from jbf.workbench.session_file import load
+
+HOST = "127.0.0.1"
+
+
+def listening(port: int) -> socket.socket:
+    """A socket on loopback; port 0 takes a free one.
+
+    Raises
+    ------
+    InputError
+        The port is taken.
+    """
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((HOST, port))
+    except (OSError, OverflowError) as error:
+        listener.close()
+        problem = f"port {port} cannot be had ({error})"
+        raise InputError(file="--port", problem=problem, mend="leave it out: any") from None
+    return listener
+
+
+def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool = False) -> None:
+    """Serve the page over a folder until Ctrl-C; `opened` is called with its address.
+
+    Raises
+    ------
+    InputError
+        There is no such folder, the port is taken, or what the page draws with is not installed.
+    """
+    try:
+        import uvicorn
+
+        from jbf.workbench.actions import demo as open_demo
+        from jbf.workbench.app import create_app
+    except ImportError:
+        mend = 'pip install "jbf[workbench]"'
+        raise InputError(problem="Starlette or uvicorn is not installed", mend=mend) from None
+    if not vendored.is_there():
+        mend = "python -m jbf.workbench.vendored (once, with a network)"
+        raise InputError(problem=f"{vendored.NAME} was not fetched when this was built", mend=mend)
+    listener = listening(port)
+    session = Session(Folder.of(folder))
+    try:
+        if demo:
+            open_demo(session, {})
+        else:
+            load(session)
+        token = secrets.token_urlsafe(24)
+        at = listener.getsockname()[1]
+        config = uvicorn.Config(
+            create_app(session, token, at),
+            log_level="warning",
+            lifespan="off",
+            timeout_graceful_shutdown=1,
+        )
+        # In the fragment it is sent to no server and stands in no log.
+        opened(f"http://{HOST}:{at}/#token={token}")
+        uvicorn.Server(config).run(sockets=[listener])
+    finally:
+        session.close()
+        listener.close()

@@ -1,0 +1,251 @@
+"""A session: the bench, the models made on it, and the fit that runs."""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError
+from jbf.models.catalogue import effects as catalogue
+from jbf.models.catalogue import find_effect, find_law, laws, why_not
+from jbf.models.chain import check_rig
+from jbf.models.model import Model
+from jbf.models.vocabulary import AUTO
+from jbf.records.rig import Rig
+from jbf.workbench.bench import Bench
+from jbf.workbench.files import Folder
+from jbf.workbench.jobs import Ending, Jobs
+from jbf.workbench.models import Models
+from jbf.workbench.said import commands, python
+from jbf.workbench.work import Kind, Order
+
+
+class Session:
+    """What a page shows of a folder.
+
+    Attributes
+    ----------
+    version
+        Grows with every change; whoever looks on asks again then.
+    lock
+        Held while the bench or the models change.
+    """
+
+    def __init__(self, folder: Folder) -> None:
+        self.folder = folder
+        self.version = 1
+        self.lock = threading.RLock()
+        self.jobs = Jobs(self.changed)
+        self.message: dict[str, str] = {}
+        self.bench: Bench | None = None
+        self.models = Models()
+        self.law = "journal"
+        self._kept = tempfile.TemporaryDirectory(prefix="jbf-workbench-")
+        self._places = 0
+        self._loaded: dict[int, Model] = {}
+
+    def changed(self) -> None:
+        """There is news."""
+        self.version += 1
+
+    def say(self, kind: str, words: str) -> None:
+        """A line for whoever looks on; `kind` is `done` or `error`."""
+        self.message = {"kind": kind, "words": words}
+        self.changed()
+
+    def on_bench(self) -> Bench:
+        """The bench.
+
+        Raises
+        ------
+        InputError
+            Nothing is on it.
+        """
+        if self.bench is None:
+            raise InputError(problem="nothing is on the bench", mend="open a rig and its runs")
+        return self.bench
+
+    def open(self, rig_name: str, run_names: Sequence[str]) -> None:
+        """Put a rig and runs on the bench, in the place of what was there.
+
+        Raises
+        ------
+        InputError
+            A file is wrong, or a fit is running; what was there stays.
+        """
+        self.put(Bench.read(self.folder, rig_name, run_names), Models())
+        self.say("done", f"{len(run_names)} runs of {rig_name} are on the bench")
+
+    def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
+        """Take this bench, and models that were made on it."""
+        with self.lock:
+            if self.jobs.job is not None:
+                raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
+            self.bench, self.models = bench, models
+            self._loaded = {}
+            self.law = law or first_law(bench.rig)
+        bench.looked_at(self.changed)
+
+    def choose_law(self, law: str) -> None:
+        """The base law of models that have no parent."""
+        if law != AUTO:
+            find_law(law)
+            check_rig(self.on_bench().rig, law)
+        self.law = law
+        self.changed()
+
+    def begin(self, kind: Kind, effects: Sequence[str], parent: int | None) -> None:
+        """Start a fit (`round`), a diagnosis, or the comparison of a model that has no records.
+
+        Raises
+        ------
+        InputError
+            Nothing is on the bench, a fit is running, or the law does not go with it.
+        """
+        with self.lock:
+            bench = self.on_bench()
+            law = self.law if parent is None else str(self.models.node(parent)["law"])
+            for name in effects:
+                find_effect(name)
+            if kind == "round" and law == AUTO:
+                mend = "choose a law, or diagnose"
+                raise InputError(problem="auto is a choice that a diagnosis makes", mend=mend)
+            place = self._new_place()
+            order = Order(kind, bench.rig, bench.taken(), place, law, effects=tuple(effects))
+            words = _words(kind, law, effects)
+
+            def ended(ending: Ending, answer: Any) -> None:
+                self._ended(ending, answer, parent, words, place)
+
+            self.message = {}
+            self.jobs.start(words, order, ended)
+        self.changed()
+
+    def show(self, number: int | None) -> None:
+        """Look at a model, or (None) at the records alone; compares it with the runs where that
+        has not been done, as after a session was opened."""
+        with self.lock:
+            self.models.choose(number)
+            if number is not None and self.records(number) is None:
+                self._compare(number)
+        self.changed()
+
+    def _compare(self, number: int) -> None:
+        node, bench = self.models.node(number), self.on_bench()
+        place = self._new_place()
+        file = place.with_suffix(".toml")
+        file.write_text(node["model"], encoding="utf-8")
+        order = Order("compare", bench.rig, bench.taken(), place, model=file)
+
+        def ended(ending: Ending, answer: Any) -> None:
+            if ending == "done":
+                node.update(records=place.name, record_names=answer["record_names"])
+            elif ending == "error":
+                self.say("error", str(answer))
+
+        self.jobs.start(f"comparing {node['words']}", order, ended)
+
+    def _new_place(self) -> Path:
+        self._places += 1
+        return Path(self._kept.name) / str(self._places)
+
+    def _ended(
+        self, ending: Ending, answer: Any, parent: int | None, words: str, place: Path
+    ) -> None:
+        if ending == "done":
+            with self.lock:
+                named = " + ".join([answer["law"], *answer["effects"]])
+                told = f"diagnosed: {named}" if "diagnosis" in answer else named
+                self.models.add(parent, told, {**answer, "records": place.name})
+            self.say("done", f"{words}: done")
+        elif ending == "cancelled":
+            self.say("done", f"{words}: cancelled; the models so far are kept")
+        else:
+            self.say("error", f"{words}: {answer}")
+
+    def records(self, number: int) -> dict[str, Path] | None:
+        """Run to the file of what a model saw of it; None where it has not been compared."""
+        node = self.models.node(number)
+        place = Path(self._kept.name) / str(node.get("records", ""))
+        if not node.get("records") or not place.is_dir():
+            return None
+        names = node["record_names"]
+        return {name: place / f"{index}.npy" for index, name in enumerate(names)}
+
+    def model(self, number: int) -> Model:
+        """A model of the tree."""
+        text = str(self.models.node(number)["model"])
+        if number not in self._loaded:
+            file = Path(self._kept.name) / f"model-{number}.toml"
+            file.write_text(text, encoding="utf-8")
+            self._loaded[number] = Model.load(file)
+        return self._loaded[number]
+
+    def told(self) -> dict[str, Any]:
+        """Everything, for the page."""
+        with self.lock:
+            job, bench = self.jobs.job, self.bench
+            told: dict[str, Any] = {
+                "version": self.version,
+                "folder": str(self.folder.root),
+                "rig": None if bench is None else bench.rig_name,
+                "units": None if bench is None else _units(bench.rig),
+                "runs": [] if bench is None else bench.told(),
+                "law": self.law,
+                "laws": [*laws(), AUTO],
+                "effects": self._effects(),
+                "job": None if job is None else job.to_dict(),
+                "message": self.message,
+                **self.models.told(),
+            }
+            if bench is not None and self.models.current is not None:
+                from_here = (self.models.node(), bench.rig_name, bench.files(), bench.trims)
+                told["command"], told["python"] = commands(*from_here), python(*from_here)
+            return told
+
+    def _effects(self) -> list[dict[str, Any]]:
+        node = self.models.nodes.get(self.models.current or 0)
+        law = self.law if node is None else str(node["law"])
+        return [
+            {
+                "name": page.name,
+                "summary": page.summary,
+                "refused": None if law == AUTO else why_not(page, law),
+            }
+            for page in catalogue().values()
+        ]
+
+    def close(self) -> None:
+        """Stop what runs, and leave nothing behind."""
+        self.jobs.cancel()
+        self._kept.cleanup()
+
+
+def first_law(rig: Rig) -> str:
+    """The law that a rig is met with: a bearing's where all is known of it."""
+    if rig.drive is not None:
+        return AUTO
+    try:
+        check_rig(rig, "journal")
+    except InputError:
+        return "stribeck"
+    return "journal"
+
+
+def _units(rig: Rig) -> dict[str, str]:
+    said = rig.quantities
+    return {
+        "force": said.force,
+        "speed": said.speed,
+        "velocity": said.velocity,
+        "friction": said.friction,
+    }
+
+
+def _words(kind: Kind, law: str, effects: Sequence[str]) -> str:
+    if kind == "diagnose":
+        return f"diagnosis of {law}"
+    return " + ".join([law, *effects])

@@ -1,0 +1,89 @@
+"""The session's file: what was on the bench and every model, to go on another day."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from jbf.errors import InputError
+from jbf.text_files import read_text, write_text
+from jbf.workbench.bench import Bench
+from jbf.workbench.models import Models
+from jbf.workbench.session import Session
+
+FILE = "workbench.json"
+FORMAT = "jbf workbench 1"
+
+
+def save(session: Session) -> Path:
+    """Write the file into the session's folder; gives its path.
+
+    Raises
+    ------
+    InputError
+        Nothing is on the bench, or the file cannot be written.
+    """
+    with session.lock:
+        bench, models = session.on_bench(), session.models
+        content = {
+            "format": FORMAT,
+            "rig": bench.rig_name,
+            "runs": list(bench.run_names),
+            "trims": bench.trims,
+            "excluded": sorted(bench.excluded),
+            "law": session.law,
+            "current": models.current,
+            "models": [
+                {k: v for k, v in node.items() if k != "records"} for node in models.nodes.values()
+            ],
+        }
+        path = session.folder.root / FILE
+        write_text(path, json.dumps(content, indent=1))
+    return path
+
+
+def load(session: Session) -> bool:
+    """Go on where the folder's file left off; False where there is none.
+
+    Raises
+    ------
+    InputError
+        It is broken, of another format, or names files that are not there any more.
+    """
+    path = session.folder.root / FILE
+    if not path.exists():
+        return False
+    try:
+        content = json.loads(read_text(path))
+    except json.JSONDecodeError as error:
+        mend = "remove it"
+        raise InputError(file=path, row=error.lineno, problem="is no JSON", mend=mend) from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(file=path, problem=f"is not of the format {FORMAT!r}", mend="remove it")
+    try:
+        bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
+        for name, span in content["trims"].items():
+            bench.trim(name, (float(span[0]), float(span[1])))
+        for name in content["excluded"]:
+            bench.leave_out(name, True)
+        models = Models({int(node["id"]): _node(node) for node in content["models"]})
+        law, current = str(content["law"]), content["current"]
+        models.choose(current)
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        problem = f"is broken ({type(error).__name__}: {error})"
+        raise InputError(file=path, problem=problem, mend="remove it") from None
+    session.put(bench, models, law)
+    if current is not None:
+        session.show(int(current))
+    session.say("done", f"the session of {path.name} goes on")
+    return True
+
+
+def _node(node: dict[str, Any]) -> dict[str, Any]:
+    """A model's entry with all that the page counts on; the rest is as it was written."""
+    for key in ("id", "words", "law", "effects", "model", "rms_n"):
+        node[key]
+    return node

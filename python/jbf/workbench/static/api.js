@@ -1,0 +1,64 @@
+// Asking the server: every request carries the token that came with the address.
+
+const fromAddress = new URLSearchParams(location.hash.slice(1)).get("token");
+if (fromAddress) {
+  sessionStorage.setItem("jbf-token", fromAddress);
+  history.replaceState(null, "", location.pathname);
+}
+const headers = { "X-JBF-Token": sessionStorage.getItem("jbf-token") ?? "" };
+
+async function answered(response) {
+  if (response.ok) return response;
+  const text = await response.text();
+  let words = text;
+  try { words = JSON.parse(text).error; } catch { /* plain words */ }
+  throw new Error(words);
+}
+
+export async function get(name, asked = {}) {
+  const query = new URLSearchParams();
+  for (const [key, value] of Object.entries(asked)) {
+    if (value !== null && value !== undefined) query.set(key, value);
+  }
+  return (await answered(await fetch(`/api/${name}?${query}`, { headers }))).json();
+}
+
+export async function post(name, asked = {}) {
+  const body = JSON.stringify(asked);
+  return (await answered(await fetch(`/api/${name}`, { method: "POST", headers, body }))).json();
+}
+
+export async function upload(file) {
+  const at = `/api/upload?name=${encodeURIComponent(file.name)}`;
+  return (await answered(await fetch(at, { method: "POST", headers, body: file }))).json();
+}
+
+// A text as a file of the browser's own.
+export async function download(what, name) {
+  const response = await answered(await fetch(`/api/text?what=${what}`, { headers }));
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await response.blob());
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+// The state whenever it changes; begins anew where the line breaks.
+export async function follow(told, lost) {
+  for (;;) {
+    try {
+      const response = await answered(await fetch("/api/events", { headers }));
+      const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+      let rest = "";
+      for (;;) {
+        const { value, done } = await reader.read();
+        if (done) break;
+        const parts = (rest + value).split("\n\n");
+        rest = parts.pop();
+        for (const part of parts) if (part.startsWith("data: ")) told(JSON.parse(part.slice(6)));
+      }
+      lost("The server has ended: start jbf workbench again.");
+    } catch (error) { lost(error.message); }
+    await new Promise((resolve) => setTimeout(resolve, 2000));
+  }
+}

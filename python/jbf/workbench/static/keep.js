@@ -1,0 +1,48 @@
+// Room 4: the session, the model, its report, constants for firmware, and the same by command.
+import { download } from "./api.js";
+import { h, put } from "./dom.js";
+
+const THINGS = [
+  ["session", "The session (workbench.json)", "all models and trims; jbf workbench on this folder goes on with it", null],
+  ["model", "The model (model.toml)", "for jbf predict, compare, export", "model.toml"],
+  ["report", "The report (report.html)", "one page with pictures, to send", "report.html"],
+  ["rust", "Constants in Rust (model.rs)", "for a controller with jbf-core", "model.rs"],
+  ["c", "Constants in C (model.h)", "for a controller with jbf-c", "model.h"],
+  ["next_run", "The next run's motion (next_run.csv)", "to be played by the rig", "next_run.csv"],
+  ["trimmed", "The runs as trimmed (trimmed/)", "CSV files, without the runs left out", null],
+];
+
+export class KeepRoom {
+  constructor(page, place) {
+    this.page = page; this.place = place;
+    this.list = h("div"); this.words = h("p", { role: "status" }); this.same = h("div");
+    place.append(h("h2", {}, "Keep"), this.list, this.words, this.same);
+  }
+
+  told() {
+    const { page } = this, node = page.model;
+    const there = (what) => (what === "session" || what === "trimmed" ? page.state.runs.length > 0
+      : node && (what !== "next_run" || node.diagnosis?.next_run));
+    put(this.list, h("table", {}, h("tbody", {}, THINGS.map(([what, title, why, file]) => h("tr", {},
+      h("td", {}, h("button", { "data-key": `keep-${what}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
+      h("td", {}, file ? h("button", { "data-key": `get-${what}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
+      h("td", {}, title), h("td", { class: "faint" }, why))))));
+    put(this.same, node ? [h("h2", {}, "The same by command"), this.copied(page.state.command), h("h2", {}, "The same in Python"), this.copied(page.state.python)] : null);
+  }
+
+  looked() {}
+
+  copied(text) {
+    return h("div", {}, h("pre", {}, text), h("button", { onclick: () => navigator.clipboard.writeText(text) }, "Copy"));
+  }
+
+  async keep(what) {
+    put(this.words, "…");
+    const found = await this.page.do("keep", { what });
+    put(this.words, found ? `Written: ${found.written.join(", ")}` : "");
+  }
+
+  async get(what, file) {
+    try { await download(what, file); } catch (error) { this.page.say(error.message); }
+  }
+}

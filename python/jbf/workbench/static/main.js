@@ -1,0 +1,85 @@
+// The page: rooms, what is looked at, and news from the server.
+import { follow, post } from "./api.js";
+import { h, put } from "./dom.js";
+import { DataRoom } from "./data.js";
+import { SeeRoom } from "./see.js";
+import { LearnRoom } from "./learn.js";
+import { KeepRoom } from "./keep.js";
+import { showModels, showRuns } from "./side.js";
+
+const ROOMS = { Data: DataRoom, See: SeeRoom, Learn: LearnRoom, Keep: KeepRoom };
+const place = (id) => document.getElementById(id);
+
+class Page {
+  constructor() {
+    this.state = null; this.room = null; this.name = "Data";
+    // What is looked at: a run, a stretch of it, a selection, a pattern, an effect.
+    this.run = null; this.span = [null, null]; this.selection = null; this.mark = null; this.effect = null;
+    document.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  get model() { return this.state.nodes.find((node) => node.id === this.state.current) ?? null; }
+  get units() { return this.state.units ?? { force: "N", speed: "m/s", velocity: "speed", friction: "friction" }; }
+
+  told(state) {
+    const before = this.state;
+    this.state = state;
+    const names = state.runs.map((run) => run.name);
+    if (!names.includes(this.run)) { this.run = names[0] ?? null; this.span = [null, null]; this.selection = null; }
+    if (before && before.current !== state.current) this.mark = null;
+    this.tabs(); this.head();
+    showRuns(this, place("runs")); showModels(this, place("models"));
+    if (!this.room) this.enter(names.length ? this.name : "Data");
+    else this.room.told(before);
+    document.body.dataset.version = state.version;
+  }
+
+  enter(name) {
+    this.name = name;
+    place("room").replaceChildren();
+    this.room = new ROOMS[name](this, place("room"));
+    this.tabs();
+    this.room.told(null);
+  }
+
+  tabs() {
+    put(place("tabs"), Object.keys(ROOMS).map((name, i) => h("button", {
+      role: "tab", "aria-selected": String(name === this.name), title: `key ${i + 1}`, "data-key": `tab-${name}`,
+      onclick: () => this.enter(name),
+    }, `${i + 1} ${name}`)));
+  }
+
+  head() {
+    const { job, message } = this.state;
+    put(place("job"), job ? [
+      h("progress", job.total ? { value: job.done, max: job.total } : {}),
+      ` ${job.words}: ${job.message}, ${job.elapsed_s.toFixed(0)} s `,
+      h("button", { "data-key": "cancel", onclick: () => this.do("cancel") }, "Cancel"),
+    ] : []);
+    if (!this.own) { place("message").textContent = message.words ?? ""; place("message").className = message.kind ?? ""; }
+  }
+
+  say(words, kind = "error") {
+    this.own = Boolean(words);
+    place("message").textContent = words; place("message").className = kind;
+  }
+
+  // Ask the server to do something; what goes wrong is said where it can be read.
+  async do(name, asked = {}) {
+    try { this.say("", ""); return await post(name, asked); } catch (error) { this.say(error.message); return null; }
+  }
+
+  // What is looked at has changed.
+  look(changes) { Object.assign(this, changes); showRuns(this, place("runs")); this.room.looked(changes); }
+
+  key(event) {
+    if (["INPUT", "TEXTAREA", "SELECT"].includes(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
+    const name = Object.keys(ROOMS)[Number(event.key) - 1];
+    if (name) this.enter(name);
+    else if (event.key === "z" && this.model) this.do("undo");
+    else if (event.key === "Escape") this.look({ selection: null, mark: null });
+  }
+}
+
+const page = new Page();
+follow((state) => page.told(state), (words) => page.say(words));

@@ -1,0 +1,74 @@
+"""uPlot, which draws the curves: not part of this repository, fetched once by version and hash.
+
+`python -m jbf.workbench.vendored` puts it beside this file; wheels bring it along.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+import os
+import sys
+import tarfile
+import urllib.request
+from pathlib import Path
+
+NAME, VERSION = "uPlot", "1.6.32"
+ADDRESS = f"https://registry.npmjs.org/uplot/-/uplot-{VERSION}.tgz"
+SHA512 = "KIMVnG68zvu5XXUbC4LQEPnhwOxBuLyW1AHtpm6IKTXImkbLgkMy+jabjLgSLMasNuGGzQm/ep3tOkyTxpiQIw=="
+"""Of the archive, as the registry states it for this version."""
+FILES = {
+    "package/dist/uPlot.iife.min.js": "uPlot.iife.min.js",
+    "package/dist/uPlot.min.css": "uPlot.min.css",
+    "package/LICENSE": "uPlot.LICENSE",
+}
+HERE = Path(__file__).resolve().parent / "vendored_files"
+
+
+def file(name: str) -> Path | None:
+    """One of the files; None where it is none of them, or was not fetched."""
+    path = HERE / name
+    return path if name in FILES.values() and path.is_file() else None
+
+
+def is_there() -> bool:
+    """Whether all files were fetched."""
+    return all(file(name) for name in FILES.values())
+
+
+def unpacked(archive: bytes) -> dict[str, bytes]:
+    """The files in the archive.
+
+    Raises
+    ------
+    ValueError
+        It is not the archive that was reviewed.
+    """
+    found = base64.b64encode(hashlib.sha512(archive).digest()).decode("ascii")
+    if found != SHA512:
+        raise ValueError(f"{NAME} {VERSION} has the hash {found}, not {SHA512}")
+    with tarfile.open(fileobj=io.BytesIO(archive), mode="r:gz") as tar:
+        contents = {}
+        for member, name in FILES.items():
+            part = tar.extractfile(member)
+            assert part is not None, member
+            contents[name] = part.read()
+        return contents
+
+
+def fetch() -> None:
+    """Fetch the archive from the registry, check it, and keep what is needed."""
+    with urllib.request.urlopen(ADDRESS, timeout=60) as answer:
+        contents = unpacked(answer.read())
+    HERE.mkdir(exist_ok=True)
+    for name, content in contents.items():
+        part = HERE / f".{name}.part"
+        part.write_bytes(content)
+        os.replace(part, HERE / name)
+
+
+if __name__ == "__main__":
+    if not is_there():
+        fetch()
+    sys.stdout.write(f"{NAME} {VERSION} is in {HERE}\n")

@@ -1,0 +1,63 @@
+"""A folder with a small campaign, a session over it, and a client that may ask."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("starlette", reason="the workbench's server is an extra")
+
+from conftest import make_runs
+from jbf.workbench.files import Folder
+from jbf.workbench.session import Session
+from starlette.testclient import TestClient
+from workbench_parts import client_of
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a rig and three runs with dry friction that the law lacks."""
+    folder = tmp_path_factory.mktemp("bench")
+    rig = files("jbf") / "data" / "demo" / "plain" / "rig.toml"
+    (folder / "rig.toml").write_text(rig.read_text())
+    for run in make_runs({"coulomb_drag": {"F_d_n": 2.0}}):
+        (folder / f"{run.name}.csv").write_text(run.to_csv())
+    return folder
+
+
+@pytest.fixture
+def session(campaign: Path) -> Iterator[Session]:
+    """A session over the folder, with nothing on the bench."""
+    made = Session(Folder.of(campaign))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def on_bench(session: Session, campaign: Path) -> Session:
+    """The same with the campaign on the bench."""
+    session.open("rig.toml", sorted(path.name for path in campaign.glob("*.csv")))
+    return session
+
+
+@pytest.fixture
+def client(session: Session) -> TestClient:
+    """A client that has the right host and the token."""
+    return client_of(session)
+
+
+@pytest.fixture
+def ended() -> Callable[[Session], None]:
+    """Waits until no fit runs."""
+
+    def wait(session: Session) -> None:
+        limit = time.monotonic() + 120.0
+        while session.jobs.job is not None:
+            assert time.monotonic() < limit, "the fit did not end"
+            time.sleep(0.02)
+
+    return wait

@@ -1,0 +1,158 @@
+"""Who may ask the workbench: each way in that other local servers left open, shut."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("starlette", reason="the workbench's server is an extra")
+
+from jbf.workbench.guard import POLICY
+from jbf.workbench.session import Session
+from starlette.testclient import TestClient
+from workbench_parts import PORT, TOKEN, client_of
+
+OWN = f"127.0.0.1:{PORT}"
+PATHS = ["/", "/api/state", "/api/files", "/static/main.js"]
+
+
+@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize(
+    "host",
+    ["evil.example", f"evil.example:{PORT}", "127.0.0.1", f"127.0.0.1:{PORT + 1}", "0.0.0.0"],
+)
+def test_a_foreign_host_is_refused_everywhere(client: TestClient, path: str, host: str) -> None:
+    answer = client.get(path, headers={"host": host})
+    assert answer.status_code == 400
+    assert "token" not in answer.text.lower()
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "null", f"https://{OWN}", "http://127.0.0.1:1"]
+)
+@pytest.mark.parametrize("method", ["GET", "POST"])
+def test_a_foreign_origin_is_refused_even_with_the_token(
+    client: TestClient, origin: str, method: str
+) -> None:
+    path = "/api/state" if method == "GET" else "/api/undo"
+    assert client.request(method, path, headers={"origin": origin}).status_code == 403
+
+
+def test_a_foreign_page_s_image_or_script_is_refused(client: TestClient) -> None:
+    for site in ("cross-site", "same-site"):
+        assert client.get("/static/main.js", headers={"sec-fetch-site": site}).status_code == 403
+
+
+def test_its_own_page_may_ask(client: TestClient) -> None:
+    own = {"origin": f"http://{OWN}", "sec-fetch-site": "same-origin"}
+    assert client.get("/api/state", headers=own).status_code == 200
+    assert client.get("/api/state", headers={"host": f"localhost:{PORT}"}).status_code == 200
+
+
+@pytest.mark.parametrize("token", ["", "wrong", TOKEN[:-1], TOKEN + "x", "ä"])
+def test_without_the_token_nothing_is_told_or_done(client: TestClient, token: str) -> None:
+    headers = {"x-jbf-token": token.encode("latin-1")}
+    for method, path in (("GET", "/api/state"), ("POST", "/api/open"), ("GET", "/api/events")):
+        answer = client.request(method, path, headers=headers)
+        assert answer.status_code == 403, (method, path)
+        assert TOKEN not in answer.text
+
+
+def test_the_page_itself_holds_no_token(client: TestClient) -> None:
+    page = client.get("/", headers={"x-jbf-token": ""})
+    assert page.status_code == 200
+    assert TOKEN not in page.text
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_every_answer_says_what_a_page_may_load_and_allows_no_other_origin(
+    client: TestClient, path: str
+) -> None:
+    answer = client.get(path)
+    assert answer.headers["content-security-policy"] == POLICY
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    assert answer.headers["cross-origin-resource-policy"] == "same-origin"
+    assert not [name for name in answer.headers if name.startswith("access-control-")]
+
+
+def test_the_policy_allows_nothing_but_this_server() -> None:
+    parts = dict(part.split(" ", 1) for part in POLICY.split("; "))
+    assert parts["default-src"] == "'none'"
+    assert parts["script-src"] == "'self'"
+    assert parts["frame-ancestors"] == "'none'"
+    assert "unsafe" not in POLICY
+    assert "http" not in POLICY
+
+
+def test_a_preflight_request_is_granted_nothing(client: TestClient) -> None:
+    headers = {"origin": "http://evil.example", "access-control-request-method": "POST"}
+    answer = client.options("/api/open", headers=headers)
+    assert answer.status_code == 403
+    assert "access-control-allow-origin" not in answer.headers
+
+
+def test_a_web_socket_finds_nobody(client: TestClient) -> None:
+    with pytest.raises(Exception), client.websocket_connect("/api/events"):  # noqa: B017, PT011
+        pass
+
+
+@pytest.mark.parametrize("declared", [True, False])
+def test_an_upload_has_a_largest_size(session: Session, campaign: Path, declared: bool) -> None:
+    client = client_of(session, largest=1000)
+    body = b"x" * 4000
+    content = body if declared else iter([body[:500], body[500:]])
+    answer = client.post("/api/upload?name=big.csv", content=content)
+    assert answer.status_code == 413
+    assert not list(campaign.glob("*big*"))
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../up.csv", "a/b.csv", "..", "", "/etc/x.csv", ".hidden.csv", "run.py", "run.html",
+     "a\\b.csv", "model.so", "x.csv\0.toml", "rig.toml"],
+)  # fmt: skip
+def test_an_upload_goes_under_a_new_bare_name_or_not_at_all(
+    client: TestClient, campaign: Path, name: str
+) -> None:
+    before = sorted(campaign.parent.rglob("*"))
+    answer = client.post("/api/upload", params={"name": name}, content=b"t,v\n")
+    assert answer.status_code == 422
+    assert "error" in answer.json()
+    assert sorted(campaign.parent.rglob("*")) == before
+
+
+def test_an_upload_arrives_whole(client: TestClient, campaign: Path) -> None:
+    assert client.post("/api/upload?name=new.csv", content=b"time_s\n1\n").status_code == 200
+    assert (campaign / "new.csv").read_bytes() == b"time_s\n1\n"
+    (campaign / "new.csv").unlink()
+
+
+@pytest.mark.parametrize(
+    "name", ["../secret.toml", "/etc/passwd", "link/rig.toml", "..%2fsecret.toml"]
+)
+@pytest.mark.parametrize("address", ["open", "look"])
+def test_no_path_of_the_page_leads_outside_the_folder(
+    client: TestClient, campaign: Path, name: str, address: str
+) -> None:
+    outside = campaign.parent / "outside"
+    outside.mkdir(exist_ok=True)
+    (outside / "rig.toml").write_text("secret = 1\n")
+    (campaign.parent / "secret.toml").write_text("secret = 1\n")
+    link = campaign / "link"
+    if not link.exists():
+        link.symlink_to(outside)
+    asked = {"rig": name, "runs": [name], "file": name}
+    answer = client.post(f"/api/{address}", json=asked)
+    assert answer.status_code == 422
+    assert "not a name in the folder" in answer.json()["error"] or "does not exist" in answer.text
+    assert "secret = 1" not in answer.text
+    link.unlink()
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/static/../app.py", "/static/%2e%2e/app.py", "/vendored/..%2fapp.py", "/vendored/guard.py"],
+)
+def test_no_source_is_served(client: TestClient, path: str) -> None:
+    assert client.get(path).status_code == 404

@@ -198,3 +198,26 @@ def test_all_sizes_of_an_effect_grow_together() -> None:
     for i, page in enumerate(pages):
         known = 2.0 * found.usual[i] if i in sizes else found.usual[i]
         assert twice[i] == pytest.approx(np.clip(known, page.lower, page.upper)), page.name
+
+
+def swings(beside_s: float) -> list[Run]:
+    """Motions that turn round between two samples, but for one, which is read so long after."""
+    found = []
+    for k, period in enumerate((4.0, 2.4)):
+        t = 0.01 + 0.02 * np.arange(1000)
+        if k == 0:
+            t[np.searchsorted(t, 10.0)] = 10.0 + beside_s
+        v = 0.1 * np.sin(2.0 * np.pi * t / period)
+        noise = NOISE_N * np.random.default_rng(k).standard_normal(len(t))
+        found.append(Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=f"{k}"))
+    return found
+
+
+def test_one_sample_beside_a_reversal_is_no_evidence_of_a_lag() -> None:
+    """A lag of half a millisecond shows in that sample alone: nobody would name it for that."""
+    usual, beside = (
+        of(power(candidates(swings(after)), (), ["sensor_lag"]), "sensor_lag").found_80
+        for after in (0.01, 0.0005)
+    )
+    assert usual is not None
+    assert beside == pytest.approx(usual, rel=0.3)

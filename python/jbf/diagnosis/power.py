@@ -22,7 +22,7 @@ from scipy import optimize, stats
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
-from jbf.estimation.likelihood import unexplained_square
+from jbf.estimation.likelihood import unexplained
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come
 
@@ -39,6 +39,12 @@ NEARLY_ALL = 0.97
 """Share of a gain from which on a noise that is described anew forgives nothing of it."""
 BEYOND = 1.2
 """Times the strength at which that is asked: where colour just earns its price, chance decides."""
+MOST = 9.0
+"""Square, in noises, from which on a sample tells no more: one that stands out alone is no evidence
+of a law but a bad sample, or an instant of reversal that nobody knows."""
+FURTHER = 2.0
+"""Times the strength at which it is found at which a rival is looked at, too: its change has
+another shape there where it does not grow in proportion."""
 NEVER = 30.0
 """Times the strength that shows an effect from which on two effects are one in these runs."""
 
@@ -122,7 +128,8 @@ class _Seen:
     change
         Of the first, shape (n,): in units of the noise, apart from what the model makes up for.
     ways
-        The same and what the effect's own parameters change there, shape (n, 1 + k).
+        The same, what it changes when it is `FURTHER` stronger, and what the effect's own
+        parameters change there, shape (n, 2 + k).
     """
 
     times: tuple[float, ...]
@@ -186,7 +193,7 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
     little, enough = 0.0, np.inf
     for _ in range(LOOKS):
         left = runs.shown(runs.change(model, times))
-        worth = float(np.sum(left**2))
+        worth = _worth(left)
         further = float(np.clip(np.sqrt(wanted / max(worth, 1e-300)), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times
@@ -207,12 +214,18 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
     return times if worth > 0.5 * wanted else np.nan
 
 
+def _worth(left: Array) -> float:
+    """What is told by what is left of a change, in units of the noise."""
+    return float(np.sum(np.minimum(left**2, MOST)))
+
+
 def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Array:
     """What an effect changes, and what its parameters change, apart from what the model can."""
     problem = model.problem.thinned
     own = [k for k, i in enumerate(problem.open) if problem.names[i].startswith(f"{model.name}.")]
     _, slopes = problem.linearise(model.values(times))
-    return np.column_stack([change, runs.shown([j[:, own] for j in slopes])])
+    more = runs.shown(runs.change(model, FURTHER * times))
+    return np.column_stack([change, more, runs.shown([j[:, own] for j in slopes])])
 
 
 def _power(
@@ -237,7 +250,7 @@ def _power(
             dearer = mine - price_of(candidates, _parameters(runs.base, rival))
             # The difference of two gains is normal, with four times its mean as variance.
             needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
-            left = np.sqrt(unexplained_square(seen[other].ways, own.change))
+            left = np.sqrt(_worth(unexplained(seen[other].ways, own.change)))
             alone[other] = needed / max(left, 1e-300)
     like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
     most = max([1.0, *alone.values()])

@@ -104,10 +104,15 @@ def promised_gain(r: Array, j: Array, count: int) -> float:
     return count * float(np.log(max(float(r @ r), 1e-300) / left))
 
 
-def unexplained_square(design: Array, target: Array) -> float:
-    """Sum of squares of a target that linear combinations of a design's columns do not explain."""
+def unexplained(design: Array, target: Array) -> Array:
+    """What of a target linear combinations of a design's columns do not explain."""
     size = np.linalg.norm(design, axis=0)
     design = design[:, size > 0.0] / size[size > 0.0]
     step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)
-    left = target - design @ step
+    return np.asarray(target - design @ step)
+
+
+def unexplained_square(design: Array, target: Array) -> float:
+    """Sum of squares of that."""
+    left = unexplained(design, target)
     return float(left @ left)

@@ -162,4 +162,6 @@ $(MADE):
 $(BUILT): $(MADE) pyproject.toml $(RUST)
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" pip install --quiet --disable-pip-version-check \
 		--no-build-isolation --editable '.[dev]'
+	@$(VENV)/bin/python -m jbf.workbench.vendored || \
+		echo "SKIPPED: the workbench has nothing to draw with; python -m jbf.workbench.vendored fetches it"
 	@touch $@

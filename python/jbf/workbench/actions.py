@@ -103,15 +103,20 @@ def look(session: Session, asked: Asked) -> Any:
 
 
 def try_map(session: Session, asked: Asked) -> Any:
-    """What a map makes of a file."""
-    return importer.tried(session.folder, str(asked["file"]), str(asked["map"]))
+    """What a map makes of files."""
+    return importer.tried(session.folder, _files(asked), str(asked["map"]))
 
 
-def import_file(session: Session, asked: Asked) -> Any:
-    """A file as runs, onto the bench."""
-    found = importer.imported(session.folder, str(asked["file"]), str(asked["map"]))
+def import_files(session: Session, asked: Asked) -> Any:
+    """Files as runs, onto the bench."""
+    into = str(asked["into"])
+    found = importer.imported(session.folder, _files(asked), str(asked["map"]), into)
     session.open(found["rig"], found["files"])
     return found
+
+
+def _files(asked: Asked) -> list[str]:
+    return [str(name) for name in asked["files"]]
 
 
 def trim(session: Session, asked: Asked) -> Any:
@@ -208,7 +213,7 @@ DONE: dict[str, Callable[[Session, Asked], Any]] = {
     "demo": demo,
     "look": look,
     "try": try_map,
-    "import": import_file,
+    "import": import_files,
     "trim": trim,
     "leave_out": leave_out,
     "law": law,

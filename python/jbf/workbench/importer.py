@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
+from itertools import chain, count
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -16,10 +18,13 @@ from jbf.workbench.files import Folder
 
 
 def looked(folder: Folder, name: str) -> dict[str, Any]:
-    """A guess at a file: the text of its map, and what is open."""
+    """A guess at a file: the text of its map, what is open, and a name for what it becomes."""
+    stem = PurePosixPath(name).stem
+    names = chain([stem], (f"{stem}_{k}" for k in count(2)))
     found = look(folder.path(name))
     return {
         "file": name,
+        "into": next(n for n in names if not folder.path(n).exists()),
         "format": found.format,
         "map": map_text(found),
         "entries": [
@@ -31,22 +36,28 @@ def looked(folder: Folder, name: str) -> dict[str, Any]:
     }
 
 
-def tried(folder: Folder, name: str, text: str) -> dict[str, Any]:
-    """What a map makes of a file: each run's columns in SI, least, median and largest."""
+def tried(folder: Folder, names: Sequence[str], text: str) -> dict[str, Any]:
+    """What a map makes of files: each run's columns in SI, least, median and largest."""
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-        return _told(import_files(folder.path(name), _map_file(there, text)))
+        return _told(import_files(_paths(folder, names), _map_file(there, text)))
 
 
-def imported(folder: Folder, name: str, text: str) -> dict[str, Any]:
-    """Import for good, into a folder called like the file; its rig and its runs."""
-    out = folder.root / PurePosixPath(name).stem
+def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
+    """Import for good, into a new folder of that name; its rig and its runs."""
+    out = folder.path(into)
     if out.exists():
-        raise InputError(file=out, problem="is there already", mend="rename or remove it")
+        raise InputError(file=into, problem="is there already", mend="name another folder")
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-        found = import_files(folder.path(name), _map_file(there, text), out)
+        found = import_files(_paths(folder, names), _map_file(there, text), out)
         told = _told(found)
     runs = [folder.name(out / f"{piece.name}.csv") for piece in found.pieces if piece.keep]
     return {**told, "rig": folder.name(out / "rig.toml"), "files": runs}
+
+
+def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
+    if not names:
+        raise InputError(problem="no recording is chosen", mend="tick one")
+    return [folder.path(name) for name in names]
 
 
 def _map_file(folder: str, text: str) -> Path:

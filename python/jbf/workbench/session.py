@@ -77,7 +77,8 @@ class Session:
             A file is wrong, or a fit is running; what was there stays.
         """
         self.put(Bench.read(self.folder, rig_name, run_names), Models())
-        self.say("done", f"{len(run_names)} runs of {rig_name} are on the bench")
+        count = len(run_names)
+        self.say("done", f"{rig_name} is open, with {count} run{'s' * (count != 1)}")
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
         """Take this bench, and models that were made on it."""

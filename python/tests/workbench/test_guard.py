@@ -131,7 +131,7 @@ def test_an_upload_arrives_whole(client: TestClient, campaign: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["../secret.toml", "/etc/passwd", "link/rig.toml", "..%2fsecret.toml"]
 )
-@pytest.mark.parametrize("address", ["open", "look"])
+@pytest.mark.parametrize("address", ["open", "look", "try", "import"])
 def test_no_path_of_the_page_leads_outside_the_folder(
     client: TestClient, campaign: Path, name: str, address: str
 ) -> None:
@@ -142,7 +142,7 @@ def test_no_path_of_the_page_leads_outside_the_folder(
     link = campaign / "link"
     if not link.exists():
         link.symlink_to(outside)
-    asked = {"rig": name, "runs": [name], "file": name}
+    asked = {"rig": name, "runs": [name], "file": name, "files": [name], "map": "", "into": "new"}
     answer = client.post(f"/api/{address}", json=asked)
     assert answer.status_code == 422
     assert "not a name in the folder" in answer.json()["error"] or "does not exist" in answer.text

@@ -36,9 +36,7 @@ export class DataRoom {
       h("ul", { class: "plain" }, found.campaigns.map((c) => h("li", {},
         h("button", { "data-key": `open-${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} runs`))),
       this.picker(found, open),
-      found.other.length + found.csv.length ? h("h3", {}, "A recording of another make") : null,
-      h("ul", { class: "plain" }, [...found.other, ...found.csv.filter((f) => !found.campaigns.some((c) => c.runs.includes(f)))]
-        .map((file) => h("li", {}, h("button", { "data-key": `import-${file}`, onclick: () => this.look(file) }, "Import …"), ` ${file}`))),
+      this.recordings(found),
       found.more ? h("p", { class: "faint" }, "There are more files: name a smaller folder.") : null,
       drop);
   }
@@ -52,35 +50,53 @@ export class DataRoom {
       h("button", { onclick: () => open(rig.value, [...runs.selectedOptions].map((o) => o.value)) }, "Open")));
   }
 
+  // Files of another make: those that are ticked are imported by one map.
+  recordings(found) {
+    const names = [...found.other, ...found.csv.filter((f) => !found.campaigns.some((c) => c.runs.includes(f)))];
+    if (!names.length) return null;
+    this.picked = new Set([...(this.picked ?? [])].filter((name) => names.includes(name)));
+    const go = h("button", { "data-key": "import-chosen", disabled: !this.picked.size, onclick: () => this.look([...this.picked]) }, "Import the ticked …");
+    const tick = (name, on) => { this.picked[on ? "add" : "delete"](name); go.disabled = !this.picked.size; };
+    return [h("h3", {}, "Recordings as a logger wrote them"), h("ul", { class: "plain" }, names.map((name) => h("li", {},
+      h("label", {}, h("input", { type: "checkbox", "data-key": `pick-${name}`, checked: this.picked.has(name), onchange: (e) => tick(name, e.target.checked) }), ` ${name}`)))),
+    h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: tick what has the same columns"))];
+  }
+
   async take(files) {
     for (const file of files) {
       try { await upload(file); } catch (error) { this.page.say(error.message); return; }
     }
+    const names = [...files].map((f) => f.name).filter((name) => !name.endsWith(".toml"));
+    this.picked = new Set(names);
     await this.list();
-    const other = [...files].find((f) => !f.name.endsWith(".toml"));
-    if (other) this.look(other.name);
+    if (names.length) this.look(names);
   }
 
-  // The map of a file: its columns and units, which can be changed and tried until the numbers are right.
-  async look(file) {
-    const found = await this.page.do("look", { file });
+  // The map of recordings: columns and units, which can be changed until the numbers are right.
+  async look(files) {
+    const found = await this.page.do("look", { file: files[0] });
     if (!found) return;
-    const text = h("textarea", { "aria-label": "map", spellcheck: "false" });
+    const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map" });
     text.value = found.map;
-    const shown = h("div");
+    const into = h("input", { value: found.into, "aria-label": "name of the campaign", "data-key": "into" });
+    const shown = h("div"); let waits = 0, slow = false;
     const attempt = async (name) => {
-      const told = await this.page.do(name, { file, map: text.value });
-      if (!told) return;
+      const begun = performance.now();
+      const told = await this.page.do(name, { files, map: text.value, into: into.value });
+      slow = performance.now() - begun > 1000;
+      if (!told) { put(shown); return; }
       put(shown, told.runs.map((run) => h("div", {}, h("h3", {}, `${run.name}: ${run.samples} samples`), table(run.columns))));
       if (name === "import") { put(this.map); this.page.enter("Data"); }
     };
-    put(this.map, h("h2", {}, `Import ${file}`), h("p", { class: "faint" }, found.format),
+    text.addEventListener("input", () => { clearTimeout(waits); if (!slow) waits = setTimeout(() => attempt("try"), 500); });
+    put(this.map, h("h2", {}, `Import ${files.join(", ")}`), h("p", { class: "faint" }, `Read as ${found.format}. Change columns and units below; the numbers follow.`),
       h("ul", {}, found.questions.map((q) => h("li", {}, q))), text,
-      h("div", { class: "row" },
-        h("button", { "data-key": "try", onclick: () => attempt("try") }, "Try: what the columns become"),
+      h("div", { class: "row" }, h("label", {}, "Campaign ", into),
+        h("button", { "data-key": "try", onclick: () => attempt("try") }, "Try"),
         h("button", { class: "main", "data-key": "import", onclick: () => attempt("import") }, "Import"),
         h("button", { onclick: () => put(this.map) }, "Close")), shown);
-    this.map.querySelector("textarea").focus();
+    text.focus(); text.setSelectionRange(0, 0); text.scrollTop = 0;
+    if (!found.questions.length) attempt("try");
   }
 
   async draw() {

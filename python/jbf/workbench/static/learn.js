@@ -70,6 +70,7 @@ export class LearnRoom {
     // The nearest few are shown even where none of them is anything.
     const shown = order.filter((t, i) => t.outcome !== "no gain" || i < 3), others = order.filter((t) => !shown.includes(t));
     const rest = state.effects.filter((e) => !tried.has(e.name) && !(node?.effects ?? []).includes(e.name));
+    const refused = rest.filter((e) => e.refused), open = rest.filter((e) => !e.refused);
     const add = (name) => h("button", { "data-key": `add-${name}`, disabled: busy || !state.runs.length,
       onclick: () => page.do("fit", { effects: [...(node?.effects ?? []), name], parent: node?.id ?? null }) }, "Add");
     const row = (name, ...cells) => h("tr", { class: page.effect === name ? "now" : "" }, h("td", {}, add(name)),
@@ -77,8 +78,10 @@ export class LearnRoom {
     put(this.ranks, h("table", {}, h("thead", {}, h("tr", {}, h("th", {}), h("th", {}, "effect"), h("th", { class: "n" }, "evidence"), h("th", { class: "n" }, `RMS (${page.units.force})`), h("th", {}, "why"))),
       h("tbody", {}, shown.map((t) =>
         row(t.effect, h("td", { class: "n" }, t.evidence > 0 ? number(t.evidence) : "none"), h("td", { class: "n" }, number(t.rms_n)), h("td", {}, `${OUTCOME[t.outcome]}: ${t.reason}`)))),
-    ), h("details", {}, h("summary", {}, `every other effect (${others.length + rest.length})`), h("table", {}, h("tbody", {},
-      [...others.map((t) => ({ name: t.effect, summary: t.reason })), ...rest].map((e) => row(e.name, h("td", {}, e.refused ?? e.summary)))))));
+    ), h("details", {}, h("summary", {}, `every other effect (${others.length + open.length})`), h("table", {}, h("tbody", {},
+      [...others.map((t) => ({ name: t.effect, summary: t.reason })), ...open].map((e) => row(e.name, h("td", {}, e.summary)))))),
+    refused.length ? h("details", {}, h("summary", {}, `what means nothing here (${refused.length})`), h("ul", {}, [...Map.groupBy(refused, (e) => e.refused)].map(([why, those]) =>
+      h("li", {}, `${those.map((e) => e.name).join(", ")}: ${state.law} ${why}`)))) : null);
   }
 
   async draw() {

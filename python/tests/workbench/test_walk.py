@@ -1,0 +1,165 @@
+"""The story in a real browser: load, look, fit, see where it fails, add, the error falls, diagnose,
+save, come back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import jbf
+import numpy as np
+import pytest
+
+pytest.importorskip("starlette", reason="the workbench's server is an extra")
+
+from workbench_walk import looked_at, served, why_not
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
+
+
+def button(page: Page, key: str) -> None:
+    page.click(f'[data-key="{key}"]')
+
+
+def room(page: Page, number: int) -> None:
+    page.keyboard.press("Escape")
+    page.keyboard.press(str(number))
+    page.wait_for_selector(f"[role=tab][aria-selected=true]:nth-child({number})")
+
+
+def by_keyboard(page: Page, key: str) -> None:
+    """Tab until the button has the focus, then Enter: no mouse."""
+    for _ in range(80):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.dataset.key") == key:
+            page.keyboard.press("Enter")
+            return
+    raise AssertionError(f"the keyboard does not reach {key}")
+
+
+def models(page: Page) -> list[dict[str, float | None]]:
+    """Error in the fit and on runs left out, as the side tells them."""
+    texts = page.locator("#models [data-key^=model-] small").all_inner_texts()
+    found = []
+    for text in texts:
+        inside, outside = text.split("; left out ")
+        found.append({"rms": float(inside.split()[0]), "left_out": float(outside)})
+    return found
+
+
+def await_models(page: Page, count: int) -> None:
+    page.wait_for_function(
+        "n => document.querySelectorAll('#models [data-key^=model-]').length === n"
+        " && !document.querySelector('[data-key=cancel]')",
+        arg=count,
+    )
+
+
+def no_wider_than_the_window(page: Page) -> None:
+    assert page.evaluate("document.documentElement.scrollWidth") <= 1280
+
+
+def test_the_story_from_the_demo_to_a_saved_model(tmp_path: Path) -> None:
+    with served(tmp_path) as address, looked_at(address) as (page, said):
+        button(page, "demo")
+        page.wait_for_selector("#runs [data-key^=run-]")
+        page.wait_for_selector("[data-drawn] canvas")
+        no_wider_than_the_window(page)
+
+        room(page, 2)
+        page.wait_for_selector("text=The records alone")
+        room(page, 3)
+        by_keyboard(page, "fit-law")
+        await_models(page, 1)
+
+        room(page, 2)
+        page.wait_for_selector('[data-key="fail-0"]')
+        by_keyboard(page, "fail-0")
+        page.wait_for_selector("text=/^Marked: /")
+        no_wider_than_the_window(page)
+
+        room(page, 3)
+        # The first of the ranking: what has the most evidence.
+        leader = page.locator("[data-key^=add-]").first
+        name = str(leader.get_attribute("data-key")).removeprefix("add-")
+        button(page, f"sketch-{name}")
+        page.wait_for_selector(f"text=/^{name} on .* times its usual strength/")
+        leader.click()
+        await_models(page, 2)
+        before, after = models(page)
+        assert after["rms"] < 0.7 * before["rms"]
+        assert after["left_out"] < 0.7 * before["left_out"]
+        assert page.locator("svg[aria-label='error of each model'] rect.bar").count() == 4
+
+        button(page, "undo")
+        page.wait_for_selector("#models .item.now >> text=/^journal/")
+        button(page, "diagnose")
+        await_models(page, 3)
+        verdict = page.inner_text("#room .verdict")
+        assert verdict.startswith("Missing: sensor_lag and coulomb_drag.")
+        no_wider_than_the_window(page)
+
+        room(page, 4)
+        for what in ("session", "model", "report", "rust", "c"):
+            button(page, f"keep-{what}")
+            page.wait_for_selector("text=/^Written: /")
+            page.wait_for_timeout(300)
+        assert said.complaints == []
+        assert said.outside == []
+
+        kept = models(page)
+        page.reload()
+        await_models(page, 3)
+        assert models(page) == kept
+
+    model = jbf.Model.load(tmp_path / "model.toml")
+    assert set(model.effects) == {"sensor_lag", "coulomb_drag"}
+    with served(tmp_path) as address, looked_at(address) as (page, said):
+        await_models(page, 3)
+        assert models(page) == kept
+        assert said.complaints == []
+
+
+def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
+    """Decimal commas, milliseconds, millimetres; a slide with 12 N of dry friction and a mass."""
+    folder = tmp_path / "bench"
+    folder.mkdir()
+    t = np.arange(0.0, 30.0, 0.01)
+    for number, (stroke_m, period_s) in enumerate(((0.06, 8.0), (0.03, 3.0))):
+        w = 2.0 * np.pi / period_s
+        x, v = stroke_m * np.sin(w * t), stroke_m * w * np.cos(w * t)
+        noise = 0.3 * np.random.default_rng(number).standard_normal(len(t))
+        force = 12.0 * np.sign(v) + 40.0 * v - 3.0 * w**2 * x + noise
+        rows = np.column_stack([1000.0 * t, 1000.0 * x, force])
+        lines = [";".join(f"{value:.4f}".replace(".", ",") for value in row) for row in rows]
+        text = "Time [ms];Position [mm];Force [N]\n" + "\n".join(lines) + "\n"
+        (tmp_path / f"log{number}.csv").write_text(text)
+
+    with served(folder) as address, looked_at(address) as (page, said):
+        logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
+        page.set_input_files("input[type=file]", logs)
+        page.wait_for_selector("text=log1: 3000 samples")
+        button(page, "import")
+        page.wait_for_selector("text=log0/rig.toml is open, with 2 runs")
+        room(page, 3)
+        page.select_option("[data-key=law]", "coulomb")
+        page.wait_for_selector("[data-key=fit-law]:enabled")
+        button(page, "fit-law")
+        await_models(page, 1)
+        assert (
+            page.locator("[data-key^=add-]").first.get_attribute("data-key") == "add-inertia_leak"
+        )
+        button(page, "add-inertia_leak")
+        await_models(page, 2)
+        assert models(page)[1]["left_out"] < 0.33
+        room(page, 4)
+        button(page, "keep-model")
+        page.wait_for_selector("text=/^Written: model.toml/")
+        assert said.complaints == []
+        assert said.outside == []
+    model = jbf.Model.load(folder / "model.toml")
+    assert model.parameters["F_c_n"].value == pytest.approx(12.0, abs=0.2)
+    assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(3.0, abs=0.3)

@@ -71,14 +71,18 @@ def _number(asked: Asked) -> int:
 
 def plane(session: Session, asked: Asked) -> Any:
     """Friction against speed."""
-    size = (_pixels(asked, "columns", 400), _pixels(asked, "rows", 300))
-    names = [str(name) for name in asked["runs"]]
-    return views.plane(session, _model(asked), names, asked.get("selection"), size)
+    return views.plane(session, _model(asked), *_picture(asked))
 
 
 def brush(session: Session, asked: Asked) -> Any:
     """A selection everywhere."""
-    return views.brushed(session, _model(asked), dict(asked["selection"]))
+    return views.brushed(session, _model(asked), dict(asked["selection"]), *_picture(asked))
+
+
+def _picture(asked: Asked) -> tuple[list[str], tuple[int, int]]:
+    """The runs of a plane, and its size."""
+    size = (_pixels(asked, "columns", 400), _pixels(asked, "rows", 300))
+    return [str(name) for name in asked["runs"]], size
 
 
 def open_campaign(session: Session, asked: Asked) -> Any:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Counts = npt.NDArray[np.int64]
+Places = npt.NDArray[np.int32]
 
 MARGIN = 0.04
 
@@ -40,15 +41,28 @@ class Frame:
 
         return cls(*ends(x), *ends(y), columns, rows)
 
-    def counts(self, x: Array, y: Array) -> Counts:
-        """Samples in each pixel, shape (rows, columns)."""
+    def places(self, x: Array, y: Array) -> Places:
+        """The pixel of each sample, row by row; one beyond the last for what lies in none."""
         across = (x - self.left) * (self.columns / (self.right - self.left))
         up = (y - self.low) * (self.rows / (self.high - self.low))
         # Not-a-number compares false.
         inside = (across >= 0) & (across < self.columns) & (up >= 0) & (up < self.rows)
-        place = up[inside].astype(np.intp) * self.columns + across[inside].astype(np.intp)
-        found = np.bincount(place, minlength=self.rows * self.columns)
-        return found.reshape(self.rows, self.columns)
+        with np.errstate(invalid="ignore"):
+            place = up.astype(np.int32) * np.int32(self.columns) + across.astype(np.int32)
+        found: Places = np.where(inside, place, np.int32(self.rows * self.columns))
+        return found
+
+    def counts(self, places: Sequence[Places]) -> Counts:
+        """Samples in each pixel, shape (rows, columns)."""
+        pixels = self.rows * self.columns
+        found = np.zeros(pixels + 1, dtype=np.int64)
+        for part in places:
+            found += np.bincount(part, minlength=pixels + 1)
+        return found[:pixels].reshape(self.rows, self.columns)
+
+    def picture(self, places: Sequence[Places]) -> str:
+        """The same as `shade` draws it."""
+        return shade(self.counts(places))
 
     def to_dict(self) -> dict[str, Any]:
         """For the page."""

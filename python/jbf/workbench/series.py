@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +20,9 @@ TIME_DIGITS = 11
 """A day in microseconds."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Seen:
-    """One run; `model_n` and `counted` are there where a model saw it."""
+    """One run, equal to itself alone; `model_n` and `counted` are there where a model saw it."""
 
     time_s: Array
     velocity_m_s: Array
@@ -30,7 +30,7 @@ class Seen:
     model_n: Array | None = None
     counted: Array | None = None
 
-    @property
+    @cached_property
     def residual_n(self) -> Array | None:
         """Record minus prediction, N; nan where the sample does not count."""
         if self.model_n is None or self.friction_n is None or self.counted is None:
@@ -48,6 +48,7 @@ class Seen:
         return {name: values for name, values in found.items() if values is not None}
 
 
+@lru_cache(maxsize=512)
 def as_read(run: Run) -> Seen:
     """A run as its file has it."""
     speed = run.velocity_m_s
@@ -57,10 +58,10 @@ def as_read(run: Run) -> Seen:
     return Seen(run.time_s, speed, run.friction_n)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)
 def as_modelled(file: Path) -> Seen:
     """A run as a model saw it, from the file that the fit left."""
-    time, speed, friction, model, counted = np.load(file, mmap_mode="r")
+    time, speed, friction, model, counted = map(np.asarray, np.load(file, mmap_mode="r"))
     return Seen(time, speed, friction, model, counted)
 
 

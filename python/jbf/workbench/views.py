@@ -11,7 +11,8 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.models.catalogue import effects as catalogue
 from jbf.models.model import Model
-from jbf.workbench.plane import Frame, shade, within
+from jbf.workbench.density import Density, Size, density
+from jbf.workbench.plane import within
 from jbf.workbench.series import Seen, as_modelled, as_read, drawn, listed
 from jbf.workbench.session import Session
 from jbf.workbench.thinning import Stretch, ranges_of, thinned
@@ -20,10 +21,6 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Box = tuple[float, float, float, float]
 MAP_SPEEDS = 24
-DENSE = 100_000
-"""Samples from which on the plane is drawn in all its pixels."""
-LEAST_FINE = 0.35
-"""Share of the pixels, to each side, that is always used."""
 
 
 def seen(session: Session, number: int | None) -> dict[str, Seen]:
@@ -60,45 +57,13 @@ def series(
     return found
 
 
-def plane(
-    session: Session, number: int | None, names: list[str], selection: Mapping[str, Any] | None,
-    size: tuple[int, int],
-) -> dict[str, Any]:  # fmt: skip
-    """Friction against speed of some runs: where samples lie, what the model says, and what is
-    selected."""
-    runs = {n: s for n, s in seen(session, number).items() if n in names}
-    runs = {n: s for n, s in runs.items() if s.friction_n is not None}
-    x = [s.velocity_m_s for s in runs.values()]
-    y = [s.friction_n for s in runs.values() if s.friction_n is not None]
-    models = [s.model_n for s in runs.values() if s.model_n is not None]
-    frame = Frame.around(x, [*y, *models], *pixels_for(sum(map(len, x)), size))
-
-    def layer(parts: list[tuple[Array, Array]]) -> str:
-        counts = np.zeros((frame.rows, frame.columns), dtype=np.int64)
-        for speed, force in parts:
-            counts += frame.counts(speed, force)
-        return shade(counts)
-
-    found: dict[str, Any] = {
-        "frame": frame.to_dict(),
-        "measured": layer(list(zip(x, y, strict=True))),
-    }
-    if models and len(models) == len(x):
-        found["model"] = layer(list(zip(x, models, strict=True)))
-    if selection:
-        parts = []
-        for name, one_run in runs.items():
-            mask = selected(one_run, name, selection)
-            if one_run.friction_n is not None and mask.any():
-                parts.append((one_run.velocity_m_s[mask], one_run.friction_n[mask]))
-        found["selected"] = layer(parts)
-    return found
+def plane(session: Session, number: int | None, names: list[str], size: Size) -> dict[str, Any]:
+    """Friction against speed of some runs: where samples lie, and what the model says."""
+    return _density(session, number, names, size).to_dict()
 
 
-def pixels_for(samples: int, size: tuple[int, int]) -> tuple[int, int]:
-    """Fewer and larger pixels for few samples: a single one must be seen."""
-    share = min(max((samples / DENSE) ** 0.5, LEAST_FINE), 1.0)
-    return max(int(size[0] * share), 1), max(int(size[1] * share), 1)
+def _density(session: Session, number: int | None, names: list[str], size: Size) -> Density:
+    return density(tuple(run for name, run in seen(session, number).items() if name in names), size)
 
 
 def selected(run: Seen, name: str, selection: Mapping[str, Any]) -> Mask:
@@ -116,16 +81,20 @@ def selected(run: Seen, name: str, selection: Mapping[str, Any]) -> Mask:
     return stretch
 
 
-def brushed(session: Session, number: int | None, selection: Mapping[str, Any]) -> dict[str, Any]:
-    """A selection everywhere: its stretches of each run, and how the residual is there."""
+def brushed(
+    session: Session, number: int | None, selection: Mapping[str, Any], names: list[str],
+    size: Size,
+) -> dict[str, Any]:  # fmt: skip
+    """A selection everywhere: its stretches of each run, how the residual is there, and where its
+    samples lie in the plane of some runs."""
     stretches: dict[str, list[tuple[float, float]]] = {}
-    residuals, samples = [], 0
+    residuals, samples, masks = [], 0, {}
     for name, run in seen(session, number).items():
-        mask = selected(run, name, selection)
-        samples += int(mask.sum())
-        if mask.any():
-            time = run.time_s
-            stretches[name] = [(float(time[a]), float(time[b - 1])) for a, b in ranges_of(mask)]
+        mask = masks[run] = selected(run, name, selection)
+        ranges, count = ranges_of(mask), int(np.count_nonzero(mask))
+        samples += count
+        if count:
+            stretches[name] = [(float(run.time_s[a]), float(run.time_s[b - 1])) for a, b in ranges]
         residual = run.residual_n
         if residual is not None:
             residuals.append(residual[mask])
@@ -136,6 +105,7 @@ def brushed(session: Session, number: int | None, selection: Mapping[str, Any]) 
         "stretches_s": stretches,
         "rms_n": float(np.sqrt(np.mean(there**2))) if len(there) else None,
         "mean_n": float(np.mean(there)) if len(there) else None,
+        "selected": _density(session, number, names, size).layer_of(masks),
     }
 
 

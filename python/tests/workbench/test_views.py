@@ -35,6 +35,9 @@ def test_thinning_keeps_every_extreme(samples: int, pixels: int, seed: int) -> N
         assert found["y"][2 * k : 2 * k + 2].max() == y.max()
 
 
+SIZE = (100, 80)
+
+
 def test_a_gap_stays_a_gap() -> None:
     y = np.ones(1000)
     y[400:600] = np.nan
@@ -69,7 +72,7 @@ def test_the_plane_counts_every_sample_once() -> None:
     random = np.random.default_rng(4)
     x, y = random.normal(size=3000), random.normal(size=3000)
     frame = Frame.around([x], [y], 50, 40)
-    counts = frame.counts(x, y)
+    counts = frame.counts([frame.places(x, y)])
     assert counts.sum() == 3000
     expected, _, _ = np.histogram2d(
         y,
@@ -84,13 +87,20 @@ def test_the_plane_counts_every_sample_once() -> None:
 
 def test_a_constant_force_has_a_plane() -> None:
     frame = Frame.around([np.zeros(5)], [np.full(5, 3.0)], 10, 10)
-    assert frame.counts(np.zeros(5), np.full(5, 3.0)).sum() == 5
+    assert frame.counts([frame.places(np.zeros(5), np.full(5, 3.0))]).sum() == 5
+
+
+def test_what_lies_outside_or_is_no_number_is_in_no_pixel() -> None:
+    frame = Frame(0.0, 1.0, 0.0, 1.0, 10, 10)
+    x = np.array([0.5, -0.01, 1.0, np.nan, 0.5, 0.5, np.inf, 0.99])
+    y = np.array([0.5, 0.5, 0.5, 0.5, np.nan, -0.01, 0.5, 0.99])
+    assert frame.counts([frame.places(x, y)]).sum() == 2
 
 
 def test_a_box_selects_in_every_run(on_bench: Session) -> None:
     runs = on_bench.on_bench().runs
     box = (-0.02, 0.02, -20.0, 0.0)
-    found = views.brushed(on_bench, None, {"box": box})
+    found = views.brushed(on_bench, None, {"box": box}, [r.name for r in runs], SIZE)
     inside = [within(r.velocity_m_s, r.friction_n, box) for r in runs if r.friction_n is not None]
     assert found["samples"] == sum(int(mask.sum()) for mask in inside)
     assert found["rms_n"] is None
@@ -100,9 +110,23 @@ def test_a_box_selects_in_every_run(on_bench: Session) -> None:
             assert mask[np.searchsorted(run.time_s, last)]
 
 
+def test_the_picture_of_a_selection_is_that_of_its_samples(on_bench: Session) -> None:
+    box = (-0.02, 0.02, -20.0, 0.0)
+    run = on_bench.on_bench().run("stopgo")
+    assert run.friction_n is not None
+    whole = views.plane(on_bench, None, ["stopgo"], SIZE)
+    found = views.brushed(on_bench, None, {"box": box}, ["stopgo"], SIZE)
+    mask = within(run.velocity_m_s, run.friction_n, box)
+    frame = Frame(**whole["frame"])
+    assert found["selected"] == frame.picture(
+        [frame.places(run.velocity_m_s[mask], run.friction_n[mask])]
+    )
+    assert found["selected"] != whole["measured"]
+
+
 def test_a_stretch_selects_in_its_run_alone(on_bench: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
-    found = views.brushed(on_bench, None, selection)
+    found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
     assert list(found["stretches_s"]) == ["stopgo"]
     assert found["samples"] == 51
 
@@ -112,7 +136,7 @@ def test_raw_records_are_there_without_any_model(on_bench: Session) -> None:
     assert "model_n" not in found
     run = on_bench.on_bench().run("stopgo")
     assert found["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
-    picture = views.plane(on_bench, None, ["stopgo"], None, (100, 80))
+    picture = views.plane(on_bench, None, ["stopgo"], SIZE)
     assert "model" not in picture
 
 

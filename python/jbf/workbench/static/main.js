@@ -12,7 +12,7 @@ const place = (id) => document.getElementById(id);
 
 class Page {
   constructor() {
-    this.state = null; this.room = null; this.name = "Data";
+    this.state = null; this.room = null; this.name = "Data"; this.draws = 0;
     // What is looked at: a run, a stretch of it, a selection, a pattern, an effect.
     this.run = null; this.span = [null, null]; this.selection = null; this.mark = null; this.effect = null;
     document.addEventListener("keydown", (event) => this.key(event));

@@ -1,7 +1,11 @@
 // The friction-speed plane: densities on a canvas, and a box that brushes.
 import { colour, h, number } from "./dom.js";
 
-const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+function bytes(text) {
+  const read = atob(text), found = new Uint8Array(read.length);
+  for (let i = 0; i < read.length; i++) found[i] = read.charCodeAt(i);
+  return found;
+}
 
 function rgb(name) {
   const probe = document.createElement("canvas").getContext("2d");
@@ -47,37 +51,49 @@ export class Plane {
   x(v) { const f = this.found.frame; return this.edge.left + (v - f.left) / (f.right - f.left) * this.wide; }
   y(v) { const f = this.found.frame; return this.edge.top + (f.high - v) / (f.high - f.low) * this.high; }
 
-  show(found, units, curve = null) { this.found = found; this.units = units; this.curve = curve; this.draw(); }
+  show(found, units, curve = null) {
+    Object.assign(this, { found, units, curve });
+    this.layers = [this.layer([[found.measured, "measured", 60], [found.model, "model", 150]]), null];
+    this.draw();
+  }
 
-  draw() {
-    if (!this.found || !this.canvas.clientWidth) return;
-    const ratio = devicePixelRatio || 1, f = this.found.frame;
-    this.canvas.width = this.canvas.clientWidth * ratio; this.canvas.height = this.height * ratio;
-    this.canvas.style.height = `${this.height}px`;
-    const ctx = this.canvas.getContext("2d");
-    ctx.scale(ratio, ratio);
-    const picture = new ImageData(f.columns, f.rows);
-    const layer = (text, tint, least) => {
+  // Of the samples that are shown, these are selected.
+  select(text) {
+    const now = text ? this.layer([[text, "selected", 190]]) : null;
+    if (!now && !this.layers?.[1]) return;
+    this.layers[1] = now; this.draw();
+  }
+
+  // Densities over one another, as a canvas of a pixel each.
+  layer(parts) {
+    const f = this.found.frame, picture = new ImageData(f.columns, f.rows), data = picture.data;
+    for (const [text, tint, least] of parts.filter(([text]) => text)) {
       const [r, g, b] = rgb(tint), level = bytes(text);
       for (let row = 0; row < f.rows; row++) for (let col = 0; col < f.columns; col++) {
         const value = level[row * f.columns + col];
         if (!value) continue;
-        const at = 4 * ((f.rows - 1 - row) * f.columns + col), a = Math.max(value, least), was = picture.data[at + 3];
-        const share = a / 255;
-        picture.data[at] = picture.data[at] * (1 - share) + r * share;
-        picture.data[at + 1] = picture.data[at + 1] * (1 - share) + g * share;
-        picture.data[at + 2] = picture.data[at + 2] * (1 - share) + b * share;
-        picture.data[at + 3] = Math.max(was, a);
+        const at = 4 * ((f.rows - 1 - row) * f.columns + col), a = Math.max(value, least), share = a / 255;
+        data[at] = data[at] * (1 - share) + r * share;
+        data[at + 1] = data[at + 1] * (1 - share) + g * share;
+        data[at + 2] = data[at + 2] * (1 - share) + b * share;
+        data[at + 3] = Math.max(data[at + 3], a);
       }
-    };
-    layer(this.found.measured, "measured", 60);
-    if (this.found.model) layer(this.found.model, "model", 150);
-    if (this.found.selected) layer(this.found.selected, "selected", 190);
+    }
     const small = document.createElement("canvas");
     small.width = f.columns; small.height = f.rows;
     small.getContext("2d").putImageData(picture, 0, 0);
+    return small;
+  }
+
+  draw() {
+    if (!this.found || !this.canvas.clientWidth) return;
+    const ratio = devicePixelRatio || 1;
+    this.canvas.width = this.canvas.clientWidth * ratio; this.canvas.height = this.height * ratio;
+    this.canvas.style.height = `${this.height}px`;
+    const ctx = this.canvas.getContext("2d");
+    ctx.scale(ratio, ratio);
     ctx.imageSmoothingEnabled = false;
-    ctx.drawImage(small, this.edge.left, this.edge.top, this.wide, this.high);
+    for (const small of this.layers.filter(Boolean)) ctx.drawImage(small, this.edge.left, this.edge.top, this.wide, this.high);
     this.axes(ctx);
     if (this.curve) this.steady(ctx);
     if (this.box) {

@@ -69,25 +69,30 @@ export class SeeRoom {
       : h("p", {}, `Nowhere: what is left (${number(node.rms_n)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`));
   }
 
-  async draw() {
+  // What is drawn already is not asked for again: of a new selection only where it lies.
+  async draw(changes = {}) {
     const { page } = this, model = page.state.current;
     const ask = Symbol(); this.ask = ask;
-    const names = this.all ? page.state.runs.map((r) => r.name) : [page.run];
+    const plane = { model, runs: this.all ? page.state.runs.map((r) => r.name) : [page.run], columns: 400, rows: 300 };
+    const stays = Object.keys(changes).length > 0 && Object.keys(changes).every((name) => name === "selection" || name === "mark");
     try {
-      const begun = performance.now();
-      const [found, plane, brushed] = await Promise.all([
-        get("series", { run: page.run, model, from_s: page.span[0], to_s: page.span[1], pixels: 1000 }),
-        post("plane", { runs: names, model, selection: page.selection, columns: 400, rows: 300 }),
-        page.selection ? post("brush", { model, selection: page.selection }) : null,
+      const [found, brushed] = await Promise.all([
+        stays ? null : Promise.all([
+          get("series", { run: page.run, model, from_s: page.span[0], to_s: page.span[1], pixels: 1000 }), post("plane", plane)]),
+        page.selection ? post("brush", { ...plane, selection: page.selection }) : null,
       ]);
       if (this.ask !== ask) return;
-      const marks = page.mark === null ? [] : this.stretches(page.mark);
-      const selected = brushed?.stretches_s[page.run] ?? [];
-      this.force.show(found); this.rest.show(found); this.plane.show(plane, page.units, this.curve ? page.model?.curve : null);
+      if (found) {
+        const [series, density] = found;
+        this.force.show(series); this.rest.show(series); this.plane.show(density, page.units, this.curve ? page.model?.curve : null);
+      }
+      this.plane.select(brushed?.selected);
+      const marks = page.mark === null ? [] : this.stretches(page.mark), selected = brushed?.stretches_s[page.run] ?? [];
       for (const chart of [this.force, this.rest]) chart.mark(marks, selected);
       this.say(brushed);
       document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
-      document.body.dataset.drawMs = (performance.now() - begun).toFixed(1);
+      document.body.dataset.draws = String(++page.draws);
+      if (stays) return;
       if (model !== null && page.model?.record_names) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_n);
       else this.map.clear();
     } catch (error) { page.say(error.message); }

@@ -1,0 +1,112 @@
+"""How fast the workbench draws: `python benches/workbench_drawing.py`.
+
+A recording of a million samples (and a model of it) in a headless browser without a graphics
+processor: from the click to the frame in which all plots of the room "See" are there, and the same
+for a brush in the friction-speed plane. Median and worst of `--times`, in milliseconds. Needs
+Chromium (Debian: `apt-get install chromium`) and `pip install playwright`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import jbf
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python" / "tests"))
+
+from workbench_walk import looked_at, served, why_not
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+ACT = """async (act) => {
+  const before = document.body.dataset.draws ?? "", frame = () => new Promise(requestAnimationFrame);
+  const canvas = document.querySelector("#room canvas.mine");
+  const at = (type, x, y) => {
+    const r = canvas.getBoundingClientRect(), buttons = type === "pointerup" ? 0 : 1;
+    const where = { clientX: r.x + x, clientY: r.y + y };
+    canvas.dispatchEvent(new PointerEvent(type, { ...where, bubbles: true, pointerId: 1, buttons }));
+  };
+  const begun = performance.now();
+  if (act === "see") document.querySelector("[data-key=tab-See]").click();
+  else {
+    const x = 150 + 60 * Math.random();
+    at("pointerdown", x, 60); at("pointermove", x + 80, 200); at("pointerup", x + 80, 200);
+  }
+  while ((document.body.dataset.draws ?? "") === before) await frame();
+  await frame();
+  return performance.now() - begun;
+}"""
+WAYS = ("first draw", "first draw, with a model", "brush", "brush, with a model")
+
+
+def recording(folder: Path, samples: int) -> None:
+    """A slide under a hidden mass, at a kilohertz."""
+    t = 0.001 * np.arange(samples)
+    w = 2.0 * np.pi / 7.0
+    v = 0.08 * np.sin(w * t) * (1.0 + 0.3 * np.sin(0.01 * t))
+    noise = 0.3 * np.random.default_rng(1).standard_normal(samples)
+    force = 12.0 * np.sign(v) + 40.0 * v + 3.0 * np.gradient(v, t) + noise
+    (folder / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
+    jbf.Run.from_arrays(t, v, force, name="long").write_csv(folder / "long.csv")
+
+
+def drawn(page: Page, act: str) -> float:
+    """Milliseconds from an act in the page to the frame that shows it."""
+    return float(
+        page.evaluate(
+            ACT,
+            act,
+        )
+    )
+
+
+def measured(page: Page, times: int) -> dict[str, list[float]]:
+    """All ways, so many times each."""
+    found: dict[str, list[float]] = {way: [] for way in WAYS}
+    for model in ("", ", with a model"):
+        if model:
+            page.click("[data-key=tab-Learn]")
+            page.select_option("[data-key=law]", "coulomb")
+            page.wait_for_selector("[data-key=fit-law]:enabled")
+            page.click("[data-key=fit-law]")
+            page.wait_for_selector("#models [data-key^=model-]", timeout=600_000)
+        for _ in range(times):
+            page.click("[data-key=tab-Data]")
+            page.wait_for_selector("[data-drawn] canvas")
+            found["first draw" + model].append(drawn(page, "see"))
+            found["brush" + model].append(drawn(page, "brush"))
+            page.keyboard.press("Escape")
+            page.wait_for_timeout(300)
+    return found
+
+
+def main() -> int:
+    """Measure, print."""
+    parser = argparse.ArgumentParser(prog="workbench_drawing", description=__doc__.split(":")[0])
+    parser.add_argument("--samples", type=int, default=1_000_000)
+    parser.add_argument("--times", type=int, default=7)
+    asked = parser.parse_args()
+    if why_not() is not None:
+        print(f"SKIPPED: {why_not()}")
+        return 0
+    with tempfile.TemporaryDirectory() as folder:
+        recording(Path(folder), asked.samples)
+        with served(Path(folder)) as address, looked_at(address) as (page, said):
+            page.click('[data-key="open-rig.toml"]')
+            page.wait_for_selector("[data-drawn] canvas", timeout=600_000)
+            found = measured(page, asked.times)
+            assert not said.complaints, said.complaints
+    print(f"{asked.samples} samples, {asked.times} times: median and worst, ms")
+    for way, values in found.items():
+        print(f"{way:28}{np.median(values):8.0f}{np.max(values):8.0f}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

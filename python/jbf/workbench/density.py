@@ -1,0 +1,70 @@
+"""Where the samples of some runs lie in the friction-speed plane: made once, asked often."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.workbench.plane import Frame
+from jbf.workbench.series import Seen
+
+Mask = npt.NDArray[np.bool_]
+Size = tuple[int, int]
+DENSE = 100_000
+"""Samples from which on the plane is drawn in all its pixels."""
+LEAST_FINE = 0.35
+"""Share of the pixels, to each side, that is always used."""
+
+
+@dataclass(frozen=True, eq=False)
+class Density:
+    """The plane of some runs.
+
+    Attributes
+    ----------
+    places
+        The pixel of each sample of each run; that of no pixel is one beyond the last.
+    measured, model
+        Pictures; None of a model where there is none.
+    """
+
+    frame: Frame
+    places: Mapping[Seen, npt.NDArray[np.int32]]
+    measured: str
+    model: str | None
+
+    def layer_of(self, masks: Mapping[Seen, Mask]) -> str:
+        """The picture of some samples alone."""
+        return self.frame.picture([place[masks[run]] for run, place in self.places.items()])
+
+    def to_dict(self) -> dict[str, Any]:
+        """For the page."""
+        found: dict[str, Any] = {"frame": self.frame.to_dict(), "measured": self.measured}
+        return found if self.model is None else {**found, "model": self.model}
+
+
+@lru_cache(maxsize=8)
+def density(runs: tuple[Seen, ...], size: Size) -> Density:
+    """The plane of runs in no more than so many columns and rows."""
+    measured = {run: run.friction_n for run in runs if run.friction_n is not None}
+    models = [run.model_n for run in measured if run.model_n is not None]
+    speeds = [run.velocity_m_s for run in measured]
+    fine = pixels_for(sum(map(len, speeds)), size)
+    frame = Frame.around(speeds, [*measured.values(), *models], *fine)
+    places = {run: frame.places(run.velocity_m_s, force) for run, force in measured.items()}
+    model = None
+    if models and len(models) == len(measured):
+        parts = zip(speeds, models, strict=True)
+        model = frame.picture([frame.places(speed, force) for speed, force in parts])
+    return Density(frame, places, frame.picture(list(places.values())), model)
+
+
+def pixels_for(samples: int, size: Size) -> Size:
+    """Fewer and larger pixels for few samples: a single one must be seen."""
+    share = min(max((samples / DENSE) ** 0.5, LEAST_FINE), 1.0)
+    return max(int(size[0] * share), 1), max(int(size[1] * share), 1)

@@ -25,12 +25,13 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 ACT = """async (act) => {
-  const before = document.body.dataset.draws ?? "", frame = () => new Promise(requestAnimationFrame);
+  const before = document.body.dataset.draws ?? "";
+  const frame = () => new Promise(requestAnimationFrame);
   const canvas = document.querySelector("#room canvas.mine");
   const at = (type, x, y) => {
     const r = canvas.getBoundingClientRect(), buttons = type === "pointerup" ? 0 : 1;
-    const where = { clientX: r.x + x, clientY: r.y + y };
-    canvas.dispatchEvent(new PointerEvent(type, { ...where, bubbles: true, pointerId: 1, buttons }));
+    const where = { clientX: r.x + x, clientY: r.y + y, bubbles: true, pointerId: 1 };
+    canvas.dispatchEvent(new PointerEvent(type, { ...where, buttons }));
   };
   const begun = performance.now();
   if (act === "see") document.querySelector("[data-key=tab-See]").click();

@@ -57,7 +57,8 @@ def run(
         f"\nWritten: {out / 'report.html'} (pictures), {out / 'model.toml'} (the fitted model).\n"
         "The same by hand:\n"
         f"  jbf diagnose {out}/hidden/rig.toml {out}/hidden --out model.toml --report report.html\n"
-        f"  jbf compare model.toml {out}/hidden/unseen"
+        f"  jbf compare model.toml {out}/hidden/unseen\n"
+        f"To look and click, with these data or your own CSV: jbf workbench {out}"
     )
     return hidden
 

@@ -43,7 +43,7 @@ def instant_diagnosis(
 def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     shown = capsys.readouterr().out
-    assert all(f"\n    {name} " in shown for name in COMMANDS)
+    assert all(f"\n    {name}" in shown for name in COMMANDS)
     for name in COMMANDS:
         assert main([name, "--help"]) == 0
 

@@ -30,7 +30,7 @@ REFUSED: dict[str, tuple[str, str]] = {
     "nothing": ("", "required: COMMAND"),
     "command misspelt": ("diagnos", 'there is no command "diagnos"; did you mean "diagnose"?'),
     "command in capitals": ("FIT", 'there is no command "FIT"; did you mean "fit"?'),
-    "command unknown": ("xyzzy", "known: demo, import, compare, fit"),
+    "command unknown": ("xyzzy", "known: demo, workbench, import"),
     "option misspelt": ("compare model.toml a.csv --jsn x", "did you mean --json?"),
     "option misspelt with =": ("compare model.toml a.csv --reprot=x", "did you mean --report?"),
     "option of another command": ("compare model.toml a.csv --bootstrap 20", "unrecognized argum"),

@@ -93,6 +93,7 @@ def test_the_story_from_the_demo_to_a_saved_model(tmp_path: Path) -> None:
         assert after["rms"] < 0.7 * before["rms"]
         assert after["left_out"] < 0.7 * before["left_out"]
         assert page.locator("svg[aria-label='error of each model'] rect.bar").count() == 4
+        assert page.locator(f"svg text >> text='+ {name}'").count() == 1
 
         button(page, "undo")
         page.wait_for_selector("#models .item.now >> text=/^journal/")

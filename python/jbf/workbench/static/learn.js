@@ -6,6 +6,9 @@ import { correlations, parameters, power } from "./tables.js";
 
 const OUTCOME = { added: "leads", ties: "ties", rejected: "rejected", "no gain": "no gain", confounder: "confounder", replaced: "replaced" };
 
+// What one model has that the one before it has not, and the other way round.
+const newly = (now, before) => [...now.filter((e) => !before.includes(e)).map((e) => `+ ${e}`), ...before.filter((e) => !now.includes(e)).map((e) => `- ${e}`)].join(" ");
+
 export class LearnRoom {
   constructor(page, place) {
     this.page = page;
@@ -13,7 +16,7 @@ export class LearnRoom {
     this.ledger = h("div"); this.ranks = h("div"); this.values = h("div"); this.more = h("div");
     this.sketch = h("div", { class: "plot" }); this.sketched = h("p", { class: "faint" });
     place.append(this.head, this.verdict,
-      h("div", { class: "two" }, h("section", {}, h("h2", {}, "The error falling"), this.ledger, this.sketched, this.sketch, h("h2", {}, "Parameters"), this.values),
+      h("div", { class: "two wide" }, h("section", {}, h("h2", {}, "The error falling"), this.ledger, this.sketched, this.sketch, h("h2", {}, "Parameters"), this.values),
         h("section", {}, h("h2", {}, "What could be missing"), this.ranks)), this.more);
   }
 
@@ -43,7 +46,8 @@ export class LearnRoom {
   // Bars on a logarithmic scale from the noise up: each step can be seen, however small the last ones are.
   showLedger() {
     const { page } = this, node = page.model;
-    const line = node?.diagnosis ? node.diagnosis.steps.map((step) => ({ ...step, words: step.effects.at(-1) ?? "the law alone" })) : page.state.ledger.map((l) => ({ ...l, words: l.effects.at(-1) ?? "the law alone" }));
+    const steps = node?.diagnosis ? node.diagnosis.steps : page.state.ledger;
+    const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) : newly(step.effects, []) || "the law alone" }));
     if (!line.length) { put(this.ledger, h("p", { class: "faint" }, "Fit the law alone, or diagnose.")); return; }
     const noise = line.at(-1).noise_n, values = line.flatMap((l) => [l.rms_n, l.holdout_rms_n]).filter((v) => v > 0);
     const low = Math.log(0.8 * Math.min(noise, ...values)), high = Math.log(1.05 * Math.max(noise, ...values));
@@ -51,7 +55,7 @@ export class LearnRoom {
     const picture = s("svg", { viewBox: `0 0 500 ${line.length * 40 + 26}`, role: "img", "aria-label": "error of each model" });
     line.forEach((l, i) => {
       const top = i * 40 + 4, unit = page.units.force;
-      picture.append(s("text", { x: 164, y: top + 20, "text-anchor": "end" }, (i ? "+ " : "") + (l.words.length > 26 ? `…${l.words.slice(-25)}` : l.words)));
+      picture.append(s("text", { x: 164, y: top + 20, "text-anchor": "end" }, (l.words.length > 26 ? `…${l.words.slice(-25)}` : l.words)));
       for (const [k, value, name] of [[0, l.rms_n, "bar"], [1, l.holdout_rms_n, "bar out"]]) {
         if (!value) continue;
         picture.append(s("rect", { class: name, x: 170, y: top + 16 * k, width: Math.max(x(value) - 170, 1), height: 13 }),

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 import warnings
 from collections.abc import Sequence
@@ -113,6 +114,7 @@ def _dispatch(arguments: list[str]) -> int:
         _check_command(arguments)
         chosen = parser().parse_args(arguments)
         run = chosen.run
+        chosen.typed = shlex.join(["jbf", *arguments])
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
     except InputError as error:

@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.report:
             from jbf.reporting.diagnosis_page import diagnosis_page
 
-            texts[arguments.report] = diagnosis_page(diagnosis)
+            texts[arguments.report] = diagnosis_page(diagnosis, arguments.typed)
     told = hold_out.left(diagnosis.model, held)
     if arguments.json:
         texts[arguments.json] = json_text(diagnosis.to_dict() | told)

@@ -132,7 +132,15 @@ def test_a_failure_says_what_it_came_from_and_what_to_do(
 
 
 def test_every_kind_of_failure_has_advice() -> None:
-    axes = set(get_args(Axis)) | {"frequency", "way", "period", "stroke", "parameters", "effects"}
+    axes = set(get_args(Axis)) | {
+        "frequency",
+        "bursts",
+        "way",
+        "period",
+        "stroke",
+        "parameters",
+        "effects",
+    }
     assert set(ADVICE) == axes
 
 

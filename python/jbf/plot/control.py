@@ -35,7 +35,7 @@ def control_trace(
     Parameters
     ----------
     run
-        From `jbf.control.simulate`.
+        From `jbf.control.run`.
     what
         `response` beside its reference, `error`, `loop` (friction against speed), `friction` in
         time, or what the compensator `learned`.
@@ -61,7 +61,7 @@ def _response(ax: Axes, r: Result, stride: int, named: bool) -> None:
     t = r.time_s[::stride]
     ax.plot(t, r.reference[::stride], color=MEASURED, linewidth=2.2, label="reference")
     ax.plot(t, r.response[::stride], color=MODEL, linewidth=0.9, label="response")
-    dress(ax, r.scheme, "", f"{what} ({r.task.unit})" if named else "")
+    dress(ax, r.scheme, "Time (s)" if named else "", f"{what} ({r.task.unit})" if named else "")
     if named:
         ax.legend(loc="upper right", fontsize="x-small", frameon=False)
 
@@ -71,15 +71,16 @@ def _error(ax: Axes, r: Result, stride: int, named: bool) -> None:
     t = r.time_s[::stride]
     counts = r.time_s >= max(r.task.skip_s, 1.0)
     shown = [r.error[counts]]
+    thin: dict[str, Any] = {"linewidth": 0.8, "rasterized": True}
     if not r.task.is_position:
         # The loop's own estimate is not the shaft.
-        ax.plot(t, r.true_error[::stride], color=MEASURED, linewidth=0.8, label="of the shaft")
+        ax.plot(t, r.true_error[::stride], color=MEASURED, label="of the shaft", **thin)
         title += f", of the shaft {r.true_rms:.3g}"
         shown.append(r.true_error[counts])
-    ax.plot(t, r.error[::stride], color=BEFORE, linewidth=0.8, label="of the estimate")
+    ax.plot(t, r.error[::stride], color=BEFORE, label="of the estimate", **thin)
     largest = max((float(np.quantile(np.abs(e), 0.999)) for e in shown if len(e)), default=1.0)
     ax.set_ylim(-1.5 * largest, 1.5 * largest)
-    dress(ax, title, "", f"Error ({r.task.unit})" if named else "")
+    dress(ax, title, "Time (s)" if named else "", f"Error ({r.task.unit})" if named else "")
     if named and len(shown) > 1:
         ax.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
 
@@ -102,7 +103,7 @@ def _friction(ax: Axes, r: Result, stride: int, named: bool) -> None:
         estimated = r.estimated_friction_v[::stride]
         ax.plot(t, estimated, color=NOISE, linewidth=0.8, label="estimated")
         _span(ax, r)
-    dress(ax, "Friction", "", "Friction (V)" if named else "")
+    dress(ax, "Friction", "Time (s)" if named else "", "Friction (V)" if named else "")
     if r.scheme != "none":
         ax.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
 

@@ -143,10 +143,11 @@ def _place(comparison: Comparison, index: int) -> Array:
 def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
     """Of cells from where nearly all values begin to where they end; of runs a cell each."""
     if runs:
-        return np.arange(runs + 1) - 0.5
+        return np.linspace(-0.5, runs - 0.5, runs + 1)
     low, high = map(float, np.quantile(values, [BEYOND, 1.0 - BEYOND]))
     room = 0.04 * (high - low) or 1.0
-    return np.linspace(low - room, high + room, cells + 1)
+    edges: Array = np.linspace(low - room, high + room, cells + 1)
+    return edges
 
 
 def _means(speed: Array, force: Array) -> tuple[Array, Array]:

@@ -18,6 +18,7 @@ from jbf.plot.style import (
     plain,
     shortened,
 )
+from jbf.records.counts import count_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 MOST_TICKS = 16
 MOST_DOTS = 4000
+NEARLY_ALL = 0.998
+"""Of the samples: so many are seen in a picture in time."""
 
 
 def means_along(comparison: Comparison, axis: str | None) -> Failure:
@@ -132,7 +135,14 @@ def residual_in_time(
         label="record minus model",
         rasterized=True,
     )
-    dress(ax, f"Residual, run {p.run.name}", "Time (s)", f"Record minus model ({unit})")
+    # A few samples far off would leave no room for the rest.
+    size = np.abs(shown[np.isfinite(shown)])
+    reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_n)
+    if reach > 0.0:
+        ax.set_ylim(-reach, reach)
+    far = int(np.sum(size > reach))
+    beyond = f"; {count_of(far, 'sample')} beyond" if far else ""
+    dress(ax, f"Residual, run {p.run.name}{beyond}", "Time (s)", f"Record minus model ({unit})")
     legend_on_top(ax)
     return ax
 

@@ -67,6 +67,10 @@ ADVICE = {
         "a hum, a resonance of the frame, a motor's current ripple",
         "record at another speed: a resonance stays, what turns moves with the speed",
     ),
+    "bursts": Advice(
+        "a knock, a loose cable, dirt that passes, somebody who leans on the rig",
+        "look at the record at those instants; record the run again",
+    ),
     "way": Advice(
         "a wave of rack, ball, magnet or tooth whose phase is another in each run",
         "reference the position, so that all runs count from one place",

@@ -39,6 +39,17 @@ CONFIRMED = 0.6
 """From here on the effects together are the cause, and not a part of it."""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
+TITLES = {
+    "frequency": "In the spectrum",
+    "bursts": "In bursts",
+    "way": "Over the way",
+    "period": "Again with each period",
+    "stroke": "From stroke to stroke",
+    "parameters": "Runs that disagree on parameters",
+    "effects": "More effects",
+}
+"""Of what remains and is no axis."""
+
 
 @dataclass(frozen=True)
 class Card:
@@ -98,10 +109,14 @@ def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[
 
 
 def _remaining(after: Comparison, remainder: Remainder) -> Card:
-    advice = advice_on(remainder.axis)
+    bursts = remainder.axis == "time" and "burst" in remainder.where
+    kind = "bursts" if bursts else remainder.axis
+    advice = advice_on(kind)
     ax = one_axes(None, SIZE)
     if remainder.axis == "frequency":
-        spectrum(after, ax=ax)
+        spectrum(after, ax=ax).set_title("", loc="left")
+    elif bursts:
+        residual_in_time(after, most_telling(after), ax=ax)
     elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
         said = after.model.rig.quantities
         noise_band(ax, after.noise_n, unit=said.force)
@@ -112,7 +127,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         residual_in_time(after, most_telling(after), ax=ax)
     alt = f"What remains along {remainder.axis}"
     return Card(
-        f"Along {remainder.axis}",
+        TITLES.get(kind, f"Along {remainder.axis}"),
         f"{100 * remainder.share:.0f} % of the mean square",
         svg([ax], alt),
         _sentence(remainder.where),

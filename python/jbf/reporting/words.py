@@ -77,7 +77,8 @@ def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
     if diagnosis.verdict == "unexplained":
         remains = "something remains that no effect in the catalogue explains."
         if diagnosis.effects:
-            return f"Missing: {listed(diagnosis.effects)}; besides, {remains}", whole
+            rest = whole.partition(". ")[2]
+            return f"Missing: {listed(diagnosis.effects)}; besides, {remains}", rest
         return f"S{remains[1:]}", whole
     if diagnosis.verdict == "adequate":
         return "Nothing is missing.", whole

@@ -124,8 +124,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Whoever read the output has had enough (`jbf effects | head`); that is no failure.
         outputs.drop_stdout()
         return _PIPE_CLOSED
-    except KeyboardInterrupt:
-        outputs.complain("interrupted")
+    except KeyboardInterrupt as stop:
+        outputs.complain(str(stop) if isinstance(stop, outputs.Kept) else "interrupted")
         return _INTERRUPTED
     except InputError as error:
         return _refuse(error)

@@ -87,6 +87,10 @@ ADVICE = {
         "a machine that was not the same in all runs",
         "look at what was changed between the runs that disagree; diagnose them apart",
     ),
+    "unconfirmed": Advice(
+        "an effect that stands in for another, or that single runs ask for",
+        "look at the runs that ask for it; record one of them again",
+    ),
     "effects": Advice(
         "more effects than are searched for, or another law altogether",
         "compare the laws (--law auto)",

@@ -160,9 +160,8 @@ def _last(diagnosis: Diagnosis) -> Markup:
     after = diagnosis.after
     left, right = axes_or_new(None, 1, 2, (WIDTH, 3.6))
     residual_in_time(after, most_telling(after), ax=left)
-    left.set_title(
-        f"Final model, {left.get_title(loc='left').lower()}", loc="left", fontsize="medium"
-    )
+    title = left.get_title(loc="left")
+    left.set_title(f"Final model: {title[0].lower()}{title[1:]}", loc="left", fontsize="medium")
     residual_along(after, ax=right)
     return svg([left, right], "Residual of the final model in time, and along its worst axis")
 

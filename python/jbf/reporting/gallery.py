@@ -35,6 +35,8 @@ Array = npt.NDArray[np.float64]
 SIZE = (4.7, 3.0)
 LEAST_SHARE = 0.08
 """An effect that makes less of a pattern is not told as its cause."""
+UNCONFIRMED = "predicts runs left out no better"
+"""Words of a candidate that fits better, and is refused."""
 CONFIRMED = 0.6
 """From here on the effects together are the cause, and not a part of it."""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
@@ -47,6 +49,7 @@ TITLES = {
     "stroke": "From stroke to stroke",
     "parameters": "Runs that disagree on parameters",
     "effects": "More effects",
+    "unconfirmed": "An effect that runs left out do not confirm",
 }
 """Of what remains and is no axis."""
 
@@ -111,6 +114,8 @@ def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[
 def _remaining(after: Comparison, remainder: Remainder) -> Card:
     bursts = remainder.axis == "time" and "burst" in remainder.where
     kind = "bursts" if bursts else remainder.axis
+    if kind == "run" and UNCONFIRMED in remainder.where:
+        kind = "unconfirmed"
     advice = advice_on(kind)
     ax = one_axes(None, SIZE)
     if remainder.axis == "frequency":
@@ -162,5 +167,6 @@ def _shares(
 
 
 def _sentence(words: str) -> str:
-    """With a capital and a full stop."""
-    return f"{words[:1].upper()}{words[1:].rstrip('.')}."
+    """With a capital and a full stop; the name of an effect stays as it is."""
+    capital = words[:1] if "_" in words.partition(" ")[0] else words[:1].upper()
+    return f"{capital}{words[1:].rstrip('.')}."

@@ -27,7 +27,7 @@ from jbf.records.run import Run
 from jbf.records.run_files import read_runs
 
 if TYPE_CHECKING:
-    from jbf import control
+    from jbf import control, plot
     from jbf.comparison.comparison import Comparison, compare
     from jbf.diagnosis import Diagnosis, Experiment, Limits, Policy, diagnose, diagnose_many
     from jbf.diagnosis.check import Check, check
@@ -122,6 +122,7 @@ __all__ = [
     "look",
     "plan",
     "planned_power",
+    "plot",
     "read_map",
     "read_recording",
     "read_rig",
@@ -135,8 +136,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name == "control":
-        return import_module("jbf.control")
+    if name in ("control", "plot"):
+        return import_module(f"jbf.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")
     value = getattr(import_module(_LATER[name]), name)

@@ -22,6 +22,20 @@ class FilmWarning(UserWarning):
     """A film too fast for a prediction to follow: see :meth:`jbf.Model.predict`."""
 
 
+class Stopped(KeyboardInterrupt):
+    """A fit or a diagnosis that was interrupted (Ctrl-C) when it had come some way.
+
+    Attributes
+    ----------
+    fit
+        The best :class:`jbf.Fit` so far.
+    """
+
+    def __init__(self, fit: Any) -> None:
+        super().__init__("interrupted; its .fit is the best so far")
+        self.fit = fit
+
+
 class InputError(JbfError, ValueError):
     """Bad input; ``str(error)`` is one line.
 

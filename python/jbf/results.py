@@ -19,12 +19,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def _asked(verb: str, result: Result, *arguments: Any) -> Any:
+def _asked(verb: str, result: object, *arguments: Any) -> Any:
     """What the door answers."""
     return getattr(import_module("jbf.reporting.door"), verb)(result, *arguments)
 
 
-class Result:
+class Shown:
+    """What shows itself in a notebook."""
+
+    def _repr_html_(self) -> str:
+        table: str = _asked("small_table", self)
+        return table
+
+
+class Result(Shown):
     """The verbs that results share."""
 
     def summary(self) -> str:
@@ -73,7 +81,3 @@ class Result:
     def __repr__(self) -> str:
         line: str = _asked("short_words", self)
         return line
-
-    def _repr_html_(self) -> str:
-        table: str = _asked("small_table", self)
-        return table

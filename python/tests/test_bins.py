@@ -11,7 +11,7 @@ from jbf.comparison.axes import all_axes
 from jbf.comparison.bins import Axis, Bin, Binned, label
 from jbf.comparison.patterns import Failure, pattern_words
 from jbf.estimation.campaign import Campaign
-from jbf.reporting.bin_axes import bin_axis
+from jbf.plot.bin_axes import bin_axis
 
 WORDS: list[tuple[Axis, Bin, str]] = [
     ("direction", Bin(direction=-1), "v < 0"),

@@ -12,7 +12,7 @@ from jbf.comparison.axes import all_axes
 from jbf.comparison.patterns import Failure
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
-from jbf.reporting.bin_axes import bin_axis
+from jbf.plot.bin_axes import bin_axis
 from jbf.reporting.comparison_plots import plot_comparison, plot_run
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from matplotlib.axes import Axes
@@ -36,7 +36,7 @@ def drawn(axes: list[Axes]) -> None:
     FigureCanvasAgg(figure).draw()  # carries the layout out
     for ax in axes:
         assert ax.get_xlabel()
-        assert "(N)" in ax.get_ylabel()
+        assert "(N)" in ax.get_ylabel() + ax.get_xlabel()
         assert ax.get_title(loc="left")
         box = ax.get_tightbbox()
         assert box is not None
@@ -80,7 +80,7 @@ def test_diagnosis(verdict: str, make_diagnosis: Callable[[str], Diagnosis]) -> 
 def test_the_error_falls_in_the_picture(make_diagnosis: Callable[[str], Diagnosis]) -> None:
     diagnosis = make_diagnosis("missing")
     fit_line = next(x for x in plot_diagnosis(diagnosis)[0].lines if x.get_label() == "fit")
-    assert list(np.asarray(fit_line.get_ydata())) == [s.rms_n for s in diagnosis.steps]
+    assert list(np.asarray(fit_line.get_xdata())) == [s.rms_n for s in diagnosis.steps]
 
 
 def test_run(bad: Comparison) -> None:

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 import re
 from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import get_args
 
+import jbf.plot
+import numpy as np
 import pytest
-from jbf import Fit, Run, compare
+from jbf import Fit, Run, compare, read_run
+from jbf.comparison.bins import Axis
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
+from jbf.reporting.advice import ADVICE, advice_on
+from jbf.reporting.diagnosis_page import diagnosis_page
+from jbf.reporting.gallery import failure_cards, remainder_cards
+from jbf.reporting.provenance import file_rows, fingerprint
+from jbf.reporting.svg import svg
 
 VOID = {"meta", "img", "br", "link"}
+LINKS = ("src", "href", "xlink:href")
 
 
 class Balance(HTMLParser):
@@ -23,10 +34,13 @@ class Balance(HTMLParser):
     def __init__(self) -> None:
         super().__init__()
         self.open: list[str] = []
+        self.pictures = 0
         self.fetched: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.fetched += [v or "" for k, v in attrs if k in ("src", "href")]
+        # What begins with a hash is in the page itself.
+        self.fetched += [v for k, v in attrs if k in LINKS and v and not v.startswith("#")]
+        self.pictures += tag == "svg"
         if tag not in VOID:
             self.open.append(tag)
 
@@ -42,6 +56,8 @@ def checked(page: str) -> Balance:
         head, _, data = address.partition(",")
         assert head == "data:image/png;base64"
         assert base64.b64decode(data).startswith(b"\x89PNG")
+    assert "url(http" not in page
+    assert "@import" not in page.partition("<body>")[0]
     return balance
 
 
@@ -52,11 +68,12 @@ def test_diagnosis(
     diagnosis = make_diagnosis(verdict)
     diagnosis.save_html(tmp_path / "d.html")
     page = (tmp_path / "d.html").read_text()
-    assert checked(page).fetched
+    assert checked(page).pictures >= 6
     headings = re.findall(r"<h2>(.*?)</h2>", page)
-    wanted = ["The error falling", "Where the bare law fails", "Candidates tried"]
+    wanted = ["Where the bare law fails", "What remains", "Friction", "The error falling"]
     wanted += ["What was added"] * bool(diagnosis.effects)
-    wanted += ["What remains", "Parameters of the final model", "Each run"]
+    wanted += ["Parameters of the final model", "Candidates tried", "Each run"]
+    wanted += ["What it was made from"]
     assert headings == wanted
     assert f"Diagnosis: {verdict}" in page
     assert ("record a run at twice the load" in page) == (verdict == "ambiguous")
@@ -67,7 +84,7 @@ def test_comparison(bare_fit: Fit, runs: list[Run], tmp_path: Path) -> None:
     comparison = compare(bare_fit.model, runs)
     comparison.report(tmp_path / "c.html")
     page = (tmp_path / "c.html").read_text()
-    assert len(checked(page).fetched) == 2
+    assert checked(page).pictures == 4
     assert "numpy" in page
     assert all(run.name in page for run in runs)
 
@@ -86,3 +103,79 @@ def test_names_of_runs_cannot_break_the_page(
 def test_no_folder_no_page(bare_fit: Fit, runs: list[Run], tmp_path: Path) -> None:
     with pytest.raises(InputError, match="folder does not exist"):
         compare(bare_fit.model, runs).save_html(tmp_path / "no" / "c.html")
+
+
+def test_the_ledger_comes_first_and_the_verdict_is_a_sentence(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    page = diagnosis_page(make_diagnosis("missing"), "jbf diagnose 'a rig.toml' runs")
+    (headline,) = re.findall(r"<h1>(.*?)</h1>", page)
+    assert headline == "Missing: coulomb_drag."
+    assert page.index("<h1>") < page.index('id="ledger"') < page.index("<h2>")
+    assert "Made by: <code>jbf diagnose &#39;a rig.toml&#39; runs</code>" in page
+    remains = diagnosis_page(make_diagnosis("unexplained"))
+    assert "<h1>Something remains that no effect in the catalogue explains.</h1>" in remains
+    assert "Made by" not in remains
+
+
+def test_a_failure_says_what_it_came_from_and_what_to_do(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    found = make_diagnosis("missing")
+    cards = failure_cards(found)
+    assert [card.title for card in cards] == [f"Along {f.axis}" for f in found.failures]
+    assert cards[0].cause.startswith("coulomb_drag (")
+    assert cards[0].to_do.startswith("Nothing more: with the final model the means fall from")
+    (first, *_) = remainder_cards(make_diagnosis("unexplained"))
+    assert first.cause.startswith("None in the catalogue. Usually ")
+    assert first.to_do == f"{advice_on(found.failures[0].axis).to_do.capitalize()}."
+
+
+def test_every_kind_of_failure_has_advice() -> None:
+    axes = set(get_args(Axis)) | {
+        "frequency",
+        "bursts",
+        "way",
+        "period",
+        "stroke",
+        "parameters",
+        "effects",
+    }
+    assert set(ADVICE) == axes
+
+
+def test_held_parameters_are_marked(make_diagnosis: Callable[[str], Diagnosis]) -> None:
+    found = make_diagnosis("missing")
+    held = replace(found.fit.parameters["K0"], held=True, note="never moved", stderr=None)
+    told = [name for name, p in found.fit.parameters.items() if not p.held and name != "K0"]
+    fit = replace(
+        found.fit,
+        parameters=found.fit.parameters | {"K0": held},
+        correlations=np.eye(len(told)),
+    )
+    page = diagnosis_page(replace(found, fit=fit))
+    assert re.findall(r'<tr class="held"><td class="name">(.*?)</td>', page) == ["K0"]
+    assert 'class="held"' not in diagnosis_page(found).partition("</style>")[2]
+
+
+def test_the_samples_and_their_files_have_hashes(runs: list[Run], tmp_path: Path) -> None:
+    assert fingerprint(runs) == fingerprint(list(runs))
+    other = replace(runs[0], friction_n=runs[0].friction_n + 1e-9)
+    assert fingerprint([other, *runs[1:]]) != fingerprint(runs)
+    assert file_rows(runs) == []
+    path = tmp_path / "a.csv"
+    path.write_text(runs[0].to_csv())
+    read = read_run(path)
+    whole = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert file_rows([read]) == [("a", str(path), whole[:16])]
+    path.unlink()
+    assert file_rows([read]) == [("a", str(path), "no longer there")]
+
+
+def test_colours_are_the_pages_and_text_is_text(bare_fit: Fit, runs: list[Run]) -> None:
+    drawn = str(svg([jbf.plot.loops(compare(bare_fit.model, runs))], 'of "one" run'))
+    assert 'aria-label="of &quot;one&quot; run"' in drawn
+    assert "Surface speed (m/s)</text>" in drawn
+    assert "var(--model)" in drawn
+    assert "#0072b2" not in drawn
+    assert "DejaVu" not in drawn

@@ -23,6 +23,7 @@ ROOMS = (
     "diagnosis",
     "control",
     "export",
+    "plot",
     "reporting",
     "workbench",
     "cli",

@@ -12,14 +12,17 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
 from jbf.cli import outputs
+from jbf.cli.completion import SHELLS, Completion
+from jbf.cli.examples import HEAD, Help
 from jbf.errors import InputError, closest, did_you_mean
 
 COMMANDS = (
@@ -30,6 +33,13 @@ COMMANDS = (
 _MODULES = {"import": "import_files"}
 """Of a command whose name is a word of Python."""
 
+FIRST = (
+    "jbf demo",
+    "jbf diagnose rig.toml runs/ --out model.toml --report report.html",
+    'eval "$(jbf --completion bash)"',
+)
+"""Of the help without a command."""
+
 _PIPE_CLOSED = 141
 _INTERRUPTED = 130
 
@@ -38,16 +48,32 @@ class Parser(argparse.ArgumentParser):
     """argparse whose errors are one line, like every other."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse's, with the option that an unknown one is a slip of."""
+        """As argparse's, with the option that an unknown one is a slip of: that is told before
+        what may be missing besides."""
+        words = sys.argv[1:] if args is None else list(args)
+        self._find_slips([word for word in self._own_words(words) if word.startswith("--")])
         found, rest = super().parse_known_args(args, namespace)
+        self._find_slips(rest)
+        return found, rest
+
+    def _own_words(self, words: Sequence[str]) -> Iterator[str]:
+        """The words before those of a further command, and before `--`."""
+        below = [a.choices for a in self._actions if isinstance(a, argparse._SubParsersAction)]
+        for word in words:
+            if word == "--" or any(word in names for names in below):
+                return
+            yield word
+
+    def _find_slips(self, rest: Sequence[str]) -> None:
         known = list(self._option_string_actions)
         for word in rest:
             option = word.partition("=")[0]
+            if option in known:
+                continue
             longer = [name for name in known if len(option) > 3 and name.startswith(option)]
             guess = longer[0] if longer else closest(option, known)
             if word.startswith("--") and guess is not None:
-                self.error(f"unrecognized arguments: {' '.join(rest)}; did you mean {guess}?")
-        return found, rest
+                self.error(f"unrecognized arguments: {word}; did you mean {guess}?")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
@@ -62,8 +88,16 @@ def parser() -> Parser:
         description="Dynamic friction of journal bearings: compare models with measured runs, "
         "find the physical effect that is missing, predict.",
         allow_abbrev=False,
+        formatter_class=Help,
     )
     top.add_argument("--version", action="version", version=f"jbf {__version__}")
+    top.add_argument(
+        "--completion",
+        action=Completion,
+        choices=SHELLS,
+        help="print a script that completes commands and options: bash, zsh or fish",
+    )
+    top.epilog = "\n".join([HEAD, *(f"  {line}" for line in FIRST)])
     commands = top.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
@@ -90,8 +124,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Whoever read the output has had enough (`jbf effects | head`); that is no failure.
         outputs.drop_stdout()
         return _PIPE_CLOSED
-    except KeyboardInterrupt:
-        outputs.complain("interrupted")
+    except KeyboardInterrupt as stop:
+        outputs.complain(str(stop) if isinstance(stop, outputs.Kept) else "interrupted")
         return _INTERRUPTED
     except InputError as error:
         return _refuse(error)
@@ -113,6 +147,7 @@ def _dispatch(arguments: list[str]) -> int:
         _check_command(arguments)
         chosen = parser().parse_args(arguments)
         run = chosen.run
+        chosen.typed = shlex.join(["jbf", *arguments])
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
     except InputError as error:

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeAlias
 
+from jbf.cli.examples import Help, examples
 from jbf.models.catalogue import laws
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ def command(
     added = commands.add_parser(
         name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
     )
+    added.epilog = examples(added.prog)
+    added.formatter_class = Help
     added.set_defaults(run=run)
     return added
 

@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.report:
             from jbf.reporting.comparison_page import comparison_page
 
-            texts[arguments.report] = comparison_page(comparison)
+            texts[arguments.report] = comparison_page(comparison, arguments.typed)
     if arguments.json:
         texts[arguments.json] = json_text(comparison.to_dict())
     summary = comparison.summary()

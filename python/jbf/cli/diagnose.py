@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.progress import shown
-from jbf.errors import InputError
+from jbf.errors import InputError, Stopped
 from jbf.models.catalogue import find_law
 from jbf.models.vocabulary import AUTO
 from jbf.reporting.json import json_text
@@ -78,20 +78,23 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.diagnosis import diagnose
 
     texts = {}
-    with shown("diagnosing") as report:
-        diagnosis = diagnose(
-            rig,
-            runs,
-            law=inputs.law_for(rig, arguments.law),
-            clock=arguments.clock,
-            limits=asked,
-            policy=policy,
-            progress=report,
-        )
-        if arguments.report:
-            from jbf.reporting.diagnosis_page import diagnosis_page
+    try:
+        with shown("diagnosing") as report:
+            diagnosis = diagnose(
+                rig,
+                runs,
+                law=inputs.law_for(rig, arguments.law),
+                clock=arguments.clock,
+                limits=asked,
+                policy=policy,
+                progress=report,
+            )
+            if arguments.report:
+                from jbf.reporting.diagnosis_page import diagnosis_page
 
-            texts[arguments.report] = diagnosis_page(diagnosis)
+                texts[arguments.report] = diagnosis_page(diagnosis, arguments.typed)
+    except Stopped as stop:
+        raise outputs.keep(stop, arguments.out) from None
     told = hold_out.left(diagnosis.model, held)
     if arguments.json:
         texts[arguments.json] = json_text(diagnosis.to_dict() | told)

@@ -96,7 +96,7 @@ def _files(
     if "--report" in paths:
         from jbf.reporting.diagnosis_page import diagnosis_page
 
-        found[paths["--report"]] = diagnosis_page(result)
+        found[paths["--report"]] = diagnosis_page(result, arguments.typed)
     return found
 
 

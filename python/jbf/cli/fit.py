@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import argparse
 import os
+from typing import TYPE_CHECKING
 
 from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
-from jbf.cli.progress import shown
-from jbf.errors import InputError, quoted
+from jbf.cli.progress import Report, shown
+from jbf.errors import InputError, Stopped, quoted
 from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
+
+if TYPE_CHECKING:
+    from jbf.estimation.fit import Fit
+    from jbf.records.run import Run
 
 
 def add(commands: Commands) -> None:
@@ -68,16 +73,27 @@ def run(arguments: argparse.Namespace) -> int:
         from jbf.estimation.bootstrap import check_repeats
 
         check_repeats(repeats, "--bootstrap")
-    with shown("fitting") as report:
-        fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
-        if repeats is not None:
-            from jbf.estimation.bootstrap import bootstrap
-
-            fitted = bootstrap(fitted, runs, repeats=repeats, progress=report).fit
+    try:
+        with shown("fitting") as report:
+            fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
+            if repeats is not None:
+                fitted = _repeated(fitted, runs, repeats, report)
+    except Stopped as stop:
+        raise outputs.keep(stop, arguments.out) from None
     told = hold_out.left(fitted.model, held)
     outputs.write({arguments.out: fitted.model.to_toml()})
     outputs.say(fitted.report() + hold_out.words(fitted.model, told), wanted)
     return 0
+
+
+def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None) -> Fit:
+    """The fit with errors from fits again; where these are interrupted, the fit is kept."""
+    from jbf.estimation.bootstrap import bootstrap
+
+    try:
+        return bootstrap(fitted, runs, repeats=repeats, progress=report).fit
+    except KeyboardInterrupt:
+        raise Stopped(fitted) from None
 
 
 def _fixed(items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from jbf.errors import InputError, printable
+from jbf.errors import InputError, Stopped, printable
 from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
@@ -130,6 +130,29 @@ def check_folder(argument: str, path: Path) -> None:
             mend="check the path and its permissions",
         ) from None
     _check_writable(argument, str(path / "report.html"))
+
+
+class Kept(KeyboardInterrupt):
+    """An interrupt after which the best so far was written; `str` says so."""
+
+
+def keep(stop: Stopped, out: str | None) -> Kept:
+    """Write the best model so far where the whole would have been, and say it all to people.
+
+    Parameters
+    ----------
+    out
+        What `--out` names, if anything.
+    """
+    found = stop.fit
+    model = " + ".join([found.model.law, *found.model.effects])
+    unit = found.model.rig.quantities.force
+    told = f"interrupted; the best so far is {model}, RMS {found.rms_n:.3g} {unit}"
+    if out is None:
+        say(found.summary(), {})
+        return Kept(f"{told}, not finished")
+    write({out: found.model.to_toml()})
+    return Kept(f"{told}, written to {'standard output' if out == STDOUT else out}, not finished")
 
 
 def write(texts: Mapping[str, str]) -> None:

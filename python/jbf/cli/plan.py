@@ -7,6 +7,7 @@ from pathlib import Path
 
 from jbf.cli import level, limits, outputs, power
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, command
+from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
@@ -46,14 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json}
     outputs.check(wanted, outputs.read_by(arguments))
     model = power.machine(arguments)
-    found = plan(
-        model,
-        limits=limits.limits(arguments, arguments.run_s),
-        minutes=arguments.minutes,
-        noise_n=power.noise_n(arguments, model),
-        step_s=arguments.step_s,
-        policy=level.policy(arguments),
-    )
+    with shown("planning"):
+        found = plan(
+            model,
+            limits=limits.limits(arguments, arguments.run_s),
+            minutes=arguments.minutes,
+            noise_n=power.noise_n(arguments, model),
+            step_s=arguments.step_s,
+            policy=level.policy(arguments),
+        )
     texts = {}
     if arguments.out:
         folder = Path(arguments.out)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_runs, command
+from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.models.catalogue import parameters_of
 from jbf.models.model import Model
@@ -68,7 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
     model = machine(arguments)
     size_n = noise_n(arguments, model)
     runs = read_runs(arguments.runs, model.rig, need_friction=False)
-    found = planned_power(model, runs, noise_n=size_n, policy=level.policy(arguments))
+    with shown("power"):
+        found = planned_power(model, runs, noise_n=size_n, policy=level.policy(arguments))
     if arguments.json:
         outputs.write({arguments.json: json_text(found.to_dict())})
     outputs.say(found.summary(), wanted)

@@ -83,15 +83,19 @@ class Comparison(Result):
         self.save_html(path)
 
 
-def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
-    """`compare` for runs that are ready."""
+def predicted(model: Model, campaign: Campaign) -> list[Array]:
+    """What a model says of runs that are ready, N, one array a run."""
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
     if model.delay is None:
-        predictions = core.predict(model.values, motions)
-    else:
-        predictions = model.predict_late((p.run, *p.motion_as_read) for p in campaign.prepared)
+        return core.predict(model.values, motions)
+    return model.predict_late((p.run, *p.motion_as_read) for p in campaign.prepared)
+
+
+def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
+    """`compare` for runs that are ready."""
+    predictions = predicted(model, campaign)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
     samples = campaign.samples

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.reached import Reached
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
 from jbf.estimation.left_out import left_out_by_run
@@ -100,6 +101,7 @@ class Candidates:
         self.campaign, self.law, self.clock = campaign, law, clock
         self.before = before
         self.policy, self.progress = policy, progress
+        self.reached: Reached = Reached() if before is None else before.reached
         self._fitted: dict[frozenset[str], Fitted] = {}
         self._level: Level | None = None
         self._levels: dict[frozenset[str], Level] = {}

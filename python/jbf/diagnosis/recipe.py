@@ -15,6 +15,7 @@ from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
+from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import select, step
@@ -24,6 +25,7 @@ from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
+from jbf.errors import Stopped
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
@@ -74,7 +76,30 @@ def diagnose(
     ------
     InputError
         A run lacks friction, or nothing moves in it.
+    Stopped
+        It was interrupted; it has the model that the last round began from.
     """
+    reached = Reached()
+    try:
+        return _diagnose(rig, runs, law, clock, limits, policy, progress, reached)
+    except KeyboardInterrupt:
+        fitted = reached.fit()
+        if fitted is None:
+            raise
+        raise Stopped(fitted) from None
+
+
+def _diagnose(
+    rig: Rig,
+    runs: Sequence[Run],
+    law: str,
+    clock: Clock,
+    limits: Limits | None,
+    policy: Policy,
+    progress: Progress | None,
+    reached: Reached,
+) -> Diagnosis:
+    """`diagnose`, which tells how far it has come."""
     begun = time.monotonic()
     if law != AUTO:
         check_rig(rig, law)
@@ -89,6 +114,7 @@ def diagnose(
         law = laws[0].law
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
+    candidates.reached = reached
     corrected = _without_bias(candidates, ())
     if corrected is not None:
         candidates = Candidates(corrected, law, clock, policy, progress, candidates)

@@ -42,6 +42,8 @@ def select(candidates: Candidates, noise_n: float, start: Selected | None = None
         steps = start.steps[:-1]
     visited = {frozenset(present)}
     while True:
+        candidates.converge(present)
+        candidates.reached.candidates, candidates.reached.present = candidates, present
         found = try_candidates(candidates, present)
         steps.append(step(candidates, present, noise_n, found.trials))
         differ = _differ_more(candidates, present, found)

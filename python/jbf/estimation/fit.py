@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jbf.errors import InputError
+from jbf.errors import InputError, Stopped
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.exact_delay import exact_delay
 from jbf.estimation.minimum import minimum
-from jbf.estimation.noise import Noise
+from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.put_back import put_back
 from jbf.estimation.solution import Solution
@@ -188,6 +188,8 @@ def fit(
     ------
     InputError
         An unknown name, a missing column, or runs in which nothing moves.
+    Stopped
+        It was interrupted; it has the best fit so far.
     """
     chosen = in_chain_order(effects)
     check_rig(rig, law)
@@ -197,6 +199,14 @@ def fit(
     known = parameters_of(law, chosen)
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, known))
     given = named_values(start, known)
-    solution = best_weighting(problem, minimum(problem, [given]))
+    try:
+        solution = best_weighting(problem, minimum(problem, [given]))
+    except KeyboardInterrupt:
+        values = problem.best.values
+        if values is None:
+            raise
+        samples = problem.samples_at(values)
+        near = problem.solution(problem.wrapped(values), samples, WHITE, False, "interrupted")
+        raise Stopped(finish(problem, near, given)) from None
     fitted = finish(problem, solution, given)
     return replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))

@@ -61,7 +61,9 @@ def search(
         key = x.tobytes()
         if key not in memory:
             memory.clear()
-            r, j, _ = problem.gauss_newton_rows(problem.decode(x, start), samples, noise)
+            values = problem.decode(x, start)
+            r, j, count = problem.gauss_newton_rows(values, samples, noise)
+            problem.best.seen(values, float(r @ r) / max(count, 1))
             memory[key] = (-r, j)
         return memory[key]
 

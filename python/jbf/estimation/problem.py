@@ -41,6 +41,19 @@ BOUNDLESS = 1e100
 """A derivative beyond this has grown without bound."""
 
 
+class Best:
+    """The best values that a search has seen, for one that is stopped before its end."""
+
+    def __init__(self) -> None:
+        self.values: Array | None = None
+        self.square = np.inf
+
+    def seen(self, values: Array, square: float) -> None:
+        """Keep values if the square that they leave is less than any before."""
+        if square < self.square:
+            self.values, self.square = values, square
+
+
 class Problem:
     """What is fitted: the parameters of a law and effects, some of them held, to a campaign."""
 
@@ -53,6 +66,7 @@ class Problem:
         fixed: Mapping[str, float] | None = None,
     ) -> None:
         self.campaign = campaign
+        self.best = Best()
         self.law, self.clock = law, clock
         self.effects = in_chain_order(effects)
         self.chain = chain(campaign.rig, law, clock, self.effects)

@@ -43,13 +43,14 @@ from jbf.records.arguments import by_name, list_of_runs, numbers, of_kind, one_r
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
+from jbf.results import Shown
 
 Array = npt.NDArray[np.float64]
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, init=False, repr=False)
-class Model:
+class Model(Shown):
     """A law with effects, ready to predict.
 
     Parameters

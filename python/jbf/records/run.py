@@ -19,6 +19,7 @@ from jbf.records.checks import COLUMNS, MOTION, SLOW, as_array, check_columns, f
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.results import Shown
 from jbf.text_files import write_text
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ PathLike = str | os.PathLike[str]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class Run(Shown):
     """One recorded run; every array has shape (N,), is float64 and read-only.
 
     The constructor trusts its arguments; `Run.from_arrays` and `read_run` check them.

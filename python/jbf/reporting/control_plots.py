@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from jbf.control.robustness import Outcome
 from jbf.control.thesis_tables import COLUMNS, Tables
-from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, NOISE, dress
+from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress
 
 
 def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:

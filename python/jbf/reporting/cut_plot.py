@@ -6,13 +6,12 @@ import os
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from jbf.errors import InputError
 from jbf.importing.overview import Overview
 from jbf.importing.result import Import
-from jbf.reporting.page import PIXELS_PER_INCH, page, picture
-from jbf.reporting.plot_parts import BEFORE, MEASURED, MODEL, axes_or_new, dress, plain
+from jbf.plot.style import BEFORE, MEASURED, MODEL, axes_or_new, dress, plain, save
+from jbf.reporting.page import page
+from jbf.reporting.svg import svg
 
 _MOST_NAMED = 40
 
@@ -61,17 +60,10 @@ def save_cut(found: Import, path: str | os.PathLike[str]) -> None:
     InputError
         The file cannot be written, or its end names no kind of picture.
     """
-    figure = plot_cut(found)[0].figure
-    assert isinstance(figure, Figure)
-    try:
-        figure.savefig(path, dpi=PIXELS_PER_INCH)
-    except (OSError, ValueError) as error:
-        problem = f"cannot be written ({str(error).splitlines()[0].lower()})"
-        raise InputError(file=path, problem=problem, mend="name a .png, .svg or .pdf") from None
+    save(plot_cut(found), path)
 
 
 def import_page(found: Import) -> str:
     """The HTML text of an import's page."""
-    words, drawn = found.summary(), picture(plot_cut(found))
-    alt = "Each recording in time, and how it was cut"
-    return page("text.html.j2", "Import", words=words, picture=drawn, alt=alt)
+    drawn = svg(plot_cut(found), "Each recording in time, and how it was cut")
+    return page("text.html.j2", "Import", words=found.summary(), picture=drawn)

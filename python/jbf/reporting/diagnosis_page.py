@@ -5,13 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from markupsafe import Markup
+from matplotlib.axes import Axes
+
+from jbf.comparison.parts import beside_friction
 from jbf.diagnosis.result import Diagnosis
+from jbf.errors import InputError
 from jbf.models.catalogue import Effect, find_effect
-from jbf.reporting.comparison_plots import plot_run
-from jbf.reporting.diagnosis_plot import plot_diagnosis
+from jbf.plot.ledger import ledger
+from jbf.plot.loops import loops
+from jbf.plot.maps import friction_map, residual_map
+from jbf.plot.power import power
+from jbf.plot.ranking import ranking, ranking_height
+from jbf.plot.residuals import residual_along, residual_in_time
+from jbf.plot.runs import most_telling
+from jbf.plot.stribeck import stribeck
+from jbf.plot.style import axes_or_new, one_axes
 from jbf.reporting.effect_words import known_mass, limits_of, summary_of
-from jbf.reporting.page import import_rows, measurement, page, pattern_rows, picture
+from jbf.reporting.gallery import failure_cards, remainder_cards
+from jbf.reporting.page import import_rows, measurement, page
 from jbf.reporting.power_text import level_words
+from jbf.reporting.provenance import file_rows, fingerprint
+from jbf.reporting.svg import svg
 from jbf.reporting.tables import (
     correlation_pairs,
     finding_rows,
@@ -23,7 +38,68 @@ from jbf.reporting.tables import (
     run_rows,
     trial_rows,
 )
-from jbf.reporting.words import BARE, number, verdict_sentence
+from jbf.reporting.words import BARE, headline_and_rest, listed, number
+
+WIDTH = 10.0
+"""Of a picture that is as wide as the page, inches: so its text is as large as the page's."""
+
+
+def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
+    """The HTML text of a diagnosis's report.
+
+    Parameters
+    ----------
+    command
+        What made it, for its foot.
+    """
+    before, after = diagnosis.before, diagnosis.after
+    said = diagnosis.model.rig.quantities
+    head, runs = _run_table(diagnosis)
+    pairs = correlation_pairs(diagnosis.fit)[:5]
+    headline, rest = headline_and_rest(diagnosis)
+    recorded = [p.run for p in before.campaign.prepared]
+    values = diagnosis.fit.parameters
+    return page(
+        "diagnosis.html.j2",
+        f"Diagnosis: {diagnosis.verdict}",
+        command=command,
+        verdict=diagnosis.verdict,
+        headline=headline,
+        rest=rest,
+        next_experiment=diagnosis.next_experiment,
+        ledger_picture=_ledger(diagnosis),
+        measurement=measurement(before, diagnosis.steps[0].noise_n),
+        findings=finding_rows(diagnosis.findings),
+        failures=failure_cards(diagnosis),
+        unexplained=remainder_cards(diagnosis),
+        residual_picture=svg([residual_map(after)], "What the final model leaves, in all runs"),
+        last_picture=_last(diagnosis),
+        taken_out=listed(beside_friction(after)),
+        friction_picture=_friction(diagnosis),
+        map_picture=svg(
+            [friction_map(after, ax=_wide(4.2))], "Samples of all runs over speed and friction"
+        ),
+        ledger=ledger_rows(diagnosis),
+        laws=law_rows(diagnosis),
+        unit=said.force,
+        effects=[_effect(diagnosis, name) for name in diagnosis.effects],
+        parameters=parameter_rows(
+            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, said
+        ),
+        held=[i for i, p in enumerate(values.values()) if p.held],
+        correlations="; ".join(f"{a} with {b} {c:+.2f}" for a, b, c in pairs),
+        power=power_rows(diagnosis.power, diagnosis.model.law, said),
+        power_picture=_power(diagnosis),
+        level=level_words(diagnosis.level),
+        trials=_trials(diagnosis),
+        not_tried=list(diagnosis.not_tried.items()),
+        unseen=listed(diagnosis.unseen),
+        run_head=head,
+        runs=runs,
+        imported=import_rows(before),
+        files=file_rows(recorded),
+        fingerprint=fingerprint(recorded),
+    )
 
 
 def _effect(diagnosis: Diagnosis, name: str) -> Effect:
@@ -33,63 +109,77 @@ def _effect(diagnosis: Diagnosis, name: str) -> Effect:
     return replace(page, summary=summary, limits=limits_of(page, said))
 
 
-def diagnosis_page(diagnosis: Diagnosis) -> str:
-    """The HTML text of a diagnosis's report."""
+def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[str, ...]]]:
+    """The error of each run, before and after where something was added."""
     before, after = diagnosis.before, diagnosis.after
-    bare = diagnosis.steps[0]
-    said = diagnosis.model.rig.quantities
-    trials = [
-        (" + ".join([BARE, *step.effects]), trial_rows(diagnosis, step))
-        for step in diagnosis.steps
+    unit = diagnosis.model.rig.quantities.force
+    if not diagnosis.effects:
+        return ("run", "samples", f"RMS ({unit})", "RMS / noise"), run_rows(before)
+    head = ("run", "samples", f"bare law ({unit})", f"final model ({unit})", "final / noise")
+    return head, [
+        (
+            x.name,
+            str(x.samples),
+            number(x.rms_n),
+            number(y.rms_n),
+            ratio(y.rms_n, after.noise_n),
+        )
+        for x, y in zip(before.runs, after.runs, strict=True)
+    ]
+
+
+def _trials(diagnosis: Diagnosis) -> list[tuple[str, Markup, list[tuple[str, ...]]]]:
+    """Each round: beside what, its picture, its rows."""
+    return [
+        (
+            " + ".join([BARE, *step.effects]),
+            svg(
+                [ranking(diagnosis, i, ax=_wide(ranking_height(step)))],
+                "Evidence of each candidate",
+            ),
+            list(trial_rows(diagnosis, step)),
+        )
+        for i, step in enumerate(diagnosis.steps)
         if step.trials
     ]
-    head: tuple[str, ...]
-    runs: Sequence[tuple[str, ...]]
-    if diagnosis.effects:
-        head = (
-            "run",
-            "samples",
-            f"bare law ({said.force})",
-            f"final model ({said.force})",
-            "final / noise",
+
+
+def _wide(height: float) -> Axes:
+    """Axes of a picture as wide as the page."""
+    return one_axes(None, (WIDTH, height))
+
+
+def _ledger(diagnosis: Diagnosis) -> Markup:
+    ax = _wide(1.25 + 0.3 * len(diagnosis.steps))
+    return svg([ledger(diagnosis, ax=ax)], "Error of each step, fit and held out, and the noise")
+
+
+def _last(diagnosis: Diagnosis) -> Markup:
+    """What the final model leaves: in time in the run where it leaves most, and along its worst
+    axis."""
+    after = diagnosis.after
+    left, right = axes_or_new(None, 1, 2, (WIDTH, 3.6))
+    residual_in_time(after, most_telling(after), ax=left)
+    title = left.get_title(loc="left")
+    left.set_title(f"Final model: {title[0].lower()}{title[1:]}", loc="left", fontsize="medium")
+    residual_along(after, ax=right)
+    return svg([left, right], "Residual of the final model in time, and along its worst axis")
+
+
+def _friction(diagnosis: Diagnosis) -> Markup:
+    """The loops of the run that tells most, and the means of all."""
+    left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
+    index = most_telling(diagnosis.before, diagnosis.after)
+    loops(diagnosis.after, index, alone=True, ax=left)
+    stribeck(diagnosis.after, ax=right)
+    return svg([left, right], "Friction against speed in one run, and means over all runs")
+
+
+def _power(diagnosis: Diagnosis) -> Markup | str:
+    try:
+        return svg(
+            [power(diagnosis, ax=_wide(3.6))],
+            "Chance that such runs show an effect, over its strength",
         )
-        runs = [
-            (
-                x.name,
-                str(x.samples),
-                number(x.rms_n),
-                number(y.rms_n),
-                ratio(y.rms_n, after.noise_n),
-            )
-            for x, y in zip(before.runs, after.runs, strict=True)
-        ]
-    else:
-        head, runs = ("run", "samples", f"RMS ({said.force})", "RMS / noise"), run_rows(before)
-    pairs = correlation_pairs(diagnosis.fit)[:5]
-    return page(
-        "diagnosis.html.j2",
-        f"Diagnosis: {diagnosis.verdict}",
-        verdict=diagnosis.verdict,
-        sentence=verdict_sentence(diagnosis),
-        next_experiment=diagnosis.next_experiment,
-        laws=law_rows(diagnosis),
-        measurement=measurement(before, bare.noise_n),
-        ledger=ledger_rows(diagnosis),
-        picture=picture(plot_diagnosis(diagnosis)),
-        before_picture=picture(plot_run(before)) if diagnosis.failures else "",
-        failures=pattern_rows(diagnosis.failures),
-        trials=trials,
-        level=level_words(diagnosis.level),
-        power=power_rows(diagnosis.power, diagnosis.model.law, said),
-        unit=said.force,
-        effects=[_effect(diagnosis, name) for name in diagnosis.effects],
-        unexplained=pattern_rows(diagnosis.unexplained),
-        findings=finding_rows(diagnosis.findings),
-        imported=import_rows(before),
-        parameters=parameter_rows(
-            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, said
-        ),
-        correlations="; ".join(f"{a} with {b} {c:+.2f}" for a, b, c in pairs),
-        run_head=head,
-        runs=runs,
-    )
+    except InputError:
+        return ""

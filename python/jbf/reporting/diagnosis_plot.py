@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-from matplotlib.axes import Axes
+from jbf.plot.ledger import ledger
+from jbf.plot.loops import loops
+from jbf.plot.residuals import draw_means, means_along, residual_in_time
+from jbf.plot.runs import most_telling
+from jbf.plot.style import BEFORE, MODEL, axes_or_new, legend_above, legend_on_top, noise_band
 
-from jbf.diagnosis.result import Diagnosis
-from jbf.reporting.comparison_plots import most_telling
-from jbf.reporting.plot_parts import (
-    BEFORE,
-    MODEL,
-    NOISE,
-    axes_or_new,
-    dress,
-    legend_on_top,
-    noise_band,
-)
-from jbf.reporting.residual_parts import (
-    draw_bin_means,
-    friction_speed,
-    means_along,
-    residual_in_time,
-)
-from jbf.reporting.words import step_name
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.comparison.patterns import Failure
+    from jbf.diagnosis.result import Diagnosis
 
 
 def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -40,44 +31,34 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
     axes
         Four matplotlib axes to draw on; a new figure's by default.
     """
-    falling, residual, first, last = axes_or_new(axes, 2, 2, (10.0, 8.0))
+    falling, residual, first, last = axes_or_new(axes, 2, 2, (11.0, 8.0))
     before, after = diagnosis.before, diagnosis.after
-    error_falling(falling, diagnosis)
-    pattern = means_along(before, None)
-    said = diagnosis.model.rig.quantities
-    noise_band(residual, before.noise_n, unit=said.force)
-    draw_bin_means(residual, pattern, BEFORE, said, "bare law" if diagnosis.effects else "")
+    ledger(diagnosis, ax=falling)
+    before_and_after(diagnosis, means_along(before, None), residual)
     index = most_telling(before, after)
     name = before.runs[index].name
-    friction_speed(first, before, index, BEFORE, f"Bare law, run {name}")
+    loops(before, index, ax=first, colour=BEFORE, title=f"Bare law, run {name}")
     if diagnosis.effects:
-        draw_bin_means(residual, means_along(after, pattern.axis), MODEL, said, "final")
-        friction_speed(last, after, index, MODEL, f"Final model, run {name}")
+        loops(after, index, ax=last, title=f"Final model, run {name}")
         last.set_ylim(first.get_ylim())
     else:
-        residual_in_time(last, before, index)
-    legend_on_top(residual)
+        residual_in_time(before, index, ax=last)
     return [falling, residual, first, last]
 
 
-def error_falling(ax: Axes, diagnosis: Diagnosis) -> None:
-    """Fit and held-out error of each step of the ledger, and the noise floor."""
-    steps = diagnosis.steps
-    x = np.arange(len(steps))
-    ax.axhline(steps[-1].noise_n, color=NOISE, linestyle="--", linewidth=1.5, label="noise floor")
-    ax.plot(x, [s.rms_n for s in steps], "o-", color=MODEL, label="fit")
-    ax.plot(
-        x, [s.holdout_rms_n for s in steps], "s--", color=BEFORE, markerfacecolor="white",
-        label="held out",
-    )  # fmt: skip
-    names = [step_name(diagnosis, i).replace("_", " ") for i in range(len(steps))]
-    slanted = len(steps) > 3
-    ax.set_xticks(
-        x, labels=names, rotation=20 if slanted else 0, ha="right" if slanted else "center"
-    )
-    ax.set_xlim(-0.5, len(steps) - 0.5)
-    highest = max(max(s.rms_n, s.holdout_rms_n, s.noise_n) for s in steps)
-    ax.set_ylim(0.0, 1.15 * highest)
-    unit = diagnosis.model.rig.quantities.force
-    dress(ax, "The error falling", "Model", f"RMS of record minus model ({unit})")
-    ax.legend(loc="best", frameon=False)
+def before_and_after(
+    diagnosis: Diagnosis, pattern: Failure, ax: Axes, *, titled: bool = True
+) -> None:
+    """Means along the axis of a pattern, of the bare law and, where it differs, of the final
+    model."""
+    said = diagnosis.model.rig.quantities
+    noise_band(ax, diagnosis.before.noise_n, unit=said.force)
+    changed = bool(diagnosis.model.effects) and diagnosis.after is not diagnosis.before
+    draw_means(ax, pattern, BEFORE, said, "bare law" if changed else "")
+    if changed:
+        draw_means(ax, means_along(diagnosis.after, pattern.axis), MODEL, said, "final")
+    if titled:
+        legend_on_top(ax)
+    else:
+        ax.set_title("", loc="left")
+        legend_above(ax, 2)

@@ -19,6 +19,8 @@ from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.importing.result import Import
+from jbf.models.model import Model
+from jbf.records.run import Run
 from jbf.reporting import frames, import_text, short, small_tables
 from jbf.reporting.check_text import check_report, short_check
 from jbf.reporting.comparison_text import comparison_report
@@ -79,6 +81,11 @@ small_table.register(Comparison, small_tables.comparison_table)
 small_table.register(Diagnosis, small_tables.diagnosis_table)
 small_table.register(LoopRun, small_tables.loop_table)
 small_table.register(Import, small_tables.import_table)
+small_table.register(Model, small_tables.model_table)
+small_table.register(Run, small_tables.run_table)
+small_table.register(PlannedPower, small_tables.planned_table)
+small_table.register(Plan, small_tables.plan_table)
+small_table.register(Check, small_tables.check_table)
 
 
 @singledispatch

@@ -14,11 +14,12 @@ from jbf.reporting.control_run_plot import plot_run_of_loop
 from jbf.reporting.control_run_text import runs_text
 from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
 from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
-from jbf.reporting.page import page, picture
+from jbf.reporting.page import page
+from jbf.reporting.svg import svg
 
 
 def _page(title: str, words: str, axes: Sequence[Axes], alt: str) -> str:
-    return page("text.html.j2", title, words=words, picture=picture(axes), alt=alt)
+    return page("text.html.j2", title, words=words, picture=svg(axes, alt))
 
 
 def fit_page(fit: Fit) -> str:

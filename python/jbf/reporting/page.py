@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import jinja2
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from jbf import _core
 from jbf.importing.ledger import ledgers_beside
@@ -26,7 +22,6 @@ if TYPE_CHECKING:
     from jbf.comparison.patterns import Failure
     from jbf.diagnosis.ledger import Remainder
 
-PIXELS_PER_INCH = 130
 PACKAGES = ("numpy", "scipy", "matplotlib")
 
 
@@ -41,13 +36,14 @@ def _environment() -> jinja2.Environment:
     )
 
 
-def page(template: str, title: str, **content: Any) -> str:
-    """The HTML text of a template, with what its foot says of versions and time."""
+def page(template: str, title: str, *, command: str = "", **content: Any) -> str:
+    """The HTML text of a template, with what its foot says of versions, time and the command."""
     return (
         _environment()
         .get_template(template)
         .render(
             title=title,
+            command=command,
             version=_core.__version__,
             date=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
             python=platform.python_version(),
@@ -55,13 +51,6 @@ def page(template: str, title: str, **content: Any) -> str:
             **content,
         )
     )
-
-
-def picture(axes: Sequence[Axes]) -> str:
-    """The figure of some axes as a data URL."""
-    buffer = io.BytesIO()
-    cast(Figure, axes[0].figure).savefig(buffer, format="png", dpi=PIXELS_PER_INCH)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
 def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str, str]]:

@@ -5,15 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
+import numpy as np
+
 from jbf.comparison.comparison import Comparison
 from jbf.control.run import Result as LoopRun
+from jbf.diagnosis.check import Check
+from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.importing.result import Import
+from jbf.models.model import Model
+from jbf.records.counts import count_of
+from jbf.records.run import Run
+from jbf.reporting.check_text import check_report
 from jbf.reporting.control_run_text import status_words
-from jbf.reporting.tables import ledger_rows, parameter_rows, run_rows
+from jbf.reporting.power_text import short_plan, short_power
+from jbf.reporting.tables import ledger_rows, parameter_rows, power_rows, run_rows
 from jbf.reporting.words import (
     comparison_sentence,
     law_and_effects,
@@ -22,6 +32,7 @@ from jbf.reporting.words import (
     verdict_sentence,
 )
 
+POWER_HEAD = ("effect", "found from", "of friction", "alone from", "else it could be")
 PARAMETER_HEAD = ("parameter", "value", "standard error", "", "unit", "note")
 
 
@@ -79,6 +90,42 @@ def diagnosis_table(diagnosis: Diagnosis) -> str:
     unit = diagnosis.model.rig.quantities.force
     head = ("step", f"fit ({unit})", f"held out ({unit})", f"noise ({unit})", "held out / noise")
     return table(title, head, ledger_rows(diagnosis))
+
+
+def model_table(model: Model) -> str:
+    """The law, the effects, the parameters."""
+    said = model.rig.quantities
+    rows = parameter_rows(model.law, model.effects, model.parameters, said)
+    return table(f"Model: {law_and_effects(model)}", PARAMETER_HEAD, rows)
+
+
+def run_table(run: Run) -> str:
+    """The columns, each with where it goes."""
+    rows = [
+        (name, number(float(np.min(values))), number(float(np.max(values))))
+        for name, values in run.columns().items()
+        if len(values) and np.issubdtype(values.dtype, np.number)
+    ]
+    title = f"Run {run.name}: {count_of(len(run), 'sample')}, {run.duration_s:.4g} s"
+    return table(title, ("column", "from", "to"), rows)
+
+
+def planned_table(planned: PlannedPower) -> str:
+    """What planned runs show."""
+    rows = power_rows(planned.power, planned.model.law, planned.model.rig.quantities)
+    return table(short_power(planned), POWER_HEAD, rows)
+
+
+def plan_table(plan: Plan) -> str:
+    """The runs to record."""
+    rows = [(run.name, words) for run, words in zip(plan.runs, plan.words, strict=True)]
+    return table(short_plan(plan), ("run", "motion"), rows)
+
+
+def check_table(found: Check) -> str:
+    """How often a diagnosis is right, in words."""
+    lines = [(line.strip(),) for line in check_report(found).splitlines() if line.strip()]
+    return table(lines[0][0] if lines else "Check", ("",), lines[1:])
 
 
 def import_table(found: Import) -> str:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
+from jbf.models.written import BARE as BARE
+from jbf.models.written import measured as measured
+from jbf.models.written import number as number
+from jbf.models.written import percent as percent
+from jbf.models.written import step_words
+from jbf.models.written import value_and_error as value_and_error
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
     from jbf.diagnosis.ledger import Remainder
     from jbf.diagnosis.result import Diagnosis
     from jbf.models.model import Model
-    from jbf.models.parameter_value import ParameterValue
-
-BARE = "bare law"
 
 
 def listed(words: Iterable[str], last: str = "and") -> str:
@@ -36,44 +38,6 @@ def law_words(model: Model, join: str = " (") -> str:
 def law_and_effects(model: Model) -> str:
     """A model as a sum: the law, then its effects."""
     return " + ".join([law_words(model), *model.effects])
-
-
-def number(value: float, digits: int = 3) -> str:
-    """A number to so many significant digits, plain where plain is short."""
-    if value == 0.0 or not math.isfinite(value):
-        return f"{value:g}"
-    size = math.floor(math.log10(abs(value)))
-    if -4 <= size < 6:
-        return f"{value:.{max(digits - 1 - size, 0)}f}"
-    return f"{value:.{digits - 1}e}"
-
-
-def measured(value: float, stderr: float | None) -> tuple[str, str]:
-    """A value and its error to the same decimal: the error's second digit.
-
-    The error is empty where there is none.
-    """
-    if stderr is None or not math.isfinite(stderr) or stderr <= 0.0 or not math.isfinite(value):
-        return number(value, 5), ""
-    decimals = 1 - math.floor(math.log10(stderr))
-    if abs(value) >= 1e7 or decimals > 8:
-        return f"{value:.4e}", f"{stderr:.1e}"
-    places = max(decimals, 0)
-    return f"{round(value, decimals):.{places}f}", f"{round(stderr, decimals):.{places}f}"
-
-
-def value_and_error(p: ParameterValue) -> tuple[str, str]:
-    """A parameter's value and error as text; a held one's says so, and has no error."""
-    if p.held:
-        return f"held at {number(p.value, 5)}", ""
-    return measured(p.value, p.stderr)
-
-
-def percent(value: ParameterValue) -> str:
-    """The error as a share of the value, `0.46 %`; empty where it means nothing."""
-    if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):
-        return ""
-    return f"{number(100.0 * abs(value.stderr / value.value), 2)} %"
 
 
 def times(error_n: float, noise_n: float) -> str:
@@ -105,6 +69,21 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         + _confounders_sentence(diagnosis.confounders)
         + _law_sentence(diagnosis)
     )
+
+
+def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
+    """The verdict in a sentence, and what else there is to say of it."""
+    whole = verdict_sentence(diagnosis)
+    if diagnosis.verdict == "unexplained":
+        remains = "something remains that no effect in the catalogue explains."
+        if diagnosis.effects:
+            rest = whole.partition(". ")[2]
+            return f"Missing: {listed(diagnosis.effects)}; besides, {remains}", rest
+        return f"S{remains[1:]}", whole
+    if diagnosis.verdict == "adequate":
+        return "Nothing is missing.", whole
+    first, stop, rest = whole.partition(". ")
+    return f"{first}." if stop else whole, rest
 
 
 def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
@@ -208,10 +187,4 @@ def _it(effects: tuple[str, ...]) -> str:
 
 def step_name(diagnosis: Diagnosis, index: int) -> str:
     """What step `index` of the ledger brought: the bare law, or `+ effect`."""
-    effects = diagnosis.steps[index].effects
-    if index == 0:
-        return f"{BARE} + {', '.join(effects)}" if effects else BARE
-    before = diagnosis.steps[index - 1].effects
-    new = [e for e in effects if e not in before]
-    gone = [e for e in before if e not in effects]
-    return ", ".join([f"+ {e}" for e in new] + [f"- {e}" for e in gone]) or "refitted"
+    return step_words([step.effects for step in diagnosis.steps], index)

@@ -10,6 +10,7 @@ from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
 from jbf.cli.control.options import add_bench, add_task, bench_of, model_of, task_of
 from jbf.cli.control.pictures import add_plot, check_picture, save_picture
+from jbf.cli.progress import shown
 from jbf.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,20 +70,21 @@ def run(arguments: argparse.Namespace) -> int:
     settings = None if arguments.settings is None else Settings.load(arguments.settings)
     bench = bench_of(arguments)
     task, reference, load_n = _asked(arguments, truth, bench)
-    results = [
-        run_loop(
-            truth,
-            name,
-            task,
-            bench=bench,
-            reference=reference,
-            load_n=load_n,
-            carried=carried,
-            settings=settings,
-            precision=arguments.precision,
-        )
-        for name in names
-    ]
+    with shown("the loop"):
+        results = [
+            run_loop(
+                truth,
+                name,
+                task,
+                bench=bench,
+                reference=reference,
+                load_n=load_n,
+                carried=carried,
+                settings=settings,
+                precision=arguments.precision,
+            )
+            for name in names
+        ]
     if arguments.plot:
         from jbf.reporting.control_run_plot import plot_runs
 

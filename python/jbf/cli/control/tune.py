@@ -7,6 +7,7 @@ import argparse
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
 from jbf.cli.control.options import add_bench, bench_of, model_of
+from jbf.cli.progress import shown
 
 
 def add(actions: Commands) -> None:
@@ -23,7 +24,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     wanted = {"--out": arguments.out}
     outputs.check(wanted, outputs.read_by(arguments))
-    text = tune(model_of(arguments.model), bench_of(arguments)).to_toml()
+    with shown("tuning"):
+        text = tune(model_of(arguments.model), bench_of(arguments)).to_toml()
     if arguments.out:
         outputs.write({arguments.out: text})
         outputs.say(f"settings written to {arguments.out}", wanted)

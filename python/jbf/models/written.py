@@ -1,0 +1,62 @@
+"""Numbers as people read them: a few significant digits, a value and its error to one decimal; and
+what each model of a row brought."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jbf.models.parameter_value import ParameterValue
+
+BARE = "bare law"
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number to so many significant digits, plain where plain is short."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    size = math.floor(math.log10(abs(value)))
+    if -4 <= size < 6:
+        return f"{value:.{max(digits - 1 - size, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def measured(value: float, stderr: float | None) -> tuple[str, str]:
+    """A value and its error to the same decimal: the error's second digit.
+
+    The error is empty where there is none.
+    """
+    if stderr is None or not math.isfinite(stderr) or stderr <= 0.0 or not math.isfinite(value):
+        return number(value, 5), ""
+    decimals = 1 - math.floor(math.log10(stderr))
+    if abs(value) >= 1e7 or decimals > 8:
+        return f"{value:.4e}", f"{stderr:.1e}"
+    places = max(decimals, 0)
+    return f"{round(value, decimals):.{places}f}", f"{round(stderr, decimals):.{places}f}"
+
+
+def value_and_error(p: ParameterValue) -> tuple[str, str]:
+    """A parameter's value and error as text; a held one's says so, and has no error."""
+    if p.held:
+        return f"held at {number(p.value, 5)}", ""
+    return measured(p.value, p.stderr)
+
+
+def percent(value: ParameterValue) -> str:
+    """The error as a share of the value, `0.46 %`; empty where it means nothing."""
+    if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):
+        return ""
+    return f"{number(100.0 * abs(value.stderr / value.value), 2)} %"
+
+
+def step_words(models: Sequence[Sequence[str]], index: int) -> str:
+    """What model `index` brought, each told by its effects: the bare law, or `+ effect`."""
+    effects = models[index]
+    if index == 0:
+        return f"{BARE} + {', '.join(effects)}" if effects else BARE
+    before = models[index - 1]
+    new = [e for e in effects if e not in before]
+    gone = [e for e in before if e not in effects]
+    return ", ".join([f"+ {e}" for e in new] + [f"- {e}" for e in gone]) or "refitted"

@@ -1,0 +1,91 @@
+"""The error falling: fit and held-out error of each step, above the noise."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.models.written import number, step_words
+from jbf.plot.style import (
+    BEFORE,
+    INK,
+    MODEL,
+    NOISE,
+    dress,
+    legend_above,
+    one_axes,
+    plain,
+    shortened,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+    from jbf.diagnosis.ledger import Step
+    from jbf.diagnosis.result import Diagnosis
+
+
+def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
+    """Fit and held-out error of each step of the ledger, a row each, on a logarithmic scale: a
+    factor is as long wherever it stands, so that the last steps can be seen beside the first."""
+    steps = diagnosis.steps
+    ax = one_axes(ax, (9.0, 1.3 + 0.42 * len(steps)))
+    y = np.arange(len(steps))
+    unit = diagnosis.model.rig.quantities.force
+    noise = steps[-1].noise_n
+    ax.set_xscale("log")
+    if noise > 0.0:
+        ax.axvline(noise, color=NOISE, linestyle="--", linewidth=1.5, label="noise floor")
+    fitted, held = _errors(steps)
+    ax.hlines(y, np.minimum(fitted, held), np.maximum(fitted, held), color=INK, linewidth=0.6)
+    ax.plot(fitted, y, "o-", color=MODEL, label="fit")
+    ax.plot(held, y, "s--", color=BEFORE, markerfacecolor="white", label="held out")
+    names = [step_words([s.effects for s in steps], i) for i in range(len(steps))]
+    ax.set_yticks(y, labels=[plain(shortened(name, 44)) for name in names])
+    ax.set_ylim(len(steps) - 0.5, -0.6)
+    _reach(ax, [noise, *fitted, *held])
+    for row, words in zip(y, _falls(held, unit), strict=True):
+        ax.annotate(
+            words,
+            (1.01, row),
+            xycoords=("axes fraction", "data"),
+            va="center",
+            fontsize="small",
+            annotation_clip=False,
+        )
+    dress(ax, "The error falling", f"RMS of record minus model ({unit}), logarithmic", "")
+    legend_above(ax)
+    return ax
+
+
+def _errors(steps: Sequence[Step]) -> tuple[list[float], list[float]]:
+    return [s.rms_n for s in steps], [s.holdout_rms_n for s in steps]
+
+
+def _falls(held: Sequence[float], unit: str) -> list[str]:
+    """Each held-out error, and how much less it is than that of the step before."""
+    words = [f"{number(held[0])} {unit}"]
+    for last, now in pairwise(held):
+        change = 100.0 * (now / last - 1.0) if last > 0.0 else 0.0
+        # A true minus is as wide as a plus.
+        words.append(f"{number(now)} {unit}  ({change:+.2g} %)".replace("-", "−"))
+    return words
+
+
+def _reach(ax: Axes, values: Sequence[float]) -> None:
+    """From a little below the least to a little beyond the largest; few round ticks."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    known = [v for v in values if v > 0.0 and np.isfinite(v)] or [1.0]
+    low, high = min(known), max(known)
+    span = max(float(np.log(high / low)), 0.1)
+    ax.set_xlim(low * float(np.exp(-0.06 * span)), high * float(np.exp(0.06 * span)))
+    decades = np.log10(high / low)
+    subs = (1.0,) if decades > 2.5 else (1.0, 2.0, 5.0) if decades > 0.5 else tuple(range(1, 10))
+    ax.xaxis.set_major_locator(LogLocator(subs=[float(s) for s in subs], numticks=12))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())

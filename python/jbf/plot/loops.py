@@ -1,0 +1,70 @@
+"""Friction against speed along a run: the loops that dynamic friction makes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.plot.runs import axes_words, index_of
+from jbf.plot.style import MEASURED, MODEL, dress, one_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.comparison.comparison import Comparison
+
+MOST_DOTS = 1500
+
+
+def loops(
+    comparison: Comparison,
+    run: int | str | None = None,
+    *,
+    alone: bool = False,
+    ax: Axes | None = None,
+    colour: str = MODEL,
+    title: str = "",
+) -> Axes:
+    """One run: friction against speed, measured as dots and modelled as a line.
+
+    Parameters
+    ----------
+    comparison
+        From `jbf.compare`, or `before` and `after` of a diagnosis.
+    run
+        Its index or name; the run with the largest error by default.
+    alone
+        Without what the model knows to be no friction: inertia, weight, zero, cogging.
+    ax
+        Matplotlib axes to draw on; a new figure's by default.
+    """
+    ax = one_axes(ax)
+    index = index_of(comparison, run)
+    p = comparison.campaign.prepared[index]
+    rest = np.zeros(len(p.friction_n))
+    if alone:
+        from jbf.comparison.parts import added_by, beside_friction
+
+        rest = added_by(comparison, beside_friction(comparison))[index]
+    speed = p.motion.velocity_m_s
+    stride = max(len(speed) // MOST_DOTS, 1)
+    ax.plot(
+        speed[::stride],
+        (p.friction_n - rest)[::stride],
+        ".",
+        color=MEASURED,
+        markersize=3,
+        alpha=0.6,
+        label="measured",
+        rasterized=True,
+    )
+    # A line through a reversal, whose instant no sample tells, would show a slope that is not
+    # the model's.
+    turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)
+    shown = comparison.samples.counted[index] & ~turns
+    modelled = np.where(shown, comparison.predictions[index] - rest, np.nan)
+    ax.plot(speed, modelled, color=colour, linewidth=1.3, label="model", rasterized=True)
+    dress(ax, title or f"Run {p.run.name}", *axes_words(comparison))
+    ax.legend(loc="upper left", frameon=False, markerscale=2)
+    return ax

@@ -1,0 +1,156 @@
+"""Maps over all runs: where the friction lies, and where the model leaves something of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.models.written import number
+from jbf.plot.runs import axes_words, said_by
+from jbf.plot.style import DIVERGING, MEASURED, MODEL, dress, one_axes, plain, shortened
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.comparison.comparison import Comparison
+
+Array = npt.NDArray[np.float64]
+Over = Literal["time", "speed", "place", "run"]
+
+CELLS = 120
+ROWS = 40
+MOST_NAMES = 24
+BEYOND = 0.0005
+"""This share of the samples on either side may lie outside a map."""
+
+
+def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None = None) -> Axes:
+    """How many samples of all runs lie at each speed and friction; over them the model's means.
+
+    Parameters
+    ----------
+    alone
+        Without what the model knows to be no friction: inertia, weight, zero, cogging.
+    """
+    from matplotlib.colors import ListedColormap, LogNorm, to_rgb
+
+    from jbf.comparison.parts import added_by, beside_friction
+
+    ax = one_axes(ax)
+    samples, prepared = comparison.samples, comparison.campaign.prepared
+    rest = added_by(comparison, beside_friction(comparison) if alone else ())
+    speed = samples.flat([p.motion.velocity_m_s for p in prepared])
+    measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
+    modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
+    edges = [_edges(speed), _edges(measured, ROWS * 2)]
+    counts, across, up = np.histogram2d(speed, measured, bins=edges)
+    shown = np.where(counts > 0, counts, np.nan).T
+    most = max(float(counts.max()), 2.0)
+    # The denser, the less one sees through: light or dark, on any ground.
+    veil = ListedColormap([(*to_rgb(MEASURED), a) for a in np.linspace(0.2, 1.0, 64)])
+    mesh = ax.pcolormesh(across, up, shown, cmap=veil, norm=LogNorm(1.0, most), rasterized=True)
+    named = False
+    for way in (-1.0, 1.0):
+        own = speed * way > 0.0
+        if own.any():
+            x, mean = _means(speed[own], modelled[own])
+            ax.plot(x, mean, color=MODEL, linewidth=1.8, label=None if named else "model, mean")
+            named = True
+    ax.figure.colorbar(mesh, ax=ax, label="Samples", pad=0.01)
+    count = len(prepared)
+    dress(ax, f"All samples of {count} run{'s' * (count != 1)}", *axes_words(comparison))
+    ax.legend(loc="upper left", frameon=False, fontsize="small")
+    return ax
+
+
+def residual_map(
+    comparison: Comparison,
+    across: Over = "time",
+    up: Over | None = None,
+    *,
+    ax: Axes | None = None,
+) -> Axes:
+    """The mean of record minus model in cells, in noises: what remains, where, in which run.
+
+    Parameters
+    ----------
+    across, up
+        What the cells are over: `time` in the run, `speed`, `place` (position or angle) or `run`;
+        `up` is the run by default, and of a single run its speed.
+    """
+    from matplotlib.colors import TwoSlopeNorm
+
+    prepared, samples = comparison.campaign.prepared, comparison.samples
+    up = up or ("run" if len(prepared) > 1 else "speed")
+    for name in (across, up):
+        if name not in ("time", "speed", "place", "run"):
+            raise InputError(problem=f"a map is not over {name}", mend="time, speed, place or run")
+    ax = one_axes(ax, (9.0, 1.6 + min(0.22 * len(prepared), 6.0) if up == "run" else 3.6))
+    x, y = (samples.flat(_values(comparison, name)) for name in (across, up))
+    left = samples.flat(comparison.residuals)
+    edges = [_edges(v, n, runs=len(prepared) if name == "run" else 0)
+             for v, n, name in ((x, CELLS, across), (y, ROWS, up))]  # fmt: skip
+    sums, *_ = np.histogram2d(x, y, bins=edges, weights=left)
+    counts, *_ = np.histogram2d(x, y, bins=edges)
+    noise = comparison.noise_n or comparison.rms_n or 1.0
+    with np.errstate(invalid="ignore"):
+        means = sums / np.where(counts > 0, counts, np.nan) / noise
+    top = max(float(np.nanquantile(np.abs(means), 0.99)), 1.0)
+    norm = TwoSlopeNorm(0.0, -top, top)
+    mesh = ax.pcolormesh(edges[0], edges[1], means.T, cmap=DIVERGING, norm=norm, rasterized=True)
+    said = said_by(comparison)
+    ax.figure.colorbar(mesh, ax=ax, label="Times the noise", pad=0.01, extend="both")
+    for name, axis in ((across, ax.xaxis), (up, ax.yaxis)):
+        if name == "run":
+            every = -(-len(prepared) // MOST_NAMES)
+            names = [plain(shortened(p.run.name, 20)) for p in prepared][::every]
+            axis.set_ticks(range(0, len(prepared), every), labels=names, fontsize="small")
+    if up == "run":
+        ax.invert_yaxis()
+    words = {
+        "time": "Time in the run (s)",
+        "speed": f"{said.velocity} ({said.speed})",
+        "place": f"Place ({said.length})" if said.motion == "linear" else "Angle (rad)",
+        "run": "",
+    }
+    title = f"Mean of record minus model, in units of the noise ({number(noise, 2)} {said.force})"
+    dress(ax, title, words[across], words[up])
+    ax.grid(visible=False)
+    return ax
+
+
+def _values(comparison: Comparison, name: Over) -> list[Array]:
+    prepared = comparison.campaign.prepared
+    if name == "time":
+        return [p.run.time_s - p.run.time_s[0] for p in prepared]
+    if name == "speed":
+        return [p.motion.velocity_m_s for p in prepared]
+    if name == "place":
+        return [_place(comparison, i) for i in range(len(prepared))]
+    return [np.full(len(p.run), float(i)) for i, p in enumerate(prepared)]
+
+
+def _place(comparison: Comparison, index: int) -> Array:
+    p = comparison.campaign.prepared[index]
+    if comparison.model.rig.quantities.motion == "linear" and p.run.position_m is not None:
+        return np.asarray(p.run.position_m)
+    return np.asarray(p.motion.angle_rad)
+
+
+def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
+    """Of cells from where nearly all values begin to where they end; of runs a cell each."""
+    if runs:
+        return np.linspace(-0.5, runs - 0.5, runs + 1)
+    low, high = map(float, np.quantile(values, [BEYOND, 1.0 - BEYOND]))
+    room = 0.04 * (high - low) or 1.0
+    edges: Array = np.linspace(low - room, high + room, cells + 1)
+    return edges
+
+
+def _means(speed: Array, force: Array) -> tuple[Array, Array]:
+    order = np.argsort(speed, kind="stable")
+    parts = np.array_split(order, max(min(CELLS // 2, len(order) // 5), 1))
+    return np.array([speed[p].mean() for p in parts]), np.array([force[p].mean() for p in parts])

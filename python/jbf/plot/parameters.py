@@ -1,0 +1,103 @@
+"""Fitted parameters, each with its interval."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.models.parameter_units import shown
+from jbf.models.written import value_and_error
+from jbf.plot.style import INK, MEASURED, MODEL, dress, one_axes, plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.estimation.fit import Fit
+    from jbf.models.parameter_value import ParameterValue
+
+Array = npt.NDArray[np.float64]
+
+LINEAR_PERCENT = 1.0
+"""Errors of a few permille and of half the value stand on one axis: linear up to so many percent,
+logarithmic beyond."""
+WIDEST_PERCENT = 300.0
+NONE: Mapping[str, tuple[str, str]] = MappingProxyType({})
+
+
+def height(parameters: Mapping[str, object]) -> float:
+    """Of a picture of so many, inches."""
+    return 1.6 + 0.5 * len(parameters)
+
+
+def parameters(
+    fit: Fit, *, ax: Axes | None = None, answers: Mapping[str, Array] | None = None
+) -> Axes:
+    """The parameters of a fit with their intervals.
+
+    Parameters
+    ----------
+    answers
+        Of repeated fits, by name: drawn behind the intervals.
+    """
+    ax = one_axes(ax, (7.0, height(fit.parameters)))
+    return intervals(fit.parameters, answers, called(fit), ax=ax)
+
+
+def called(fit: Fit) -> Mapping[str, tuple[str, str]]:
+    """Names of a drive's parameters and their units; of any other rig the names tell the units."""
+    model = fit.model
+    if model.rig.drive is None:
+        return NONE
+    return shown(model.law, model.effects, model.rig.quantities)
+
+
+def intervals(
+    parameters: Mapping[str, ParameterValue],
+    answers: Mapping[str, Array] | None = None,
+    called: Mapping[str, tuple[str, str]] = NONE,
+    *,
+    ax: Axes | None = None,
+) -> Axes:
+    """Each parameter's standard error in percent of its value, and answers of repeated fits.
+
+    A parameter without an error, or at zero, is an open mark. `called` has shown names and units.
+    """
+    from matplotlib.ticker import FuncFormatter
+
+    ax = one_axes(ax, (7.0, height(parameters)))
+    names = list(parameters)
+    largest = 2.0 * LINEAR_PERCENT
+    for row, name in enumerate(names):
+        p = parameters[name]
+        if p.stderr is None or p.value == 0.0 or not math.isfinite(p.value):
+            ax.plot(0.0, row, "o", color=MODEL, markerfacecolor="white", markersize=5)
+            continue
+        percent = 100.0 * abs(p.stderr / p.value)
+        if answers is not None:
+            off = 100.0 * (answers[name] / p.value - 1.0)
+            ax.plot(off, np.full(len(off), row), "|", color=MEASURED, markersize=9)
+        ax.errorbar(0.0, row, xerr=percent, fmt="o", color=MODEL, capsize=3, markersize=5)
+        largest = max(largest, 1.5 * percent)
+    labels = []
+    for name in names:
+        shown_name, unit = called.get(name, (name, ""))
+        labels.append(f"{shown_name}\n{_value_words(parameters[name])} {unit}".rstrip())
+    ax.set_yticks(range(len(names)), labels=list(map(plain, labels)), fontsize="small")
+    ax.set_ylim(len(names) - 0.4, -0.6)
+    ax.axvline(0.0, color=INK, linewidth=0.6)
+    ax.set_xscale("symlog", linthresh=LINEAR_PERCENT)
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    reach = min(largest, WIDEST_PERCENT)
+    ax.set_xlim(-reach, reach)
+    dress(ax, "Parameters with standard errors", "Off the value (%)", "")
+    return ax
+
+
+def _value_words(p: ParameterValue) -> str:
+    value, error = value_and_error(p)
+    return f"{value} ± {error}" if error else value

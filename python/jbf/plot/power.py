@@ -1,0 +1,95 @@
+"""Power curves: how often runs like these would show an effect, over its strength."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, OTHER, dress, one_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.diagnosis.planned import PlannedPower
+    from jbf.diagnosis.power import Power
+    from jbf.diagnosis.result import Diagnosis
+
+MOST = 8
+LOOKS = ("-", "--", "-.", ":")
+COLOURS = (MODEL, BEFORE, NOISE, OTHER, MEASURED)
+
+
+def power(
+    found: Diagnosis | PlannedPower,
+    effects: Collection[str] | None = None,
+    *,
+    ax: Axes | None = None,
+) -> Axes:
+    """The chance that campaigns like this one show an effect, over how much of the friction it is.
+
+    Each curve goes through the strengths that are found in 80 and in 95 of 100: what an effect is
+    worth grows as the square of its strength, and the chance with it as a normal.
+
+    Parameters
+    ----------
+    effects
+        Those drawn; by default the eight that show at the weakest.
+
+    Raises
+    ------
+    InputError
+        Nothing is known of any of them.
+    """
+    from matplotlib.ticker import LogLocator, NullFormatter
+    from scipy.special import ndtr
+
+    known = [p for p in found.power if _has_curve(p) and (effects is None or p.effect in effects)]
+    known.sort(key=lambda p: p.share_80 or 0.0)
+    if not known:
+        raise InputError(
+            problem="no power is known of these effects", mend="see .power for what there is"
+        )
+    ax = one_axes(ax, (7.0, 4.4))
+    shown = known if effects is not None else known[:MOST]
+    strongest = max(100.0 * (p.share_80 or 0.0) for p in shown)
+    x = np.geomspace(0.3 * min(100.0 * (p.share_80 or 0.0) for p in shown), 3.0 * strongest, 400)
+    for i, p in enumerate(shown):
+        chance = ndtr(deviate(p, x / 100.0))
+        look = LOOKS[i // len(COLOURS) % len(LOOKS)]
+        ax.plot(x, 100.0 * chance, look, color=COLOURS[i % len(COLOURS)], label=p.effect)
+    for level in (80.0, 95.0):
+        ax.axhline(level, color=INK, linewidth=0.6, alpha=0.5)
+    ax.set_xscale("log")
+    ax.set_ylim(0.0, 102.0)
+    ax.set_xlim(x[0], x[-1])
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    more = len(known) - len(shown)
+    title = "What such runs show" + (f"; {more} more need to be stronger" if more else "")
+    dress(ax, title, "Strength, share of the friction (%)", "Found in (% of campaigns)")
+    ax.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return ax
+
+
+def _has_curve(p: Power) -> bool:
+    return not p.always and None not in (p.found_80, p.found_95, p.share_80)
+
+
+def deviate(p: Power, share: np.ndarray) -> np.ndarray:
+    """The normal deviate of the chance to be found, at shares of the friction: linear, through
+    those of 80 and 95 of 100."""
+    from scipy.special import ndtri
+
+    assert p.found_80 is not None
+    assert p.found_95 is not None
+    assert p.share_80 is not None
+    at_80, at_95 = float(ndtri(0.80)), float(ndtri(0.95))
+    # A parameter whose effect saturates is followed in what it changes: nearly in proportion.
+    ratio = max(abs(p.found_95 / p.found_80), 1.0 + 1e-6)
+    ratio = ratio if ratio < 3.0 else 1.3
+    slope = (at_95 - at_80) / (ratio - 1.0)
+    return np.asarray(at_80 + slope * (share / p.share_80 - 1.0))

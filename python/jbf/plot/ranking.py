@@ -1,0 +1,83 @@
+"""The candidates of a round, by their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.models.written import BARE
+from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, dress, one_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.diagnosis.ledger import Step, Trial
+    from jbf.diagnosis.result import Diagnosis
+
+MOST = 12
+FEWEST = 3
+LINEAR = 10.0
+"""Evidence up to here is drawn on a linear scale, beyond on a logarithmic one."""
+COLOURS = {"added": MODEL, "ties": NOISE, "rejected": BEFORE}
+
+
+def _shown(trials: Sequence[Trial]) -> Sequence[Trial]:
+    """Those with evidence, and at least a few; the first of very many."""
+    return trials[: min(max(sum(t.evidence > 0.0 for t in trials), FEWEST), MOST)]
+
+
+def ranking_height(step: Step) -> float:
+    """Of the picture of a step's candidates, inches."""
+    return 1.2 + 0.27 * len(_shown(sorted(step.trials, key=lambda t: -t.evidence)))
+
+
+def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> Axes:
+    """The candidates tried at a step of the ledger, strongest first; the first few of many.
+
+    Parameters
+    ----------
+    step
+        Index into `diagnosis.steps`; the bare law's by default.
+
+    Raises
+    ------
+    InputError
+        There is no such step, or nothing was tried at it.
+    """
+    if not -len(diagnosis.steps) <= step < len(diagnosis.steps):
+        raise InputError(
+            problem=f"there is no step {step}", mend=f"there are {len(diagnosis.steps)}"
+        )
+    found = diagnosis.steps[step]
+    trials = sorted(found.trials, key=lambda t: -t.evidence)
+    if not trials:
+        raise InputError(problem=f"nothing was tried at step {step}", mend="take an earlier step")
+    shown = _shown(trials)
+    ax = one_axes(ax, (7.0, ranking_height(found)))
+    y = np.arange(len(shown))
+    values = [t.evidence for t in shown]
+    colours = [COLOURS.get(t.outcome, MEASURED) for t in shown]
+    ax.barh(y, values, color=colours, height=0.62)
+    ax.axvline(0.0, color=INK, linewidth=0.8)
+    ax.set_xscale("symlog", linthresh=LINEAR)
+    ax.set_yticks(y, labels=[t.effect for t in shown], fontsize="small")
+    ax.set_ylim(len(shown) - 0.4, -0.6)
+    low, high = min(*values, 0.0, -LINEAR), max(*values, 0.0, LINEAR)
+    ax.set_xlim(1.3 * low, 12.0 * high)
+    for at, t in enumerate(shown):
+        ax.annotate(
+            f"{t.evidence:+.0f}  {t.outcome}".replace("-", "−"),
+            (max(t.evidence, 0.0), at),
+            (4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize="x-small",
+        )
+    rest = len(trials) - len(shown)
+    more = f"; {rest} more have less" if rest else ""
+    beside = " + ".join([BARE, *found.effects])
+    dress(ax, f"Candidates beside the {beside}{more}", "Evidence", "")
+    return ax

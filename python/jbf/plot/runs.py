@@ -1,0 +1,55 @@
+"""Which run of a comparison to show, and what its axes are called."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.records.quantities import Quantities
+
+if TYPE_CHECKING:
+    from jbf.comparison.comparison import Comparison
+
+
+def most_telling(comparison: Comparison, other: Comparison | None = None) -> int:
+    """The run in which the model fails most, or in which two models differ most."""
+    if other is None:
+        return int(np.argmax([r.rms_n for r in comparison.runs]))
+    gaps = [
+        float(np.mean((a - b)[counted] ** 2))
+        for a, b, counted in zip(
+            comparison.predictions, other.predictions, comparison.samples.counted, strict=True
+        )
+    ]
+    return int(np.argmax(gaps)) if max(gaps) > 0.0 else most_telling(comparison)
+
+
+def index_of(comparison: Comparison, run: int | str | None) -> int:
+    """A run by its index or name; the one with the largest error by default.
+
+    Raises
+    ------
+    InputError
+        The comparison has no such run.
+    """
+    names = [r.name for r in comparison.runs]
+    if run is None:
+        return most_telling(comparison)
+    if isinstance(run, str) and run in names:
+        return names.index(run)
+    if isinstance(run, int) and -len(names) <= run < len(names):
+        return run % len(names)
+    raise InputError(problem=f"there is no run {run}", mend=f"known: {', '.join(names)}")
+
+
+def said_by(comparison: Comparison) -> Quantities:
+    """The words and units of the rig."""
+    return comparison.model.rig.quantities
+
+
+def axes_words(comparison: Comparison) -> tuple[str, str]:
+    """Names of the axes: speed, friction."""
+    said = said_by(comparison)
+    return f"{said.velocity} ({said.speed})", f"{said.friction} ({said.force})"

@@ -1,0 +1,57 @@
+"""Spectra of what remains: a hum, a ripple or a rattle stands out of the noise."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jbf.plot.runs import index_of, said_by
+from jbf.plot.style import MODEL, NOISE, dress, one_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from jbf.comparison.comparison import Comparison
+
+SEGMENTS = 8
+"""So many stretches of a run are averaged, overlapping by half."""
+SHORTEST = 64
+
+
+def spectrum(
+    comparison: Comparison,
+    run: int | str | None = None,
+    *,
+    ax: Axes | None = None,
+    colour: str = MODEL,
+    label: str = "record minus model",
+) -> Axes:
+    """The amplitude density of record minus model in one run, and that of white noise of the
+    noise's size. Samples that do not count are taken as zero.
+
+    Parameters
+    ----------
+    run
+        Its index or name; the run with the largest error by default.
+    """
+    from scipy.signal import welch
+
+    ax = one_axes(ax, (7.0, 3.6))
+    index = index_of(comparison, run)
+    p = comparison.campaign.prepared[index]
+    time = p.run.time_s
+    step = float(np.median(np.diff(time)))
+    left = np.where(comparison.samples.counted[index], comparison.residuals[index], 0.0)
+    even = np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, left)
+    length = min(max(2 * len(even) // (SEGMENTS + 1), SHORTEST), len(even))
+    frequency, density = welch(even, 1.0 / step, nperseg=length)
+    unit = said_by(comparison).force
+    ax.loglog(frequency[1:], np.sqrt(density[1:]), color=colour, linewidth=1.0, label=label)
+    if not any(str(line.get_label()).startswith("white noise") for line in ax.lines):
+        floor = comparison.noise_n * np.sqrt(2.0 * step)
+        ax.axhline(floor, color=NOISE, linestyle="--", linewidth=1.2, label="white noise as large")
+    title = f"Spectrum of the residual, run {p.run.name}"
+    dress(ax, title, "Frequency (Hz)", f"Density ({unit}/√Hz)")
+    ax.legend(frameon=False, fontsize="small")
+    return ax

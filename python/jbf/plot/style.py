@@ -1,0 +1,122 @@
+"""What all pictures share: colours, the look of an axes, a figure where none is given, files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.models.written import number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's colours: people who confuse red and green can tell them apart.
+MEASURED, MODEL, BEFORE, NOISE = "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
+OTHER = "#cc79a7"
+INK, SOFT = "#000000", "#5b6470"
+DIVERGING = "PuOr_r"
+"""Of maps of what may be above or below; everybody can tell the two apart."""
+PIXELS_PER_INCH = 130
+
+
+def plain(words: str) -> str:
+    """Words that matplotlib takes for no formula, whatever a run is called."""
+    return words.replace("$", r"\$")
+
+
+def shortened(words: str, longest: int = 28) -> str:
+    """A name that may be too long for its place, without its middle."""
+    if len(words) <= longest:
+        return words
+    head = (longest - 1) // 2
+    return f"{words[:head]}…{words[head - longest + 1 :]}"
+
+
+def dress(ax: Axes, title: str, x: str, y: str) -> None:
+    """Title, names of the axes, grid."""
+    from matplotlib.ticker import AutoLocator, MaxNLocator
+
+    ax.set_title(plain(title), loc="left", fontsize="medium")
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+    if isinstance(ax.xaxis.get_major_locator(), AutoLocator):
+        ax.xaxis.set_major_locator(MaxNLocator(6))
+    ax.grid(alpha=0.25)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def axes_or_new(
+    axes: Sequence[Axes] | None, rows: int, columns: int, size: tuple[float, float]
+) -> list[Axes]:
+    """The axes given, or those of a new figure."""
+    wanted = rows * columns
+    if axes is None:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=size, layout="constrained")
+        found = list(np.ravel(figure.subplots(rows, columns)))
+    else:
+        found = list(np.ravel(np.asarray(axes, dtype=object)))
+    if len(found) != wanted:
+        raise InputError(
+            problem=f"{len(found)} axes were given", mend=f"this picture needs {wanted}"
+        )
+    return found
+
+
+def one_axes(ax: Axes | None, size: tuple[float, float] = (6.0, 4.0)) -> Axes:
+    """The axes given, or that of a new figure."""
+    return axes_or_new(None if ax is None else [ax], 1, 1, size)[0]
+
+
+def noise_band(ax: Axes, noise_n: float, name: str = "noise", unit: str = "N") -> None:
+    """One standard deviation of the noise to either side of zero."""
+    label = f"{name}, ±{number(noise_n, 2)} {unit}"
+    ax.axhspan(-noise_n, noise_n, color=NOISE, alpha=0.15, label=label)
+    ax.axhline(0.0, color=INK, linewidth=0.6)
+
+
+def legend_on_top(ax: Axes, columns: int = 2) -> None:
+    """A legend in room made for it above the data."""
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + 0.28 * (high - low))
+    ax.legend(loc="upper left", frameon=False, fontsize="small", ncols=columns)
+
+
+def legend_above(ax: Axes, columns: int = 3) -> None:
+    """A legend above the axes, where no data are; it ends at the right."""
+    ax.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.995),
+        frameon=False,
+        fontsize="small",
+        ncols=columns,
+        borderaxespad=0.1,
+        columnspacing=1.2,
+        handlelength=1.6,
+    )
+
+
+def save(ax: Axes | Sequence[Axes], path: str | os.PathLike[str]) -> None:
+    """Write the figure of some axes: `.svg` and `.pdf` are vectors, `.png` is not.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written, or its end names no kind of picture.
+    """
+    first = next(iter(ax)) if isinstance(ax, Sequence) else ax
+    # Text stays text, which can be searched and set in another face.
+    from matplotlib import rc_context
+
+    try:
+        with rc_context({"svg.fonttype": "none", "pdf.fonttype": 42}):
+            cast("Figure", first.figure).savefig(path, dpi=PIXELS_PER_INCH)
+    except (OSError, ValueError) as error:
+        problem = f"cannot be written ({str(error).splitlines()[0].lower()})"
+        raise InputError(file=path, problem=problem, mend="name a .png, .svg or .pdf") from None

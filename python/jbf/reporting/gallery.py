@@ -1,0 +1,172 @@
+"""Failures one by one: a picture, what it looks like, what it came from, what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.comparison.axes import all_axes
+from jbf.comparison.parts import made_of
+from jbf.comparison.patterns import Failure, bin_means
+from jbf.errors import InputError
+from jbf.models.catalogue import transition_speed
+from jbf.plot.residuals import draw_means, means_along, residual_in_time
+from jbf.plot.runs import most_telling
+from jbf.plot.spectra import spectrum
+from jbf.plot.style import MODEL, legend_above, noise_band, one_axes
+from jbf.reporting.advice import advice_on
+from jbf.reporting.diagnosis_plot import before_and_after
+from jbf.reporting.svg import svg
+from jbf.reporting.words import listed, number
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+    from jbf.comparison.comparison import Comparison
+    from jbf.diagnosis.ledger import Remainder
+    from jbf.diagnosis.result import Diagnosis
+
+Array = npt.NDArray[np.float64]
+
+SIZE = (4.7, 3.0)
+LEAST_SHARE = 0.08
+"""An effect that makes less of a pattern is not told as its cause."""
+UNCONFIRMED = "predicts runs left out no better"
+"""Words of a candidate that fits better, and is refused."""
+CONFIRMED = 0.6
+"""From here on the effects together are the cause, and not a part of it."""
+SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
+
+TITLES = {
+    "frequency": "In the spectrum",
+    "bursts": "In bursts",
+    "way": "Over the way",
+    "period": "Again with each period",
+    "stroke": "From stroke to stroke",
+    "parameters": "Runs that disagree on parameters",
+    "effects": "More effects",
+    "unconfirmed": "An effect that runs left out do not confirm",
+}
+"""Of what remains and is no axis."""
+
+
+@dataclass(frozen=True)
+class Card:
+    """One failure."""
+
+    title: str
+    share: str
+    picture: Markup
+    looks: str
+    cause: str
+    to_do: str
+
+
+def failure_cards(diagnosis: Diagnosis) -> list[Card]:
+    """Where the bare law failed, before and after."""
+    if not diagnosis.failures:
+        return []
+    try:
+        made = made_of(diagnosis.before, diagnosis.after)
+    except InputError:
+        made = {}
+    return [_failed(diagnosis, failure, made) for failure in diagnosis.failures]
+
+
+def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
+    """What remains, none of it explained."""
+    return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.unexplained]
+
+
+def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[Array]]) -> Card:
+    ax = one_axes(None, SIZE)
+    before_and_after(diagnosis, failure, ax, titled=False)
+    left = means_along(diagnosis.after, failure.axis)
+    unit = diagnosis.model.rig.quantities.force
+    first, now = _size(failure), _size(left)
+    advice = advice_on(failure.axis)
+    shares = _shares(diagnosis.before, failure, made)
+    causes = listed(f"{name} ({100.0 * s:.0f} % of it)" for name, s in shares.items())
+    fell = f"the means fall from {number(first, 2)} to {number(now, 2)} {unit}"
+    fails = any(f.axis == failure.axis for f in diagnosis.after.failures)
+    if shares and sum(shares.values()) >= CONFIRMED:
+        cause = f"{causes}."
+    elif shares:
+        cause = f"In part {causes}. The rest is usually {advice.causes}."
+    else:
+        cause = f"No effect that was added. Usually {advice.causes}."
+    if fails:
+        to_do = f"With the final model {fell}, and a pattern stays. {_sentence(advice.to_do)}"
+    elif now < first:
+        to_do = f"Nothing more: with the final model {fell}, and no pattern is left along it."
+    else:
+        to_do = _sentence(advice.to_do)
+    share = f"{100 * failure.share:.0f} % of the mean square"
+    alt = f"Residual along {failure.axis}, before and after"
+    title = f"Along {failure.axis}"
+    return Card(title, share, svg([ax], alt), _sentence(failure.where), cause, to_do)
+
+
+def _remaining(after: Comparison, remainder: Remainder) -> Card:
+    bursts = remainder.axis == "time" and "burst" in remainder.where
+    kind = "bursts" if bursts else remainder.axis
+    if kind == "run" and UNCONFIRMED in remainder.where:
+        kind = "unconfirmed"
+    advice = advice_on(kind)
+    ax = one_axes(None, SIZE)
+    if remainder.axis == "frequency":
+        spectrum(after, ax=ax).set_title("", loc="left")
+    elif bursts:
+        residual_in_time(after, most_telling(after), ax=ax)
+    elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
+        said = after.model.rig.quantities
+        noise_band(ax, after.noise_n, unit=said.force)
+        draw_means(ax, means_along(after, remainder.axis), MODEL, said)
+        ax.set_title("", loc="left")
+        legend_above(ax, 2)
+    else:
+        residual_in_time(after, most_telling(after), ax=ax)
+    alt = f"What remains along {remainder.axis}"
+    return Card(
+        TITLES.get(kind, f"Along {remainder.axis}"),
+        f"{100 * remainder.share:.0f} % of the mean square",
+        svg([ax], alt),
+        _sentence(remainder.where),
+        f"None in the catalogue. Usually {advice.causes}.",
+        _sentence(advice.to_do),
+    )
+
+
+def _size(failure: Failure) -> float:
+    """Root mean square of the bins' means, each with its samples, N."""
+    weight = failure.counts / max(int(failure.counts.sum()), 1)
+    return float(np.sqrt(np.sum(weight * failure.means_n**2)))
+
+
+def _shares(
+    before: Comparison, failure: Failure, made: Mapping[str, Sequence[Array]]
+) -> dict[str, float]:
+    """How much of a pattern each effect makes, the largest first."""
+    u_tr = transition_speed(before.model.law, before.model.values.tolist())
+    axes = [a for a in all_axes(before.campaign, u_tr) if a.axis == failure.axis]
+    whole = float(np.sum(failure.counts * failure.means_n**2))
+    if not axes or whole <= 0.0 or len(axes[0].bins) != len(failure.bins):
+        return {}
+    shares = {}
+    for name, parts in made.items():
+        means, counts = bin_means(axes[0], before.samples, list(parts))
+        shares[name] = float(np.sum(counts * means * failure.means_n)) / whole
+    kept = {name: s for name, s in shares.items() if s >= LEAST_SHARE}
+    # Where one takes back what another overdoes they are more than all of it together.
+    most = max(sum(kept.values()), 1.0)
+    return {name: s / most for name, s in sorted(kept.items(), key=lambda item: -item[1])}
+
+
+def _sentence(words: str) -> str:
+    """With a capital and a full stop; the name of an effect stays as it is."""
+    capital = words[:1] if "_" in words.partition(" ")[0] else words[:1].upper()
+    return f"{capital}{words[1:].rstrip('.')}."

@@ -1,0 +1,45 @@
+"""A figure as SVG within a page: its text is text, its colours those of the page, light or dark."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+from html import escape
+from typing import TYPE_CHECKING, cast
+
+from markupsafe import Markup
+
+from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, OTHER
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DOTS_PER_INCH = 120
+"""Of what is drawn as dots, where there are too many for lines."""
+_NAMED = {INK: "ink", MODEL: "model", BEFORE: "before", NOISE: "noise", MEASURED: "measured",
+          OTHER: "other", "#ffffff": "paper"}  # fmt: skip
+_COLOUR = re.compile(r"(?<=: )(" + "|".join(_NAMED) + r")\b")
+_FACE = re.compile(r"(font-family: |font: (?:[a-z0-9]+ )*?[\d.]+px )[^;\"]+")
+_HEAD = re.compile(r"<svg\b[^>]*?viewBox=\"([^\"]*)\"[^>]*>", re.DOTALL)
+
+
+def svg(axes: Sequence[Axes], alt: str) -> Markup:
+    """The figure of some axes, as wide as its place."""
+    from matplotlib import rc_context
+
+    buffer = io.StringIO()
+    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "jbf"}):
+        cast("Figure", axes[0].figure).savefig(
+            buffer, format="svg", dpi=DOTS_PER_INCH, transparent=True, metadata=nothing
+        )
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :].strip()
+    text = _COLOUR.sub(lambda found: f"var(--{_NAMED[found[1]]})", text)
+    text = _FACE.sub(r"\1var(--face)", text)
+    # How wide it is, is the page's matter.
+    names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+    look = f'class="figure" role="img" aria-label="{escape(alt)}"'
+    return Markup(_HEAD.sub(lambda f: f'<svg {names} viewBox="{f[1]}" {look}>', text, count=1))

@@ -95,7 +95,8 @@ class Bench:
             trial.tests = len(chosen.tests)
             found = FAILED.search(told)
             trial.by = found.group(1) if found else None
-            if code in (USAGE, NO_TESTS):
+            # A mutant that cannot be imported has no tests either.
+            if code == NO_TESTS or (code == USAGE and not self.is_sound(tests[0])):
                 raise RuntimeError(f"{fault.name}: its tests cannot be found\n{told[-800:]}")
             trial.word = "timeout" if code is None else "survived" if code == PASSED else "caught"
             # A test that fails anyway is struck off, and the others are asked again.

@@ -21,7 +21,7 @@ PRINTED = {
     "velocity square": (-1.04, 1.04, 0.25, None, 0.451, None, 0.0733, None, None),
     "velocity sine 20.8": (0.52, 20.8, 0.25, 0.519, 0.210, 0.168, 0.025, 0.0895, 0.0162),
 }
-"""Low, high, frequency; then peak and RMS error with no, the dynamic and the Coulomb compensation."""
+"""Low, high, frequency; peak and RMS error without, with the dynamic, with the Coulomb scheme."""
 
 
 @pytest.mark.parametrize("row", PRINTED)

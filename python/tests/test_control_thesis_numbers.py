@@ -8,9 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import scipy.optimize
-from jbf.control import TASKS, THESIS_BENCH, Learning, Task, run
+from jbf.control import TASKS, THESIS_BENCH, Learning, Task, assumptions, run, thesis_model
 from jbf.control import thesis_tables as printed
 from jbf.control.bench import with_noise
+from jbf.control.schemes import NoCompensation
 
 PRINTED = {
     "position triangle": (0.0, 10.4, 0.628, 0.474, 0.398, 0.454, 0.0894, 0.296, 0.212),
@@ -79,3 +80,14 @@ def test_noise_grows_in_all_and_the_counting_has_a_share(counts: float) -> None:
     ratio = (1 / 12 + strong.encoder_noise_counts**2) / (1 / 12 + counts**2)
     assert ratio == pytest.approx(16.0)
     assert strong.input_noise_v == pytest.approx(4.0 * bench.input_noise_v)
+
+
+def test_the_journal_clock_would_leave_the_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the parameters of the thesis's clock its cells are off, in the worst by a factor."""
+    model = thesis_model(clock="journal")
+    monkeypatch.setattr(assumptions, "fit_friction", lambda **_: (model, THESIS_BENCH))
+    worst = assumptions.on_the_journal_clock()
+    cells = printed.tables(model, THESIS_BENCH, schemes={"none": NoCompensation()}, seeds=3)
+    ratios = [cell.rms / (cell.printed_rms or np.nan) for cell in cells.column("none")]
+    assert worst == pytest.approx(np.max(np.abs(np.array(ratios) - 1.0)))
+    assert worst > 0.1

@@ -21,7 +21,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from mutants.faults import Copy  # noqa: E402
-from reach import Reach  # noqa: E402
+from reach import Chosen, Reach  # noqa: E402
 from score import read, table  # noqa: E402
 from sites import drawn  # noqa: E402
 from trial import Bench, Trial  # noqa: E402
@@ -40,6 +40,7 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--reach", type=Path, default=HERE / "reach.json")
     parser.add_argument("--budget", type=float, default=60.0, help="seconds of tests a mutant")
     parser.add_argument("--again", action="store_true", help="survivors in the record once more")
+    parser.add_argument("--tests", nargs="+", default=[], help="these, whatever reaches the line")
     parser.add_argument("--least", type=float, default=0.0, help="fail below this share")
     parser.add_argument("--root", type=Path, default=ROOT, help=argparse.SUPPRESS)
     parser.add_argument("--package", default="python/jbf", help=argparse.SUPPRESS)
@@ -57,7 +58,8 @@ def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Tria
     for fault in islice(drawn(asked.root, files, f"{room} {asked.seed}"), asked.sample):
         trial = known.get(fault.name)
         if trial is None or (asked.again and not trial.caught):
-            trial = bench.tried(fault, reach.chosen(fault.file, fault.line, asked.budget))
+            chosen = reach.chosen(fault.file, fault.line, asked.budget)
+            trial = bench.tried(fault, Chosen(tuple(asked.tests), 60.0) if asked.tests else chosen)
             trial.room, trial.seed = room, asked.seed
             if asked.out:
                 with asked.out.open("a", encoding="utf-8") as record:

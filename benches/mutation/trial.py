@@ -89,7 +89,7 @@ class Bench:
         while tests:
             path.write_text(after, "utf-8")
             try:
-                code, told = self.pytest(tests, 30.0 + 4.0 * chosen.seconds)
+                code, told = self.pytest(tests, 120.0 + 8.0 * chosen.seconds)
             finally:
                 path.write_text(before, "utf-8")
             trial.tests = len(chosen.tests)

@@ -79,31 +79,30 @@ class Reach:
         return Reach({k: round(v, 1) for k, v in sorted(seconds.items())}, lines)
 
     def chosen(self, module: str, line: int, budget_s: float) -> Chosen:
-        """The tests of a line, as many as the budget allows.
+        """The files of tests that run a line, the quickest first, as many as the budget allows.
 
-        Those that run the line come first, then the rest of their files. A line that runs as its
-        module is imported belongs to all that reach the module, and a line without tests, as the
-        later ones of a long statement may be, to those of the line before it.
+        Of those files the tests that run the line come first, then all others: they may ask for
+        what a fixture has run. A line that runs as its module is imported belongs to all that reach
+        the module, and a line without tests, as the later ones of a long statement may be, to those
+        of the line before it.
         """
         at = self.lines.get(module, {})
-        if ANY in at:
-            ordered = at[ANY]
-        else:
-            near = next((str(n) for n in range(line, line - BACK, -1) if str(n) in at), "")
-            every = {test for of in at.values() for test in of}
-            direct = set(at.get(near) or every)
-            files = {test.split("::")[0] for test in direct}
-            beside = {t for t in self.seconds if t.split("::")[0] in files} - direct
-            took = self.seconds.__getitem__
-            ordered = [*sorted(direct, key=took), *sorted(beside, key=took)]
-        tests: list[str] = []
+        near = next((str(n) for n in range(line, line - BACK, -1) if str(n) in at), ANY)
+        direct = at.get(near) or list({test: None for of in at.values() for test in of})
+        cost: dict[str, float] = defaultdict(float)
+        for test, took in self.seconds.items():
+            cost[test.split("::")[0]] += took
+        files: dict[str, None] = dict.fromkeys(test.split("::")[0] for test in direct)
+        chosen: list[str] = []
         spent = 0.0
-        for test in ordered:
-            if tests and spent + self.seconds[test] > budget_s:
-                continue
-            tests.append(test)
-            spent += self.seconds[test]
-        return Chosen(tuple(tests), spent)
+        for file in files if ANY in at else sorted(files, key=cost.__getitem__):
+            if not chosen or spent + cost[file] <= budget_s:
+                chosen.append(file)
+                spent += cost[file]
+        inside = [t for t in self.seconds if t.split("::")[0] in chosen]
+        place = {file: i for i, file in enumerate(chosen)}
+        inside.sort(key=lambda t: (t not in direct, place[t.split("::")[0]], self.seconds[t]))
+        return Chosen(tuple(inside), spent)
 
 
 def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None:

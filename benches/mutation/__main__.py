@@ -59,7 +59,9 @@ def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Tria
         trial = known.get(fault.name)
         if trial is None or (asked.again and not trial.caught):
             chosen = reach.chosen(fault.file, fault.line, asked.budget)
-            trial = bench.tried(fault, Chosen(tuple(asked.tests), 60.0) if asked.tests else chosen)
+            if asked.tests:
+                chosen = Chosen(tuple(asked.tests), 60.0)
+            trial = bench.tried(fault, chosen)
             trial.room, trial.seed = room, asked.seed
             if asked.out:
                 with asked.out.open("a", encoding="utf-8") as record:

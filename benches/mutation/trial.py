@@ -84,7 +84,9 @@ class Bench:
         lines = difflib.unified_diff(before.splitlines(), after.splitlines(), lineterm="", n=0)
         diff = [line for line in lines if line[:3] not in ("---", "+++") and line[:2] != "@@"]
         trial = Trial(fault.name, fault.file, fault.line, fault.operator, diff)
-        tests = list(chosen.tests)
+        # A file of tests may have gone since it was measured.
+        tests = [t for t in chosen.tests if (self.copy.folder / t.split("::")[0]).is_file()]
+        trial.tests = len(tests)
         begun = time.monotonic()
         while tests:
             path.write_text(after, "utf-8")
@@ -92,7 +94,6 @@ class Bench:
                 code, told = self.pytest(tests, 120.0 + 8.0 * chosen.seconds)
             finally:
                 path.write_text(before, "utf-8")
-            trial.tests = len(chosen.tests)
             found = FAILED.search(told)
             trial.by = found.group(1) if found else None
             # A mutant that cannot be imported has no tests either.

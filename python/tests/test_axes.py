@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from jbf import Rig, Run
+from jbf import Model, Rig, Run, compare
 from jbf.comparison.axes import all_axes, force_axis
 from jbf.comparison.bins import Bin, Binned
 from jbf.comparison.patterns import find_failures, pattern_along, pattern_words
@@ -217,3 +217,13 @@ def test_the_least_that_is_told_is_six_deviations_and_a_hundredth(campaign: Camp
     assert not told(2.0 + 6.0 * 2.0 - 0.01)
     assert pattern_along(axis, samples, flat, 1e-9, least_share=0.999) is not None
     assert pattern_along(axis, samples, [0.0 * r for r in flat], 1e-9) is None
+
+
+def test_samples_beside_jumps_count_unless_the_model_moves_them(campaign: Campaign) -> None:
+    runs = [p.run for p in campaign.prepared]
+    bare = compare(Model(Rig.thesis()), runs)
+    assert bare.samples is bare.campaign.samples
+    late = compare(
+        Model(Rig.thesis(), effects=["time_delay"], parameters={"time_delay.tau_s": 0.05}), runs
+    )
+    assert late.samples.count < bare.samples.count

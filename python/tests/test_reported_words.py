@@ -1,0 +1,26 @@
+"""What reports say of numbers, and under which heading each effect stands."""
+
+from __future__ import annotations
+
+from jbf.models.catalogue import effects
+from jbf.reporting.catalogue_text import effects_page
+from jbf.reporting.words import times
+
+
+def test_an_error_in_multiples_of_the_noise() -> None:
+    assert times(2.58, 2.0) == "1.29 times"
+    assert times(0.1, 0.2) == "0.50 times"
+    assert times(1.0, 0.0) == "above"
+
+
+def test_each_effect_stands_under_its_own_stage_and_each_stage_once() -> None:
+    pages = effects()
+    stage, headings, placed = "", [], {}
+    for line in effects_page(pages.values()).splitlines():
+        if line.startswith("["):
+            stage = line.strip("[]")
+            headings.append(stage)
+        elif line[:3].strip() and line.split()[0] in pages:
+            placed[line.split()[0]] = stage
+    assert placed == {name: page.stage for name, page in pages.items()}
+    assert len(headings) == len(set(headings)) > 2

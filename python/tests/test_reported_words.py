@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from jbf.models.catalogue import effects
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from jbf.diagnosis.result import Diagnosis
+from jbf.models import catalogue
 from jbf.reporting.catalogue_text import effects_page
-from jbf.reporting.words import times
+from jbf.reporting.words import times, verdict_sentence
 
 
 def test_an_error_in_multiples_of_the_noise() -> None:
@@ -14,7 +19,7 @@ def test_an_error_in_multiples_of_the_noise() -> None:
 
 
 def test_each_effect_stands_under_its_own_stage_and_each_stage_once() -> None:
-    pages = effects()
+    pages = catalogue.effects()
     stage, headings, placed = "", [], {}
     for line in effects_page(pages.values()).splitlines():
         if line.startswith("["):
@@ -24,3 +29,14 @@ def test_each_effect_stands_under_its_own_stage_and_each_stage_once() -> None:
             placed[line.split()[0]] = stage
     assert placed == {name: page.stage for name, page in pages.items()}
     assert len(headings) == len(set(headings)) > 2
+
+
+@pytest.mark.parametrize("effects", [(), ("coulomb_drag",), ("coulomb_drag", "presliding")])
+def test_what_remains_is_said_beside_what_is_missing(
+    make_diagnosis: Callable[[str], Diagnosis], effects: tuple[str, ...]
+) -> None:
+    said = verdict_sentence(replace(make_diagnosis("unexplained"), effects=effects))
+    assert "omething remains that no effect in the catalogue explains" in said
+    assert said.startswith(f"Missing: {' and '.join(effects)}. With" if effects else "Something")
+    assert ("With them, the held-out error falls" in said) == (len(effects) == 2)
+    assert ("With it, the held-out error falls" in said) == (len(effects) == 1)

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from jbf.control import TASKS, run
 from jbf.diagnosis.result import Diagnosis
 from jbf.models import catalogue
 from jbf.reporting.catalogue_text import effects_page
+from jbf.reporting.control_run_plot import plot_runs
+from jbf.reporting.paragraphs import columns
 from jbf.reporting.words import times, verdict_sentence
 
 
@@ -40,3 +44,23 @@ def test_what_remains_is_said_beside_what_is_missing(
     assert said.startswith(f"Missing: {' and '.join(effects)}. With" if effects else "Something")
     assert ("With them, the held-out error falls" in said) == (len(effects) == 2)
     assert ("With it, the held-out error falls" in said) == (len(effects) == 1)
+
+
+def test_a_row_of_another_length_is_no_row_of_a_table() -> None:
+    assert columns([("a", "bb"), ("cc", "d")], "<>", indent=1) == [" a   bb", " cc   d"]
+    with pytest.raises(ValueError, match="zip"):
+        columns([("a", "b"), ("a", "b", "c")], "<<")
+
+
+def test_the_picture_of_loops_has_every_scheme_and_draws_its_numbers() -> None:
+    task = replace(TASKS["velocity sine"], seconds=6.0)
+    results = [run(None, scheme, task) for scheme in ("none", "observed")]
+    axes = np.array(plot_runs(results).axes).reshape(5, 2)
+    for column, result in enumerate(results):
+        top = axes[0, column]
+        assert top.get_title(loc="left") == result.scheme
+        drawn = {line.get_label(): line.get_ydata() for line in top.lines}
+        assert np.array_equal(drawn["reference"], result.reference)
+        assert np.array_equal(drawn["response"], result.velocity_rad_s)
+        friction = {line.get_label() for line in axes[3, column].lines}
+        assert ("estimated" in friction) == (result.scheme != "none")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from jbf.control import THESIS_BENCH, thesis_model
+from jbf.control import TASKS, THESIS_BENCH, run, thesis_model
 from jbf.control.robustness import Outcome
 from jbf.control.thesis_tables import Cell, Tables
+from jbf.reporting.control_json import tables_dict
 from jbf.reporting.control_plots import plot_robustness, plot_tables
+from jbf.reporting.control_run_plot import plot_run_of_loop
 
 PRINTED = {"none": 0.4, "learning": 0.08, "coulomb": None, "observed": None}
 
@@ -59,3 +63,31 @@ def test_each_outcome_has_its_own_line_and_its_worst_a_mark() -> None:
     assert drawn == {(o.worst, float(place[o.name])) for o in outcomes}
     dots = {float(x) for line in ax.lines if line.get_marker() == "o" for x in line.get_xdata()}
     assert dots == {0.2, 0.9, 1.1, 0.3}
+
+
+def test_one_run_alone_names_its_axes() -> None:
+    axes = plot_run_of_loop(run(None, "observed", replace(TASKS["velocity sine"], seconds=4.0)))
+    assert [ax.get_ylabel() for ax in axes[:4]] == [
+        "Speed (rad/s)",
+        "Error (rad/s)",
+        "Friction (V)",
+        "Friction (V)",
+    ]
+
+
+def test_json_counts_the_cells_within_a_factor() -> None:
+    ratios = dict(zip(TASKS, (1.0, 1.4, 1.0 / 1.9, 2.1, 3.0, 0.2, 1.3), strict=True))
+    cells = {
+        (row, "learning"): Cell(row, "learning", 0.3 * ratio, 1.0, 0.3, None, 1.0)
+        for row, ratio in ratios.items()
+    }
+    cells |= {(row, "coulomb"): Cell(row, "coulomb", 1.0, 1.0, None, None, 1.0) for row in ratios}
+    cells |= {(row, "observed"): Cell(row, "observed", 1.0, 1.0, None, None, 0.5) for row in ratios}
+    tables = Tables(cells, thesis_model(), THESIS_BENCH)
+    told = tables_dict(tables, [("same", tables)])
+    for part in (told, told["assumptions"][0]):
+        assert (part["within_1.5"], part["within_2"]) == (3, 4)
+    assert told["assumptions"][0]["ratios"] == pytest.approx(
+        {f"{row}, learning": ratio for row, ratio in ratios.items()}
+    )
+    assert told["times_better"] == dict.fromkeys(ratios, 2.0)

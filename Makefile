@@ -21,7 +21,7 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants firmware clean
+.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -32,6 +32,7 @@ help:
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
+	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
 	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
@@ -99,6 +100,11 @@ bits-table:
 # Deliberate faults in a copy of the tree, one at a time; ONLY=words keeps those whose name holds them.
 mutants: $(BUILT)
 	$(VENV)/bin/python benches/mutants $(if $(ONLY),--only '$(ONLY)')
+
+# Mutants drawn by lot, SAMPLE of each ROOM by SEED; fails where fewer than LEAST of them are caught.
+mutation: $(BUILT)
+	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
+		--seed $(or $(SEED),1) --budget $(or $(BUDGET),15) --least $(or $(LEAST),0.58)
 
 # Needs nightly Rust and cargo-fuzz.
 fuzz:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,9 @@ import pytest
 from jbf import InputError, Limits, Model, Rig, Run, plan, planned_power
 from jbf.cli import main
 from jbf.diagnosis.excitations import excitations
-from jbf.diagnosis.plan import Plan, _worth
+from jbf.diagnosis.plan import Plan, _effects, _told, _worth
+from jbf.diagnosis.planned import as_recorded
+from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.separation import played
 from jbf.records.run_files import read_runs
 
@@ -129,3 +132,14 @@ def test_a_plan_does_not_claim_what_only_exact_instants_would_show(planned: Plan
     # Of a lag within a sample nothing is left at the next but one.
     assert lag_s is not None
     assert 0.1 * step_s < lag_s < step_s
+
+
+def test_what_a_motion_tells_goes_with_the_square_of_one_over_the_noise() -> None:
+    """Fisher's information of a mean under normal noise."""
+    motions = [played(Rig(), e, 0.02, linear=True) for e in list(excitations(LIMITS, 0.02))[::20]]
+    named = [replace(run, name=f"{i}") for i, run in enumerate(motions)]
+    candidates = as_recorded(MODEL, named, NOISE_N, DEFAULT)
+    effects = _effects(candidates, MODEL)[:2]
+    quiet, loud = (_told(candidates, MODEL, effects, named[0], sd) for sd in (0.1, 0.3))
+    np.testing.assert_allclose(quiet, 9.0 * loud, rtol=1e-9)
+    assert np.all(np.linalg.eigvalsh(quiet) > -1e-6 * np.trace(quiet))

@@ -112,3 +112,17 @@ def test_pictures_do_not_touch_pyplot(bad: Comparison) -> None:
 
     code = "import jbf.reporting.pictures, sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_errors_of_the_ledger_stand_on_an_axis_from_zero(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    diagnosis = make_diagnosis("missing")
+    falling = plot_diagnosis(diagnosis)[0]
+    shown = {line.get_label(): list(line.get_ydata()) for line in falling.lines}
+    assert shown["fit"] == [step.rms_n for step in diagnosis.steps]
+    assert shown["held out"] == [step.holdout_rms_n for step in diagnosis.steps]
+    assert set(shown["noise floor"]) == {diagnosis.steps[-1].noise_n}
+    low, high = falling.get_ylim()
+    assert low == 0.0
+    assert 1.0 < high / max(shown["fit"] + shown["held out"]) < 1.5

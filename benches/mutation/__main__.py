@@ -1,0 +1,94 @@
+"""Do the tests bite? Mutants drawn by lot in a copy of the tree, one at a time.
+
+    python benches/mutation --room NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
+
+A room is a folder of `python/jbf`. Sites are drawn by lot, at each one of cosmic-ray's operators;
+the tests that reach the line (`reach.py`) run, the quickest first, until one fails. Each mutant is
+a line of the record; a mutant that is in it is not tried again (`--again` tries its survivors).
+Unlike `benches/mutants`, whose faults are chosen by hand, nobody chose these.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from itertools import islice
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+from mutants.faults import Copy  # noqa: E402
+from reach import Chosen, Reach  # noqa: E402
+from score import read, table  # noqa: E402
+from sites import drawn  # noqa: E402
+from trial import Bench, Trial  # noqa: E402
+
+ROOT = HERE.parents[1]
+ROOMS = ("records", "estimation", "comparison", "diagnosis", "reporting", "control")
+
+
+def arguments(given: list[str] | None) -> argparse.Namespace:
+    """What was asked."""
+    parser = argparse.ArgumentParser(prog="mutation", description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--room", action="append", default=[], help=f"of {', '.join(ROOMS)} (all)")
+    parser.add_argument("--sample", type=int, default=12, help="mutants of each room")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, help="the record, a line of JSON each")
+    parser.add_argument("--reach", type=Path, default=HERE / "reach.json")
+    parser.add_argument("--budget", type=float, default=60.0, help="seconds of tests a mutant")
+    parser.add_argument("--again", action="store_true", help="survivors in the record once more")
+    parser.add_argument("--tests", nargs="+", default=[], help="these, whatever reaches the line")
+    parser.add_argument("--least", type=float, default=0.0, help="fail below this share")
+    parser.add_argument("--root", type=Path, default=ROOT, help=argparse.SUPPRESS)
+    parser.add_argument("--package", default="python/jbf", help=argparse.SUPPRESS)
+    return parser.parse_args(given)
+
+
+def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Trial]) -> list[Trial]:
+    """The sample of one room; those in the record are taken from it."""
+    reach = Reach.read(asked.reach)
+    known = {t.name: t for t in done if (t.room, t.seed) == (room, asked.seed)}
+    files = sorted((asked.root / asked.package / room).rglob("*.py"))
+    if not files:
+        raise SystemExit(f"no room {room}")
+    found: list[Trial] = []
+    for fault in islice(drawn(asked.root, files, f"{room} {asked.seed}"), asked.sample):
+        trial = known.get(fault.name)
+        if trial is None or (asked.again and not trial.caught):
+            chosen = reach.chosen(fault.file, fault.line, asked.budget)
+            if asked.tests:
+                chosen = Chosen(tuple(asked.tests), 60.0)
+            trial = bench.tried(fault, chosen)
+            trial.room, trial.seed = room, asked.seed
+            if asked.out:
+                with asked.out.open("a", encoding="utf-8") as record:
+                    record.write(json.dumps(trial.row()) + "\n")
+            print(f"{trial.word:<12}{trial.took_s:6.1f} s  {trial.name}", flush=True)
+            if not trial.caught:
+                print("\n".join(f"    {line}" for line in trial.diff), flush=True)
+        found.append(trial)
+    return found
+
+
+def main(given: list[str] | None = None) -> int:
+    """Try what was asked for; 1 where too few were caught."""
+    asked = arguments(given)
+    done = read(asked.out) if asked.out else []
+    trials: list[Trial] = []
+    with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
+        bench = Bench(Copy(asked.root, Path(folder)))
+        for room in asked.room or ROOMS:
+            trials += tried_in(asked, room, bench, done)
+    print(table(trials))
+    share = sum(trial.caught for trial in trials) / max(len(trials), 1)
+    if share < asked.least:
+        print(f"{share:.0%} caught, {asked.least:.0%} were asked for", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,175 @@
+"""Which tests reach which line, and how long each takes: measured once, by coverage contexts.
+
+    python benches/mutation/reach.py [TESTS ...] --out FILE
+
+Every file of tests runs alone. A test that asks for a fixture that another one has built reaches
+what that one does: all tests of a file stand behind each of its lines, those that run it first.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import coverage
+
+ROOT = Path(__file__).resolve().parents[2]
+LONGEST_S = 900.0
+ANY = "0"
+"""The line that stands for all of a module."""
+BACK = 12
+"""Lines that are looked back for the begin of a statement."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Tests for one mutant, the quickest first, and the seconds they take without it."""
+
+    tests: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Seconds of every test; of a module's lines the tests that run them."""
+
+    seconds: dict[str, float]
+    lines: dict[str, dict[str, list[str]]]
+
+    @classmethod
+    def read(cls, path: Path) -> Reach:
+        """What `write` wrote."""
+        held = json.loads(path.read_text("utf-8"))
+        tests, by_file = list(held["seconds"]), held["lines"]
+        named = {
+            m: {n: [tests[i] for i in of] for n, of in at.items()} for m, at in by_file.items()
+        }
+        return cls(held["seconds"], named)
+
+    def write(self, path: Path) -> None:
+        """As JSON; a test is its place in the list."""
+        place = {test: i for i, test in enumerate(self.seconds)}
+        lines = {
+            m: {n: [place[t] for t in of if t in place] for n, of in at.items()}
+            for m, at in sorted(self.lines.items())
+        }
+        text = json.dumps({"seconds": self.seconds, "lines": lines}, separators=(",", ":"))
+        path.write_text(text.replace('},"', '},\n"').replace('],"', '],\n"') + "\n", "utf-8")
+
+    def by_file(self) -> Reach:
+        """The same in files of tests and whole modules: little to keep, and slow to go stale."""
+        seconds: dict[str, float] = defaultdict(float)
+        for test, took in self.seconds.items():
+            seconds[test.split("::")[0]] += took
+        lines = {}
+        for module, at in self.lines.items():
+            reached = Counter(f for of in at.values() for f in {t.split("::")[0] for t in of})
+            # Those that reach most of it in a second come first.
+            order = sorted(reached, key=lambda f: (seconds[f] + 0.2) / reached[f])
+            lines[module] = {ANY: order}
+        return Reach({k: round(v, 1) for k, v in sorted(seconds.items())}, lines)
+
+    def chosen(self, module: str, line: int, budget_s: float) -> Chosen:
+        """The files of tests that run a line, the quickest first, as many as the budget allows.
+
+        Of those files the tests that run the line come first, then all others: they may ask for
+        what a fixture has run. A line that runs as its module is imported belongs to all that reach
+        the module, and a line without tests, as the later ones of a long statement may be, to those
+        of the line before it.
+        """
+        at = self.lines.get(module, {})
+        near = next((str(n) for n in range(line, line - BACK, -1) if str(n) in at), ANY)
+        direct = at.get(near) or list({test: None for of in at.values() for test in of})
+        cost: dict[str, float] = defaultdict(float)
+        for test, took in self.seconds.items():
+            cost[test.split("::")[0]] += took
+        files: dict[str, None] = dict.fromkeys(test.split("::")[0] for test in direct)
+        chosen: list[str] = []
+        spent = 0.0
+        for file in files if ANY in at else sorted(files, key=cost.__getitem__):
+            if not chosen or spent + cost[file] <= budget_s:
+                chosen.append(file)
+                spent += cost[file]
+        inside = [t for t in self.seconds if t.split("::")[0] in chosen]
+        place = {file: i for i, file in enumerate(chosen)}
+        inside.sort(key=lambda t: (t not in direct, place[t.split("::")[0]], self.seconds[t]))
+        return Chosen(tuple(inside), spent)
+
+
+def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None:
+    """Run each file of tests under coverage; a file that was run before is left."""
+    for file in files:
+        name = file.removesuffix(".py").replace("/", "-")
+        data, report = folder / f"{name}.cov", folder / f"{name}.xml"
+        if report.is_file():
+            continue
+        command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-p", "no:cacheprovider", file]
+        command += ["--cov=jbf", "--cov-report=", "--cov-context=test", f"--junitxml={report}"]
+        environment = os.environ | {"COVERAGE_FILE": str(data)}
+        try:
+            done = subprocess.run(
+                command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=limit_s
+            )
+        except subprocess.TimeoutExpired:
+            print(f"{file}: longer than {limit_s:.0f} s, left out", file=sys.stderr)
+            continue
+        print(f"{file}: {done.stdout.splitlines()[-1] if done.stdout else done.stderr[-200:]}")
+
+
+def _passed(report: Path) -> Iterator[tuple[str, float]]:
+    """Name and seconds of the tests that passed."""
+    for case in ElementTree.parse(report).iter("testcase"):
+        if not any(part.tag in ("failure", "error", "skipped") for part in case):
+            yield case.get("name", ""), float(case.get("time", "0"))
+
+
+def gathered(folder: Path) -> Reach:
+    """The reach of all that was measured."""
+    seconds: dict[str, float] = {}
+    lines: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for report in sorted(folder.glob("*.xml")):
+        data = coverage.CoverageData(str(report.with_suffix(".cov")))
+        data.read()
+        contexts = {c.rsplit("|", 1)[0] for c in data.measured_contexts() if c}
+        took = dict(_passed(report))
+        seconds |= {c: took[c.split("::", 1)[1]] for c in contexts if c.split("::", 1)[1] in took}
+        for measured_file in data.measured_files():
+            module = Path(measured_file).relative_to(ROOT).as_posix()
+            for line, found in data.contexts_by_lineno(measured_file).items():
+                reached = {c.rsplit("|", 1)[0] for c in found if c} & set(seconds)
+                lines[module][str(line)] += sorted(reached)
+    return Reach(seconds, lines)
+
+
+def main() -> None:
+    """Measure, gather, write."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("tests", nargs="*", help="files of tests (python/tests)")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--by-file", type=Path, help="also the short form, for a sample in CI")
+    parser.add_argument("--data", type=Path, help="where to keep what was measured, to go on there")
+    asked = parser.parse_args()
+    files = asked.tests or sorted(
+        p.relative_to(ROOT).as_posix() for p in (ROOT / "python" / "tests").glob("**/test_*.py")
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        kept = asked.data or Path(folder)
+        kept.mkdir(parents=True, exist_ok=True)
+        measured(files, kept)
+        found = gathered(kept)
+    found.write(asked.out)
+    if asked.by_file:
+        found.by_file().write(asked.by_file)
+
+
+if __name__ == "__main__":
+    main()

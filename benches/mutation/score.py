@@ -1,0 +1,44 @@
+"""Caught of total, with the interval that so many tries allow."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from pathlib import Path
+
+from scipy.stats import beta
+from trial import Trial
+
+
+def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float]:
+    """Clopper and Pearson's interval of a share (Biometrika 26, 1934)."""
+    tail = 0.5 * (1.0 - level)
+    lower = beta.ppf(tail, caught, total - caught + 1) if caught else 0.0
+    upper = beta.ppf(1.0 - tail, caught + 1, total - caught) if caught < total else 1.0
+    return float(lower), float(upper)
+
+
+def read(path: Path) -> list[Trial]:
+    """The trials of a record, the last of each name; a line that was cut off is left."""
+    found: dict[tuple[str, int, str], Trial] = {}
+    for line in path.read_text("utf-8").splitlines() if path.is_file() else []:
+        try:
+            trial = Trial(**json.loads(line))
+        except (json.JSONDecodeError, TypeError):
+            continue
+        found[trial.room, trial.seed, trial.name] = trial
+    return list(found.values())
+
+
+def table(trials: list[Trial]) -> str:
+    """One row a room, and one of them all."""
+    rooms: dict[str, list[Trial]] = defaultdict(list)
+    for trial in trials:
+        rooms[trial.room].append(trial)
+    rows = ["| room | caught | of | rate | 95 % interval |", "| --- | --- | --- | --- | --- |"]
+    for name, held in [*rooms.items(), ("all", trials)]:
+        caught = sum(trial.caught for trial in held)
+        low, high = interval(caught, len(held))
+        share = caught / len(held)
+        rows.append(f"| {name} | {caught} | {len(held)} | {share:.0%} | {low:.0%} to {high:.0%} |")
+    return "\n".join(rows)

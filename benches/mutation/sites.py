@@ -1,0 +1,122 @@
+"""Where a room's source can be faulty, and how: sites and operators of cosmic-ray."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cosmic_ray.mutating import MutationVisitor
+from cosmic_ray.operators.provider import OperatorProvider
+from parso.grammar import load_grammar
+from parso.tree import BaseNode, NodeOrLeaf
+
+PREFIX = {"binary": "ReplaceBinaryOperator_", "comparison": "ReplaceComparisonOperator_"}
+BINARY = ("Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "FloorDiv_Mul", "Mod_Mul", "Pow_Mul")
+SETS = ("BitAnd_BitOr", "BitOr_BitAnd", "BitXor_BitAnd")
+ORDER = ("Lt_LtE", "Lt_GtE", "LtE_Lt", "LtE_Gt", "Gt_GtE", "Gt_LtE", "GtE_Gt", "GtE_Lt")
+SAME = ("Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is")
+OPERATORS = (
+    *(PREFIX["binary"] + pair for pair in BINARY + SETS),
+    *(PREFIX["comparison"] + pair for pair in ORDER + SAME),
+    *(f"ReplaceUnaryOperator_Delete_{name}" for name in ("USub", "Not", "Invert")),
+    "AddNot",
+    "ReplaceTrueWithFalse",
+    "ReplaceFalseWithTrue",
+    "ReplaceAndWithOr",
+    "ReplaceOrWithAnd",
+    "ReplaceBreakWithContinue",
+    "ReplaceContinueWithBreak",
+    "ExceptionReplacer",
+    "NumberReplacer",
+    "RemoveDecorator",
+    "ZeroIterationForLoop",
+)
+"""Of cosmic-ray's operators those whose mutants run: `a >> b` of two floats is noticed for nothing,
+and would flatter the rate."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One mutant: the `occurrence`-th place of an operator in a file."""
+
+    file: str
+    line: int
+    column: int
+    operator: str
+    occurrence: int
+
+    @property
+    def name(self) -> str:
+        """What a record knows it by."""
+        return f"{self.file}:{self.line}:{self.column} {self.operator} {self.occurrence}"
+
+    def applied(self, source: str) -> str:
+        """The source with the fault in it."""
+        made = MutationVisitor.mutate_code(source, _operator(self.operator), self.occurrence)
+        if made is None:
+            raise ValueError(f"{self.name} has no place")
+        return str(made)
+
+
+def _operator(name: str) -> Any:
+    return OperatorProvider()[name]()
+
+
+def _nodes(node: NodeOrLeaf) -> Iterator[NodeOrLeaf]:
+    yield node
+    if isinstance(node, BaseNode):
+        for child in node.children:
+            yield from _nodes(child)
+
+
+def _is_for_types(node: NodeOrLeaf) -> bool:
+    """True inside an annotation, and under `if TYPE_CHECKING`: neither is ever run."""
+    while node.parent is not None:
+        above = node.parent
+        if above.type == "annassign" and node is above.children[1]:
+            return True
+        if above.type == "tfpdef" and node is above.children[2]:
+            return True
+        if above.type == "funcdef" and node is getattr(above, "annotation", None):
+            return True
+        if above.type == "if_stmt" and "TYPE_CHECKING" in above.children[1].get_code():
+            return True
+        node = above
+    return node.type == "if_stmt"
+
+
+def faults_of(source: str, file: str) -> list[Fault]:
+    """Every fault of a source."""
+    tree = load_grammar().parse(source)
+    nodes = list(_nodes(tree))
+    found = []
+    for name in OPERATORS:
+        operator = _operator(name)
+        count: Counter[str] = Counter()
+        for node in nodes:
+            for (line, column), _ in operator.mutation_positions(node):
+                occurrence = count[name]
+                count[name] += 1
+                if not _is_for_types(node):
+                    found.append(Fault(file, line, column, name, occurrence))
+    return found
+
+
+def drawn(root: Path, files: list[Path], seed: str) -> Iterator[Fault]:
+    """One fault of every site, both in an order drawn by lot.
+
+    A longer sample of the same seed begins with the shorter one.
+    """
+    sites: dict[tuple[str, int, int], list[Fault]] = defaultdict(list)
+    for path in files:
+        for fault in faults_of(path.read_text("utf-8"), path.relative_to(root).as_posix()):
+            sites[fault.file, fault.line, fault.column].append(fault)
+    chance = random.Random(seed)
+    order = sorted(sites)
+    chance.shuffle(order)
+    for site in order:
+        yield chance.choice(sites[site])

@@ -1,0 +1,110 @@
+"""One mutant: put into a copy of the tree, tested by what reaches it, and taken out again."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from mutants.faults import Copy
+from reach import Chosen
+from sites import Fault
+
+FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
+NO_TESTS, PASSED, USAGE = 5, 0, 4
+
+
+@dataclass
+class Trial:
+    """What became of a mutant: `caught`, `timeout` (caught too), `survived` or `not reached`."""
+
+    name: str
+    file: str
+    line: int
+    operator: str
+    diff: list[str]
+    word: str = "not reached"
+    tests: int = 0
+    by: str | None = None
+    took_s: float = 0.0
+    room: str = ""
+    seed: int = 0
+
+    @property
+    def caught(self) -> bool:
+        """True where the tests bit."""
+        return self.word in ("caught", "timeout")
+
+    def row(self) -> dict[str, Any]:
+        """As a line of the record holds it."""
+        return asdict(self)
+
+
+@dataclass
+class Bench:
+    """A copy of the tree, and which tests were seen to pass in it without any fault."""
+
+    copy: Copy
+    sound: dict[str, bool] = field(default_factory=dict)
+
+    def pytest(self, tests: list[str], limit_s: float) -> tuple[int | None, str]:
+        """Exit code (None: out of time) and output of tests, in order, to the first failure."""
+        command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no"]
+        command += ["-p", "no:cacheprovider", *tests]
+        try:
+            done = subprocess.run(
+                command,
+                cwd=self.copy.folder,
+                env=self.copy.environment | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=limit_s,
+            )
+        except subprocess.TimeoutExpired:
+            return None, ""
+        return done.returncode, done.stdout
+
+    def is_sound(self, test: str) -> bool:
+        """True where a test passes without a fault; else it notices nothing."""
+        if test not in self.sound:
+            code, _ = self.pytest([test], 600.0)
+            self.sound[test] = code == PASSED
+        return self.sound[test]
+
+    def tried(self, fault: Fault, chosen: Chosen) -> Trial:
+        """A mutant's fate."""
+        path = self.copy.folder / fault.file
+        before = path.read_text("utf-8")
+        after = fault.applied(before)
+        lines = difflib.unified_diff(before.splitlines(), after.splitlines(), lineterm="", n=0)
+        diff = [line for line in lines if line[:3] not in ("---", "+++") and line[:2] != "@@"]
+        trial = Trial(fault.name, fault.file, fault.line, fault.operator, diff)
+        # A file of tests may have gone since it was measured.
+        tests = [t for t in chosen.tests if (self.copy.folder / t.split("::")[0]).is_file()]
+        trial.tests = len(tests)
+        begun = time.monotonic()
+        while tests:
+            path.write_text(after, "utf-8")
+            try:
+                code, told = self.pytest(tests, 120.0 + 8.0 * chosen.seconds)
+            finally:
+                path.write_text(before, "utf-8")
+            found = FAILED.search(told)
+            trial.by = found.group(1) if found else None
+            # A mutant that cannot be imported has no tests either.
+            if code == NO_TESTS or (code == USAGE and not self.is_sound(tests[0])):
+                raise RuntimeError(f"{fault.name}: its tests cannot be found\n{told[-800:]}")
+            trial.word = "timeout" if code is None else "survived" if code == PASSED else "caught"
+            # A test that fails anyway is struck off, and the others are asked again.
+            if code == 1 and trial.by in tests and not self.is_sound(trial.by):
+                tests.remove(trial.by)
+                trial.word, trial.by = "survived", None
+                continue
+            break
+        trial.took_s = round(time.monotonic() - begun, 1)
+        return trial

@@ -14,6 +14,7 @@ from jbf.diagnosis.ledger import Step
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.rounds import step
 from jbf.diagnosis.selection import try_candidates
+from jbf.errors import Stopped
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import Fit, fit
@@ -62,6 +63,8 @@ def one_round(
     ------
     InputError
         An unknown name, a missing column, or runs in which nothing moves.
+    Stopped
+        It was interrupted; it has the fit, or the best so far.
     """
     if progress is not None:
         progress("fitting", 0, 0)
@@ -70,6 +73,9 @@ def one_round(
     chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs)
     comparison = compare_prepared(fitted.model, campaign)
     candidates = Candidates(settled_campaign(campaign, law, clock), law, clock, policy, progress)
-    trials = try_candidates(candidates, chosen).trials
+    try:
+        trials = try_candidates(candidates, chosen).trials
+    except KeyboardInterrupt:
+        raise Stopped(fitted) from None
     ledger = step(candidates, chosen, comparison.noise_n, trials)
     return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison)

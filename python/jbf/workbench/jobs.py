@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import threading
 import time
@@ -11,10 +12,12 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Literal
 
 from jbf.errors import InputError
-from jbf.workbench.work import Answer, Order, main
+from jbf.workbench.work import STOP, Answer, Order, main
 
-Ending = Literal["done", "error", "cancelled"]
+Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
+PATIENCE_S = 20.0
+"""A process that was asked to stop, and has not sent its best so far by then, is killed."""
 
 
 @dataclass
@@ -51,6 +54,7 @@ class Jobs:
         self.changed = changed
         self.job: Job | None = None
         self._process: BaseProcess | None = None
+        self._connection: Any = None
         self._cancelled = False
         self._lock = threading.Lock()
 
@@ -67,21 +71,34 @@ class Jobs:
                 raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
             # Not forked: the server has threads.
             context = multiprocessing.get_context("spawn")
-            mine, theirs = context.Pipe(duplex=False)
+            mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
             self.job, self._process, self._cancelled = Job(words), process, False
+            self._connection = mine
         process.start()
         theirs.close()
         threading.Thread(target=self._follow, args=(mine, process, ended), daemon=True).start()
 
-    def cancel(self) -> bool:
-        """Stop it; False where nothing runs."""
+    def cancel(self, at_once: bool = False) -> bool:
+        """Stop it; False where nothing runs.
+
+        It ends with its best so far; asked again, after `PATIENCE_S` or `at_once`, with nothing.
+        """
         with self._lock:
-            if self._process is None or self.job is None:
+            process = self._process
+            if process is None or self.job is None:
                 return False
-            self._cancelled = True
-            self._process.kill()
-            return True
+            if at_once or self._cancelled:
+                self._cancelled = True
+                process.kill()
+                return True
+            self._cancelled, self.job.message = True, "stopping; cancel again to drop it"
+            with contextlib.suppress(OSError):  # it has just ended
+                self._connection.send(STOP)
+        patience = threading.Timer(PATIENCE_S, process.kill)
+        patience.daemon = True
+        patience.start()
+        return True
 
     def _follow(self, connection: Any, process: BaseProcess, ended: Ended) -> None:
         ending: Ending = "error"
@@ -92,19 +109,20 @@ class Jobs:
             while True:
                 message = connection.recv()
                 if message[0] == "progress":
-                    job.message, job.done, job.total = message[1:]
+                    if not self._cancelled:
+                        job.message, job.done, job.total = message[1:]
                     self.changed()
                 else:
                     ending, answer = message
                     break
         except (EOFError, OSError):
             if self._cancelled:
-                ending, answer = "cancelled", ""
+                ending, answer = "stopped", {}
         process.join()
         # Whoever waits for the end of the job finds what came of it.
         try:
             ended(ending, answer)
         finally:
             with self._lock:
-                self.job = self._process = None
+                self.job = self._process = self._connection = None
             self.changed()

@@ -162,8 +162,13 @@ class Session:
                 told = f"diagnosed: {named}" if "diagnosis" in answer else named
                 self.models.add(parent, told, {**answer, "records": place.name})
             self.say("done", f"{words}: done")
-        elif ending == "cancelled":
-            self.say("done", f"{words}: cancelled; the models so far are kept")
+        elif ending == "stopped" and answer:
+            with self.lock:
+                named = " + ".join([answer["law"], *answer["effects"]])
+                self.models.add(parent, f"stopped at: {named}", {**answer, "records": place.name})
+            self.say("done", f"{words}: cancelled; its best so far is kept, and not finished")
+        elif ending == "stopped":
+            self.say("done", f"{words}: cancelled before there was a model of it")
         else:
             self.say("error", f"{words}: {answer}")
 
@@ -221,7 +226,7 @@ class Session:
 
     def close(self) -> None:
         """Stop what runs, and leave nothing behind."""
-        self.jobs.cancel()
+        self.jobs.cancel(at_once=True)
         self._kept.cleanup()
 
 

@@ -5,8 +5,12 @@ An answer is plain numbers and words; what is as long as a record goes to files.
 
 from __future__ import annotations
 
+import _thread
 import math
 import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -18,7 +22,7 @@ from jbf.comparison.axes import BOUNDARY_SHARE
 from jbf.comparison.comparison import Comparison, compare
 from jbf.diagnosis import Diagnosis, Step, diagnose
 from jbf.diagnosis.one_round import one_round
-from jbf.errors import JbfError
+from jbf.errors import JbfError, Stopped
 from jbf.estimation.fit import Fit
 from jbf.models.catalogue import transition_speed
 from jbf.models.model import Model
@@ -31,6 +35,8 @@ from jbf.workbench.marks import failure_marks
 
 Kind = Literal["round", "diagnose", "compare"]
 Answer = dict[str, Any]
+STOP = "stop"
+"""What the server sends to a process whose fit is to end."""
 
 
 @dataclass(frozen=True)
@@ -59,22 +65,58 @@ class Order:
 
 
 def main(connection: Connection, order: Order) -> None:
-    """The process: sends `("progress", message, done, total)` and, last, `("done", answer)` or
-    `("error", words)`."""
-    # The terminal's Ctrl-C is the server's, which stops what it started.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """The process: sends `("progress", message, done, total)` and, last, `("done", answer)`,
+    `("error", words)` or, when `STOP` came, `("stopped", answer)` of the best so far, if any."""
 
     def progress(message: str, done: int, total: int) -> None:
         connection.send(("progress", message, done, total))
 
     try:
-        connection.send(("done", carried_out(order, progress)))
+        with _interrupted_by(connection):
+            last: tuple[str, Answer | str] = ("done", carried_out(order, progress))
+    except Stopped as stop:
+        last = ("stopped", best_so_far(stop.fit, order))
+    except KeyboardInterrupt:
+        last = ("stopped", {})
     except JbfError as error:
-        connection.send(("error", str(error)))
+        last = ("error", str(error))
     except MemoryError:
-        connection.send(("error", "not enough memory: take fewer runs, or shorter ones"))
+        last = ("error", "not enough memory: take fewer runs, or shorter ones")
+    connection.send(last)
+    connection.close()
+
+
+@contextmanager
+def _interrupted_by(connection: Connection) -> Iterator[None]:
+    """Raises `KeyboardInterrupt`, once, when `STOP` is received; a Ctrl-C in the terminal is the
+    server's, which stops what it started."""
+    asked = threading.Event()
+
+    def interrupt(*_: object) -> None:
+        if asked.is_set():
+            asked.clear()
+            raise KeyboardInterrupt
+
+    def listen() -> None:
+        try:
+            if connection.recv() == STOP:
+                asked.set()
+                _thread.interrupt_main()
+        except (EOFError, OSError):  # the server has gone, or all is done
+            pass
+
+    signal.signal(signal.SIGINT, interrupt)
+    threading.Thread(target=listen, daemon=True).start()
+    try:
+        yield
     finally:
-        connection.close()
+        asked.clear()
+
+
+def best_so_far(fit: Fit, order: Order) -> Answer:
+    """What a stopped fit had come to."""
+    compared = compare(fit.model, order.runs)
+    return {**_of_model(compared), **_of_fit(fit), **_kept(compared, order.folder)}
 
 
 def carried_out(order: Order, progress: Any = None) -> Answer:

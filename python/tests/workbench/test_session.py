@@ -180,6 +180,29 @@ def test_a_fit_can_be_cancelled_and_leaves_what_was_there(on_bench: Session, end
     assert not on_bench.jobs.cancel()
 
 
+def test_a_cancelled_fit_keeps_the_best_so_far(on_bench: Session, ended: Ended) -> None:
+    on_bench.begin("diagnose", (), None)
+    until = time.monotonic() + 120.0
+    # Candidates are counted when the law alone has been fitted.
+    while on_bench.jobs.job and not on_bench.jobs.job.total:
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    assert on_bench.jobs.cancel()
+    ended(on_bench)
+    assert "best so far is kept" in on_bench.message["words"]
+    (node,) = on_bench.models.nodes.values()
+    assert node["words"] == "stopped at: journal"
+    assert on_bench.records(node["id"]) is not None
+    assert on_bench.model(node["id"]).law == "journal"
+
+
+def test_a_fit_that_is_cancelled_twice_is_killed(on_bench: Session, ended: Ended) -> None:
+    on_bench.begin("diagnose", (), None)
+    assert on_bench.jobs.cancel() and on_bench.jobs.cancel()
+    ended(on_bench)
+    assert "cancelled before" in on_bench.message["words"]
+
+
 def test_what_a_fit_refuses_is_said_and_the_records_stay(on_bench: Session, ended: Ended) -> None:
     on_bench.begin("round", ["vogel_viscosity"], None)
     ended(on_bench)

@@ -161,10 +161,11 @@ $(MADE):
 	@command -v cargo >/dev/null || \
 		{ echo "cargo is missing: install stable Rust from https://rustup.rs" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2' setuptools wheel
 	@touch $@
 
-# The build runs inside .venv (no isolation), so that a rebuild is cargo's alone: seconds.
+# The build runs inside .venv (no isolation), so that a rebuild is cargo's alone: seconds. What comes
+# as source only (yattag, by way of cosmic-ray) is then built with .venv's setuptools, too.
 $(BUILT): $(MADE) pyproject.toml $(RUST)
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" pip install --quiet --disable-pip-version-check \
 		--no-build-isolation --editable '.[dev]'

@@ -24,7 +24,7 @@ export class Chart {
         drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => { if (zoomed) zoomed(null, null); } },
       },
-      axes: [axis("time (s)", { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 52 })],
+      axes: [axis("time (s)", { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 52, space: height < 150 ? 18 : 30 })],
       series: [{ label: "t (s)" }, ...curves],
       hooks: {
         drawClear: [(u) => self.shade(u)],

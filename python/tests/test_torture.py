@@ -1,0 +1,34 @@
+"""A few of the absurd campaigns of `benches/torture`: those that failed once, and are quick."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from runpy import run_path
+from typing import Any
+
+import pytest
+
+TORTURE = Path(__file__).resolve().parents[2] / "benches" / "torture"
+
+FAILED_ONCE = {
+    76: "a film that answers at 1e5 1/s had no end in 120 s",
+    700059: "an overflow in a search's quadratic",
+    700074: "the same, of a film that has no noise",
+}
+
+
+@pytest.fixture(scope="module")
+def torture() -> dict[str, Any]:
+    sys.path.insert(0, str(TORTURE))
+    try:
+        return run_path(str(TORTURE / "__main__.py"), run_name="torture")
+    finally:
+        sys.path.remove(str(TORTURE))
+
+
+@pytest.mark.parametrize("seed", FAILED_ONCE)
+def test_an_absurd_campaign_ends_in_a_sane_answer(seed: int, torture: dict[str, Any]) -> None:
+    row = torture["tried"](seed, 60.0)
+    assert row["said"]
+    assert row["wrong"] == []

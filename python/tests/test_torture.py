@@ -7,7 +7,9 @@ from pathlib import Path
 from runpy import run_path
 from typing import Any
 
+import numpy as np
 import pytest
+from jbf.estimation.likelihood import unexplained
 
 TORTURE = Path(__file__).resolve().parents[2] / "benches" / "torture"
 
@@ -32,3 +34,13 @@ def test_an_absurd_campaign_ends_in_a_sane_answer(seed: int, torture: dict[str, 
     row = torture["tried"](seed, 60.0)
     assert row["said"]
     assert row["wrong"] == []
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
+def test_what_a_design_does_not_explain_has_no_scale(scale: float) -> None:
+    """Of a design far above no noise at all, whose squares overflow (seed 800001)."""
+    random = np.random.default_rng(4)
+    design, target = random.normal(size=(50, 3)), random.normal(size=50)
+    left = unexplained(design * [1.0, scale, 1.0], target)
+    slopes, *_ = np.linalg.lstsq(design, target, rcond=None)
+    assert left == pytest.approx(target - design @ slopes, abs=1e-12)

@@ -45,7 +45,7 @@ def by_imports(root: Path) -> Reach:
             file: min((steps[n] for n in names if n in steps), default=len(steps))
             for file, names in tests.items()
         }
-        reaching = [file for file in tests if far[file] < len(steps)]
+        reaching = [file for file in tests if far[file] < len(steps)] or _alike(path, list(tests))
         reaching.sort(key=lambda file: (far[file], seconds[file], file))
         lines[path.relative_to(root).as_posix()] = {ANY: reaching}
     return Reach(seconds, lines)
@@ -58,6 +58,15 @@ def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:
         new = {user for user, names in users.items() if user not in steps and names & new}
         steps |= dict.fromkeys(new, max(steps.values()) + 1)
     return steps
+
+
+def _alike(module: Path, tests: list[str]) -> list[str]:
+    """Of a module that is opened late, by its name: tests that share a word with it, else those of
+    the command line."""
+    words = {*module.stem.split("_")}
+    return [t for t in tests if words & {*Path(t).stem.split("_")}] or [
+        t for t in tests if Path(t).stem.startswith("test_cli")
+    ]
 
 
 def _name(path: Path, above: Path) -> str:

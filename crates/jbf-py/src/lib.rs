@@ -8,6 +8,7 @@ mod catalogue;
 mod chain;
 mod control;
 mod curves;
+mod film_paths;
 mod instrument;
 mod motion;
 mod pool;

@@ -9,7 +9,7 @@ import pytest
 from by_hand import Array
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import behind_gaps
+from jbf.estimation.film_gaps import _gaps, behind_gaps
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -62,6 +62,17 @@ def test_a_gap_that_hides_nothing_costs_nothing(first_s: float, last_s: float) -
     problem, values = posed(gap)
     (mask,) = behind_gaps(problem, values, LEAST_N)
     assert not mask.any()
+
+
+@pytest.mark.parametrize(("missing", "gaps"), [(1, 0), (3, 0), (4, 1), (9, 1)])
+def test_a_gap_is_four_rows_that_are_missing(missing: int, gaps: int) -> None:
+    """Jitter and a row that was lost are none."""
+    t = np.arange(0.0, 16.0, 0.02)
+    kept = np.ones(len(t), dtype=bool)
+    kept[398 : 398 + missing] = False
+    whole = Run.from_arrays(t, corner(t), np.ones(len(t)), name="whole")
+    problem, _ = posed(whole.select(kept))
+    assert len(_gaps(problem.campaign.prepared[0])) == gaps
 
 
 def test_a_law_without_a_film_has_nothing_to_forget() -> None:

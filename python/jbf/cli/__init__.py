@@ -170,9 +170,10 @@ def _dispatch(arguments: list[str]) -> int:
     return code
 
 
-def _show(message: Warning | str, *_: Any, **__: Any) -> None:
-    """A warning as one line, like an error."""
-    outputs.complain(message)
+def _show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+    """A warning as one line, like an error; what a library deprecates is for authors, not users."""
+    if not issubclass(category, (DeprecationWarning, PendingDeprecationWarning)):
+        outputs.complain(message)
 
 
 def _refuse(error: InputError) -> int:

@@ -61,7 +61,7 @@ def build(archive: Path, out: Path, extra: list[str]) -> Path:
             tar.extractall(folder, filter="data")
         (source,) = (path for path in Path(folder).iterdir() if path.is_dir())
         wheels = Path(folder) / "wheels"
-        command = [*MATURIN, "build", "--release", "--out", str(wheels), *extra]
+        command = [*MATURIN, "build", "--out", str(wheels), *extra]
         run(command, cwd=source, environment=build_environment(source))
         (wheel,) = wheels.glob("*.whl")
         shutil.copy(wheel, out)
@@ -75,6 +75,11 @@ def main() -> None:
     parser.add_argument("--target", help="Rust's name of another machine; linked by zig")
     parser.add_argument("--interpreter", help="such as 3.14t: for this Python alone, not abi3")
     parser.add_argument("--sdist-only", action="store_true")
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="only to see whether it builds: little optimised",
+    )
     chosen = parser.parse_args()
     out: Path = chosen.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -82,7 +87,7 @@ def main() -> None:
     say(f"{archive.name}: {archive.stat().st_size / 1e6:.1f} MB")
     if chosen.sdist_only:
         return
-    extra = []
+    extra = ["--profile", "quick", "--no-default-features"] if chosen.quick else ["--release"]
     if chosen.target:
         extra += ["--target", chosen.target, "--zig"]
     if chosen.interpreter:

@@ -19,6 +19,7 @@ from pathlib import Path
 from steps import ROOT, clean_environment, run, say
 
 MATURIN = (sys.executable, "-m", "maturin")
+BUILD_FOLDER = "jbf-build-"
 EPOCH = "315532800"
 """1980, the first instant that a zip file can hold: used where there is no git to ask."""
 
@@ -56,7 +57,7 @@ def pack(out: Path) -> Path:
 
 def build(archive: Path, out: Path, extra: list[str]) -> Path:
     """The wheel of a source archive, from an empty folder."""
-    with tempfile.TemporaryDirectory(prefix="jbf-build-") as folder:
+    with tempfile.TemporaryDirectory(prefix=BUILD_FOLDER) as folder:
         with tarfile.open(archive) as tar:
             tar.extractall(folder, filter="data")
         (source,) = (path for path in Path(folder).iterdir() if path.is_dir())

@@ -17,6 +17,7 @@ import time
 import zipfile
 from pathlib import Path
 
+from build import BUILD_FOLDER
 from steps import ROOT, make_environment, run, say, tracked_files
 
 TESTS = (
@@ -52,17 +53,16 @@ def find_wheel(place: Path) -> Path:
 def check_contents(wheel: Path) -> None:
     """What a wheel must hold, and what it must not."""
     with zipfile.ZipFile(wheel) as archive:
-        names = archive.namelist()
-        binary = next(n for n in names if Path(n).name.startswith("_core.") and "pyi" not in n)
-        content = archive.read(binary)
+        contents = {name: archive.read(name) for name in archive.namelist()}
     for wanted in MUST_HOLD:
-        if not any(wanted in name for name in names):
+        if not any(wanted in name for name in contents):
             sys.exit(f"{wheel.name} lacks {wanted}")
-    if strays := [n for n in names if "tests/" in n or n.endswith((".pyc", ".rs"))]:
+    if strays := [n for n in contents if "tests/" in n or n.endswith((".pyc", ".rs"))]:
         sys.exit(f"{wheel.name} holds {strays[0]}, which is not for users")
-    for place in (os.fsencode(Path.home()), os.fsencode(ROOT)):
-        if place in content:
-            sys.exit(f"{binary} names {os.fsdecode(place)}, a folder of the machine that built it")
+    for name, content in contents.items():
+        for place in (str(Path.home()), str(ROOT), BUILD_FOLDER):
+            if os.fsencode(place) in content:
+                sys.exit(f"{name} names {place}..., a folder of the machine that built it")
 
 
 def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:

@@ -67,8 +67,8 @@ def main() -> None:
         extras = [word for extra in EXTRAS for word in ("--extra", extra)]
         run([*install, *only, "-r", ROOT / "pyproject.toml", *extras], cwd=folder)
         run([*uv, "install", "--quiet", "--python", python, "--no-deps", wheel], cwd=folder)
-        # Tools of the tests are not what is tried.
-        run([*uv, "install", "--quiet", "--python", python, *TOOLS, "httpx2"], cwd=folder)
+        # Tools of the tests are not what is tried; old starlettes test with httpx.
+        run([*uv, "install", "--quiet", "--python", python, *TOOLS, "httpx", "httpx2"], cwd=folder)
         version = run([python, "-V"], cwd=folder)
         listed = run([*uv, "list", "--python", python, "--format", "json"], cwd=folder, quiet=True)
         installed = {p["name"]: p["version"] for p in json.loads(listed[listed.index("[") :])}

@@ -27,7 +27,7 @@ TESTS = (
     "test_record", "test_report", "test_rig",
 )  # fmt: skip
 """Of every room something, in a minute or two; none needs an extra or the rest of the tree."""
-COPIED = ("python/tests/", "simulator/", "pyproject.toml")
+COPIED = ("python/tests/", "simulator/", "benches/", "pyproject.toml")
 TOOLS = ("pytest>=8", "hypothesis>=6.100")
 MUST_HOLD = (
     "jbf/_core.pyi",

@@ -198,7 +198,8 @@ def test_a_cancelled_fit_keeps_the_best_so_far(on_bench: Session, ended: Ended) 
 
 def test_a_fit_that_is_cancelled_twice_is_killed(on_bench: Session, ended: Ended) -> None:
     on_bench.begin("diagnose", (), None)
-    assert on_bench.jobs.cancel() and on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
     ended(on_bench)
     assert "cancelled before" in on_bench.message["words"]
 

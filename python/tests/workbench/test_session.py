@@ -82,7 +82,7 @@ def test_undo_goes_back_and_keeps_the_branch(worked: Session) -> None:
 
 
 def test_what_is_kept_is_whole_and_loads(worked: Session) -> None:
-    assert kept.keep(worked, "model") == ["model.toml"]
+    assert kept.keep(worked, "model") == {"written": ["model.toml"], "replaced": []}
     model = jbf.Model.load(worked.folder.root / "model.toml")
     assert model.effects == ("coulomb_drag",)
     kept.keep(worked, "report")
@@ -198,7 +198,8 @@ def test_a_cancelled_fit_keeps_the_best_so_far(on_bench: Session, ended: Ended) 
 
 def test_a_fit_that_is_cancelled_twice_is_killed(on_bench: Session, ended: Ended) -> None:
     on_bench.begin("diagnose", (), None)
-    assert on_bench.jobs.cancel() and on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
     ended(on_bench)
     assert "cancelled before" in on_bench.message["words"]
 

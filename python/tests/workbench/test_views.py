@@ -105,7 +105,7 @@ def test_a_box_selects_in_every_run(on_bench: Session) -> None:
     assert found["samples"] == sum(int(mask.sum()) for mask in inside)
     assert found["rms_n"] is None
     for run, mask in zip(runs, inside, strict=True):
-        for first, last in found["stretches_s"].get(run.name, []):
+        for first, last in found["by_run"].get(run.name, {}).get("stretches_s", []):
             assert mask[np.searchsorted(run.time_s, first)]
             assert mask[np.searchsorted(run.time_s, last)]
 
@@ -127,7 +127,7 @@ def test_the_picture_of_a_selection_is_that_of_its_samples(on_bench: Session) ->
 def test_a_stretch_selects_in_its_run_alone(on_bench: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
     found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
-    assert list(found["stretches_s"]) == ["stopgo"]
+    assert list(found["by_run"]) == ["stopgo"]
     assert found["samples"] == 51
 
 

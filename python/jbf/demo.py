@@ -56,11 +56,12 @@ def run(
     )
     say("\n== What had been hidden ==\n")
     say(_truth(hidden, out / "hidden"))
+    hid = f"{out}/hidden"
     say(
         f"\nWritten: {out / 'report.html'} (pictures), {out / 'model.toml'} (the fitted model).\n"
         "The same by hand:\n"
-        f"  {jbf} diagnose {out}/hidden/rig.toml {out}/hidden --out model.toml --report report.html\n"
-        f"  {jbf} compare model.toml {out}/hidden/unseen\n"
+        f"  {jbf} diagnose {hid}/rig.toml {hid} --out model.toml --report report.html\n"
+        f"  {jbf} compare model.toml {hid}/unseen\n"
         "\nNext, look and click: a page in your browser, with these data or a CSV of your own:\n"
         f"  {jbf} workbench {out}"
     )

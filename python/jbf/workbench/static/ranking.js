@@ -19,9 +19,10 @@ export function showRanking(page, place) {
     const p = strength.get(name);
     return [h("tr", { class: page.effect === name ? "now first" : "first" }, h("td", { rowspan: 2 }, add(name)), h("td", {}, sketch(name)),
       h("td", { class: "n" }, t ? (t.evidence > 0 ? number(t.evidence) : "none") : ""), h("td", { class: "n" }, t ? number(t.rms_n) : ""),
-      h("td", {}, p ? [p.found, p.hidden ? h("span", { class: "faint", title: "at its usual strength it could be there unseen" }, " (could hide)") : null] : "")),
+      // What gains already needs no promise; and beside a model that lacks it, its strength is overstated.
+      h("td", {}, t?.evidence > 0 ? "gains already" : p ? [p.found, p.hidden ? h("span", { class: "faint", title: "at its usual strength it could be there unseen" }, " (could hide)") : null] : "")),
     h("tr", { class: page.effect === name ? "now" : "" }, h("td", { colspan: 4, class: "faint" }, why,
-      p?.like ? ` Not told apart from ${p.like}.` : ""))];
+      p?.like && !(t?.evidence > 0) ? ` Not told apart from ${p.like}.` : ""))];
   };
   const table = (rows) => h("table", { class: "pairs" }, h("thead", {}, h("tr", {}, h("th", {}), h("th", {}, "effect"), h("th", { class: "n" }, "evidence"),
     h("th", { class: "n" }, `RMS (${page.units.force})`), h("th", { title: "found in 80 of 100 such campaigns, beside this model" }, "would show from"))), h("tbody", {}, rows));
@@ -29,7 +30,7 @@ export function showRanking(page, place) {
     : node.trials === null ? h("p", { class: "faint" }, "Each effect is being tried…")
       : node.trials.length === 0 ? h("p", { class: "faint" }, "The others were not tried beside this model.")
         : [table(shown.flatMap((t) => row(t.effect, t, `${OUTCOME[t.outcome]}: ${t.reason}.`))), strength.size ? h("p", { class: "faint" },
-          "Would show from: its strength when 80 of 100 such campaigns find it beside this model. Could hide: its usual strength is less.") : null];
+          "Would show from: its strength when 80 of 100 such campaigns find it beside this model, at the error that the model has now. Could hide: its usual strength is less.") : null];
   const more = [...others.map((t) => row(t.effect, t, `${OUTCOME[t.outcome]}: ${t.reason}.`)), ...open.map((e) => row(e.name, null, e.summary))];
   put(place, first,
     more.length ? h("details", {}, h("summary", { "data-key": "others" }, `every other effect (${more.length})`), table(more.flat())) : null,

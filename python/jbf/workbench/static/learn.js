@@ -60,7 +60,7 @@ export class LearnRoom {
     try {
       const found = await get("signature", { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 });
       if (this.ask !== ask) return;
-      this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "what it would add", "chosen", { width: 1.8 })],
+      this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "what it would add", "beside", { width: 1.8 })],
         zoomed: (from, to) => page.look({ span: [from, to] }) });
       this.chart.show(found);
       put(this.sketched, `${page.effect} on ${page.run}: nearest to the residual at ${number(found.times_usual, 2)} times its usual strength. Other runs: at the left.`);

@@ -45,7 +45,7 @@ export class Stribeck {
       });
       this.axes.path(way.speed_m_s, way.modelled_n, "model", 2);
     }
-    if (steady) for (const way of ways) this.axes.path(steady.velocity_m_s.map((v) => way.way * v), steady.friction_n.map((f) => way.way * f), "chosen", 1.5, [2, 3]);
+    if (steady) for (const way of ways) this.axes.path(steady.velocity_m_s.map((v) => way.way * v), steady.friction_n.map((f) => way.way * f), "ink", 1.3, [2, 3]);
     ctx.setLineDash([3, 4]); ctx.lineWidth = 1; ctx.strokeStyle = ctx.fillStyle = colour("ink"); ctx.textAlign = "left";
     for (const [speed, name] of ends) for (const way of [1, -1]) {
       this.axes.upright(way * speed);

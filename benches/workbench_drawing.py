@@ -77,6 +77,9 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
             page.wait_for_selector("[data-key=fit-law]:enabled")
             page.click("[data-key=fit-law]")
             page.wait_for_selector("#models [data-key^=model-]", timeout=600_000)
+            # What else could be missing would be tried now; the processor is to be free.
+            page.click("[data-key=cancel]")
+            page.wait_for_selector("[data-key=cancel]", state="detached", timeout=120_000)
         for _ in range(times):
             page.click("[data-key=tab-Data]")
             page.wait_for_selector("[data-drawn] canvas")

@@ -195,9 +195,8 @@ def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
             page.fill("[data-key='unit-Force [N]']", unit)
             page.keyboard.press("Tab")
             page.wait_for_function(
-                "([was, same]) => (document.querySelector(\"tr:has([data-key='is-Force [N]']) td.n\")"
-                ".innerText === was) === same",
-                arg=[right, unit == "N"],
+                "([at, was, same]) => (document.querySelector(at).innerText === was) === same",
+                arg=["tr:has([data-key='is-Force [N]']) td.n", right, unit == "N"],
             )
         by_keyboard(page, "import")
         page.wait_for_selector("text=log0/rig.toml is open, with 2 runs")

@@ -1,0 +1,58 @@
+"""Build the site: `.venv/bin/python docs/site/build.py`, into `target/site/html`.
+
+Gathers the pages, builds them in strict mode (a warning ends it), adds the documentation of the
+crates, and checks what came out: links, anchors, nothing from outside.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from assemble import assemble
+from built import faults
+from pages import ROOT
+
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
+SITE = ROOT / "target" / "site"
+CRATES = ("jbf-core", "jbf-batch", "jbf-c")
+
+
+def rust(folder: Path) -> None:
+    """The documentation of the crates, as rustdoc makes it."""
+    named = [word for crate in CRATES for word in ("-p", crate)]
+    subprocess.run(
+        ["cargo", "doc", "--quiet", "--no-deps", "--target-dir", str(TARGET / "site-doc"), *named],
+        cwd=ROOT,
+        env={**os.environ, "RUSTDOCFLAGS": "-D warnings"},
+        check=True,
+    )
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(TARGET / "site-doc" / "doc", folder)
+
+
+def main() -> int:
+    """Build; the number of faults."""
+    broken = assemble(SITE / "source")
+    for line in broken:
+        print(line, file=sys.stderr)
+    if broken:
+        return 1
+    zensical = Path(sys.executable).parent / "zensical"
+    done = subprocess.run([zensical, "build", "--clean", "--strict"], cwd=ROOT)
+    if done.returncode != 0:
+        return 1
+    rust(SITE / "html" / "rust")
+    found = faults(SITE / "html", skip=("rust",))
+    for line in found:
+        print(line, file=sys.stderr)
+    if not found:
+        print(f"{SITE / 'html'}: python -m http.server -d {SITE / 'html'}")
+    return len(found) > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

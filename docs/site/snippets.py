@@ -110,7 +110,7 @@ def compare(shown: str, said: str) -> None:
         while at < len(lines) and not pattern.fullmatch(lines[at]):
             at += 1
         if at == len(lines):
-            raise Wrong(f"is not printed here: {wanted}\nbut:\n{said}")
+            raise Wrong(f"is not printed here: {wanted}\nbut:\n{said[-6000:]}")
         at += 1
 
 

@@ -88,9 +88,15 @@ def _warm_campaign(folder: Path) -> None:
         ).write_csv(path)
 
 
+def _schema(folder: Path) -> None:
+    """What the site publishes."""
+    shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
+
+
 GIVEN: dict[str, Callable[[Path], None]] = {
     "campaign": _campaign,
     "warm_campaign": _warm_campaign,
+    "schema": _schema,
 }
 IN_A_CLONE = "# in a clone of the repository"
 
@@ -178,7 +184,7 @@ class Reader:
         done = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", script],
             cwd=where,
-            env={**os.environ, "PATH": path, "PYTHONPATH": str(SIMULATOR), "COLUMNS": "100"},
+            env={**os.environ, "PATH": path, "PYTHONPATH": str(SIMULATOR), "JBF": str(ROOT)},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,

@@ -50,23 +50,54 @@ def _levels(run: int, _: Array, speed: Array) -> Array:
 
 
 SHOWN = (
-    Shown("velocity", "Along the speed", "dry friction that falls with speed more steeply than the law's",
-          {"stribeck_excess.a": 0.1, "stribeck_excess.v_s_m_s": 0.006, "stribeck_excess.n": 1.5}),
-    Shown("direction", "By direction", "a zero of the cell that is 0.6 N off", {"sensor_offset.b_n": 0.6}),
-    Shown("acceleration", "Along the acceleration", "3 kg that the cell accelerates with the shaft",
-          {"inertia_leak.m_e_kg": 3.0}),
-    Shown("angle", "Over a turn", "friction that goes by 20 % over each turn",
-          {"position_ripple.a": 0.2, "position_ripple.theta_0_rad": 1.0}),
-    Shown("time", "In time", "a zero that wanders by 0.05 N each second", {"sensor_drift.d_n_s": 0.05}),
+    Shown(
+        "velocity",
+        "Along the speed",
+        "dry friction that falls more steeply than the law's",
+        {"stribeck_excess.a": 0.1, "stribeck_excess.v_s_m_s": 0.006, "stribeck_excess.n": 1.5},
+    ),
+    Shown(
+        "direction",
+        "By direction",
+        "a zero of the cell that is 0.6 N off",
+        {"sensor_offset.b_n": 0.6},
+    ),
+    Shown(
+        "acceleration",
+        "Along the acceleration",
+        "3 kg that the cell accelerates with the shaft",
+        {"inertia_leak.m_e_kg": 3.0},
+    ),
+    Shown(
+        "angle",
+        "Over a turn",
+        "friction that goes by 20 % over each turn",
+        {"position_ripple.a": 0.2, "position_ripple.theta_0_rad": 1.0},
+    ),
+    Shown(
+        "time", "In time", "a zero that wanders by 0.05 N each second", {"sensor_drift.d_n_s": 0.05}
+    ),
     Shown("run", "From run to run", "another dry level in each run", None, _levels),
-    Shown("time since a rest", "After rests", "friction that grows while the contact rests",
-          {"dwell_stiction.a": 0.15, "dwell_stiction.t_0_s": 1.0, "dwell_stiction.m": 0.7,
-           "dwell_stiction.s_0_m": 3e-3}),
-    Shown("distance since a reversal", "After reversals", "a contact that bends before it slides",
-          {"presliding.sigma_1_m": 800.0}),
+    Shown(
+        "time since a rest",
+        "After rests",
+        "friction that grows while the contact rests",
+        {
+            "dwell_stiction.a": 0.15,
+            "dwell_stiction.t_0_s": 1.0,
+            "dwell_stiction.m": 0.7,
+            "dwell_stiction.s_0_m": 3e-3,
+        },
+    ),
+    Shown(
+        "distance since a reversal",
+        "After reversals",
+        "a contact that bends before it slides",
+        {"presliding.sigma_1_m": 800.0},
+    ),
     Shown("frequency", "In the spectrum", "a hum of 0.6 N at 7.3 Hz", None, _hum),
     Shown("bursts", "In bursts", "a knock of 5 N in each run", None, _knock),
-)  # fmt: skip
+)
 
 
 def motions() -> list[tuple[str, Array, Array]]:
@@ -108,7 +139,8 @@ def looks(shown: Shown, found: Comparison) -> str:
     if shown.kind == "bursts":
         return "Some instants stick out; everywhere else the residual is noise."
     failure = next(f for f in found.failures if f.axis == shown.kind)
-    return f"{failure.where[0].upper()}{failure.where[1:]}: {100 * failure.share:.0f} % of the mean square."
+    share = f"{100 * failure.share:.0f} % of the mean square"
+    return f"{failure.where[0].upper()}{failure.where[1:]}: {share}."
 
 
 def draw(shown: Shown, found: Comparison, name: str) -> None:
@@ -139,21 +171,23 @@ def page(drawn: bool) -> str:
         parts.append(
             f"## {shown.title}\n"
             f"![Residual of the law alone: {shown.hidden}](../images/failures/{name})\n\n"
-            f"**Looks like.** {looks(shown, found)} RMS {found.rms_n / found.noise_n:.2g} times the "
-            f"noise.\n\n**Here it is** {shown.hidden}.\n\n"
-            f"**Usually it comes from** {advice.causes}.\n\n**What to do.** {sentence(advice.to_do)}\n"
+            f"**Looks like.** {looks(shown, found)} RMS {found.rms_n / found.noise_n:.2g} times "
+            f"the noise.\n\n**Here it is** {shown.hidden}.\n\n"
+            f"**Usually it comes from** {advice.causes}.\n\n"
+            f"**What to do.** {sentence(advice.to_do)}\n"
         )
     return "\n".join([*parts, TAIL])
 
 
 HEAD = """# A gallery of failures
 
-What a residual looks like, what it usually comes from, and what to do about it. Each picture is record
-minus model of the law alone, fitted to three runs in which one thing was hidden; a report draws the
-same of yours, and names the effect where the catalogue has it. Bars that stay within the band of
-the noise are no failure.
+What a residual looks like, what it usually comes from, and what to do about it. Each picture is
+record minus model of the law alone, fitted to three runs in which one thing was hidden; a report
+draws the same of yours, and names the effect where the catalogue has it. Means that stay within the
+band of the noise are no failure.
 """
-TAIL = """*(Written by `docs/failures.py` from the words of the reports; noise of 0.3 N, fixed seed. Machine
+TAIL = """\
+*(Written by `docs/failures.py` from the words of the reports; noise of 0.3 N, fixed seed. Machine
 and commit in [figures](../reference/figures.md).)*
 """
 

@@ -1,7 +1,7 @@
 """Build the site: `.venv/bin/python docs/site/build.py`, into `target/site/html`.
 
-Gathers the pages, builds them in strict mode (a warning ends it), adds the documentation of the
-crates, and checks what came out: links, anchors, nothing from outside.
+Gathers the pages, runs the notebooks, builds all in strict mode (a warning ends it), adds the
+documentation of the crates, and checks what came out: links, anchors, nothing from outside.
 """
 
 from __future__ import annotations
@@ -17,8 +17,19 @@ from built import faults
 from pages import ROOT
 
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
+EXAMPLES = ROOT / "examples"
 SITE = ROOT / "target" / "site"
 CRATES = ("jbf-core", "jbf-batch", "jbf-c")
+
+
+def notebooks(folder: Path) -> None:
+    """The notebooks of examples, run now, as pages with their pictures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    convert = [sys.executable, "-m", "nbconvert", "--log-level", "ERROR", "--to", "markdown"]
+    subprocess.run(
+        [*convert, "--execute", "--output-dir", str(folder), *sorted(EXAMPLES.glob("*.ipynb"))],
+        check=True,
+    )
 
 
 def rust(folder: Path) -> None:
@@ -41,6 +52,7 @@ def main() -> int:
         print(line, file=sys.stderr)
     if broken:
         return 1
+    notebooks(SITE / "source" / "notebooks")
     zensical = Path(sys.executable).parent / "zensical"
     done = subprocess.run([zensical, "build", "--clean", "--strict"], cwd=ROOT)
     if done.returncode != 0:

@@ -29,8 +29,8 @@ SCRIPTS = {
 }
 """What each script writes, beside docs."""
 NOT_ANEW = {
-    "images/detection.png": "`benches/hidden_effects --picture`; seed 701, commit 784478f: a day of "
-    "campaigns, so it is not made anew",
+    "images/detection.png": "a day of campaigns (`benches/hidden_effects`, seed 701, 784478f), "
+    "not made anew",
 }
 PAGE = DOCS / "reference" / "figures.md"
 HEAD = """# Figures: command, machine, commit

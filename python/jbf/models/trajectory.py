@@ -153,7 +153,7 @@ def trajectories(
         Pairs of sample times and either speeds at them (an array), or the tuple
         ``(amplitude, omega, bias)`` of a sine. A tuple of three numbers is a sine.
 
-    Others as in :func:`trajectory`.
+    All other arguments are those of `trajectory`.
     """
     the_rig(rig)
     for section in ("bearing", "lubricant", "load"):

@@ -13,6 +13,8 @@ from pathlib import Path
 
 from pages import DOCS, LINK, OUTSIDE, ROOT, prose
 
+RUSTDOC = {"reference/jbf_core.md": "jbf_core", "reference/jbf_c.md": "jbf_c"}
+"""Pages beneath whose heading the documentation of a crate is linked to."""
 LEFT_OUT = {".py", ".pyc"}
 LEXERS = {".rs": "rust", ".py": "python", ".toml": "toml", ".h": "c", ".c": "c", ".x": "text"}
 
@@ -106,6 +108,11 @@ def assemble(folder: Path) -> list[str]:
     for name, place in OUTSIDE.items():
         page = ROOT / name
         if page.exists():
-            source.write(place, source.turned(page, page.read_text(encoding="utf-8")))
+            text = source.turned(page, page.read_text(encoding="utf-8"))
+            if place in RUSTDOC:
+                head, _, rest = text.partition("\n")
+                all_of_it = f"[Every type and function](../rust/{RUSTDOC[place]}/index.html)"
+                text = f"{head}\n{all_of_it}, as rustdoc has it.\n{rest}"
+            source.write(place, text)
     source.show()
     return source.broken

@@ -53,11 +53,11 @@ def main() -> int:
     if broken:
         return 1
     notebooks(SITE / "source" / "notebooks")
+    rust(SITE / "source" / "rust")
     zensical = Path(sys.executable).parent / "zensical"
     done = subprocess.run([zensical, "build", "--clean", "--strict"], cwd=ROOT)
     if done.returncode != 0:
         return 1
-    rust(SITE / "html" / "rust")
     found = faults(SITE / "html", skip=("rust",))
     for line in found:
         print(line, file=sys.stderr)

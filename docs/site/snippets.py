@@ -9,6 +9,7 @@
 - `text` and blocks without a language are prose;
 - a first line `# in a clone of the repository` has a block run at its root;
 - a first line `# not tested: WHY`, and a shell line that ends in `(not tested: WHY)`, are not run;
+- `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
 - `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`).
 
 A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` says
@@ -127,6 +128,22 @@ def told_why(line: str) -> bool:
     if not WHY.search(line):
         raise Wrong(f"gives no reason: {line}")
     return True
+
+
+def missing(page: Path) -> list[str]:
+    """What a page needs and this machine lacks: programs, targets of Rust that cannot be had."""
+    found = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
+    return [name for name in " ".join(found).split() if not _is_there(name)]
+
+
+def _is_there(name: str) -> bool:
+    if name.count("-") < 2 or not name.startswith("thumb"):
+        return shutil.which(name) is not None
+    added = ["rustup", "target", "add", name]
+    return (
+        shutil.which("rustup") is not None
+        and not subprocess.run(added, capture_output=True).returncode
+    )
 
 
 class Reader:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from pages import LINK, Block, blocks, every_page, name_of, prose
-from snippets import PROSE, Reader, Wrong, compare
+from snippets import PROSE, Reader, Wrong, compare, missing
 
 SITE = Path(__file__).resolve().parents[1]
 WITH_CODE = [
@@ -20,6 +20,9 @@ WITH_CODE = [
 
 @pytest.mark.parametrize("page", WITH_CODE, ids=name_of)
 def test_a_page_runs_as_it_stands(page: Path) -> None:
+    lacking = missing(page)
+    if lacking:
+        pytest.skip(f"{name_of(page)} needs {', '.join(lacking)}")
     command = [sys.executable, str(SITE / "snippets.py"), str(page)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -61,3 +64,9 @@ def test_dots_leave_out_lines_and_words() -> None:
     compare("a\n...\nd 1 ... 3\n", "a\nb\nc\nd 1 2 3\n")
     with pytest.raises(Wrong):
         compare("d 1 ... 4\n", "d 1 2 3\n")
+
+
+def test_a_page_says_what_it_needs(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("<!-- needs: sh no-such-program thumb-no-target -->\n")
+    assert missing(page) == ["no-such-program", "thumb-no-target"]

@@ -23,11 +23,13 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
+.PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
 	sbom coverage licences publish-check wheel wheel-test reproducible lowest clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
+	@echo "make docs    the site, in target/site/html; every snippet of every page is run"
+	@echo "make figures  every picture and generated table of the docs anew, from this commit"
 	@echo "make test    Rust and Python tests"
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
@@ -65,6 +67,14 @@ quick: $(MADE)
 
 demo: $(BUILT)
 	$(VENV)/bin/jbf demo
+
+# Two pages at a time: most of them diagnose something.
+docs: $(BUILT)
+	$(VENV)/bin/python docs/site/build.py
+	$(VENV)/bin/python -m pytest docs/site/tests -n 2 --dist worksteal --durations 5
+
+figures: $(BUILT)
+	$(VENV)/bin/python docs/site/figures.py
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py

@@ -23,11 +23,13 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
-	licences publish-check wheel wheel-test reproducible lowest clean
+.PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
+	sbom coverage licences publish-check wheel wheel-test reproducible lowest clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
+	@echo "make docs    the site, in target/site/html; every snippet of every page is run"
+	@echo "make figures  every picture and generated table of the docs anew, from this commit"
 	@echo "make test    Rust and Python tests"
 	@echo "make test-slow  the tests that take minutes"
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
@@ -36,10 +38,12 @@ help:
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
 	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
+	@echo "make coverage  lines of python/jbf that no fast test runs, file by file (pytest-cov)"
 	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
-	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny)"
+	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny, pip-audit)"
+	@echo "make sbom    what an installed jbf consists of, as CycloneDX, into target/sbom"
 	@echo "make licences  THIRD_PARTY.md: the texts of what is linked into a wheel"
 	@echo "make publish-check  packs every crate that is published, as the registry would"
 	@echo "make wheel   source archive, and the wheel from it, into dist"
@@ -63,6 +67,14 @@ quick: $(MADE)
 
 demo: $(BUILT)
 	$(VENV)/bin/jbf demo
+
+# Two pages at a time: most of them diagnose something.
+docs: $(BUILT)
+	$(VENV)/bin/python docs/site/build.py
+	$(VENV)/bin/python -m pytest docs/site/tests -n 2 --dist worksteal --durations 5
+
+figures: $(BUILT)
+	$(VENV)/bin/python docs/site/figures.py
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py
@@ -120,6 +132,9 @@ mutation: $(BUILT)
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
 		--seed $(or $(SEED),1) --budget $(or $(BUDGET),15) --least $(or $(LEAST),0.58)
 
+coverage: $(BUILT)
+	$(VENV)/bin/python -m pytest -n auto --dist worksteal --cov=jbf --cov-report=term-missing:skip-covered
+
 # Needs nightly Rust and cargo-fuzz.
 fuzz:
 	cd crates/jbf-core && for target in $$(cargo +nightly fuzz list); do \
@@ -159,6 +174,34 @@ supply:
 		{ cargo deny fetch db >/dev/null 2>&1 && cargo deny check advisories || \
 			echo "SKIPPED: the database of advisories cannot be had here"; }; \
 	else echo "SKIPPED: cargo install cargo-deny"; fi
+	@$(MAKE) --no-print-directory $(AUDIT)/.made
+	@told=$$($(AUDIT)/bin/pip-audit --path $(AUDIT)/runtime/lib/python3*/site-packages 2>&1); code=$$?; \
+	if [ $$code != 0 ] && grep -q "Fix Versions" <<<"$$told"; then echo "$$told"; exit $$code; fi; \
+	if [ $$code != 0 ] || grep -q "could not be audited" <<<"$$told"; then \
+		echo "SKIPPED: pip-audit cannot ask for known faults of every package here"; \
+	else echo "$$told"; fi
+
+# In environments of their own: what a user installs, and the tools that look at it.
+AUDIT := target/audit
+$(AUDIT)/.made: pyproject.toml | $(BUILT)
+	@rm -rf $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT)/runtime
+	@$(AUDIT)/bin/pip install --quiet --disable-pip-version-check pip-audit cyclonedx-bom
+	@$(VENV)/bin/python -c 'import tomlkit; p = tomlkit.parse(open("pyproject.toml").read())["project"]; \
+		print("\n".join(p["dependencies"]))' > $(AUDIT)/runtime.txt
+	@$(AUDIT)/runtime/bin/pip install --quiet --disable-pip-version-check -r $(AUDIT)/runtime.txt
+	@touch $@
+
+# The crates are read from the lock file where cargo-cyclonedx is installed.
+sbom: $(AUDIT)/.made
+	@mkdir -p target/sbom
+	$(AUDIT)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library \
+		--output-file target/sbom/python.cdx.json $(AUDIT)/runtime/bin/python
+	@if cargo cyclonedx --version >/dev/null 2>&1; then \
+		cargo cyclonedx --quiet --format json --override-filename rust.cdx \
+			--manifest-path crates/jbf-py/Cargo.toml && \
+		mv crates/jbf-py/rust.cdx.json target/sbom/ && \
+		find crates benches -name rust.cdx.json -delete; \
+	else echo "SKIPPED: cargo install cargo-cyclonedx (Cargo.lock names every crate and its hash)"; fi
 
 # What is linked into a wheel, with its licences; and whether THIRD_PARTY.md is as Cargo.lock.
 licences:

@@ -331,9 +331,15 @@ def test_an_error_travels_between_processes() -> None:
 
 def test_reading_is_quick(write: Write) -> None:
     path = write(HEADER, *(f"{0.02 * i:.3f},5.42412,0.000271,-0.4962,104.0" for i in range(6301)))
-    best_s = float("inf")
-    for _ in range(5):
-        start_s = time.perf_counter()
-        read_run(path)
-        best_s = min(best_s, time.perf_counter() - start_s)
-    assert best_s < 0.05
+
+    def best_s(read: Callable[[], object]) -> float:
+        def once() -> float:
+            start_s = time.process_time()
+            read()
+            return time.process_time() - start_s
+
+        return min(once() for _ in range(5))
+
+    # Beside numpy's reader of nothing but numbers, in the same run: a machine may be slow.
+    numbers = best_s(lambda: np.loadtxt(path, delimiter=",", skiprows=1))
+    assert best_s(lambda: read_run(path)) < 6.0 * numbers

@@ -1,16 +1,14 @@
-"""docs/import.md runs as it stands, and says what comes out."""
+"""docs/import.md: its maps do what it says, its tables name all there is."""
 
 from __future__ import annotations
 
 import re
-import shlex
 from dataclasses import fields
 from pathlib import Path
 
 import jbf
 import numpy as np
 import pytest
-from jbf.cli import main
 from jbf.importing.cutting.settings import WAYS, CutSettings
 from jbf.importing.expression import FUNCTIONS
 from jbf.importing.formats.registry import FORMATS
@@ -22,43 +20,7 @@ PAGE = ROOT / "docs" / "import.md"
 
 def blocks(kind: str) -> list[str]:
     text = PAGE.read_text(encoding="utf-8")
-    return re.findall(rf"```{kind}\n(.*?)```", text, flags=re.DOTALL)
-
-
-def run(snippet: str) -> None:
-    exec(compile(snippet, PAGE.name, "exec"), {})
-
-
-def commands(block: str) -> None:
-    for line in block.splitlines():
-        assert main(shlex.split(line)[1:]) == 0, line
-
-
-def squeezed(text: str) -> str:
-    return " ".join(text.split())
-
-
-def test_the_page_runs_as_it_stands(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    written, read = blocks("python")
-    looked, imported, either = blocks("sh")
-    run(written)
-    commands(looked)
-    Path("bench/map.toml").write_text(blocks("toml")[0])
-    commands(imported)
-    said = squeezed(capsys.readouterr().out)
-    for shown in blocks("text"):
-        for line in filter(None, shown.splitlines()):
-            assert squeezed(line) in said, line
-    assert {p.name for p in Path("slide").iterdir()} >= {"rig.toml", "cut.toml", "import.json"}
-    assert Path("cut.png").stat().st_size > 0
-    assert "What it was imported from" in Path("report.html").read_text()
-    commands(either)
-    capsys.readouterr()
-    run(read)
-    assert capsys.readouterr().out == "linear 6 100.0\n"
+    return re.findall(rf"```{kind}[^\n]*\n(.*?)```", text, flags=re.DOTALL)
 
 
 def test_maps_have_at_most_ten_lines() -> None:

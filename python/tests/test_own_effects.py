@@ -342,8 +342,10 @@ def test_columns_of_the_record_reach_the_function() -> None:
 
 def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = Path(__file__).resolve().parents[2] / "docs" / "own_effects.md"
-    snippets = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    text = page.read_text(encoding="utf-8")
+    own, *snippets = re.findall(r"```python[^\n]*\n(.*?)```", text, re.DOTALL)
     assert len(snippets) == 2
+    (tmp_path / "mine.py").write_text(own)
     Rig.thesis().write(tmp_path / "rig.toml")
     (tmp_path / "runs").mkdir()
     for i, run in enumerate(make_runs({"coulomb_drag": {"F_d_n": 2.0}})):

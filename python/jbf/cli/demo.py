@@ -11,13 +11,13 @@ from pathlib import Path
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "the whole story on shipped data with a hidden effect, in under a minute"
-    parser = command(commands, "demo", does, run)
+    parser = command(commands, "demo", COMMANDS["demo"], run)
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", default="jbf-demo", help="folder for its files"
     )

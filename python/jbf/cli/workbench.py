@@ -9,12 +9,12 @@ import webbrowser
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "a page on this machine: see runs, find what is missing, watch the error fall"
-    parser = command(commands, "workbench", does, run)
+    parser = command(commands, "workbench", COMMANDS["workbench"], run)
     parser.add_argument(
         "folder", metavar="FOLDER", nargs="?", default=".", help="what the page may see (here)"
     )

@@ -147,13 +147,13 @@ def trajectories(
 ) -> list[Trajectory]:
     """Follow the law along many motions, on all cores.
 
+    Arguments that are not told here are those of `trajectory`.
+
     Parameters
     ----------
     runs
         Pairs of sample times and either speeds at them (an array), or the tuple
         ``(amplitude, omega, bias)`` of a sine. A tuple of three numbers is a sine.
-
-    Others as in :func:`trajectory`.
     """
     the_rig(rig)
     for section in ("bearing", "lubricant", "load"):

@@ -1,0 +1,67 @@
+"""Draw each base law for docs/laws.md: `.venv/bin/python docs/laws.py`.
+
+Friction against speed and against place under a sine of 1 rad/s, and the steady curve.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import jbf
+import numpy as np
+from jbf.models.catalogue import laws
+from matplotlib.figure import Figure
+
+IMAGES = Path(__file__).resolve().parent / "images" / "laws"
+VALUES = {
+    "journal": {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0},
+    "journal_full": {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0},
+    "coulomb": {"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 20.0},
+    "stribeck": {"F_c_n": 5.0, "F_s_n": 8.0, "v_s_m_s": 0.01, "delta": 1.0, "F_v_n_s_m": 20.0},
+    "seven_parameter": {"F_c_n": 5.0, "F_v_n_s_m": 20.0, "k_t_n_m": 1e4},
+    "dahl": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
+    "lugre": {"F_c_n": 5.0, "F_s_n": 8.0, "v_s_m_s": 0.01, "sigma_0_n_m": 2e3, "F_v_n_s_m": 20.0},
+    "maxwell_slip": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
+    "elasto_plastic": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
+}
+"""Of each law; what is not named stands at the catalogue's first start. The bristles are soft, so
+that their bending can be seen."""
+SPEED_M_S = 0.05
+LINE, STEADY = "#0072B2", "0.45"
+
+
+def figure_of(law: str) -> Figure:
+    """Loops of a law."""
+    bearing = "journal" in law
+    time_s = np.linspace(0.0, 4.0 * np.pi, 6001)
+    speed = SPEED_M_S * np.sin(time_s)
+    way = SPEED_M_S * (1.0 - np.cos(time_s))
+    rig = jbf.Rig.thesis() if bearing else jbf.Rig()
+    place = {"angle_rad": way / 0.0127} if bearing else {"position_m": way}
+    model = jbf.Model(rig, law=law, parameters=VALUES[law])
+    force = model.predict(jbf.Run.from_arrays(time_s, speed, **place))
+    late = time_s >= 2.0 * np.pi
+    figure = Figure(figsize=(8.0, 2.8), layout="constrained")
+    plane, along = figure.subplots(1, 2, sharey=True)
+    slow = np.linspace(1e-5, SPEED_M_S, 200)
+    for side in (1.0, -1.0):
+        label = "steady" if side > 0 else None
+        steady = side * model.steady_friction(slow)
+        plane.plot(side * slow, steady, color=STEADY, ls="--", lw=1.2, label=label)
+    plane.plot(speed[late], force[late], color=LINE, lw=1.2, label="a sine of 1 rad/s")
+    plane.set(xlabel="speed (m/s)", ylabel="friction (N)", title=law)
+    plane.legend(frameon=False, fontsize=8)
+    along.plot(1e3 * way[late], force[late], color=LINE, lw=1.2)
+    along.set(xlabel="place (mm)")
+    return figure
+
+
+def main() -> None:
+    """Write the pictures."""
+    IMAGES.mkdir(exist_ok=True)
+    for law in laws():
+        figure_of(law).savefig(IMAGES / f"{law}.png", dpi=80)
+
+
+if __name__ == "__main__":
+    main()

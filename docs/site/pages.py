@@ -1,0 +1,67 @@
+"""What the pages are: text, code blocks, links, and where each stands in the site."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+
+OUTSIDE = {
+    "ARCHITECTURE.md": "project/architecture.md",
+    "CHANGELOG.md": "project/changelog.md",
+    "CONTRIBUTING.md": "project/contributing.md",
+    "benches/README.md": "project/benchmarks.md",
+    "crates/jbf-core/README.md": "reference/jbf_core.md",
+    "crates/jbf-c/README.md": "reference/jbf_c.md",
+    "examples/firmware/README.md": "project/firmware.md",
+}
+"""Pages that live beside what they are about, and where they stand in the site."""
+
+FENCE = re.compile(
+    r"^(?P<ticks>`{3,})(?P<info>[^`\n]*)\n(?P<body>.*?)^(?P=ticks)[ \t]*$", re.M | re.S
+)
+TITLE = re.compile(r'title="([^"]*)"')
+LINK = re.compile(r"(?P<head>!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()(?P<target>[^)\s]+)(?P<tail>\))")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A code block: its language, the name of the file that it is, its text, its line."""
+
+    language: str
+    title: str
+    body: str
+    row: int
+
+
+def every_page() -> list[Path]:
+    """All pages, those of the site and the README, in an order that stays."""
+    found = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+    return [*found, *(ROOT / name for name in OUTSIDE if (ROOT / name).exists())]
+
+
+def name_of(page: Path) -> str:
+    """A page's path from the root of the repository."""
+    return page.resolve().relative_to(ROOT).as_posix()
+
+
+def blocks(text: str) -> list[Block]:
+    """The code blocks of a page, in their order."""
+    found = []
+    for match in FENCE.finditer(text):
+        info = match["info"].strip()
+        title = TITLE.search(info)
+        language = info.split()[0] if info and not info.startswith("title=") else ""
+        row = text.count("\n", 0, match.start()) + 1
+        found.append(Block(language, title[1] if title else "", match["body"], row))
+    return found
+
+
+def prose(text: str) -> str:
+    """A page with blanks in the place of its code, where what looks like a link is none."""
+    blank = re.compile(r"[^\n]")
+    text = FENCE.sub(lambda match: blank.sub(" ", match[0]), text)
+    return re.sub(r"(`+)(?:(?!\1).)+?\1", lambda m: "`" * len(m[0]), text)

@@ -1,0 +1,242 @@
+"""Run a page as a reader would: from top to bottom, in an empty folder, what it shows compared.
+
+`.venv/bin/python docs/site/snippets.py PAGE...`
+
+- a block with `title="NAME"` is a file of that name;
+- `python` runs in one interpreter a page, `sh` in bash, in the folder where the last block left it;
+- `output` is what the block before it prints: each line, in that order, blanks aside; `...` leaves
+  out any lines, and within a line any words;
+- `text` and blocks without a language are prose;
+- a first line `# in a clone of the repository` has a block run at its root;
+- a first line `# not tested: WHY`, and a shell line that ends in `(not tested: WHY)`, are not run;
+- `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
+- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`).
+
+A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` says
+which test compiles it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+from pages import ROOT, Block, blocks, name_of
+
+ELSEWHERE = {
+    ("crates/jbf-core/README.md", "rust"): "cargo test --doc -p jbf-core",
+    ("README.md", "python"): "python/tests/test_readme.py",
+    ("docs/control.md", "python"): "python/tests/test_readme.py",
+}
+PROSE = {"", "text"}
+SIMULATOR = ROOT / "simulator"
+DEMO = ROOT / "python" / "jbf" / "data" / "demo" / "hidden"
+WHY = re.compile(r"not tested: (\S+ \S+ [^)\n]+)")
+SECONDS = 400
+
+
+class Wrong(Exception):
+    """A page that does not do what it shows."""
+
+
+def _campaign(folder: Path) -> None:
+    """A rig with its runs, runs left aside, planned ones, and models: the shipped data."""
+    import jbf
+
+    shutil.copy(DEMO / "rig.toml", folder / "rig.toml")
+    for name in ("runs", "other_runs", "planned_runs"):
+        (folder / name).mkdir()
+    for path in DEMO.glob("*.csv"):
+        shutil.copy(path, folder / "runs" / path.name)
+    shutil.copy(DEMO / "unseen" / "triangle_0.5.csv", folder / "other_runs")
+    shutil.copy(DEMO / "two_way_0.25.csv", folder / "run.csv")
+    motion = jbf.read_run(folder / "run.csv")
+    bare = jbf.Run.from_arrays(motion.time_s, motion.velocity_m_s, angle_rad=motion.angle_rad)
+    for name in ("motion.csv", "planned_runs/slow.csv"):
+        bare.write_csv(folder / name)
+    rig = jbf.Rig.thesis("4.2")
+    for name in ("model.toml", "bare.toml"):
+        jbf.Model(rig).save(folder / name)
+
+
+def _warm_campaign(folder: Path) -> None:
+    """The same rig, warming, with a seal that grips as it warms."""
+    import jbf
+    import numpy as np
+
+    _campaign(folder)
+    for number, path in enumerate(sorted((folder / "runs").glob("*.csv"))):
+        run = jbf.read_run(path)
+        warmth_c = 42.0 + 2.0 * np.sin(0.7 * run.time_s + number) + 0.05 * run.time_s
+        grip_n = 0.35 * (warmth_c - 40.0) * np.tanh(run.velocity_m_s / 0.01)
+        jbf.Run.from_arrays(
+            run.time_s,
+            run.velocity_m_s,
+            run.friction_n + grip_n,
+            angle_rad=run.angle_rad,
+            load_n=run.load_n,
+            temperature_c=warmth_c,
+            name=run.name,
+        ).write_csv(path)
+
+
+def _schema(folder: Path) -> None:
+    """What the site publishes."""
+    shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
+
+
+GIVEN: dict[str, Callable[[Path], None]] = {
+    "campaign": _campaign,
+    "warm_campaign": _warm_campaign,
+    "schema": _schema,
+}
+IN_A_CLONE = "# in a clone of the repository"
+
+
+def squeezed(text: str) -> str:
+    """Words with one blank between them."""
+    return " ".join(text.split())
+
+
+def compare(shown: str, said: str) -> None:
+    """Each shown line is among what was said, in that order."""
+    lines, at = [squeezed(line) for line in said.splitlines()], 0
+    for wanted in (squeezed(line) for line in shown.splitlines()):
+        if wanted in ("", "..."):
+            continue
+        pattern = re.compile(".*?".join(re.escape(part) for part in wanted.split("...")))
+        while at < len(lines) and not pattern.fullmatch(lines[at]):
+            at += 1
+        if at == len(lines):
+            raise Wrong(f"is not printed here: {wanted}\nbut:\n{said[-6000:]}")
+        at += 1
+
+
+def told_why(line: str) -> bool:
+    """Whether a line says that it is not run; a reason has three words or more."""
+    if "not tested" not in line:
+        return False
+    if not WHY.search(line):
+        raise Wrong(f"gives no reason: {line}")
+    return True
+
+
+def missing(page: Path) -> list[str]:
+    """What a page needs and this machine lacks: programs, targets of Rust that cannot be had."""
+    found = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
+    return [name for name in " ".join(found).split() if not _is_there(name)]
+
+
+def _is_there(name: str) -> bool:
+    if name.count("-") < 2 or not name.startswith("thumb"):
+        return shutil.which(name) is not None
+    added = ["rustup", "target", "add", name]
+    return (
+        shutil.which("rustup") is not None
+        and not subprocess.run(added, capture_output=True).returncode
+    )
+
+
+class Reader:
+    """Someone who follows a page."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.names: dict[str, object] = {"__name__": "page"}
+        self.said: str | None = None
+
+    def follow(self, block: Block) -> None:
+        """Do what a block says."""
+        first = block.body.split("\n", 1)[0]
+        if first.lstrip("#/ ").startswith("not tested") and told_why(first):
+            self.said = None
+        elif block.title:
+            path = self.folder / block.title
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.body, encoding="utf-8")
+        elif block.language == "python":
+            self.said = self.python(block)
+        elif block.language == "sh":
+            self.said = self.shell(block.body)
+        elif block.language == "output":
+            if self.said is None:
+                raise Wrong("shows what a block prints, and none before it was run")
+            compare(block.body, self.said)
+        elif block.language not in PROSE:
+            raise Wrong(f"`{block.language}` is neither run nor a file (title=)")
+
+    def python(self, block: Block) -> str:
+        """What a block prints."""
+        printed = io.StringIO()
+        # Line numbers of a traceback are the page's.
+        code = compile("\n" * block.row + block.body, "the page", "exec")
+        here = os.getcwd()
+        os.chdir(self.folder)
+        try:
+            with contextlib.redirect_stdout(printed):
+                exec(code, self.names)
+        finally:
+            os.chdir(here)
+        return printed.getvalue()
+
+    def shell(self, body: str) -> str:
+        """What the lines of a block print; where they end the next block begins."""
+        kept = [line for line in body.splitlines() if not told_why(line)]
+        place = self.folder / ".folder"
+        script = "\n".join([*kept, f'pwd > "{place}"'])
+        bin_ = Path(sys.executable).parent
+        path = f"{bin_}:{Path(__file__).parent / 'bin'}:{os.environ['PATH']}"
+        where = Path(place.read_text().strip()) if place.exists() else self.folder
+        if body.startswith(IN_A_CLONE):
+            where, script = ROOT, body
+        done = subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", script],
+            cwd=where,
+            env={**os.environ, "PATH": path, "PYTHONPATH": str(SIMULATOR), "JBF": str(ROOT)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            timeout=SECONDS,
+        )
+        if done.returncode != 0:
+            raise Wrong(f"ended with {done.returncode}:\n{done.stdout}")
+        return done.stdout
+
+
+def run(page: Path, keep: Path | None = None) -> None:
+    """Follow a page; raises `Wrong` with the row."""
+    text = page.read_text(encoding="utf-8")
+    name = name_of(page)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = (keep or Path(temporary)).resolve()
+        for given in re.findall(r"<!-- given: (\w+) -->", text):
+            GIVEN[given](folder)
+        reader = Reader(folder)
+        for block in blocks(text):
+            if (name, block.language) in ELSEWHERE:
+                continue
+            try:
+                reader.follow(block)
+            except Wrong as wrong:
+                raise Wrong(f"{name}:{block.row}: {wrong}") from None
+            except Exception:
+                raise Wrong(f"{name}:{block.row}: {traceback.format_exc()}") from None
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(SIMULATOR))
+    for named in sys.argv[1:]:
+        try:
+            run(Path(named).resolve())
+        except Wrong as fault:
+            sys.exit(str(fault))

@@ -1,0 +1,72 @@
+"""Every page does what it shows, every link leads somewhere."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import LINK, Block, blocks, every_page, name_of, prose
+from snippets import PROSE, Reader, Wrong, compare, missing
+
+SITE = Path(__file__).resolve().parents[1]
+WITH_CODE = [
+    page
+    for page in every_page()
+    if any(b.language not in PROSE for b in blocks(page.read_text(encoding="utf-8")))
+]
+
+
+@pytest.mark.parametrize("page", WITH_CODE, ids=name_of)
+def test_a_page_runs_as_it_stands(page: Path) -> None:
+    lacking = missing(page)
+    if lacking:
+        pytest.skip(f"{name_of(page)} needs {', '.join(lacking)}")
+    command = [sys.executable, str(SITE / "snippets.py"), str(page)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("page", every_page(), ids=name_of)
+def test_links_lead_to_files(page: Path) -> None:
+    for match in LINK.finditer(prose(page.read_text(encoding="utf-8"))):
+        target = match["target"].partition("#")[0]
+        if target and ":" not in target:
+            assert (page.parent / target).exists(), target
+
+
+def test_a_page_that_lies_is_found(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    reader.follow(Block("python", "", "print('one')\nprint('two words')\n", 1))
+    reader.follow(Block("output", "", "one\ntwo  words\n", 1))
+    with pytest.raises(Wrong, match="not printed"):
+        reader.follow(Block("output", "", "two words\none\n", 1))
+    with pytest.raises(Wrong, match="ended with 3"):
+        reader.follow(Block("sh", "", "exit 3\n", 1))
+    with pytest.raises(Wrong, match="neither run"):
+        reader.follow(Block("rust", "", "fn main() {}\n", 1))
+    with pytest.raises(Wrong, match="no reason"):
+        reader.follow(Block("sh", "", "reboot   # (not tested: no)\n", 1))
+    with pytest.raises(Wrong, match="none before"):
+        Reader(tmp_path).follow(Block("output", "", "one\n", 1))
+
+
+def test_files_folders_and_reasons(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    reader.follow(Block("toml", "a/b.toml", "x = 1\n", 1))
+    reader.follow(Block("sh", "", "cd a\n", 1))
+    reader.follow(Block("sh", "", "cat b.toml\nfalse   # (not tested: it would fail here)\n", 1))
+    reader.follow(Block("output", "", "x = ...\n", 1))
+
+
+def test_dots_leave_out_lines_and_words() -> None:
+    compare("a\n...\nd 1 ... 3\n", "a\nb\nc\nd 1 2 3\n")
+    with pytest.raises(Wrong):
+        compare("d 1 ... 4\n", "d 1 2 3\n")
+
+
+def test_a_page_says_what_it_needs(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("<!-- needs: sh no-such-program thumb-no-target -->\n")
+    assert missing(page) == ["no-such-program", "thumb-no-target"]

@@ -47,11 +47,18 @@ class Session:
         self.law = "journal"
         self._kept = tempfile.TemporaryDirectory(prefix="jbf-workbench-")
         self._places = 0
+        self._owed = False
         self._loaded: dict[int, Model] = {}
 
     def changed(self) -> None:
         """There is news."""
         self.version += 1
+        if self._owed and self.jobs.job is None:
+            self._owed = False
+            with self.lock:
+                current = self.models.current
+                if current is not None and self.records(current) is None:
+                    self._compare(current)
 
     def say(self, kind: str, words: str) -> None:
         """A line for whoever looks on; `kind` is `done` or `error`."""
@@ -140,7 +147,10 @@ class Session:
         with self.lock:
             self.models.choose(number)
             if number is not None and self.records(number) is None:
-                self._compare(number)
+                # While another job runs the model waits for its turn.
+                self._owed = self.jobs.job is not None
+                if not self._owed:
+                    self._compare(number)
         self.changed()
 
     def _compare(self, number: int) -> None:

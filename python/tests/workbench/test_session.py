@@ -219,6 +219,24 @@ def test_a_session_goes_on_from_its_file(worked: Session, ended: Ended) -> None:
     (worked.folder.root / FILE).unlink()
 
 
+def test_a_model_that_is_chosen_while_another_is_compared_waits_for_its_turn(
+    worked: Session,
+) -> None:
+    save(worked)
+    again = Session(worked.folder)
+    assert load(again)
+    assert again.jobs.job is not None  # the current one is being compared
+    again.show(1)
+    assert again.models.current == 1
+    until = time.monotonic() + 300.0
+    while again.records(1) is None:
+        assert time.monotonic() < until
+        time.sleep(0.02)
+    assert again.records(2) is not None
+    again.close()
+    (worked.folder.root / FILE).unlink()
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

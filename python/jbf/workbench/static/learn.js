@@ -21,7 +21,7 @@ export class LearnRoom {
 
   told(before) {
     const { state } = this.page, node = this.page.model;
-    const now = JSON.stringify([state.current, state.nodes.length, state.law, state.rig, state.runs.length, Boolean(state.job), node?.record_names, Boolean(node?.trials)]);
+    const now = JSON.stringify([state.current, state.nodes.length, state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
     if (!before || now !== this.was) { this.was = now; this.show(); }
   }
 
@@ -56,7 +56,7 @@ export class LearnRoom {
 
   async draw() {
     const { page } = this, node = page.model, ask = Symbol(); this.ask = ask;
-    if (!node || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Its name in the ranking draws it over the residual."); return; }
+    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Its name in the ranking draws it over the residual."); return; }
     try {
       const found = await get("signature", { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 });
       if (this.ask !== ask) return;

@@ -10,6 +10,7 @@ export function showNext(page, place) {
 function nextStep(page) {
   const { state } = page, node = page.model, here = page.name;
   const go = (name, words) => [name.toLowerCase(), words, () => page.enter(name)];
+  if (state.job?.words.startsWith("comparing")) return { words: "the model is being compared with the runs." };
   if (state.job) return { words: state.job.words.startsWith("diagnosis") || !node ? "wait; Cancel keeps the best so far." : "what else could be missing is being tried; look on meanwhile.", buttons: here === "See" || !node ? [] : [go("See", "2 See")] };
   if (!state.runs.length) {
     if (here !== "Data") return { words: "there is nothing to see yet.", buttons: [go("Data", "1 Data: open some runs")] };

@@ -35,7 +35,7 @@ export class SeeRoom {
 
   told(before) {
     const { state } = this.page;
-    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.record_names, this.page.model?.holdout_rms_n]);
+    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.records, this.page.model?.holdout_rms_n]);
     if (!before || now !== this.was) { this.was = now; this.looked({}); }
   }
 
@@ -114,7 +114,7 @@ export class SeeRoom {
       document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
       document.body.dataset.draws = String(++page.draws);
       if (stays) return;
-      if (model !== null && page.model?.record_names) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_n);
+      if (model !== null && page.model?.records) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_n);
       else this.map.clear();
     } catch (error) { page.say(error.message); }
   }

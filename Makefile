@@ -11,6 +11,8 @@ RUST := $(shell find crates -name '*.rs' -path '*/src/*') \
 RUSTFMT := rustfmt --edition 2021
 RUST_FILES = find $(wildcard crates benches examples firmware) -name '*.rs' -not -path '*/target/*'
 
+PYTHON_CODE := python simulator benches docs examples release
+
 SANITIZED := $(or $(CARGO_TARGET_DIR),target)/sanitized
 
 MADE := $(VENV)/.made
@@ -21,7 +23,8 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware clean
+.PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
+	sbom coverage licences publish-check wheel wheel-test reproducible lowest clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -35,15 +38,23 @@ help:
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
 	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
+	@echo "make coverage  lines of python/jbf that no fast test runs, file by file (pytest-cov)"
 	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
-	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny)"
+	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny, pip-audit)"
+	@echo "make sbom    what an installed jbf consists of, as CycloneDX, into target/sbom"
+	@echo "make licences  THIRD_PARTY.md: the texts of what is linked into a wheel"
+	@echo "make publish-check  packs every crate that is published, as the registry would"
+	@echo "make wheel   source archive, and the wheel from it, into dist"
+	@echo "make wheel-test  that wheel in a new environment: first diagnosis, tests against what is installed"
+	@echo "make reproducible  builds both again in another folder: the same bytes?"
+	@echo "make lowest  that wheel with the oldest versions that pyproject.toml allows"
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
 	@echo "make quick   the same to try a change of Rust with: built in a third of the time, slower, same numbers"
-	@echo "make clean   removes $(VENV), target and the built extension"
+	@echo "make clean   removes $(VENV), dist, target and the built extension"
 
 venv: $(BUILT)
 
@@ -79,14 +90,19 @@ lint: $(BUILT)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
-	$(VENV)/bin/ruff check python simulator benches docs examples
-	$(VENV)/bin/ruff format --check python simulator benches docs examples
+	$(VENV)/bin/ruff check $(PYTHON_CODE)
+	$(VENV)/bin/ruff format --check $(PYTHON_CODE)
 	$(VENV)/bin/mypy
+	$(VENV)/bin/stubtest jbf._core
+	$(VENV)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(VENV)/bin/check-jsonschema --builtin-schema vendor.github-issue-forms \
+		$(filter-out %/config.yml,$(wildcard .github/ISSUE_TEMPLATE/*.yml))
+	$(VENV)/bin/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
 
 format: $(BUILT)
 	$(RUSTFMT) $$($(RUST_FILES))
-	$(VENV)/bin/ruff check --fix python simulator benches docs examples
-	$(VENV)/bin/ruff format python simulator benches docs examples
+	$(VENV)/bin/ruff check --fix $(PYTHON_CODE)
+	$(VENV)/bin/ruff format $(PYTHON_CODE)
 
 bench:
 	cargo bench -p jbf-benches --bench '*'
@@ -115,6 +131,9 @@ mutants: $(BUILT)
 mutation: $(BUILT)
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
 		--seed $(or $(SEED),1) --budget $(or $(BUDGET),15) --least $(or $(LEAST),0.58)
+
+coverage: $(BUILT)
+	$(VENV)/bin/python -m pytest -n auto --dist worksteal --cov=jbf --cov-report=term-missing:skip-covered
 
 # Needs nightly Rust and cargo-fuzz.
 fuzz:
@@ -155,13 +174,65 @@ supply:
 		{ cargo deny fetch db >/dev/null 2>&1 && cargo deny check advisories || \
 			echo "SKIPPED: the database of advisories cannot be had here"; }; \
 	else echo "SKIPPED: cargo install cargo-deny"; fi
+	@$(MAKE) --no-print-directory $(AUDIT)/.made
+	@told=$$($(AUDIT)/bin/pip-audit --path $(AUDIT)/runtime/lib/python3*/site-packages 2>&1); code=$$?; \
+	if [ $$code != 0 ] && grep -q "Fix Versions" <<<"$$told"; then echo "$$told"; exit $$code; fi; \
+	if [ $$code != 0 ] || grep -q "could not be audited" <<<"$$told"; then \
+		echo "SKIPPED: pip-audit cannot ask for known faults of every package here"; \
+	else echo "$$told"; fi
+
+# In environments of their own: what a user installs, and the tools that look at it.
+AUDIT := target/audit
+$(AUDIT)/.made: pyproject.toml | $(BUILT)
+	@rm -rf $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT)/runtime
+	@$(AUDIT)/bin/pip install --quiet --disable-pip-version-check pip-audit cyclonedx-bom
+	@$(VENV)/bin/python -c 'import tomlkit; p = tomlkit.parse(open("pyproject.toml").read())["project"]; \
+		print("\n".join(p["dependencies"]))' > $(AUDIT)/runtime.txt
+	@$(AUDIT)/runtime/bin/pip install --quiet --disable-pip-version-check -r $(AUDIT)/runtime.txt
+	@touch $@
+
+# The crates are read from the lock file where cargo-cyclonedx is installed.
+sbom: $(AUDIT)/.made
+	@mkdir -p target/sbom
+	$(AUDIT)/bin/cyclonedx-py environment --pyproject pyproject.toml --mc-type library \
+		--output-file target/sbom/python.cdx.json $(AUDIT)/runtime/bin/python
+	@if cargo cyclonedx --version >/dev/null 2>&1; then \
+		cargo cyclonedx --quiet --format json --override-filename rust.cdx \
+			--manifest-path crates/jbf-py/Cargo.toml && \
+		mv crates/jbf-py/rust.cdx.json target/sbom/ && \
+		find crates benches -name rust.cdx.json -delete; \
+	else echo "SKIPPED: cargo install cargo-cyclonedx (Cargo.lock names every crate and its hash)"; fi
+
+# What is linked into a wheel, with its licences; and whether THIRD_PARTY.md is as Cargo.lock.
+licences:
+	$(PYTHON) release/licences.py
+
+# Every crate but those that say `publish = false`.
+publish-check:
+	$(PYTHON) release/licences.py --check
+	cargo publish --dry-run --quiet --allow-dirty --workspace
+
+# The archive is packed, and the wheel built from it in an empty folder: nothing of this tree helps.
+wheel: $(MADE)
+	rm -rf dist
+	$(VENV)/bin/python release/build.py --out dist
+
+wheel-test: wheel
+	$(VENV)/bin/python release/wheel_test.py dist
+
+# After `make wheel`.
+reproducible: $(MADE)
+	$(VENV)/bin/python release/reproducible.py dist
+
+lowest: $(MADE)
+	$(VENV)/bin/python release/lowest.py dist
 
 # Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
 firmware: $(BUILT)
 	$(VENV)/bin/python examples/firmware/report.py
 
 clean:
-	rm -rf $(VENV) target examples/firmware/target python/jbf/_core*.so
+	rm -rf $(VENV) dist target examples/firmware/target python/jbf/_core*.so
 
 $(MADE):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \

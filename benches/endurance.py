@@ -24,12 +24,12 @@ def resident_mib() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
 
 
-def campaign(seed: int) -> list[jbf.Run]:
+def campaign(seed: int, samples: int) -> list[jbf.Run]:
     """Two runs of an axis with dry friction, and in every other campaign a zero that is off."""
     random = np.random.default_rng(seed)
     runs = []
     for name, rate in (("slow", 0.7), ("fast", 2.9)):
-        t = 0.01 * np.arange(800)
+        t = 0.01 * np.arange(samples)
         v, path = 0.1 * np.cos(rate * t), 0.1 / rate * np.sin(rate * t)
         force = 5.0 * np.sign(v) + 20.0 * v + (seed % 2) + random.normal(0.0, 0.2, len(t))
         runs.append(jbf.Run.from_arrays(t, v, force, position_m=path, name=name))
@@ -40,12 +40,13 @@ def main() -> int:
     """Run, print, judge."""
     parser = argparse.ArgumentParser(prog="endurance", description=__doc__.split(":")[0])
     parser.add_argument("--diagnoses", type=int, default=1000)
+    parser.add_argument("--samples", type=int, default=800, help="of a run")
     parser.add_argument("--growth-mib", type=float, default=20.0)
     asked = parser.parse_args()
     held, verdicts, begun = [], {"adequate": 0, "missing": 0}, time.monotonic()
     tenth = max(asked.diagnoses // 10, 1)
     for k in range(asked.diagnoses):
-        found = jbf.diagnose(jbf.Rig(), campaign(k), law="stribeck")
+        found = jbf.diagnose(jbf.Rig(), campaign(k, asked.samples), law="stribeck")
         verdicts[found.verdict] = verdicts.get(found.verdict, 0) + 1
         if (k + 1) % tenth == 0:
             held.append(resident_mib())

@@ -3,7 +3,8 @@
     python benches/mutation --room NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
 
 A room is a folder of `python/jbf`. Sites are drawn by lot, at each one of cosmic-ray's operators;
-the tests that reach the line (`reach.py`) run, the quickest first, until one fails. Each mutant is
+the tests that reach the line (`reach.py`; unmeasured, those that import the module) run, the
+quickest first, until one fails. Each mutant is
 a line of the record; a mutant that is in it is not tried again (`--again` tries its survivors).
 Unlike `benches/mutants`, whose faults are chosen by hand, nobody chose these.
 """
@@ -20,6 +21,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
+from imports import by_imports  # noqa: E402
 from mutants.faults import Copy  # noqa: E402
 from reach import Chosen, Reach  # noqa: E402
 from score import read, table  # noqa: E402
@@ -37,7 +39,9 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--sample", type=int, default=12, help="mutants of each room")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, help="the record, a line of JSON each")
-    parser.add_argument("--reach", type=Path, default=HERE / "reach.json")
+    parser.add_argument(
+        "--reach", type=Path, default=HERE / "reach.json", help="without it, tests by their imports"
+    )
     parser.add_argument("--budget", type=float, default=60.0, help="seconds of tests a mutant")
     parser.add_argument("--again", action="store_true", help="survivors in the record once more")
     parser.add_argument("--tests", nargs="+", default=[], help="these, whatever reaches the line")
@@ -49,7 +53,7 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
 
 def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Trial]) -> list[Trial]:
     """The sample of one room; those in the record are taken from it."""
-    reach = Reach.read(asked.reach)
+    reach = Reach.read(asked.reach) if asked.reach.is_file() else by_imports(asked.root)
     known = {t.name: t for t in done if (t.room, t.seed) == (room, asked.seed)}
     files = sorted((asked.root / asked.package / room).rglob("*.py"))
     if not files:

@@ -95,6 +95,17 @@ def tried(seed: int, limit_s: float) -> dict[str, object]:
     return {"seed": seed, "case": case.words, "said": said, "wrong": wrong, "seconds": seconds}
 
 
+def kept(path: Path | None) -> list[dict[str, object]]:
+    """The cases of a record; a line that was cut off is left."""
+    found = []
+    for line in path.read_text("utf-8").splitlines() if path is not None and path.exists() else []:
+        try:
+            found.append(json.loads(line))
+        except json.JSONDecodeError:
+            continue
+    return found
+
+
 def main() -> int:
     """Try, tell, count."""
     parser = argparse.ArgumentParser(prog="torture", description=__doc__.split(":")[0])
@@ -102,12 +113,13 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--limit", type=float, default=120.0, help="processor time, s a case; 120")
-    parser.add_argument("--out", type=Path, help="JSON lines, one a case")
+    parser.add_argument("--out", type=Path, help="JSON lines, one a case; what it has is not tried")
     asked = parser.parse_args()
-    rows = []
+    seeds = range(asked.first_seed, asked.first_seed + asked.cases)
+    rows = [row for row in kept(asked.out) if row["seed"] in seeds]
+    left = sorted(set(seeds) - {int(str(row["seed"])) for row in rows})
     with ProcessPoolExecutor(asked.jobs) as pool:
-        seeds = range(asked.first_seed, asked.first_seed + asked.cases)
-        for future in as_completed([pool.submit(tried, seed, asked.limit) for seed in seeds]):
+        for future in as_completed([pool.submit(tried, seed, asked.limit) for seed in left]):
             row = future.result()
             rows.append(row)
             if asked.out is not None:

@@ -13,18 +13,6 @@ from typing import TYPE_CHECKING, Any
 from jbf._core import __version__
 from jbf.cores import cap_threads
 from jbf.errors import FilmWarning, InputError, JbfError
-from jbf.models.batch import batch
-from jbf.models.catalogue import Parameter, effects, laws
-from jbf.models.model import Model
-from jbf.models.own_effects import forget_effect, load_effects, register_effect
-from jbf.models.own_laws import forget_law, register_law
-from jbf.models.parameter_value import ParameterValue
-from jbf.models.trajectory import Trajectory, trajectories, trajectory
-from jbf.records.csv_file import read_run
-from jbf.records.drive import Drive
-from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
-from jbf.records.run import Run
-from jbf.records.run_files import read_runs
 
 if TYPE_CHECKING:
     from jbf import control, plot
@@ -40,12 +28,47 @@ if TYPE_CHECKING:
     from jbf.importing.import_files import import_files, look, read_recording
     from jbf.importing.mapping import Map, read_map
     from jbf.importing.result import Import
+    from jbf.models.batch import batch
+    from jbf.models.catalogue import Parameter, effects, laws
+    from jbf.models.model import Model
+    from jbf.models.own_effects import forget_effect, load_effects, register_effect
+    from jbf.models.own_laws import forget_law, register_law
+    from jbf.models.parameter_value import ParameterValue
+    from jbf.models.trajectory import Trajectory, trajectories, trajectory
+    from jbf.records.csv_file import read_run
+    from jbf.records.drive import Drive
+    from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
+    from jbf.records.run import Run
+    from jbf.records.run_files import read_runs
 
 cap_threads()
 
-# These need scipy, which takes most of a second to import: they come at first use, so that a
-# prediction or `jbf effects` does not wait for them.
+# Everything comes at first use: numpy takes a tenth of a second to import, scipy most of one, and
+# `jbf --help` waits for neither, a prediction not for scipy.
 _LATER = {
+    "batch": "jbf.models.batch",
+    "Parameter": "jbf.models.catalogue",
+    "effects": "jbf.models.catalogue",
+    "laws": "jbf.models.catalogue",
+    "Model": "jbf.models.model",
+    "forget_effect": "jbf.models.own_effects",
+    "load_effects": "jbf.models.own_effects",
+    "register_effect": "jbf.models.own_effects",
+    "forget_law": "jbf.models.own_laws",
+    "register_law": "jbf.models.own_laws",
+    "ParameterValue": "jbf.models.parameter_value",
+    "Trajectory": "jbf.models.trajectory",
+    "trajectories": "jbf.models.trajectory",
+    "trajectory": "jbf.models.trajectory",
+    "read_run": "jbf.records.csv_file",
+    "Drive": "jbf.records.drive",
+    "Bearing": "jbf.records.rig",
+    "Load": "jbf.records.rig",
+    "Lubricant": "jbf.records.rig",
+    "Rig": "jbf.records.rig",
+    "read_rig": "jbf.records.rig",
+    "Run": "jbf.records.run",
+    "read_runs": "jbf.records.run_files",
     "Bootstrap": "jbf.estimation.bootstrap",
     "bootstrap": "jbf.estimation.bootstrap",
     "Comparison": "jbf.comparison.comparison",
@@ -74,6 +97,8 @@ _LATER = {
     "read_map": "jbf.importing.mapping",
     "read_recording": "jbf.importing.import_files",
 }
+
+_ROOMS = ("control", "models", "plot", "records")
 
 __all__ = [
     "Bearing",
@@ -136,7 +161,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in ("control", "plot"):
+    if name in _ROOMS:
         return import_module(f"jbf.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")

@@ -1,17 +1,39 @@
 """Types of the extension module."""
 
 from collections.abc import Sequence
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict, final, type_check_only
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import Self
 
-Array = npt.NDArray[np.float64]
-Array32 = npt.NDArray[np.float32]
+_Array: TypeAlias = npt.NDArray[np.float64]
+_Array32: TypeAlias = npt.NDArray[np.float32]
+
+__all__ = [
+    "FASTEST_FILM_1_S",
+    "BatchRig",
+    "Chain",
+    "Motion",
+    "__version__",
+    "control_constants",
+    "control_gains",
+    "control_reference",
+    "control_run",
+    "effects",
+    "film_integrals",
+    "laws",
+    "read_force",
+    "steady_friction",
+    "thesis_bearing",
+    "trajectories",
+    "transition_eccentricity",
+]
 
 __version__: str
 FASTEST_FILM_1_S: float
 
+@type_check_only
 class ParameterPage(TypedDict):
     name: str
     unit: str
@@ -26,6 +48,7 @@ class ParameterPage(TypedDict):
     bound: str
     stated: bool
 
+@type_check_only
 class EffectPage(TypedDict):
     name: str
     stage: str
@@ -43,6 +66,7 @@ class EffectPage(TypedDict):
     rust_type: str
     parameters: list[ParameterPage]
 
+@type_check_only
 class LawPage(TypedDict):
     name: str
     summary: str
@@ -55,6 +79,7 @@ class LawPage(TypedDict):
     rust_type: str
     parameters: list[ParameterPage]
 
+@type_check_only
 class BearingSizes(TypedDict):
     radius_m: float
     length_m: float
@@ -63,22 +88,24 @@ class BearingSizes(TypedDict):
     count: int
     viscosity_pa_s: float
 
+@final
 class Motion:
-    columns: dict[str, Array]
-    def __init__(
-        self,
-        time_s: Array,
-        velocity_m_s: Array,
-        acceleration_m_s2: Array,
-        angle_rad: Array,
-        load_n: Array,
-        temperature_c: Array | None = None,
-    ) -> None: ...
+    columns: dict[str, _Array]
+    def __new__(
+        cls,
+        time_s: _Array,
+        velocity_m_s: _Array,
+        acceleration_m_s2: _Array,
+        angle_rad: _Array,
+        load_n: _Array,
+        temperature_c: _Array | None = None,
+    ) -> Self: ...
     def __len__(self) -> int: ...
 
+@final
 class Chain:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         *,
         law: str,
         bearing: BearingSizes | None,
@@ -86,18 +113,19 @@ class Chain:
         clock: str,
         effects: Sequence[str],
         max_step_s: float,
-    ) -> None: ...
+    ) -> Self: ...
     @property
     def parameter_names(self) -> list[str]: ...
-    def predict(self, parameters: Array, motions: Sequence[Motion]) -> list[Array]: ...
-    def film_rate_1_s(self, parameters: Array, motions: Sequence[Motion]) -> float: ...
+    def predict(self, parameters: _Array, motions: Sequence[Motion]) -> list[_Array]: ...
+    def film_rate_1_s(self, parameters: _Array, motions: Sequence[Motion]) -> float: ...
     def jacobian(
-        self, parameters: Array, motions: Sequence[Motion], which: Sequence[int]
-    ) -> list[tuple[Array, Array]]: ...
+        self, parameters: _Array, motions: Sequence[Motion], which: Sequence[int]
+    ) -> list[tuple[_Array, _Array]]: ...
 
+@final
 class BatchRig:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         *,
         radius_m: float,
         length_m: float,
@@ -107,37 +135,37 @@ class BatchRig:
         viscosity_pa_s: float,
         clock: str,
         method: str,
-    ) -> None: ...
+    ) -> Self: ...
     def friction_f64(
-        self, sets: Array, speeds: Array, each: bool, dt_s: float, out: Array
+        self, sets: _Array, speeds: _Array, each: bool, dt_s: float, out: _Array
     ) -> None: ...
     def friction_f32(
-        self, sets: Array, speeds: Array32, each: bool, dt_s: float, out: Array32
+        self, sets: _Array, speeds: _Array32, each: bool, dt_s: float, out: _Array32
     ) -> None: ...
     def squares_f64(
-        self, sets: Array, speeds: Array, each: bool, dt_s: float, data: Array
-    ) -> Array: ...
+        self, sets: _Array, speeds: _Array, each: bool, dt_s: float, data: _Array
+    ) -> _Array: ...
     def squares_f32(
-        self, sets: Array, speeds: Array32, each: bool, dt_s: float, data: Array32
-    ) -> Array32: ...
+        self, sets: _Array, speeds: _Array32, each: bool, dt_s: float, data: _Array32
+    ) -> _Array32: ...
 
 def effects() -> list[EffectPage]: ...
 def laws() -> list[LawPage]: ...
 def film_integrals(eps: float) -> tuple[float, float, float]: ...
 def transition_eccentricity(load_number: float) -> float: ...
 def steady_friction(
-    velocity_m_s: Array,
+    velocity_m_s: _Array,
     *,
     law: str,
     parameters: Sequence[float],
     bearing: BearingSizes | None,
     load_n: float | None,
-) -> Array: ...
+) -> _Array: ...
 def read_force(
-    effects: Sequence[tuple[str, Sequence[float]]], time_s: Array, force_n: Array
-) -> tuple[Array, Array]: ...
+    effects: Sequence[tuple[str, Sequence[float]]], time_s: _Array, force_n: _Array
+) -> tuple[_Array, _Array]: ...
 def trajectories(
-    runs: Sequence[tuple[Array, tuple[float, float, float] | tuple[Array, Array]]],
+    runs: Sequence[tuple[_Array, tuple[float, float, float] | tuple[_Array, _Array]]],
     *,
     model: str,
     clock: str,
@@ -157,8 +185,9 @@ def trajectories(
     viscosity_pa_s: float,
     load_n: float,
     derivatives: bool = False,
-) -> list[tuple[Array, Array, Array, int, Array | None]]: ...
+) -> list[tuple[_Array, _Array, _Array, int, _Array | None]]: ...
 
+@type_check_only
 class ControlConstants(TypedDict):
     drive: dict[str, float]
     counts_per_rad: float
@@ -174,14 +203,14 @@ def control_gains(
 ) -> tuple[float, float]: ...
 def control_reference(
     wave: str, low: float, high: float, frequency_rad_s: float, dt_s: float, samples: int
-) -> tuple[Array, Array]: ...
+) -> tuple[_Array, _Array]: ...
 def control_run(
     plant: dict[str, Any],
     loop_settings: dict[str, Any],
     compensator: dict[str, Any],
-    reference: Array,
-    rate: Array,
-    load_n: Array,
+    reference: _Array,
+    rate: _Array,
+    load_n: _Array,
     faults: dict[str, Any],
     *,
     precision: str,

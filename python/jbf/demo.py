@@ -25,12 +25,15 @@ Progress = Callable[[str, int, int], None]
 
 
 def run(
-    directory: PathLike = "jbf-demo", say: Say = print, progress: Progress | None = None
+    directory: PathLike = "jbf-demo",
+    say: Say = print,
+    progress: Progress | None = None,
+    jbf: str = "jbf",
 ) -> Diagnosis:
     """Copy the shipped data into `directory`, diagnose them, and tell the story.
 
     Writes `report.html` and `model.toml` there, beside the data, and gives the diagnosis of the
-    campaign with hidden effects.
+    campaign with hidden effects. `jbf` is what the command is called where it was started.
     """
     out = Path(directory)
     with as_file(files("jbf") / "data" / "demo") as shipped:
@@ -53,12 +56,14 @@ def run(
     )
     say("\n== What had been hidden ==\n")
     say(_truth(hidden, out / "hidden"))
+    hid = f"{out}/hidden"
     say(
         f"\nWritten: {out / 'report.html'} (pictures), {out / 'model.toml'} (the fitted model).\n"
         "The same by hand:\n"
-        f"  jbf diagnose {out}/hidden/rig.toml {out}/hidden --out model.toml --report report.html\n"
-        f"  jbf compare model.toml {out}/hidden/unseen\n"
-        f"To look and click, with these data or your own CSV: jbf workbench {out}"
+        f"  {jbf} diagnose {hid}/rig.toml {hid} --out model.toml --report report.html\n"
+        f"  {jbf} compare model.toml {hid}/unseen\n"
+        "\nNext, look and click: a page in your browser, with these data or a CSV of your own:\n"
+        f"  {jbf} workbench {out}"
     )
     return hidden
 

@@ -15,6 +15,9 @@ PIPE_S = 10.0
 """How long a pipe is waited for."""
 PIPE_BYTES = 1 << 30
 """More than this out of a pipe is taken to have no end."""
+LARGEST_BYTES = 1 << 29
+"""A text larger than this is not read whole: as a table it would take fourteen times as much
+memory."""
 _PACKED = {
     b"\x1f\x8b": ("is compressed (gzip), not text", "unpack it"),
     b"PK\x03\x04": (
@@ -99,10 +102,19 @@ def read_bytes(path: Path) -> bytes:
     Raises
     ------
     InputError
-        The file is missing, a folder, a device or unreadable; a pipe has no end, or no beginning.
+        The file is missing, a folder, a device, too large or unreadable; a pipe has no end, or no
+        beginning.
     """
     check_readable(path)
     try:
+        size = path.stat().st_size
+        if size > LARGEST_BYTES:
+            raise InputError(
+                file=path,
+                problem=f"has {size / 1e9:.2g} GB; what is read whole may have "
+                f"{LARGEST_BYTES / 1e9:.2g} GB",
+                mend="cut it into runs: jbf import reads files of any size",
+            )
         return _from_pipe(path) if path.is_fifo() else path.read_bytes()
     except OSError as error:
         raise os_error(path, error, "read") from None

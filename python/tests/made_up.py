@@ -11,6 +11,7 @@ import numpy as np
 from jbf import Rig
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.reached import Reached
 from jbf.estimation.noise import WHITE
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
@@ -68,6 +69,8 @@ class MadeUp:
         Sets of which each effect is left at its null.
     asked
         What was called with which set.
+    reached
+        How far a search has come.
     """
 
     names: list[str]
@@ -82,6 +85,7 @@ class MadeUp:
     smooth: int = 1
     policy: Policy = DEFAULT
     asked: list[tuple[str, Set]] = field(default_factory=list)
+    reached: Reached = field(default_factory=Reached)
     campaign: Any = field(
         default_factory=lambda: SimpleNamespace(
             samples=SAMPLES, steps_rms_n=lambda rms_n: 0.0, rig=Rig()
@@ -99,6 +103,14 @@ class MadeUp:
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
         return self.scores.get(self._note("score", effects), 1e6)
+
+    def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        for effects in sets:
+            self.score_test(effects, near)
+
+    def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        for effects in sets:
+            self.rank(effects, near)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         here = self._note("rank", effects)

@@ -179,15 +179,6 @@ def test_as_a_module() -> None:
     assert done.stderr == ""
 
 
-def test_help_and_effects_wait_for_no_heavy_import() -> None:
-    code = (
-        "import sys; from jbf.cli import main; main(['effects']); main(['--help']);"
-        "sys.exit(bool({'scipy', 'matplotlib', 'jinja2', 'rich'} & set(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
-    assert done.returncode == 0
-
-
 @pytest.mark.skipif(os.name != "posix", reason="pipes that close early are POSIX's")
 def test_a_closed_pipe_is_no_error() -> None:
     read, write = os.pipe()

@@ -6,6 +6,7 @@ import argparse
 import shlex
 import shutil
 import subprocess
+import warnings
 from collections.abc import Iterator
 
 import jbf
@@ -68,6 +69,21 @@ def test_values_are_no_slips(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["effects", "presliding", "--law", "lugre"]) == 0
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.endswith(f"jbf {jbf.__version__}\n")
+
+
+def test_what_a_library_deprecates_is_no_matter_of_the_user(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def outdated() -> dict[str, object]:
+        warnings.warn("old() is deprecated", DeprecationWarning, stacklevel=2)
+        warnings.warn("the film is too fast", jbf.FilmWarning, stacklevel=2)
+        return {}
+
+    monkeypatch.setattr("jbf.cli.effects.effects", outdated)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        assert main(["effects"]) == 0
+    assert capsys.readouterr().err == "jbf: the film is too fast\n"
 
 
 def script(shell: str, capsys: pytest.CaptureFixture[str]) -> str:

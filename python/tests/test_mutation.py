@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -107,3 +108,19 @@ def test_the_interval_is_clopper_and_pearsons(monkeypatch: pytest.MonkeyPatch) -
     assert binom.cdf(27, 30, high) == pytest.approx(0.025, rel=1e-6)
     assert interval(0, 5) == (0.0, pytest.approx(1 - 0.025**0.2))
     assert interval(5, 5) == (pytest.approx(0.025**0.2), 1.0)
+
+
+def test_without_a_measurement_tests_are_those_that_import_a_module() -> None:
+    sys.path.insert(0, str(BENCH))
+    try:
+        reach = import_module("imports").by_imports(ROOT)
+    finally:
+        sys.path.remove(str(BENCH))
+    first = reach.chosen("python/jbf/estimation/film_rate.py", 40, 5.0)
+    assert first.tests == ("python/tests/test_film_rate.py",)
+    several = reach.chosen("python/jbf/estimation/problem.py", 40, 15.0)
+    assert 1 < len(several.tests) <= 3
+    rooms = ("records", "estimation", "comparison", "diagnosis", "reporting", "control")
+    for module, at in reach.lines.items():
+        if module.split("/")[2] in rooms and not module.endswith("__init__.py"):
+            assert at["0"], module

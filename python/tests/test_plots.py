@@ -114,15 +114,19 @@ def test_pictures_do_not_touch_pyplot(bad: Comparison) -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_the_errors_of_the_ledger_stand_on_an_axis_from_zero(
+def test_the_errors_of_the_ledger_stand_on_a_scale_on_which_each_step_is_seen(
     make_diagnosis: Callable[[str], Diagnosis],
 ) -> None:
     diagnosis = make_diagnosis("missing")
     falling = plot_diagnosis(diagnosis)[0]
-    shown = {line.get_label(): list(line.get_ydata()) for line in falling.lines}
+    shown = {line.get_label(): list(line.get_xdata()) for line in falling.lines}
     assert shown["fit"] == [step.rms_n for step in diagnosis.steps]
     assert shown["held out"] == [step.holdout_rms_n for step in diagnosis.steps]
     assert set(shown["noise floor"]) == {diagnosis.steps[-1].noise_n}
-    low, high = falling.get_ylim()
-    assert low == 0.0
-    assert 1.0 < high / max(shown["fit"] + shown["held out"]) < 1.5
+    assert falling.get_xscale() == "log"
+    low, high = falling.get_xlim()
+    drawn = np.concatenate(list(shown.values()))
+    least, most = float(drawn.min()), float(drawn.max())
+    assert low < least < most < high
+    # The errors fill the scale: what is above and below them is a small part of it.
+    assert np.log(most / least) > 0.8 * np.log(high / low)

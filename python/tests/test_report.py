@@ -72,7 +72,8 @@ def test_diagnosis(
     headings = re.findall(r"<h2>(.*?)</h2>", page)
     wanted = ["Where the bare law fails", "What remains", "Friction", "The error falling"]
     wanted += ["What was added"] * bool(diagnosis.effects)
-    wanted += ["Parameters of the final model", "Candidates tried", "Each run"]
+    wanted += ["Parameters of the final model", "What these runs would have shown"]
+    wanted += ["Candidates tried", "Each run"]
     wanted += ["What it was made from"]
     assert headings == wanted
     assert f"Diagnosis: {verdict}" in page
@@ -140,6 +141,7 @@ def test_every_kind_of_failure_has_advice() -> None:
         "stroke",
         "parameters",
         "effects",
+        "unconfirmed",
     }
     assert set(ADVICE) == axes
 

@@ -68,7 +68,7 @@ def test_a_report_in_a_browser(browser: Any, report: Path, scheme: str) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") <= SCREEN["width"]
     over = "[...document.querySelectorAll('.wide')].filter(e => e.scrollWidth > e.clientWidth + 1)"
     assert page.evaluate(f"{over}.length") == 0
-    for what in ("h1", "#ledger svg"):
+    for what in ("h1", "#ledger svg", "#before svg"):
         box = page.locator(what).first.bounding_box()
         assert box["y"] >= 0
         assert box["y"] + box["height"] <= SCREEN["height"]

@@ -23,16 +23,20 @@
 //! assert!(friction.iter().all(|f| f.is_finite()));
 //! # Ok::<(), ParameterError>(())
 //! ```
+//!
+//! [`film_paths`] steps a few films, each along a motion of its own.
 
 #![deny(missing_docs)]
 
 mod batch;
+mod film_paths;
 mod lane;
 mod part;
 mod simd;
 mod speeds;
 
 pub use batch::{Batch, Films, Method};
+pub use film_paths::film_paths;
 pub use lane::{Float, Lane};
 pub use simd::Simd;
 pub use speeds::Speeds;

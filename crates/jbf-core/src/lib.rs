@@ -38,6 +38,7 @@ mod delay_line;
 pub mod dual;
 pub mod error;
 pub mod film;
+pub mod film_path;
 pub mod friction;
 pub mod motion;
 pub mod page;

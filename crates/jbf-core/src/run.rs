@@ -33,8 +33,7 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     let Some(mut from) = record.sample(0) else {
         return;
     };
-    let film_s = film_step_s(chain, record).max(SHORTEST_FILM_STEP_S);
-    let max_step_s = max_step_s.min(film_s).min(chain.effects.longest_step_s());
+    let max_step_s = inner_step_s(chain, record, max_step_s);
     let radius_m = chain.rig.radius_m.value();
     let mut state = chain.start(&from.lift());
     sink(0, state.reading_n);
@@ -60,6 +59,17 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     record: &Record<'_>,
 ) -> f64 {
     1.0 / film_step_s(chain, record)
+}
+
+/// The longest inner step, s, of [`predict`]: at most `max_step_s`, shorter where the film or an effect
+/// asks for it. Runs of one record with equal inner steps come to the same instants.
+pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    record: &Record<'_>,
+    max_step_s: f64,
+) -> f64 {
+    let film_s = film_step_s(chain, record).max(SHORTEST_FILM_STEP_S);
+    max_step_s.min(film_s).min(chain.effects.longest_step_s())
 }
 
 /// Longest step, s, that follows the film.

@@ -8,6 +8,7 @@ mod catalogue;
 mod chain;
 mod control;
 mod curves;
+mod film_paths;
 mod instrument;
 mod motion;
 mod pool;
@@ -16,8 +17,9 @@ mod trajectory;
 
 use pyo3::prelude::*;
 
-/// The extension module `jbf._core`.
-#[pymodule]
+/// The extension module `jbf._core`. It has not been run without the interpreter lock yet: on an
+/// interpreter that can do without, importing it brings the lock back.
+#[pymodule(gil_used = true)]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;

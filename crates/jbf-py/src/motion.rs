@@ -1,5 +1,6 @@
 //! The imposed motion of one run, checked once and kept on the Rust side.
 
+use crate::film_paths::FilmPaths;
 use jbf_core::run::Record;
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -14,9 +15,15 @@ pub struct Motion {
     angle_rad: Vec<f64>,
     load_n: Vec<f64>,
     temperature_c: Option<Vec<f64>>,
+    paths: FilmPaths,
 }
 
 impl Motion {
+    /// The paths that films have gone along it.
+    pub fn film_paths(&self) -> &FilmPaths {
+        &self.paths
+    }
+
     pub fn record(&self) -> Record<'_> {
         Record {
             time_s: &self.time_s,
@@ -69,6 +76,7 @@ impl Motion {
             temperature_c: temperature_c
                 .map(|values| column("temperature_c", &values))
                 .transpose()?,
+            paths: FilmPaths::default(),
         };
         if let Some(i) = motion.time_s.windows(2).position(|w| w[1] <= w[0]) {
             return Err(PyValueError::new_err(format!(

@@ -15,21 +15,17 @@ import os
 import shlex
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
 from jbf.cli import outputs
+from jbf.cli.commands import COMMANDS
 from jbf.cli.completion import SHELLS, Completion
 from jbf.cli.examples import HEAD, Help
 from jbf.errors import InputError, closest, did_you_mean
 
-COMMANDS = (
-    "demo", "workbench", "import", "compare", "fit", "diagnose", "power", "check", "plan",
-    "predict", "export", "effects", "control",
-)  # fmt: skip
-"""Modules of this package, in the order in which help lists them."""
 _MODULES = {"import": "import_files"}
 """Of a command whose name is a word of Python."""
 
@@ -79,8 +75,8 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
 
 
-def parser() -> Parser:
-    """The whole command line."""
+def parser(words: Sequence[str] | None = None) -> Parser:
+    """The command line: all of it, or no more than these words need."""
     from jbf._core import __version__
 
     top = Parser(
@@ -101,9 +97,20 @@ def parser() -> Parser:
     commands = top.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
-    for name in COMMANDS:
-        import_module(f"jbf.cli.{_MODULES.get(name, name)}").add(commands)
+    needed = COMMANDS if words is None else _needed(words)
+    for name, does in COMMANDS.items():
+        if name in needed:
+            import_module(f"jbf.cli.{_MODULES.get(name, name)}").add(commands)
+        else:
+            commands.add_parser(name, help=does)
     return top
+
+
+def _needed(words: Sequence[str]) -> Collection[str]:
+    """The commands whose own arguments these words may ask for."""
+    if words and words[0] in COMMANDS:
+        return words[:1]
+    return () if words and words[0] in ("-h", "--help", "--version") else COMMANDS
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -145,7 +152,7 @@ def _own_process() -> None:
 def _dispatch(arguments: list[str]) -> int:
     try:
         _check_command(arguments)
-        chosen = parser().parse_args(arguments)
+        chosen = parser(arguments).parse_args(arguments)
         run = chosen.run
         chosen.typed = shlex.join(["jbf", *arguments])
     except SystemExit as stop:  # argparse has said why
@@ -163,9 +170,10 @@ def _dispatch(arguments: list[str]) -> int:
     return code
 
 
-def _show(message: Warning | str, *_: Any, **__: Any) -> None:
-    """A warning as one line, like an error."""
-    outputs.complain(message)
+def _show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+    """A warning as one line, like an error; what a library deprecates is for authors, not users."""
+    if not issubclass(category, (DeprecationWarning, PendingDeprecationWarning)):
+        outputs.complain(message)
 
 
 def _refuse(error: InputError) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_own, add_runs, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.cores import check_jobs, processes
 from jbf.errors import InputError
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "how often the diagnosis of campaigns like this one is right, by simulating them"
-    parser = command(commands, "check", does, run)
+    parser = command(commands, "check", COMMANDS["check"], run)
     parser.add_argument("model", metavar="MODEL", help="model of the runs (jbf diagnose --out)")
     add_runs(parser)
     parser.add_argument(

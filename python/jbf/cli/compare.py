@@ -6,14 +6,14 @@ import argparse
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_json, add_own, add_report, add_runs, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "model against measurement: how far, and where it fails"
-    parser = command(commands, "compare", does, run)
+    parser = command(commands, "compare", COMMANDS["compare"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     add_runs(parser)
     parser.add_argument(

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import os
+import shlex
+import shutil
+import sys
 from pathlib import Path
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "the whole story on shipped data with a hidden effect, in under a minute"
-    parser = command(commands, "demo", does, run)
+    parser = command(commands, "demo", COMMANDS["demo"], run)
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", default="jbf-demo", help="folder for its files"
     )
@@ -26,5 +30,29 @@ def run(arguments: argparse.Namespace) -> int:
     directory = Path(arguments.directory)
     outputs.check_folder("DIR", directory)
     with shown("the demo") as report:
-        run_demo(directory, progress=report)
+        run_demo(directory, progress=report, jbf=called(sys.argv[0]))
     return 0
+
+
+def called(started: str) -> str:
+    """What to type to start this program again: its name where a shell finds it, or its path.
+
+    Parameters
+    ----------
+    started
+        The program's path, as the process was given it.
+    """
+    path = Path(started)
+    if path.name == "__main__.py":
+        return f"{_from_here(Path(sys.executable))} -m jbf"
+    found = shutil.which(path.name)
+    if not path.is_file() or (found is not None and Path(found).samefile(path)):
+        return "jbf"
+    return _from_here(path)
+
+
+def _from_here(path: Path) -> str:
+    """A path as short as it can be said from the working directory."""
+    here = Path.cwd()
+    whole = Path(os.path.abspath(path))
+    return shlex.quote(str(whole.relative_to(here) if whole.is_relative_to(here) else whole))

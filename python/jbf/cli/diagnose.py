@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError, Stopped
 from jbf.models.catalogue import find_law
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "which effect is missing: adds it and shows the error fall, until nothing is missing"
-    parser = command(commands, "diagnose", does, run)
+    parser = command(commands, "diagnose", COMMANDS["diagnose"], run)
     parser.add_argument(
         "rig", metavar="RIG", nargs="?", help="rig file (TOML), a folder of jbf import, or its map"
     )

@@ -8,14 +8,14 @@ from typing import Any
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
+from jbf.cli.commands import COMMANDS
 from jbf.models.catalogue import Effect, effects, find_effect, find_law, why_not
 from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "the catalogue of effects: forms, parameters, sources"
-    parser = command(commands, "effects", does, run)
+    parser = command(commands, "effects", COMMANDS["effects"], run)
     parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
     add_law_name(parser, None, "say which effects go with this law, and why the others do not")
     add_json(parser)

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
 from jbf.export import c, rust
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "the model's constants and the calls that build it, as source for firmware"
-    parser = command(commands, "export", does, run)
+    parser = command(commands, "export", COMMANDS["export"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("--rust", metavar="FILE.rs", help="a Rust module for jbf-core; - is stdout")
     parser.add_argument("--c", metavar="FILE.h", help="a C header for jbf-c; - is stdout")

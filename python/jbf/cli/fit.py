@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import Report, shown
 from jbf.errors import InputError, Stopped, quoted
 from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "fit the base law, with named effects, to runs"
-    parser = command(commands, "fit", does, run)
+    parser = command(commands, "fit", COMMANDS["fit"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), a folder of jbf import, or its map"
     )

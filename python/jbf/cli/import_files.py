@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.text_files import real_path, write_text
@@ -18,10 +19,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = (
-        "from recordings as they are (CSV, Excel, MAT, HDF5, TDMS, MDF4, MCAP, ...) to a campaign"
-    )
-    parser = command(commands, "import", does, run)
+    parser = command(commands, "import", COMMANDS["import"], run)
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help="recordings; one map fits all of them"
     )

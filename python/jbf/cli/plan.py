@@ -7,14 +7,14 @@ from pathlib import Path
 
 from jbf.cli import level, limits, outputs, power
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "which runs to record, so that they show most of what could be missing"
-    parser = command(commands, "plan", does, run)
+    parser = command(commands, "plan", COMMANDS["plan"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
     )

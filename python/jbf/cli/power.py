@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_runs, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
 from jbf.models.catalogue import parameters_of
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "how strong each effect must be for planned runs to show it"
-    parser = command(commands, "power", does, run)
+    parser = command(commands, "power", COMMANDS["power"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
     )

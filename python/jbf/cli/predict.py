@@ -6,13 +6,13 @@ import argparse
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_own, command
+from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "friction of the model under a run's motion, as time_s, friction_n"
-    parser = command(commands, "predict", does, run)
+    parser = command(commands, "predict", COMMANDS["predict"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("motion", metavar="RUN", help="a CSV file; it need not hold friction_n")
     parser.add_argument("--out", metavar="CSV", required=True, help="file to write; - is stdout")

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
 import webbrowser
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 
 
 def add(commands: Commands) -> None:
     """Put the command on the command line."""
-    does = "a page on this machine: see runs, find what is missing, watch the error fall"
-    parser = command(commands, "workbench", does, run)
+    parser = command(commands, "workbench", COMMANDS["workbench"], run)
     parser.add_argument(
         "folder", metavar="FOLDER", nargs="?", default=".", help="what the page may see (here)"
     )
@@ -28,10 +30,17 @@ def run(arguments: argparse.Namespace) -> int:
     from jbf.workbench.serve import serve
 
     def opened(address: str) -> None:
-        outputs.say(f"{address}\nCtrl-C ends it.", {})
+        shown = not arguments.no_browser and _has_a_screen()
+        where = "It opens in your browser" if shown else "Open this address in a browser"
+        outputs.say(f"{address}\n{where}; the page says what to do. Ctrl-C ends it.", {})
         outputs.flush()
-        if not arguments.no_browser:
+        if shown:
             webbrowser.open(address)
 
     serve(arguments.folder, arguments.port, opened, demo=arguments.demo)
     return 0
+
+
+def _has_a_screen() -> bool:
+    """False of a Linux without a display: a browser in the terminal would take the terminal."""
+    return sys.platform != "linux" or any(os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY"))

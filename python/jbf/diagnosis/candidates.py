@@ -18,6 +18,7 @@ import numpy.typing as npt
 from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
+from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
 from jbf.estimation.left_out import left_out_by_run
@@ -222,6 +223,30 @@ class Candidates:
             fitted.solution = approach(fitted.problem, seeds, RANKING_EVALUATIONS, least, each=each)
             fitted.state = "ranked"
         return fitted.found()
+
+    def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        """Rank several sets of effects, each from a smaller model's solution."""
+        # Those that take longest first.
+        order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
+        self._each("trying", lambda effects: self.rank(effects, near), order, near)
+
+    def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        """Test the scores of several sets of effects beside a smaller model."""
+        self._each("testing", lambda effects: self.score_test(effects, near), sets, near)
+
+    def _each(
+        self,
+        doing: str,
+        work: Callable[[Sequence[str]], object],
+        sets: Sequence[Sequence[str]],
+        near: Solution,
+    ) -> None:
+        """Work on every set of effects, side by side, and tell how far it is."""
+        done = side_by_side(work, sets, fits_at_once(self.campaign, self.law, self.names))
+        for i, effects in enumerate(sets):
+            added = ", ".join(name for name in effects if name not in near.effects)
+            self.tell(f"{doing} {added}", i, len(sets))
+            next(done)
 
     def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit these effects to convergence."""

@@ -30,6 +30,8 @@ AHEAD_S = 20e-3
 """So much too little runs are shifted where it is asked what all are late besides, or a step."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
+MOST_LATE = 0.5
+"""Share of a run that its force may be late by."""
 
 
 def on_time(
@@ -106,8 +108,10 @@ def _shifted(
         # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
         shared = known.get(f"{DELAY}.tau_s", 0.0) if found.spread_s > 0.0 else 0.0
-        late_s = late_s + np.array(found.late_s) + shared
-        drift += found.drift
+        later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
+        if not _beside_its_motion(first, later_s, drifted):
+            break
+        late_s, drift = later_s, drifted
         campaign = _moved(first, late_s, drift)
         problem, solution = _refitted(problem, campaign, known, solution)
     return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
@@ -136,12 +140,23 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
     values, *_ = search(late, samples, start, found.solution.noise, EVALUATIONS)
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
     late_s = found.late_s + shared_s
+    if not _beside_its_motion(problem, late_s, 0.0):
+        return found
     campaign = _moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
     _, solution = _refitted(problem, campaign, near, found.solution)
     if solution.rms_n >= found.solution.rms_n:
         return found
     return _Shifted(campaign, solution, late_s, 0.0)
+
+
+def _beside_its_motion(problem: Problem, late_s: Array, drift: float) -> bool:
+    """Whether of each run most would still be compared with a motion: a lateness of whole runs is
+    none, it is what slopes of a force that does not follow the motion make of noise."""
+    return all(
+        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= MOST_LATE * p.run.duration_s
+        for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
+    )
 
 
 def _moved(problem: Problem, late_s: Array, drift: float) -> Campaign:

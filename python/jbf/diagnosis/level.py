@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -91,12 +92,12 @@ class Level:
     @property
     def critical(self) -> float:
         """What noise makes one parameter gain with just that probability."""
-        return float(stats.chi2.isf(self.chance, 1))
+        return _gained_by_noise(self.chance)
 
     @property
     def white(self) -> float:
         """The same of white noise: what the level alone asks, shared among the candidates."""
-        return float(stats.chi2.isf(self.false_alarms / max(self.candidates, 1), 1))
+        return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
 
     def price(self, parameters: int, samples: int) -> float:
         """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
@@ -107,6 +108,12 @@ class Level:
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {**vars(self), "critical": self.critical, "white": self.white}
+
+
+@cache
+def _gained_by_noise(chance: float) -> float:
+    """What noise makes one parameter gain, in twice the log likelihood, with that probability."""
+    return float(stats.chi2.isf(chance, 1))
 
 
 @dataclass(frozen=True, eq=False)

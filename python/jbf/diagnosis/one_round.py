@@ -5,13 +5,14 @@ Where `diagnose` decides, this leaves the choice to whoever looks on.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.ledger import Step
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.rounds import step
 from jbf.diagnosis.selection import try_candidates
 from jbf.errors import Stopped
@@ -26,11 +27,13 @@ from jbf.threads import one_blas_thread
 
 @dataclass(frozen=True)
 class OneRound:
-    """A fit, its line of the ledger with the candidates tried beside it, and where it fails."""
+    """A fit, its line of the ledger with the candidates tried beside it, where it fails, and how
+    strong each of them must be for these runs to show it beside this model."""
 
     fit: Fit
     step: Step
     comparison: Comparison
+    power: tuple[Power, ...]
 
 
 @one_blas_thread
@@ -43,6 +46,7 @@ def one_round(
     clock: Clock = "journal",
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
+    fitted_as: Callable[[Fit, Comparison], None] | None = None,
 ) -> OneRound:
     """Fit a law with named effects, and try every other effect beside them.
 
@@ -58,6 +62,8 @@ def one_round(
         The numbers by which a candidate is judged.
     progress
         Called with a message, and how many of how many candidates have been tried.
+    fitted_as
+        Called with the fit and where it fails, before any candidate is tried.
 
     Raises
     ------
@@ -72,10 +78,15 @@ def one_round(
     fitted = fit(rig, runs, effects, law=law, clock=clock)
     chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs)
     comparison = compare_prepared(fitted.model, campaign)
+    if fitted_as is not None:
+        fitted_as(fitted, comparison)
     candidates = Candidates(settled_campaign(campaign, law, clock), law, clock, policy, progress)
     try:
         trials = try_candidates(candidates, chosen).trials
+        if progress is not None:
+            progress("how strong each would have to be", 0, 0)
+        strengths = power(candidates, chosen)
     except KeyboardInterrupt:
         raise Stopped(fitted) from None
     ledger = step(candidates, chosen, comparison.noise_n, trials)
-    return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison)
+    return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison, strengths)

@@ -21,6 +21,7 @@ from scipy import optimize, stats
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
 from jbf.estimation.likelihood import unexplained
 from jbf.estimation.solution import Solution
@@ -113,7 +114,12 @@ def power(
         if name not in present and may_come(name, present)
         if (model := strength_of(candidates, present, name)) is not None
     }
-    seen = {name: _Seen.of(candidates, runs, model) for name, model in models.items()}
+    found = side_by_side(
+        lambda model: _Seen.of(candidates, runs, model),
+        list(models.values()),
+        fits_at_once(candidates.campaign, candidates.law, candidates.names),
+    )
+    seen = dict(zip(models, found, strict=True))
     return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
 
 

@@ -137,21 +137,16 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
     share = effective_share(base)
-    scores = {}
-    for i, name in enumerate(rivals):
-        candidates.tell(f"testing {name}", i, len(rivals))
-        scores[name] = candidates.score_test((*present, name), base)
+    candidates.score_all([(*present, name) for name in rivals], base)
+    scores = {name: candidates.score_test((*present, name), base) for name in rivals}
     candidates.calibrate(present)
     least = policy.least_score * price_of(candidates, 1)
-    first: dict[str, float] = {}
-    for i, name in enumerate(rivals):
-        candidates.tell(f"trying {name}", i, len(rivals))
-        effects = (*present, name)
-        # Of a smooth error a sample tells less, and anything gains a little.
-        if scores[name] * share <= least:
-            first[name] = -np.inf
-        else:
-            first[name] = evidence(candidates, candidates.rank(effects, base), base)
+    # Of a smooth error a sample tells less, and anything gains a little.
+    shown = [name for name in rivals if scores[name] * share > least]
+    first = dict.fromkeys(rivals, -np.inf)
+    candidates.rank_all([(*present, name) for name in shown], base)
+    for name in shown:
+        first[name] = evidence(candidates, candidates.rank((*present, name)), base)
     line = policy.close * max(max(first.values(), default=0.0), 0.0) - policy.contender
     found: list[Ranked] = []
     for name in rivals:

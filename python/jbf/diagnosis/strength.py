@@ -78,13 +78,15 @@ class RunsAtHand:
         moved = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(moved)[0])
         self.friction_n = self.samples.rms(self.now)
-        self._last: tuple[str, float, list[Array]] | None = None
+        # The last of each effect.
+        self._last: dict[str, tuple[float, list[Array]]] = {}
 
     def change(self, model: Strength, times: float) -> list[Array]:
         """What an effect changes, N, one array a run; where its model has no weight, nothing."""
-        if self._last is None or self._last[:2] != (model.name, times):
-            self._last = (model.name, times, self._change(model, times))
-        return self._last[2]
+        last = self._last.get(model.name)
+        if last is None or last[0] != times:
+            last = self._last[model.name] = (times, self._change(model, times))
+        return last[1]
 
     def _change(self, model: Strength, times: float) -> list[Array]:
         problem = model.problem.thinned

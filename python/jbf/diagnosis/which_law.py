@@ -19,6 +19,7 @@ from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_rate import check_film
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.models.catalogue import find_law, laws
@@ -76,11 +77,23 @@ def allowed(rig: Rig) -> list[str]:
     return found
 
 
+def followed(campaign: Campaign, clock: Clock) -> list[str]:
+    """Those of them whose film, where they have one, is not too fast for the records."""
+    found = []
+    for name in allowed(campaign.rig):
+        try:
+            check_film(campaign, name, clock)
+        except InputError:
+            continue
+        found.append(name)
+    return found
+
+
 def which_law(
     campaign: Campaign, clock: Clock, policy: Policy, progress: Progress | None = None
 ) -> tuple[LawTried, ...]:
     """The laws that the rig allows, the one to take first, then by their left-out error."""
-    names = allowed(campaign.rig)
+    names = followed(campaign, clock)
     left = []
     for i, name in enumerate(names):
         if progress is not None:
@@ -136,7 +149,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     kept = tuple(effect for effect in effects if effect in NUISANCES)
     most = len(candidates.fitted(effects).problem.open)
     left, names, counts = [left_out(candidates, effects)], [""], [most]
-    for name in allowed(whole.rig):
+    for name in followed(whole, clock):
         other = Candidates(whole, name, clock, policy)
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:

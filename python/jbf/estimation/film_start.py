@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import behind_gaps
+from jbf.estimation.film_rate import check_film
 from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
@@ -96,9 +97,16 @@ def _remembers(law: str) -> bool:
 
 
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
-    """The campaign without the samples that remember how their run began, by the bare law."""
+    """The campaign without the samples that remember how their run began, by the bare law.
+
+    Raises
+    ------
+    InputError
+        A film is too fast for these records.
+    """
     if not _remembers(law):
         return campaign
+    check_film(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
     noise_n = noise_floor(campaign.prepared, campaign.samples)

@@ -14,6 +14,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.exact_delay import exact_delay
+from jbf.estimation.film_rate import check_film
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem, named_values
@@ -187,7 +188,7 @@ def fit(
     Raises
     ------
     InputError
-        An unknown name, a missing column, or runs in which nothing moves.
+        An unknown name, a missing column, runs in which nothing moves, or a film too fast for them.
     Stopped
         It was interrupted; it has the best fit so far.
     """
@@ -199,6 +200,7 @@ def fit(
     known = parameters_of(law, chosen)
     problem = Problem(campaign, law, clock, chosen, named_values(fixed, known))
     given = named_values(start, known)
+    check_film(campaign, law, clock, {**given, **problem.fixed})
     try:
         solution = best_weighting(problem, minimum(problem, [given]))
     except KeyboardInterrupt:

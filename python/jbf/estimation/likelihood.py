@@ -106,6 +106,9 @@ def promised_gain(r: Array, j: Array, count: int) -> float:
 
 def unexplained(design: Array, target: Array) -> Array:
     """What of a target linear combinations of a design's columns do not explain."""
+    # By powers of two, which round nothing: squares of what stands far above no noise overflow.
+    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
+    design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
     design = design[:, size > 0.0] / size[size > 0.0]
     step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)

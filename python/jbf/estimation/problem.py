@@ -37,8 +37,8 @@ from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
 
-BOUNDLESS = 1e100
-"""A derivative beyond this has grown without bound."""
+BOUNDLESS = 1e50
+"""A derivative beyond this has grown without bound: a search squares what it makes of them."""
 
 
 class Best:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.plot.runs import axes_words, index_of
 from jbf.plot.style import MEASURED, MODEL, dress, one_axes
@@ -59,12 +60,26 @@ def loops(
         label="measured",
         rasterized=True,
     )
+    draw_model(ax, comparison, index, rest, colour=colour)
+    dress(ax, title or f"Run {p.run.name}", *axes_words(comparison))
+    ax.legend(loc="upper left", frameon=False, markerscale=2)
+    return ax
+
+
+def draw_model(
+    ax: Axes,
+    comparison: Comparison,
+    index: int,
+    rest: float | npt.NDArray[np.float64] = 0.0,
+    *,
+    colour: str = MODEL,
+    label: str = "model",
+) -> None:
+    """The model's loop of a run, less `rest`, on axes that have the readings."""
+    speed = comparison.campaign.prepared[index].motion.velocity_m_s
     # A line through a reversal, whose instant no sample tells, would show a slope that is not
     # the model's.
     turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)
     shown = comparison.samples.counted[index] & ~turns
     modelled = np.where(shown, comparison.predictions[index] - rest, np.nan)
-    ax.plot(speed, modelled, color=colour, linewidth=1.3, label="model", rasterized=True)
-    dress(ax, title or f"Run {p.run.name}", *axes_words(comparison))
-    ax.legend(loc="upper left", frameon=False, markerscale=2)
-    return ax
+    ax.plot(speed, modelled, color=colour, linewidth=1.3, label=label, rasterized=True)

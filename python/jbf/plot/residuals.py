@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.plot.bin_axes import bin_axis
 from jbf.plot.runs import index_of, said_by
@@ -28,8 +29,12 @@ if TYPE_CHECKING:
     from jbf.estimation.fit import Fit
     from jbf.records.quantities import Quantities
 
+Array = npt.NDArray[np.float64]
+
 MOST_TICKS = 16
 MOST_DOTS = 4000
+ONE_PLACE = 0.012
+"""Share of an axis's length below which two marks stand at one place."""
 NEARLY_ALL = 0.998
 """Of the samples: so many are seen in a picture in time."""
 
@@ -83,11 +88,11 @@ def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label:
     directions = list(dict.fromkeys(place.series))
     for direction, marker in zip(directions, "os", strict=False):
         own = np.array([s == direction for s in place.series]) & (failure.counts > 0)
-        order = np.argsort(place.x[own])
+        x, means = _at_places(place.x[own], failure.means_n[own], failure.counts[own])
         name = ", ".join(x for x in (label, direction) if x)
         ax.plot(
-            place.x[own][order],
-            failure.means_n[own][order],
+            x,
+            means,
             color=colour,
             marker=marker,
             markerfacecolor=colour if marker == "o" else "white",
@@ -99,6 +104,16 @@ def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label:
     if place.ticks:
         _ticks(ax, place.ticks)
     dress(ax, f"Residual along {failure.axis}", place.name, f"Record minus model ({said.force})")
+
+
+def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[Array, Array]:
+    """Bins in order, those that stand at one place on the page as one: of a speed that is held
+    there are many."""
+    order = np.argsort(x, kind="stable")
+    x, means, counts = x[order], means[order], counts[order]
+    groups = np.cumsum(np.diff(x, prepend=x[:1]) > ONE_PLACE * (np.ptp(x) if len(x) else 0.0))
+    weight = np.bincount(groups, counts)
+    return np.bincount(groups, counts * x) / weight, np.bincount(groups, counts * means) / weight
 
 
 def _ticks(ax: Axes, ticks: tuple[str, ...]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.plot.runs import axes_words
 from jbf.plot.style import INK, MEASURED, MODEL, dress, one_axes
 
@@ -14,76 +14,65 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from jbf.comparison.comparison import Comparison
-
-Array = npt.NDArray[np.float64]
-
-BINS = 24
-FEWEST = 5
-"""Fewer samples make no mean worth a dot."""
+    from jbf.comparison.over_speed import OverSpeed
 
 
 def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
     """Friction without what is none of it, over the speed: means of all runs with the scatter
-    round them, the model's means of the same samples, and the law's own steady curve."""
-    from jbf.comparison.parts import added_by, beside_friction
+    round them, the model's means of the same samples, the law's own steady curve, and where its
+    regimes end."""
+    from jbf.comparison.over_speed import friction_over_speed
 
     ax = one_axes(ax)
-    rest = added_by(comparison, beside_friction(comparison))
-    prepared, samples = comparison.campaign.prepared, comparison.samples
-    speed = samples.flat([p.motion.velocity_m_s for p in prepared])
-    measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
-    modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
-    for way, filled in ((1.0, True), (-1.0, False)):
-        own = speed * way > 0.0
-        if own.sum() < FEWEST:
-            continue
-        x, mean, spread = _means(speed[own], measured[own])
-        face = MEASURED if filled else "white"
+    ways = friction_over_speed(comparison)
+    for number, own in enumerate(ways):
         ax.errorbar(
-            x,
-            mean,
-            yerr=spread,
+            own.speed_m_s,
+            own.measured_n,
+            yerr=own.scatter_n,
             fmt="o",
             color=MEASURED,
-            markerfacecolor=face,
+            markerfacecolor=MEASURED if own.way > 0.0 else "white",
             markersize=5,
             elinewidth=0.8,
-            label="measured, with its scatter" if filled or not np.any(speed > 0.0) else None,
+            label=None if number else "measured, with its scatter",
         )
-        x, mean, _ = _means(speed[own], modelled[own])
-        name = "model at the same samples" if filled or not np.any(speed > 0.0) else None
-        ax.plot(x, mean, "-", color=MODEL, linewidth=1.5, label=name)
+        name = None if number else "model at the same samples"
+        ax.plot(own.speed_m_s, own.modelled_n, "-", color=MODEL, linewidth=1.5, label=name)
     limits = ax.get_ylim()
-    _steady(ax, comparison, speed)
+    _steady(ax, comparison, ways)
     ax.set_ylim(limits)
+    _regimes(ax, comparison)
     ax.axhline(0.0, color=INK, linewidth=0.6)
     dress(ax, "Friction over speed, means of all runs", *axes_words(comparison))
     ax.legend(loc="upper left", frameon=False, fontsize="small")
     return ax
 
 
-def _means(speed: Array, force: Array) -> tuple[Array, Array, Array]:
-    """Means in bins that hold as many samples each: speed, force, and the force's scatter."""
-    order = np.argsort(speed, kind="stable")
-    parts = np.array_split(order, max(min(BINS, len(order) // FEWEST), 1))
-    rows = [(speed[p].mean(), force[p].mean(), force[p].std()) for p in parts]
-    x, mean, spread = np.array(rows).T
-    return x, mean, spread
-
-
-def _steady(ax: Axes, comparison: Comparison, speed: Array) -> None:
+def _steady(ax: Axes, comparison: Comparison, ways: tuple[OverSpeed, ...]) -> None:
     """The steady curve of the law alone, under the rig's load; none where that needs one."""
-    from jbf.errors import InputError
-
-    for way in (1.0, -1.0):
-        own = np.abs(speed[speed * way > 0.0])
-        if len(own) < FEWEST:
-            continue
-        x = way * np.geomspace(max(own.min(), 1e-4 * own.max()), own.max(), 300)
+    for number, own in enumerate(ways):
+        most = float(np.abs(own.speed_m_s).max())
+        x = own.way * np.geomspace(max(float(np.abs(own.speed_m_s).min()), 1e-4 * most), most, 300)
         try:
             steady = comparison.model.steady_friction(x)
         except InputError:
             return
-        there = any(line.get_label() == "law alone, steady" for line in ax.lines)
-        name = None if there else "law alone, steady"
+        name = None if number else "law alone, steady"
         ax.plot(x, steady, ":", color=INK, linewidth=1.2, label=name)
+
+
+def _regimes(ax: Axes, comparison: Comparison) -> None:
+    """Where the law's regimes end, each named above its beginning."""
+    from jbf.comparison.over_speed import regimes
+
+    left, right = ax.get_xlim()
+    for speed, name in regimes(comparison.model):
+        for way in (1.0, -1.0):
+            if left < way * speed < right:
+                ax.axvline(way * speed, color=INK, linewidth=0.8, linestyle=(0, (2, 4)))
+        if speed < right:
+            ax.text(
+                speed, 0.02, f" {name}", transform=ax.get_xaxis_transform(), fontsize="small",
+                color=INK,
+            )  # fmt: skip

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from jbf.comparison.parts import beside_friction
 from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.selection import CHANCE
 from jbf.errors import InputError
 from jbf.models.catalogue import Effect, find_effect
 from jbf.plot.ledger import ledger
-from jbf.plot.loops import loops
+from jbf.plot.loops import draw_model, loops
 from jbf.plot.maps import friction_map, residual_map
 from jbf.plot.power import power
 from jbf.plot.ranking import ranking, ranking_height
-from jbf.plot.residuals import residual_along, residual_in_time
+from jbf.plot.residuals import means_along, residual_along, residual_in_time
 from jbf.plot.runs import most_telling
 from jbf.plot.stribeck import stribeck
-from jbf.plot.style import axes_or_new, one_axes
+from jbf.plot.style import BEFORE, MODEL, axes_or_new, one_axes
+from jbf.reporting.diagnosis_plot import before_and_after
 from jbf.reporting.effect_words import known_mass, limits_of, summary_of
 from jbf.reporting.gallery import failure_cards, remainder_cards
 from jbf.reporting.page import import_rows, measurement, page
@@ -68,6 +70,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         rest=rest,
         next_experiment=diagnosis.next_experiment,
         ledger_picture=_ledger(diagnosis),
+        before_picture=_before(diagnosis),
         measurement=measurement(before, diagnosis.steps[0].noise_n),
         findings=finding_rows(diagnosis.findings),
         failures=failure_cards(diagnosis),
@@ -91,7 +94,8 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         power=power_rows(diagnosis.power, diagnosis.model.law, said),
         power_picture=_power(diagnosis),
         level=level_words(diagnosis.level),
-        trials=_trials(diagnosis),
+        rounds=_rounds(diagnosis),
+        remains=bool(diagnosis.unexplained),
         not_tried=list(diagnosis.not_tried.items()),
         unseen=listed(diagnosis.unseen),
         run_head=head,
@@ -128,20 +132,34 @@ def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[st
     ]
 
 
-def _trials(diagnosis: Diagnosis) -> list[tuple[str, Markup, list[tuple[str, ...]]]]:
-    """Each round: beside what, its picture, its rows."""
-    return [
-        (
-            " + ".join([BARE, *step.effects]),
-            svg(
-                [ranking(diagnosis, i, ax=_wide(ranking_height(step)))],
-                "Evidence of each candidate",
-            ),
-            list(trial_rows(diagnosis, step)),
+@dataclass(frozen=True)
+class Round:
+    """What was tried beside a model: its picture, a row for each candidate of which there is
+    something to say, and the names of those that gain no more than chance would."""
+
+    beside: str
+    picture: Markup | str
+    rows: list[tuple[str, ...]]
+    nothing: str
+
+
+def _rounds(diagnosis: Diagnosis) -> list[Round]:
+    found = []
+    for i, step in enumerate(diagnosis.steps):
+        if not step.trials:
+            continue
+        rows = zip(step.trials, trial_rows(step), strict=True)
+        named = any(t.evidence > 0.0 for t in step.trials)
+        ax = _wide(ranking_height(step)) if named else None
+        found.append(
+            Round(
+                " + ".join([BARE, *step.effects]),
+                svg([ranking(diagnosis, i, ax=ax)], "Evidence of each candidate") if named else "",
+                [row for trial, row in rows if trial.reason != CHANCE],
+                listed(t.effect for t in step.trials if t.reason == CHANCE),
+            )
         )
-        for i, step in enumerate(diagnosis.steps)
-        if step.trials
-    ]
+    return found
 
 
 def _wide(height: float) -> Axes:
@@ -152,6 +170,21 @@ def _wide(height: float) -> Axes:
 def _ledger(diagnosis: Diagnosis) -> Markup:
     ax = _wide(1.25 + 0.3 * len(diagnosis.steps))
     return svg([ledger(diagnosis, ax=ax)], "Error of each step, fit and held out, and the noise")
+
+
+def _before(diagnosis: Diagnosis) -> Markup | str:
+    """The run in which the two models differ most, and the worst failure, before and after."""
+    before, after = diagnosis.before, diagnosis.after
+    if not diagnosis.model.effects:
+        return ""
+    left, right = axes_or_new(None, 1, 2, (WIDTH, 3.3))
+    index = most_telling(before, after)
+    loops(before, index, ax=left, colour=BEFORE, title=f"Run {before.runs[index].name}")
+    draw_model(left, after, index, colour=MODEL)
+    handles, _ = left.get_legend_handles_labels()
+    left.legend(handles, ["measured", "bare law", "final"], frameon=False, fontsize="small")
+    before_and_after(diagnosis, means_along(before, None), right)
+    return svg([left, right], "Bare law and final model, in one run and along the worst axis")
 
 
 def _last(diagnosis: Diagnosis) -> Markup:

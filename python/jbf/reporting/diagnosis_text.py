@@ -20,7 +20,7 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         if not step.trials:
             continue
         lines += ["", f"Candidates tried beside the {' + '.join([BARE, *step.effects])}"]
-        rows = trial_rows(diagnosis, step)
+        rows = trial_rows(step)
         head, *table = columns(
             [("effect", f"RMS ({unit})", "evidence", "outcome"), *(row[:4] for row in rows)],
             "<>><",

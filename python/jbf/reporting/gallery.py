@@ -122,6 +122,8 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         spectrum(after, ax=ax).set_title("", loc="left")
     elif bursts:
         residual_in_time(after, most_telling(after), ax=ax)
+    elif remainder.axis == "run" and len(after.runs) == 1:
+        residual_in_time(after, 0, ax=ax)
     elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
         said = after.model.rig.quantities
         noise_band(ax, after.noise_n, unit=said.force)

@@ -83,7 +83,7 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     ]
 
 
-def trial_rows(diagnosis: Diagnosis, step: Step) -> list[tuple[str, str, str, str, str]]:
+def trial_rows(step: Step) -> list[tuple[str, str, str, str, str]]:
     """Each candidate's effect, RMS (N), evidence, outcome and reason."""
     return [
         (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import filecmp
 import shutil
 from collections.abc import Callable
 from importlib.resources import as_file, files
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -15,7 +17,9 @@ from jbf.workbench import importer, kept, views
 from jbf.workbench.session import Session
 
 Asked = dict[str, Any]
-DEMO = "jbf-demo"
+DEMO_PLACES = ("hidden", "jbf-demo/hidden", "jbf-demo")
+"""Where `jbf demo` puts its data, seen from its folder and from the one above; last, where a page
+puts them."""
 MOST_PIXELS = 4000
 
 
@@ -92,13 +96,22 @@ def open_campaign(session: Session, asked: Asked) -> Any:
 
 
 def demo(session: Session, asked: Asked) -> Any:
-    """The shipped data into the folder, and onto the bench."""
-    here = session.folder.root / DEMO
-    with as_file(files("jbf") / "data" / "demo") as shipped:
-        shutil.copytree(shipped / "hidden", here, dirs_exist_ok=True)
-    runs = sorted(path.name for path in here.glob("*.csv"))
-    session.open(f"{DEMO}/rig.toml", [f"{DEMO}/{name}" for name in runs])
+    """The shipped data into the folder, if `jbf demo` has not put them there, onto the bench."""
+    with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
+        there = [name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)]
+        where = there[0] if there else DEMO_PLACES[-1]
+        if not there:
+            shutil.copytree(shipped, session.folder.root / where, dirs_exist_ok=True)
+    runs = sorted(path.name for path in (session.folder.root / where).glob("*.csv"))
+    session.open(f"{where}/rig.toml", [f"{where}/{name}" for name in runs])
     return {}
+
+
+def _holds(folder: Path, shipped: Path) -> bool:
+    """Whether a folder holds the rig and the runs that are shipped."""
+    names = ["rig.toml", *(path.name for path in shipped.glob("*.csv"))]
+    _, differ, missing = filecmp.cmpfiles(shipped, folder, names, shallow=False)
+    return not differ and not missing
 
 
 def look(session: Session, asked: Asked) -> Any:
@@ -108,7 +121,9 @@ def look(session: Session, asked: Asked) -> Any:
 
 def try_map(session: Session, asked: Asked) -> Any:
     """What a map makes of files."""
-    return importer.tried(session.folder, _files(asked), str(asked["map"]))
+    form = asked.get("form")
+    told = None if form is None else dict(form)
+    return importer.tried(session.folder, _files(asked), str(asked["map"]), told)
 
 
 def import_files(session: Session, asked: Asked) -> Any:
@@ -190,7 +205,7 @@ def undo(session: Session, asked: Asked) -> Any:
 
 def keep(session: Session, asked: Asked) -> Any:
     """Write something into the folder."""
-    return {"written": kept.keep(session, str(asked["what"]))}
+    return kept.keep(session, str(asked["what"]))
 
 
 def text(session: Session, asked: Asked) -> Any:

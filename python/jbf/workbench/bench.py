@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import math
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePosixPath
 from typing import Any
 
 from jbf.errors import InputError, JbfError
 from jbf.estimation.prepared import Prepared
+from jbf.importing.ledger import NAME as LEDGER
 from jbf.records.checks import MIN_SAMPLES
 from jbf.records.rig import Rig, read_rig
 from jbf.records.run import Run
 from jbf.records.run_files import read_runs
+from jbf.text_files import read_text
 from jbf.workbench.files import Folder
+from jbf.workbench.said import Steps
 
 Span = tuple[float, float]
 
@@ -29,6 +34,8 @@ class Bench:
         The files' names in the folder.
     trims
         Run to the instants, s, between which it is used.
+    imported
+        The recordings in the folder that the runs were imported from, if they were.
     excluded
         Runs that fits leave out.
     findings
@@ -40,6 +47,7 @@ class Bench:
     rig: Rig
     runs: tuple[Run, ...]
     trims: dict[str, Span] = field(default_factory=dict)
+    imported: tuple[str, ...] = ()
     excluded: set[str] = field(default_factory=set)
     findings: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
@@ -54,7 +62,8 @@ class Bench:
         """
         rig = read_rig(folder.path(rig_name))
         runs = read_runs([folder.path(name) for name in run_names], rig, need_friction=False)
-        return cls(rig_name, tuple(run_names), rig, tuple(runs))
+        imported = _imported(folder, PurePosixPath(rig_name).parent)
+        return cls(rig_name, tuple(run_names), rig, tuple(runs), imported=imported)
 
     def run(self, name: str) -> Run:
         """A run by its name.
@@ -114,10 +123,18 @@ class Bench:
         first, last = self.trims[run.name]
         return run.select((run.time_s >= first) & (run.time_s <= last))
 
-    def files(self) -> list[str]:
-        """Names of the files whose runs are used."""
+    def steps(self) -> Steps:
+        """What was done to have these runs."""
         rows = zip(self.runs, self.run_names, strict=True)
-        return [name for run, name in rows if run.name not in self.excluded]
+        here = PurePosixPath(self.rig_name).parent
+        return Steps(
+            rig=self.rig_name,
+            runs=[name for run, name in rows if run.name not in self.excluded],
+            imported=self.imported,
+            map=(here / "map.toml").as_posix(),
+            out=here.as_posix(),
+            trims=dict(self.trims),
+        )
 
     def looked_at(self, changed: Any) -> None:
         """Look, in a thread, at what each recording did; `changed` is called after each run."""
@@ -146,6 +163,17 @@ class Bench:
             }
             for run, file in zip(self.runs, self.run_names, strict=True)
         ]
+
+
+def _imported(folder: Folder, here: PurePosixPath) -> tuple[str, ...]:
+    """The recordings that a campaign was imported from, where they lie beside its folder."""
+    try:
+        ledger = json.loads(read_text(folder.path((here / LEDGER).as_posix())))
+        names = [(here.parent / str(file["file"])).as_posix() for file in ledger["files"]]
+        there = all(folder.path(name).is_file() for name in names)
+    except (JbfError, ValueError, KeyError, TypeError):
+        return ()
+    return tuple(names) if there else ()
 
 
 def _findings(rig: Rig, run: Run) -> list[dict[str, Any]]:

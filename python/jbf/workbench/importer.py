@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain, count
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -15,31 +15,61 @@ from jbf.importing.import_files import import_files, look
 from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
 from jbf.workbench.files import Folder
+from jbf.workbench.map_form import (
+    changed_by,
+    cut_name,
+    file_columns,
+    form_of,
+    quantities,
+    unplaced,
+)
+
+SI_OF = {
+    "time_s": "s",
+    "angle_rad": "rad",
+    "load_n": "N",
+    "temperature_c": "°C",
+    "pressure_pa": "Pa",
+}
 
 
 def looked(folder: Folder, name: str) -> dict[str, Any]:
     """A guess at a file: the text of its map, what is open, and a name for what it becomes."""
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))
-    found = look(folder.path(name))
+    path = folder.path(name)
+    found = look(path)
+    text = map_text(found)
     return {
         "file": name,
         "into": next(n for n in names if not folder.path(n).exists()),
         "format": found.format,
-        "map": map_text(found),
-        "entries": [
-            {"key": e.key, "expression": e.expression, "why": e.why, "sure": e.sure}
-            for e in found.entries
-        ],
+        "map": text,
+        "form": form_of(text),
+        "columns": file_columns(path),
+        "quantities": quantities(),
         "questions": [str(question) for question in found.questions],
-        "ignored": dict(found.ignored),
     }
 
 
-def tried(folder: Folder, names: Sequence[str], text: str) -> dict[str, Any]:
-    """What a map makes of files: each run's columns in SI, least, median and largest."""
-    with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-        return _told(import_files(_paths(folder, names), _map_file(there, text)))
+def tried(
+    folder: Folder, names: Sequence[str], text: str, form: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """What a map makes of files: each run's columns in SI, least, median and largest.
+
+    Where a form was filled in, it changes the map first. What is wrong or still open is told in
+    words beside the map as it stands.
+    """
+    if form is not None:
+        text = changed_by(text, list(form["rows"]), dict(form["rig"]))
+    paths, cut = _paths(folder, names), _cut_file(folder, text)
+    told: dict[str, Any] = {"map": text, "form": form_of(text), "runs": [], "problem": None}
+    try:
+        with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
+            told |= _told(import_files(paths, _map_file(there, text), cut_file=cut))
+    except InputError as error:
+        told["problem"] = str(unplaced(error))
+    return told
 
 
 def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
@@ -47,8 +77,12 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
     out = folder.path(into)
     if out.exists():
         raise InputError(file=into, problem="is there already", mend="name another folder")
+    paths, cut = _paths(folder, names), _cut_file(folder, text)
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-        found = import_files(_paths(folder, names), _map_file(there, text), out)
+        try:
+            found = import_files(paths, _map_file(there, text), out, cut_file=cut)
+        except InputError as error:
+            raise unplaced(error) from None
         told = _told(found)
     runs = [folder.name(out / f"{piece.name}.csv") for piece in found.pieces if piece.keep]
     return {**told, "rig": folder.name(out / "rig.toml"), "files": runs}
@@ -57,7 +91,17 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
 def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
     if not names:
         raise InputError(problem="no recording is chosen", mend="tick one")
-    return [folder.path(name) for name in names]
+    paths = [folder.path(name) for name in names]
+    for name, path in zip(names, paths, strict=True):
+        if not path.is_file():
+            raise InputError(file=name, problem="does not exist", mend="choose one of the list")
+    return paths
+
+
+def _cut_file(folder: Folder, text: str) -> Path | None:
+    """The trims that a map names: of the folder, as every other file that a page names."""
+    name = cut_name(text)
+    return None if name is None else folder.path(name)
 
 
 def _map_file(folder: str, text: str) -> Path:
@@ -67,10 +111,15 @@ def _map_file(folder: str, text: str) -> Path:
 
 
 def _told(found: Import) -> dict[str, Any]:
-    runs = []
+    said, runs = found.rig.quantities, []
+    units = {"friction_n": said.force, "velocity_m_s": said.speed, "position_m": said.length}
     for run in found.runs:
         columns = [
-            {"name": name, **dict(zip(("least", "median", "most"), _spread(values), strict=True))}
+            {
+                "name": name,
+                "unit": units.get(name, SI_OF.get(name, "")),
+                **dict(zip(("least", "median", "most"), _spread(values), strict=True)),
+            }
             for name, values in run.columns().items()
         ]
         runs.append({"name": run.name, "samples": len(run), "columns": columns})

@@ -12,10 +12,12 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Literal
 
 from jbf.errors import InputError
-from jbf.workbench.work import STOP, Answer, Order, main
+from jbf.workbench.answers import Answer
+from jbf.workbench.work import STOP, Order, main
 
 Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
+Part = Callable[[Any], None]
 PATIENCE_S = 20.0
 """A process that was asked to stop, and has not sent its best so far by then, is killed."""
 
@@ -58,8 +60,9 @@ class Jobs:
         self._cancelled = False
         self._lock = threading.Lock()
 
-    def start(self, words: str, order: Order, ended: Ended) -> None:
-        """Begin; `ended` is called once, with how it ended and the answer or the reason.
+    def start(self, words: str, order: Order, ended: Ended, part: Part | None = None) -> None:
+        """Begin; `ended` is called once, with how it ended and the answer or the reason, `part`
+        before with what is there already.
 
         Raises
         ------
@@ -77,7 +80,9 @@ class Jobs:
             self._connection = mine
         process.start()
         theirs.close()
-        threading.Thread(target=self._follow, args=(mine, process, ended), daemon=True).start()
+        threading.Thread(
+            target=self._follow, args=(mine, process, ended, part), daemon=True
+        ).start()
 
     def cancel(self, at_once: bool = False) -> bool:
         """Stop it; False where nothing runs.
@@ -100,7 +105,9 @@ class Jobs:
         patience.start()
         return True
 
-    def _follow(self, connection: Any, process: BaseProcess, ended: Ended) -> None:
+    def _follow(
+        self, connection: Any, process: BaseProcess, ended: Ended, part: Part | None
+    ) -> None:
         ending: Ending = "error"
         answer: Answer | str = "the fit's process ended without an answer (out of memory?)"
         job = self.job
@@ -111,6 +118,10 @@ class Jobs:
                 if message[0] == "progress":
                     if not self._cancelled:
                         job.message, job.done, job.total = message[1:]
+                    self.changed()
+                elif message[0] == "part":
+                    if part is not None:
+                        part(message[1])
                     self.changed()
                 else:
                     ending, answer = message

@@ -10,10 +10,9 @@ from jbf.errors import InputError
 from jbf.export import c, rust
 from jbf.reporting.comparison_page import comparison_page
 from jbf.text_files import write_texts
+from jbf.workbench.said import TRIMMED
 from jbf.workbench.session import Session
-from jbf.workbench.session_file import save
-
-TRIMMED = "trimmed"
+from jbf.workbench.session_file import FILE, save
 
 
 def model_text(session: Session) -> str:
@@ -72,21 +71,22 @@ def text_of(session: Session, what: str) -> tuple[str, str]:
     return name, text(session)
 
 
-def keep(session: Session, what: str) -> list[str]:
-    """Write it into the folder; names of what was written."""
+def keep(session: Session, what: str) -> dict[str, list[str]]:
+    """Write it into the folder: names of what was written, and of what was replaced by it."""
     if what == "session":
-        return [save(session).name]
+        name = FILE
+        before = session.folder.path(name).exists()
+        save(session)
+        return {"written": [name], "replaced": [name] * before}
     if what == "trimmed":
-        return _keep_trimmed(session)
-    name, text = text_of(session, what)
-    write_texts({session.folder.root / name: text})
-    return [name]
-
-
-def _keep_trimmed(session: Session) -> list[str]:
-    folder = session.folder.root / TRIMMED
-    folder.mkdir(exist_ok=True)
-    runs = session.on_bench().taken()
-    names = [f"{run.name.replace('/', '-')}.csv" for run in runs]
-    write_texts({folder / name: run.to_csv() for name, run in zip(names, runs, strict=True)})
-    return [f"{TRIMMED}/{name}" for name in names]
+        session.folder.path(TRIMMED).mkdir(exist_ok=True)
+        runs = session.on_bench().taken()
+        texts = {f"{TRIMMED}/{run.name.replace('/', '-')}.csv": run.to_csv() for run in runs}
+    else:
+        name, text = text_of(session, what)
+        texts = {name: text}
+    # Where a name is a link that leads outside, nothing is written.
+    paths = {name: session.folder.path(name) for name in texts}
+    replaced = [name for name, path in paths.items() if path.exists()]
+    write_texts({paths[name]: text for name, text in texts.items()})
+    return {"written": list(texts), "replaced": replaced}

@@ -11,11 +11,13 @@ from jbf.comparison.bins import labels
 from jbf.comparison.comparison import Comparison
 from jbf.comparison.patterns import Failure
 from jbf.models.catalogue import transition_speed
+from jbf.reporting.advice import advice_on
 from jbf.workbench.thinning import ranges_of
 
 
 def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
-    """Each pattern in words, with the stretches of each run that lie in its worst bin.
+    """Each pattern in words, with its usual causes, what to do, and the stretches of each run that
+    lie in its worst bin.
 
     `ranges_s` maps the number of a run to pairs of instants, s.
     """
@@ -24,7 +26,8 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
     binned = {axis.axis: axis for axis in all_axes(campaign, u_tr)}
     found = []
     for failure in comparison.failures:
-        mark: dict[str, Any] = {**failure.to_dict(), "bin": "", "ranges_s": {}}
+        advice = vars(advice_on(failure.axis))
+        mark: dict[str, Any] = {**failure.to_dict(), **advice, "bin": "", "ranges_s": {}}
         axis = binned.get(failure.axis)
         if axis is not None:
             worst = worst_bin(failure)

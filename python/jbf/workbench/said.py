@@ -1,50 +1,89 @@
-"""Each step as the command and the lines of Python that do the same."""
+"""Each step as the commands and the lines of Python that do the same."""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pprint import pformat
 from typing import Any
 
-Trims = Mapping[str, tuple[float, float]]
+TRIMMED = "trimmed"
+WIDTH = 88
 
 
-def commands(node: Mapping[str, Any], rig: str, runs: Sequence[str], trims: Trims) -> str:
-    """The `jbf` command of a model; a note where the runs were trimmed on the bench."""
-    files = [rig, *runs]
-    note = ""
-    if trims:
-        note = "# the trimmed runs: Keep, Save trimmed runs\n"
-        files = [rig, "trimmed"]
-    named = " ".join(shlex.quote(file) for file in files)
-    law = f" --law {node['law']}"
-    if "diagnosis" in node:
-        return f"{note}jbf diagnose {named}{law} --out model.toml --report report.html"
-    effects = f" --effects {','.join(node['effects'])}" if node["effects"] else ""
-    return f"{note}jbf fit {named}{law}{effects} --out model.toml"
+@dataclass(frozen=True)
+class Steps:
+    """What was done on the bench before any model.
+
+    Attributes
+    ----------
+    rig, runs
+        Names of the files whose runs are used.
+    imported
+        The recordings that they were imported from; none where they were opened as they are.
+    map
+        The map of that import, and `out` the folder that it filled.
+    trims
+        Run to the instants, s, between which it is used.
+    """
+
+    rig: str
+    runs: Sequence[str]
+    imported: Sequence[str] = ()
+    map: str = ""
+    out: str = ""
+    trims: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
-def python(node: Mapping[str, Any], rig: str, runs: Sequence[str], trims: Trims) -> str:
+def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
+    """The `jbf` commands up to a model; of the bench alone where there is none."""
+    lines = []
+    if steps.imported:
+        files = shlex.join(steps.imported)
+        into = f"--map {shlex.quote(steps.map)} --out {shlex.quote(steps.out)}"
+        lines.append(f"jbf import {files} {into} --force")
+    if steps.trims:
+        lines.append("# trimmed/ is saved in room 4: The runs as trimmed")
+    files = shlex.join([steps.rig, *([TRIMMED] if steps.trims else steps.runs)])
+    if node is None:
+        lines.append(f"jbf diagnose {files} --out model.toml --report report.html")
+    elif "diagnosis" in node:
+        law = node.get("asked_law", node["law"])
+        lines.append(f"jbf diagnose {files} --law {law} --out model.toml --report report.html")
+    else:
+        effects = f" --effects {','.join(node['effects'])}" if node["effects"] else ""
+        lines.append(f"jbf fit {files} --law {node['law']}{effects} --out model.toml")
+    return "\n".join(lines)
+
+
+def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
     """The same in Python."""
-    lines = [
-        "import jbf",
-        "",
-        f"rig = jbf.read_rig({rig!r})",
-        f"runs = jbf.read_runs({list(runs)!r}, rig)",
-    ]
-    if trims:
+    lines = ["import jbf", ""]
+    if steps.imported:
+        into = f", {steps.map!r}, {steps.out!r}, replace_folder=True)"
+        lines.append(_call("jbf.import_files(", steps.imported, into))
+    lines.append(f"rig = jbf.read_rig({steps.rig!r})")
+    lines.append(_call("runs = jbf.read_runs(", steps.runs, ", rig)"))
+    if steps.trims:
         lines += [
-            f"trims = {dict(trims)!r}",
+            f"trims = {dict(steps.trims)!r}",
             "runs = [",
             "    r.select((r.time_s >= trims[r.name][0]) & (r.time_s <= trims[r.name][1]))",
             "    if r.name in trims else r",
             "    for r in runs",
             "]",
         ]
-    law = f", law={node['law']!r}"
-    if "diagnosis" in node:
-        lines += [f"found = jbf.diagnose(rig, runs{law})", "print(found.summary())"]
+    if node is None or "diagnosis" in node:
+        law = "" if node is None else f", law={node.get('asked_law', node['law'])!r}"
+        lines.append(f"found = jbf.diagnose(rig, runs{law})")
     else:
         effects = f", {list(node['effects'])!r}" if node["effects"] else ""
-        lines += [f"found = jbf.fit(rig, runs{effects}{law})", "print(found.summary())"]
-    return "\n".join([*lines, 'found.model.save("model.toml")'])
+        lines.append(f"found = jbf.fit(rig, runs{effects}, law={node['law']!r})")
+    return "\n".join([*lines, "print(found.summary())", 'found.model.save("model.toml")'])
+
+
+def _call(head: str, files: Sequence[str], tail: str) -> str:
+    """A call with a list of files, a line each where they are many."""
+    shown = pformat(list(files), width=WIDTH - len(head))
+    return head + shown.replace("\n", "\n" + " " * len(head)) + tail

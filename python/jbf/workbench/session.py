@@ -14,6 +14,8 @@ from jbf.models.catalogue import find_effect, find_law, laws, why_not
 from jbf.models.chain import check_rig
 from jbf.models.model import Model
 from jbf.models.vocabulary import AUTO
+from jbf.models.written import number as written
+from jbf.records.counts import count_of
 from jbf.records.rig import Rig
 from jbf.workbench.bench import Bench
 from jbf.workbench.files import Folder
@@ -77,8 +79,7 @@ class Session:
             A file is wrong, or a fit is running; what was there stays.
         """
         self.put(Bench.read(self.folder, rig_name, run_names), Models())
-        count = len(run_names)
-        self.say("done", f"{rig_name} is open, with {count} run{'s' * (count != 1)}")
+        self.say("done", f"{rig_name} is open, with {count_of(len(run_names), 'run')}")
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
         """Take this bench, and models that were made on it."""
@@ -118,11 +119,19 @@ class Session:
             order = Order(kind, bench.rig, bench.taken(), place, law, effects=tuple(effects))
             words = _words(kind, law, effects)
 
+            made: list[int] = []
+
+            def part(answer: Any) -> None:
+                made.append(self._added(answer, parent, "", law, place))
+
             def ended(ending: Ending, answer: Any) -> None:
-                self._ended(ending, answer, parent, words, place)
+                if made:
+                    self._ranked(ending, answer, made[0])
+                else:
+                    self._ended(ending, answer, parent, words, law, place)
 
             self.message = {}
-            self.jobs.start(words, order, ended)
+            self.jobs.start(words, order, ended, part)
         self.changed()
 
     def show(self, number: int | None) -> None:
@@ -153,19 +162,37 @@ class Session:
         self._places += 1
         return Path(self._kept.name) / str(self._places)
 
-    def _ended(
-        self, ending: Ending, answer: Any, parent: int | None, words: str, place: Path
-    ) -> None:
+    def _added(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
+        """A new model in the tree; `law` is what was asked for, `how` stands before its words."""
+        named = " + ".join([answer["law"], *answer["effects"]])
+        with self.lock:
+            content = {**answer, "asked_law": law, "records": place.name}
+            return self.models.add(parent, f"{how}{named}", content)
+
+    def _ranked(self, ending: Ending, answer: Any, number: int) -> None:
+        """What else there is to say of a model that was added when it had been fitted."""
+        node = self.models.node(number)
+        unit = self.on_bench().rig.quantities.force
         if ending == "done":
             with self.lock:
-                named = " + ".join([answer["law"], *answer["effects"]])
-                told = f"diagnosed: {named}" if "diagnosis" in answer else named
-                self.models.add(parent, told, {**answer, "records": place.name})
+                node.update(answer)
+            noise = f"the noise is {written(node['noise_n'])} {unit}"
+            self.say("done", f"{node['words']}: RMS {written(node['rms_n'])} {unit}; {noise}")
+        elif ending == "stopped":
+            with self.lock:
+                node["trials"] = []
+            self.say("done", f"{node['words']}: kept; what else could be missing was cancelled")
+        else:
+            self.say("error", f"{node['words']}: {answer}")
+
+    def _ended(
+        self, ending: Ending, answer: Any, parent: int | None, words: str, law: str, place: Path
+    ) -> None:
+        if ending == "done":
+            self._added(answer, parent, "diagnosed: ", law, place)
             self.say("done", f"{words}: done")
         elif ending == "stopped" and answer:
-            with self.lock:
-                named = " + ".join([answer["law"], *answer["effects"]])
-                self.models.add(parent, f"stopped at: {named}", {**answer, "records": place.name})
+            self._added({**answer, "trials": []}, parent, "stopped at: ", law, place)
             self.say("done", f"{words}: cancelled; its best so far is kept, and not finished")
         elif ending == "stopped":
             self.say("done", f"{words}: cancelled before there was a model of it")
@@ -207,9 +234,10 @@ class Session:
                 "message": self.message,
                 **self.models.told(),
             }
-            if bench is not None and self.models.current is not None:
-                from_here = (self.models.node(), bench.rig_name, bench.files(), bench.trims)
-                told["command"], told["python"] = commands(*from_here), python(*from_here)
+            if bench is not None:
+                node = None if self.models.current is None else self.models.node()
+                steps = bench.steps()
+                told["command"], told["python"] = commands(node, steps), python(node, steps)
             return told
 
     def _effects(self) -> list[dict[str, Any]]:
@@ -248,6 +276,7 @@ def _units(rig: Rig) -> dict[str, str]:
         "speed": said.speed,
         "velocity": said.velocity,
         "friction": said.friction,
+        "noun": said.noun,
     }
 
 

@@ -38,7 +38,7 @@ def save(session: Session) -> Path:
                 {k: v for k, v in node.items() if k != "records"} for node in models.nodes.values()
             ],
         }
-        path = session.folder.root / FILE
+        path = session.folder.path(FILE)
         write_text(path, json.dumps(content, indent=1))
     return path
 
@@ -51,7 +51,7 @@ def load(session: Session) -> bool:
     InputError
         It is broken, of another format, or names files that are not there any more.
     """
-    path = session.folder.root / FILE
+    path = session.folder.path(FILE)
     if not path.exists():
         return False
     try:

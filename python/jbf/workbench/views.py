@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,6 @@ from jbf.workbench.thinning import Stretch, ranges_of, thinned
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-Box = tuple[float, float, float, float]
 MAP_SPEEDS = 24
 
 
@@ -53,7 +53,11 @@ def series(
                 whole.time_s, float(span[0] or whole.time_s[0]),
                 float(whole.time_s[-1] if span[1] is None else span[1]), pixels,
             )  # fmt: skip
-            found["beside_n"] = listed(thinned(whole.time_s, {"y": other.model_n}, stretch)["y"])
+            columns = {"beside_n": other.model_n}
+            if other.residual_n is not None:
+                columns["beside_residual_n"] = other.residual_n
+            shown = thinned(whole.time_s, columns, stretch)
+            found |= {name: listed(shown[name]) for name in columns}
     return found
 
 
@@ -66,64 +70,125 @@ def _density(session: Session, number: int | None, names: list[str], size: Size)
     return density(tuple(run for name, run in seen(session, number).items() if name in names), size)
 
 
-def selected(run: Seen, name: str, selection: Mapping[str, Any]) -> Mask:
-    """The samples of a run that a selection holds: a stretch of a run, or a box of the plane."""
+def masks_of(
+    session: Session, number: int | None, selection: Mapping[str, Any], runs: Mapping[str, Seen]
+) -> dict[str, Mask]:
+    """The samples of each run that a selection holds.
+
+    A selection is a stretch of a run (`run`, `from_s`, `to_s`), a `box` of the plane (least and
+    largest speed and force, None where it is open) in all runs or in one `run`, or the `mark` of a
+    model's failure by its place in the list.
+    """
+    if "mark" in selection:
+        return _marked(session, number, int(selection["mark"]), runs)
+    only = selection.get("run")
+    found = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
     if "box" in selection:
-        box: Box = tuple(map(float, selection["box"]))  # type: ignore[assignment]
-        friction = run.friction_n
-        if friction is None:
-            return np.zeros(len(run.time_s), dtype=bool)
-        return within(run.velocity_m_s, friction, box)
-    if selection.get("run") != name:
-        return np.zeros(len(run.time_s), dtype=bool)
-    first, last = sorted((float(selection["from_s"]), float(selection["to_s"])))
-    stretch: Mask = (run.time_s >= first) & (run.time_s <= last)
-    return stretch
+        ends = zip(selection["box"], (-np.inf, np.inf, -np.inf, np.inf), strict=True)
+        left, right, low, high = (open_ if end is None else float(end) for end, open_ in ends)
+        for name, run in runs.items():
+            if run.friction_n is not None and only in (None, name):
+                box = (left, right, low, high)
+                found[name] = within(run.velocity_m_s, run.friction_n, box)
+    elif only in found:
+        time = runs[only].time_s
+        first, last = sorted((float(selection["from_s"]), float(selection["to_s"])))
+        found[only] = (time >= first) & (time <= last)
+    return found
+
+
+def _marked(
+    session: Session, number: int | None, place: int, runs: Mapping[str, Seen]
+) -> dict[str, Mask]:
+    node = session.models.node(number)
+    if not 0 <= place < len(node["failures"]):
+        raise InputError(problem="the model has no such failure", mend="choose one of the list")
+    ranges = node["failures"][place]["ranges_s"]
+    names = node["record_names"]
+    found = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
+    for key, stretches in ranges.items():
+        name = names[int(key)]
+        if name not in found:
+            continue
+        time = runs[name].time_s
+        for first, last in stretches:
+            # The ends are samples of the record, written and read back exactly.
+            begin, end = np.searchsorted(time, first), np.searchsorted(time, last, side="right")
+            found[name][begin:end] = True
+    return found
 
 
 def brushed(
     session: Session, number: int | None, selection: Mapping[str, Any], names: list[str],
     size: Size,
 ) -> dict[str, Any]:  # fmt: skip
-    """A selection everywhere: its stretches of each run, how the residual is there, and where its
-    samples lie in the plane of some runs."""
-    stretches: dict[str, list[tuple[float, float]]] = {}
-    residuals, samples, masks = [], 0, {}
-    for name, run in seen(session, number).items():
-        mask = masks[run] = selected(run, name, selection)
-        ranges, count = ranges_of(mask), int(np.count_nonzero(mask))
-        samples += count
-        if count:
-            stretches[name] = [(float(run.time_s[a]), float(run.time_s[b - 1])) for a, b in ranges]
+    """A selection everywhere: its stretches of each run, how the residual is there, the speeds it
+    holds, its cells of the map over runs, and where its samples lie in the plane of some runs."""
+    runs = seen(session, number)
+    masks = masks_of(session, number, selection, runs)
+    edges = speed_edges(tuple(runs.values()))
+    by_run: dict[str, dict[str, Any]] = {}
+    residuals, cells, ends = [], [], []
+    for row, (name, run) in enumerate(runs.items()):
+        chosen = np.flatnonzero(masks[name])
+        if not len(chosen):
+            continue
+        speed = run.velocity_m_s[chosen]
+        ends += [float(np.nanmin(speed)), float(np.nanmax(speed))]
+        cells += [(row, int(column)) for column in np.unique(_column(speed, edges))]
         residual = run.residual_n
-        if residual is not None:
-            residuals.append(residual[mask])
+        there = np.empty(0) if residual is None else residual[chosen]
+        there = there[np.isfinite(there)]
+        residuals.append(there)
+        stretches = [
+            (float(run.time_s[a]), float(run.time_s[b - 1])) for a, b in ranges_of(masks[name])
+        ]
+        by_run[name] = {"samples": len(chosen), "rms_n": _rms(there), "stretches_s": stretches}
     there = np.concatenate(residuals) if residuals else np.empty(0)
-    there = there[np.isfinite(there)]
     return {
-        "samples": samples,
-        "stretches_s": stretches,
-        "rms_n": float(np.sqrt(np.mean(there**2))) if len(there) else None,
+        "samples": sum(one["samples"] for one in by_run.values()),
+        "by_run": by_run,
+        "rms_n": _rms(there),
         "mean_n": float(np.mean(there)) if len(there) else None,
-        "selected": _density(session, number, names, size).layer_of(masks),
+        "speeds_m_s": [min(ends), max(ends)] if ends else None,
+        "cells": cells,
+        "selected": _density(session, number, names, size).layer_of(
+            {run: masks[name] for name, run in runs.items()}
+        ),
     }
+
+
+def _rms(values: Array) -> float | None:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else None
+
+
+@lru_cache(maxsize=8)
+def speed_edges(runs: tuple[Seen, ...]) -> Array:
+    """Edges of the map's columns, m/s: finer round standstill, where friction changes most."""
+    most = max((float(np.nanmax(np.abs(s.velocity_m_s))) for s in runs), default=0.0) or 1.0
+    half = most * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
+    return np.concatenate([-half[:0:-1], half])
+
+
+def _column(speed: Array, edges: Array) -> Array:
+    return np.clip(np.digitize(speed, edges) - 1, 0, len(edges) - 2)
 
 
 def map_of_runs(session: Session, number: int) -> dict[str, Any]:
     """The mean of record minus prediction over runs and speeds: a row a run, a column a speed."""
-    runs = {n: s for n, s in seen(session, number).items() if s.residual_n is not None}
-    if not runs:
+    runs = seen(session, number)
+    if all(run.residual_n is None for run in runs.values()):
         raise InputError(problem="this model has not been compared yet", mend="wait a moment")
-    most = max(float(np.nanmax(np.abs(s.velocity_m_s))) for s in runs.values())
-    # Finer round standstill, where friction changes most.
-    half = most * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
-    edges = np.concatenate([-half[:0:-1], half])
-    rows = []
+    edges = speed_edges(tuple(runs.values()))
+    rows: list[list[float | None]] = []
     for run in runs.values():
         residual = run.residual_n
-        assert residual is not None
+        if residual is None:
+            # Left out of the fit: a row without cells, so that rows are the runs everywhere.
+            rows.append([None] * (len(edges) - 1))
+            continue
         ok = np.isfinite(residual)
-        place = np.clip(np.digitize(run.velocity_m_s[ok], edges) - 1, 0, len(edges) - 2)
+        place = _column(run.velocity_m_s[ok], edges)
         counts = np.bincount(place, minlength=len(edges) - 1)
         sums = np.bincount(place, weights=residual[ok], minlength=len(edges) - 1)
         rows.append(listed(np.where(counts > 0, sums / np.maximum(counts, 1), np.nan)))

@@ -6,7 +6,6 @@ An answer is plain numbers and words; what is as long as a record goes to files.
 from __future__ import annotations
 
 import _thread
-import math
 import signal
 import threading
 from collections.abc import Iterator
@@ -16,25 +15,27 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
-from jbf.comparison.axes import BOUNDARY_SHARE
 from jbf.comparison.comparison import Comparison, compare
-from jbf.diagnosis import Diagnosis, Step, diagnose
+from jbf.diagnosis import diagnose
 from jbf.diagnosis.one_round import one_round
 from jbf.errors import JbfError, Stopped
 from jbf.estimation.fit import Fit
-from jbf.models.catalogue import transition_speed
 from jbf.models.model import Model
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.reporting.diagnosis_page import diagnosis_page
-from jbf.reporting.words import verdict_sentence
-from jbf.workbench.marks import failure_marks
+from jbf.workbench.answers import (
+    Answer,
+    kept_records,
+    of_diagnosis,
+    of_fit,
+    of_model,
+    of_step,
+    power_told,
+)
 
 Kind = Literal["round", "diagnose", "compare"]
-Answer = dict[str, Any]
 STOP = "stop"
 """What the server sends to a process whose fit is to end."""
 
@@ -65,15 +66,19 @@ class Order:
 
 
 def main(connection: Connection, order: Order) -> None:
-    """The process: sends `("progress", message, done, total)` and, last, `("done", answer)`,
-    `("error", words)` or, when `STOP` came, `("stopped", answer)` of the best so far, if any."""
+    """The process: sends `("progress", message, done, total)`, of a round `("part", answer)` when
+    the model is there and its rivals are not, and, last, `("done", answer)`, `("error", words)`
+    or, when `STOP` came, `("stopped", answer)` of the best so far, if any."""
 
     def progress(message: str, done: int, total: int) -> None:
         connection.send(("progress", message, done, total))
 
+    def part(answer: Answer) -> None:
+        connection.send(("part", answer))
+
     try:
         with _interrupted_by(connection):
-            last: tuple[str, Answer | str] = ("done", carried_out(order, progress))
+            last: tuple[str, Answer | str] = ("done", carried_out(order, progress, part))
     except Stopped as stop:
         last = ("stopped", best_so_far(stop.fit, order))
     except KeyboardInterrupt:
@@ -116,16 +121,27 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
 def best_so_far(fit: Fit, order: Order) -> Answer:
     """What a stopped fit had come to."""
     compared = compare(fit.model, order.runs)
-    return {**_of_model(compared), **_of_fit(fit), **_kept(compared, order.folder)}
+    return {**of_model(compared), **of_fit(fit), **kept_records(compared, order.folder)}
 
 
-def carried_out(order: Order, progress: Any = None) -> Answer:
-    """The answer to an order."""
+def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
+    """The answer to an order; of a round what its part has not told."""
     if order.kind == "compare":
         assert order.model is not None
         compared = compare(Model.load(order.model), order.runs)
-        return {**_of_model(compared), **_kept(compared, order.folder)}
+        return {**of_model(compared), **kept_records(compared, order.folder)}
     if order.kind == "round":
+
+        def fitted_as(fit: Fit, comparison: Comparison) -> None:
+            if part is not None:
+                part(
+                    {
+                        **of_model(comparison),
+                        **of_fit(fit),
+                        **kept_records(comparison, order.folder),
+                    }
+                )
+
         found = one_round(
             order.rig,
             order.runs,
@@ -133,104 +149,16 @@ def carried_out(order: Order, progress: Any = None) -> Answer:
             law=order.law,
             clock=order.clock,
             progress=progress,
+            fitted_as=fitted_as,
         )
-        return {
-            **_of_model(found.comparison),
-            **_of_fit(found.fit),
-            **_of_step(found.step),
-            **_kept(found.comparison, order.folder),
-        }
+        return {**of_step(found.step), "power": power_told(found.power, found.fit.model)}
     diagnosis = diagnose(order.rig, order.runs, law=order.law, clock=order.clock, progress=progress)
     return {
-        **_of_model(diagnosis.after),
-        **_of_fit(diagnosis.fit),
-        **_of_step(diagnosis.steps[-1]),
-        **_kept(diagnosis.after, order.folder),
-        "diagnosis": _of_diagnosis(diagnosis),
+        **of_model(diagnosis.after),
+        **of_fit(diagnosis.fit),
+        **of_step(diagnosis.steps[-1]),
+        **kept_records(diagnosis.after, order.folder),
+        "power": power_told(diagnosis.power, diagnosis.model),
+        "diagnosis": of_diagnosis(diagnosis),
         "report": diagnosis_page(diagnosis),
     }
-
-
-def _of_model(comparison: Comparison) -> Answer:
-    model = comparison.model
-    return {
-        "law": model.law,
-        "effects": list(model.effects),
-        "model": model.to_toml(),
-        "rms_n": comparison.rms_n,
-        "noise_n": comparison.noise_n,
-        "runs": [{"name": r.name, "rms_n": r.rms_n} for r in comparison.runs],
-        "failures": failure_marks(comparison),
-        "findings": [f.to_dict() for f in comparison.findings],
-        "parameters": model.told_parameters(dict(model.parameters)),
-        "trials": [],
-        "curve": _steady_curve(comparison),
-    }
-
-
-def _steady_curve(comparison: Comparison) -> Answer | None:
-    """The law at steady speeds, over those of the runs; None of a law that has none."""
-    model = comparison.model
-    motions = [p.motion.velocity_m_s for p in comparison.campaign.prepared]
-    most = max(float(np.nanmax(np.abs(v))) for v in motions)
-    speeds = most * np.geomspace(1e-4, 1.0, 120)
-    try:
-        force = model.steady_friction(speeds)
-    except JbfError:
-        return None
-    u_tr = transition_speed(model.law, model.values.tolist())
-    regimes = [] if u_tr is None else [(BOUNDARY_SHARE * u_tr, "mixed"), (u_tr, "full film")]
-    return {
-        "velocity_m_s": speeds.tolist(),
-        "friction_n": np.asarray(force).tolist(),
-        "regimes_m_s": regimes,
-    }
-
-
-def _of_fit(fit: Fit) -> Answer:
-    told = [name for name, p in fit.parameters.items() if not p.held]
-    return {
-        "parameters": fit.model.told_parameters(fit.parameters),
-        "correlations": {"names": told, "matrix": np.round(fit.correlations, 3).tolist()},
-        "doubtful": list(fit.doubtful),
-        "converged": fit.converged,
-    }
-
-
-def _of_step(step: Step) -> Answer:
-    return {
-        "holdout_rms_n": step.holdout_rms_n if math.isfinite(step.holdout_rms_n) else None,
-        "trials": [t.to_dict() for t in step.trials],
-    }
-
-
-def _of_diagnosis(diagnosis: Diagnosis) -> Answer:
-    told = diagnosis.to_dict()
-    next_run = diagnosis.experiment
-    return {
-        "sentence": verdict_sentence(diagnosis, ""),
-        "summary": diagnosis.summary(),
-        "next_run": None if next_run is None else next_run.run.to_csv(),
-        **{
-            key: told[key]
-            for key in ("verdict", "effects", "alternatives", "weights", "steps", "unexplained",
-                        "next_experiment", "power", "not_tried", "elapsed_s")
-        },
-    }  # fmt: skip
-
-
-def _kept(comparison: Comparison, folder: Path) -> Answer:
-    """Writes time, speed, friction, prediction and which samples count, a file a run."""
-    folder.mkdir(parents=True, exist_ok=True)
-    rows = zip(
-        comparison.campaign.prepared,
-        comparison.predictions,
-        comparison.samples.counted,
-        strict=True,
-    )
-    for number, (p, predicted, counted) in enumerate(rows):
-        np.save(
-            folder / f"{number}.npy",
-            np.vstack([p.run.time_s, p.motion.velocity_m_s, p.friction_n, predicted, counted]),
-        )
-    return {"record_names": [p.run.name for p in comparison.campaign.prepared]}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -13,7 +14,7 @@ from pathlib import Path
 import pytest
 from bad_input.checking import RMS_N, Capture, accepted, compared, one_line, refused, table
 from jbf import read_map, read_rig, read_run, text_files
-from jbf.cli import parser
+from jbf.cli import main, parser
 from jbf.models.model import Model
 from jbf.records.folder import campaigns_in, read_campaign
 
@@ -126,6 +127,47 @@ def test_a_folder_without_rights(words: list[str], capfd: Capture) -> None:
     Path("shut").mkdir(mode=0o500)
     with nobody():
         refused(words, "(permission denied); check the path and its permissions", capfd)
+
+
+@pytest.mark.parametrize("words", [
+    "compare model.toml large",
+    "compare large a.csv",
+    "fit large a.csv --out new.toml",
+    "import a.csv --map large --out new",
+])  # fmt: skip
+def test_two_gigabytes_are_not_read_whole(words: str, capfd: Capture) -> None:
+    """A file of holes: what is refused by its size takes no time and no memory."""
+    code, said, seconds = with_two_gigabytes("large", words.split(), capfd)
+    assert code == 2
+    assert said.startswith("jbf: large: has 2.1 GB; what is read whole may have 0.54 GB; ")
+    assert seconds < 1.0
+
+
+def test_an_import_reads_two_gigabytes_in_blocks(capfd: Capture) -> None:
+    """Not to their end: the first block says what they are."""
+    words = ["import", "large.csv", "--map", "map.toml", "--out", "new"]
+    code, said, seconds = with_two_gigabytes("large.csv", words, capfd)
+    assert code == 2
+    assert said.startswith("jbf: large.csv: ")
+    assert "GB" not in said
+    assert seconds < 1.0
+
+
+def with_two_gigabytes(name: str, words: list[str], capfd: Capture) -> tuple[int, str, float]:
+    """Exit code, what was said in one line, and seconds of processor time. (`refused` compares
+    what is in the folder, byte by byte.)"""
+    with Path(name).open("wb") as file:
+        file.truncate(2 << 30)
+    before = sorted(p.name for p in Path().iterdir())
+    begun = time.process_time()
+    code = main(words)
+    seconds = time.process_time() - begun
+    assert sorted(p.name for p in Path().iterdir()) == before
+    Path(name).unlink()
+    told = capfd.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    return code, told.err, seconds
 
 
 def test_a_pipe_that_is_filled_is_read(capfd: Capture) -> None:

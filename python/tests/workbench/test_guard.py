@@ -142,12 +142,36 @@ def test_no_path_of_the_page_leads_outside_the_folder(
     link = campaign / "link"
     if not link.exists():
         link.symlink_to(outside)
-    asked = {"rig": name, "runs": [name], "file": name, "files": [name], "map": "", "into": "new"}
+    asked = {
+        "rig": name,
+        "runs": [name],
+        "file": name,
+        "files": [name],
+        "into": "new",
+        "map": '[columns]\ntime_s = "`t`"\n',
+    }
     answer = client.post(f"/api/{address}", json=asked)
     assert answer.status_code == 422
     assert "not a name in the folder" in answer.json()["error"] or "does not exist" in answer.text
     assert "secret = 1" not in answer.text
     link.unlink()
+
+
+@pytest.mark.parametrize("name", ["../secret.toml", "/etc/passwd", "link/rig.toml"])
+@pytest.mark.parametrize("address", ["try", "import"])
+def test_no_map_of_the_page_names_a_file_outside_the_folder(
+    client: TestClient, campaign: Path, name: str, address: str
+) -> None:
+    (campaign.parent / "secret.toml").write_text("secret = 1\n")
+    link = campaign / "link"
+    link.symlink_to(campaign.parent)
+    run = next(path.name for path in campaign.glob("*.csv"))
+    text = f'[columns]\ntime_s = "`time_s`"\n[cut]\nfile = "{name}"\n'
+    answer = client.post(f"/api/{address}", json={"files": [run], "map": text, "into": "new"})
+    link.unlink()
+    assert answer.status_code == 422
+    assert "secret" not in answer.json()["error"].replace("secret.toml", "")
+    assert "not a name in the folder" in answer.json()["error"] or "does not exist" in answer.text
 
 
 @pytest.mark.parametrize(

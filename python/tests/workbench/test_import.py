@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -93,3 +95,88 @@ def test_no_recording_is_no_import(client: TestClient) -> None:
     answer = client.post("/api/import", json=asked(client, files=[]))
     assert answer.status_code == 422
     assert "tick one" in answer.json()["error"]
+
+
+def formed(client: TestClient, text: str, form: dict[str, object], **more: object) -> Any:
+    """What comes of a form over a map."""
+    return client.post(
+        "/api/try", json={"files": ["log1.csv"], "map": text, "form": form, **more}
+    ).json()
+
+
+def test_the_form_shows_each_column_with_its_first_values(client: TestClient) -> None:
+    found = client.post("/api/look", json={"file": "log1.csv"}).json()
+    assert [(c["name"], c["unit"]) for c in found["columns"]] == [
+        ("Time [ms]", "ms"), ("Position [mm]", "mm"), ("Force [N]", "N"),
+    ]  # fmt: skip
+    assert found["columns"][0]["first"] == ["0", "10", "20"]
+    assert [row["key"] for row in found["form"]["rows"]] == ["time_s", "position_m", "friction_n"]
+    units = {q["key"]: q["units"] for q in found["quantities"]}
+    assert {"N", "mN", "kN"} <= set(units["friction_n"])
+    assert "mm" not in units["friction_n"]
+
+
+def test_a_unit_of_the_form_changes_the_numbers_and_the_map(client: TestClient) -> None:
+    found = client.post("/api/look", json={"file": "log1.csv"}).json()
+    rows = [{**row, "unit": "mN" if row["key"] == "friction_n" else row["unit"],
+             "turned": row["key"] == "friction_n"} for row in found["form"]["rows"]]  # fmt: skip
+    told = formed(client, found["map"], {"rows": rows, "rig": {}})
+    (run,) = told["runs"]
+    force = next(c for c in run["columns"] if c["name"] == "friction_n")
+    assert (force["least"], force["most"], force["unit"]) == (-0.01, 0.01, "N")
+    assert 'friction_n = "-`Force [N]` [mN]"' in told["map"]
+    # What the form did not touch keeps its words.
+    assert 'time_s = "`Time [ms]`"' in told["map"]
+    assert "# its name and its unit" in told["map"]
+
+
+def test_another_meaning_asks_for_another_machine_and_says_what_is_open(
+    client: TestClient,
+) -> None:
+    found = client.post("/api/look", json={"file": "log1.csv"}).json()
+    rows = [
+        {**row, "key": "force_percent", "unit": "%"} if row["key"] == "friction_n" else row
+        for row in found["form"]["rows"]
+    ]
+    told = formed(client, found["map"], {"rows": rows, "rig": {}})
+    assert told["form"]["rig"]["drive"]["friction"] == "percent"
+    assert "drive.rated_force_n: is open" in told["problem"]
+    assert told["runs"] == []
+    rig = {"drive.rated_force_n": "250"}
+    told = formed(client, told["map"], {"rows": told["form"]["rows"], "rig": rig})
+    assert told["problem"] is None
+    force = next(c for c in told["runs"][0]["columns"] if c["name"] == "friction_n")
+    assert force["most"] == pytest.approx(25.0)
+
+
+def test_two_columns_for_one_thing_are_refused_in_words(client: TestClient) -> None:
+    found = client.post("/api/look", json={"file": "log1.csv"}).json()
+    rows = [{**row, "key": "time_s"} for row in found["form"]["rows"]]
+    answer = client.post(
+        "/api/try",
+        json={"files": ["log1.csv"], "map": found["map"], "form": {"rows": rows, "rig": {}}},
+    )
+    assert answer.status_code == 422
+    assert "two columns are the time" in answer.json()["error"]
+
+
+@pytest.mark.parametrize("text", ["[columns", "", "[columns]\ntime_s = 3\n", "x = 1"])
+def test_a_broken_map_is_one_line(client: TestClient, text: str) -> None:
+    answer = client.post("/api/try", json={"files": ["log1.csv"], "map": text})
+    assert answer.status_code == 422
+    assert "/tmp" not in answer.json()["error"]
+    assert "\n" not in answer.json()["error"]
+
+
+def test_the_commands_of_an_import_make_the_same_folder_again(
+    client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from jbf.cli import main
+
+    client.post("/api/import", json=asked(client, into="slide"))
+    before = (folder / "slide" / "log1.csv").read_bytes()
+    command = client.get("/api/state").json()["command"].splitlines()[0]
+    assert command == "jbf import log1.csv log2.csv --map slide/map.toml --out slide --force"
+    monkeypatch.chdir(folder)
+    assert main(shlex.split(command)[1:]) == 0
+    assert (folder / "slide" / "log1.csv").read_bytes() == before

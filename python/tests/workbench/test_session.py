@@ -15,7 +15,7 @@ pytest.importorskip("starlette", reason="the workbench's server is an extra")
 import jbf
 from conftest import NOISE_N
 from jbf.errors import InputError
-from jbf.workbench import kept
+from jbf.workbench import actions, kept, views
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, load, save
@@ -52,6 +52,62 @@ def test_candidates_are_ranked_with_the_missing_one_first(worked: Session) -> No
     assert trials[0]["rms_n"] == pytest.approx(worked.models.node(2)["rms_n"], rel=0.02)
 
 
+def test_each_candidate_has_the_strength_from_which_it_would_show(worked: Session) -> None:
+    first, last = (
+        {p["effect"]: p["found"] for p in worked.models.node(number)["power"]} for number in (1, 2)
+    )
+    assert set(first) == {t["effect"] for t in worked.models.node(1)["trials"]}
+
+    def newtons(words: str) -> float:
+        name, value, unit = words.split()
+        assert (name, unit) == ("b_n", "N")
+        return float(value)
+
+    # What is missing hides others: once it is added, weaker ones would show.
+    assert newtons(last["sensor_offset"]) < 0.7 * newtons(first["sensor_offset"])
+
+
+def test_a_model_is_there_before_its_rivals_are_tried(on_bench: Session, ended: Ended) -> None:
+    on_bench.begin("round", (), None)
+    until = time.monotonic() + 120.0
+    while not on_bench.models.nodes:
+        assert time.monotonic() < until
+        time.sleep(0.005)
+    assert on_bench.jobs.job is not None
+    assert on_bench.models.node()["trials"] is None
+    assert on_bench.models.node()["rms_n"] > NOISE_N
+    on_bench.jobs.cancel()
+    ended(on_bench)
+    assert on_bench.models.node()["trials"] == []
+    assert "what else could be missing was cancelled" in on_bench.message["words"]
+    assert len(on_bench.models.nodes) == 1
+
+
+def test_the_stribeck_curve_is_that_of_the_records(worked: Session) -> None:
+    found = worked.models.node(2)["stribeck"]
+    assert [way["way"] for way in found["ways"]] == [1.0, -1.0]
+    for way in found["ways"]:
+        assert np.all(np.sign(way["speed_m_s"]) == way["way"])
+        assert np.all(np.diff(np.abs(way["speed_m_s"])) >= 0.0)
+        assert way["modelled_n"] == pytest.approx(way["measured_n"], abs=0.6)
+    (mixed, film) = found["regimes_m_s"]
+    u_tr = worked.models.node(2)["parameters"]["U_tr_m_s"]["value"]
+    assert mixed == (pytest.approx(0.2 * u_tr), "mixed")
+    assert film == (pytest.approx(u_tr), "full film")
+
+
+def test_a_model_file_is_not_written_through_a_link_that_leads_outside(
+    worked: Session, tmp_path: Path
+) -> None:
+    outside = tmp_path / "outside.toml"
+    link = worked.folder.root / "model.toml"
+    link.symlink_to(outside)
+    with pytest.raises(InputError, match="not a name in the folder"):
+        kept.keep(worked, "model")
+    assert not outside.exists()
+    link.unlink()
+
+
 def test_a_model_is_the_library_s(worked: Session) -> None:
     bench = worked.on_bench()
     fit = jbf.fit(bench.rig, list(bench.runs), ["coulomb_drag"])
@@ -73,6 +129,20 @@ def test_marks_lie_where_the_pattern_s_worst_bin_is(worked: Session) -> None:
         assert np.mean(np.sign(run.velocity_m_s[inside]) == np.sign(centre)) > 0.9
 
 
+def test_a_mark_selects_its_samples_in_every_run(worked: Session) -> None:
+    node = worked.models.node(1)
+    names = [run.name for run in worked.on_bench().runs]
+    for place, failure in enumerate(node["failures"]):
+        found = views.brushed(worked, 1, {"mark": place}, names, (80, 60))
+        marked = {node["record_names"][int(k)] for k in failure["ranges_s"]}
+        assert set(found["by_run"]) == marked
+        # Where it fails worst the residual is larger than everywhere.
+        assert abs(found["mean_n"]) > 0.2 * failure["share"] * node["rms_n"]
+    assert found["cells"]
+    with pytest.raises(InputError, match="no such failure"):
+        views.brushed(worked, 1, {"mark": len(node["failures"])}, names, (80, 60))
+
+
 def test_undo_goes_back_and_keeps_the_branch(worked: Session) -> None:
     worked.show(2)
     worked.show(worked.models.node()["parent"])
@@ -82,7 +152,7 @@ def test_undo_goes_back_and_keeps_the_branch(worked: Session) -> None:
 
 
 def test_what_is_kept_is_whole_and_loads(worked: Session) -> None:
-    assert kept.keep(worked, "model") == ["model.toml"]
+    assert kept.keep(worked, "model") == {"written": ["model.toml"], "replaced": []}
     model = jbf.Model.load(worked.folder.root / "model.toml")
     assert model.effects == ("coulomb_drag",)
     kept.keep(worked, "report")
@@ -198,7 +268,8 @@ def test_a_cancelled_fit_keeps_the_best_so_far(on_bench: Session, ended: Ended) 
 
 def test_a_fit_that_is_cancelled_twice_is_killed(on_bench: Session, ended: Ended) -> None:
     on_bench.begin("diagnose", (), None)
-    assert on_bench.jobs.cancel() and on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
+    assert on_bench.jobs.cancel()
     ended(on_bench)
     assert "cancelled before" in on_bench.message["words"]
 
@@ -247,3 +318,20 @@ def test_the_page_s_requests_are_checked(client: TestClient, on_bench: Session) 
 def test_the_state_is_plain_json(worked: Session) -> None:
     told = json.dumps(worked.told(), allow_nan=False)
     assert "sine_w0.5" in told
+
+
+def test_the_demo_opens_where_it_lies_already(tmp_path: Path) -> None:
+    from importlib.resources import files
+
+    shipped = files("jbf") / "data" / "demo" / "hidden"
+    (tmp_path / "hidden").mkdir()
+    for path in shipped.iterdir():
+        if path.is_file():
+            (tmp_path / "hidden" / path.name).write_bytes(path.read_bytes())
+    for folder, rig in ((tmp_path, "hidden/rig.toml"), (tmp_path / "empty", "jbf-demo/rig.toml")):
+        folder.mkdir(exist_ok=True)
+        session = Session(Folder.of(folder))
+        actions.demo(session, {})
+        assert session.on_bench().rig_name == rig
+        session.close()
+    assert not (tmp_path / "jbf-demo").exists()

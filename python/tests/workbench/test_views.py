@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
+from jbf.errors import InputError
 from jbf.workbench import views
 from jbf.workbench.plane import Frame, shade, within
 from jbf.workbench.series import listed
@@ -105,7 +106,7 @@ def test_a_box_selects_in_every_run(on_bench: Session) -> None:
     assert found["samples"] == sum(int(mask.sum()) for mask in inside)
     assert found["rms_n"] is None
     for run, mask in zip(runs, inside, strict=True):
-        for first, last in found["stretches_s"].get(run.name, []):
+        for first, last in found["by_run"].get(run.name, {}).get("stretches_s", []):
             assert mask[np.searchsorted(run.time_s, first)]
             assert mask[np.searchsorted(run.time_s, last)]
 
@@ -127,8 +128,28 @@ def test_the_picture_of_a_selection_is_that_of_its_samples(on_bench: Session) ->
 def test_a_stretch_selects_in_its_run_alone(on_bench: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
     found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
-    assert list(found["stretches_s"]) == ["stopgo"]
+    assert list(found["by_run"]) == ["stopgo"]
     assert found["samples"] == 51
+
+
+def test_an_open_box_of_one_run_is_a_band_of_its_speeds(on_bench: Session) -> None:
+    selection = {"run": "stopgo", "box": [0.01, None, None, None]}
+    found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
+    run = on_bench.on_bench().run("stopgo")
+    assert list(found["by_run"]) == ["stopgo"]
+    assert found["samples"] == int((run.velocity_m_s >= 0.01).sum())
+    low, high = found["speeds_m_s"]
+    assert low >= 0.01
+    assert high == run.velocity_m_s.max()
+    # Its cells lie in its row of the map, on the right of standstill.
+    row = [r.name for r in on_bench.on_bench().runs].index("stopgo")
+    assert {cell[0] for cell in found["cells"]} == {row}
+    assert min(cell[1] for cell in found["cells"]) >= views.MAP_SPEEDS // 2
+
+
+def test_every_selection_is_refused_in_words_where_it_names_nothing(on_bench: Session) -> None:
+    with pytest.raises(InputError, match="no such model"):
+        views.brushed(on_bench, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
 def test_raw_records_are_there_without_any_model(on_bench: Session) -> None:

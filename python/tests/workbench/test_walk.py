@@ -78,7 +78,9 @@ def test_the_story_from_the_demo_to_a_saved_model(tmp_path: Path) -> None:
         room(page, 2)
         page.wait_for_selector('[data-key="fail-0"]')
         by_keyboard(page, "fail-0")
-        page.wait_for_selector("text=/^Marked: /")
+        page.wait_for_selector("text=/^Marked: .*RMS/")
+        # The same selection in the list of runs.
+        assert page.locator("#runs >> text=/[0-9]+ selected/").count() > 1
         no_wider_than_the_window(page)
 
         room(page, 3)
@@ -124,6 +126,49 @@ def test_the_story_from_the_demo_to_a_saved_model(tmp_path: Path) -> None:
         assert said.complaints == []
 
 
+FOCUSABLE = """() => [...document.querySelectorAll(
+  "button:enabled, select:enabled, input:enabled, textarea:enabled, summary, [tabindex='0']")]
+  .filter((e) => e.checkVisibility({ visibilityProperty: true }) && e.type !== "radio")
+  .map((e) => e.dataset.key ?? e.ariaLabel ?? e.textContent)"""
+FOCUSED = """() => {
+  const e = document.activeElement, style = getComputedStyle(e);
+  return [e.dataset.key ?? e.ariaLabel ?? e.textContent, e === document.body,
+    style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2];
+}"""
+
+
+def test_the_keyboard_reaches_everything_is_seen_and_is_caught_nowhere(tmp_path: Path) -> None:
+    with served(tmp_path, "--demo") as address, looked_at(address) as (page, said):
+        page.wait_for_selector("[data-drawn] canvas")
+        for number in (1, 2, 3, 4):
+            room(page, number)
+            page.wait_for_timeout(1500)
+            wanted = set(page.evaluate(FOCUSABLE))
+            reached: set[str] = set()
+            page.evaluate("document.activeElement.blur()")
+            for _ in range(3 * len(wanted)):
+                page.keyboard.press("Tab")
+                name, on_page, outlined = page.evaluate(FOCUSED)
+                if not on_page:
+                    reached.add(name)
+                    assert outlined, name
+                elif reached:
+                    break  # round once: the keyboard has left the page again
+            assert wanted <= reached, (number, wanted - reached)
+        # A box of the plane without a mouse.
+        room(page, 2)
+        page.wait_for_timeout(1500)
+        page.focus("[data-key=plane]")
+        for _ in range(3):
+            page.keyboard.press("Shift+ArrowRight")
+        page.keyboard.press("Shift+ArrowDown")
+        page.keyboard.press("Enter")
+        page.wait_for_selector("text=/^Selected: [1-9][0-9]* samples/")
+        page.keyboard.press("Escape")
+        page.wait_for_selector("text=/^Select by dragging/")
+        assert said.complaints == []
+
+
 def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
     """Decimal commas, milliseconds, millimetres; a slide with 12 N of dry friction and a mass."""
     folder = tmp_path / "bench"
@@ -143,8 +188,27 @@ def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
         page.set_input_files("input[type=file]", logs)
         page.wait_for_selector("text=log1: 3000 samples")
-        button(page, "import")
+        # Another unit is seen in the numbers, and comes back.
+        force = page.locator("tr:has([data-key='is-Force [N]']) td.n")
+        right = force.inner_text()
+        for unit in ("kN", "N"):
+            page.fill("[data-key='unit-Force [N]']", unit)
+            page.keyboard.press("Tab")
+            page.wait_for_function(
+                "([at, was, same]) => (document.querySelector(at).innerText === was) === same",
+                arg=["tr:has([data-key='is-Force [N]']) td.n", right, unit == "N"],
+            )
+        by_keyboard(page, "import")
         page.wait_for_selector("text=log0/rig.toml is open, with 2 runs")
+        # A handle by the keys: a tenth of the run is left out.
+        page.wait_for_selector("[data-drawn] [data-key=trim-0]")
+        page.focus("[data-key=trim-0]")
+        for _ in range(2):
+            page.keyboard.press("Shift+ArrowRight")
+        page.wait_for_selector("#runs >> text=trimmed")
+        assert float(page.input_value("[data-key=trim-n-0]")) == pytest.approx(3.0, abs=0.01)
+        button(page, "untrim")
+        page.wait_for_selector("#runs >> text=trimmed", state="detached")
         room(page, 3)
         page.select_option("[data-key=law]", "coulomb")
         page.wait_for_selector("[data-key=fit-law]:enabled")

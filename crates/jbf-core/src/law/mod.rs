@@ -48,6 +48,24 @@ pub trait Law<T: Real> {
     /// where the viscous part acts beside it, as it does beside a law's own bristle.
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
+    /// The two parameters, by their numbers on the law's page, on which the path of its film
+    /// depends, where friction is told no more of the film than [`Law::film`]; see
+    /// [`crate::film_path`].
+    const FILM_PARAMETERS: Option<[usize; 2]> = None;
+
+    /// What friction is told of the film.
+    #[inline(always)]
+    fn film(&self, state: &Self::State) -> T {
+        let _ = state;
+        T::ZERO
+    }
+
+    /// Put the film where [`Law::film`] said it was.
+    #[inline(always)]
+    fn put_film(&self, state: &mut Self::State, film: T) {
+        let _ = (state, film);
+    }
+
     /// The state at which every run starts.
     fn start(&self, load_n: T) -> Self::State;
 

@@ -1,12 +1,15 @@
 //! A law with effects, over whole runs: prediction and its derivatives.
 
+mod film;
 mod names;
 mod runs;
 mod slopes;
 
 use crate::bearing::{refused, Sizes};
+use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use crate::pool::on_pool;
+use crate::share::longest_first;
 use jbf_core::effect::Info;
 use jbf_core::law;
 use jbf_core::spec::{Spec, Using};
@@ -14,7 +17,7 @@ use jbf_core::{Bearing, Clock, ParameterError, Real};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use runs::{FilmRate, Reader, Runs, Values};
+use runs::{FilmRate, Reader, Run, Values};
 
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
@@ -33,19 +36,33 @@ impl Chain {
         self.law.parameters.len() + theirs.sum::<usize>()
     }
 
-    /// Run the chain with one set of parameter values along motions.
-    fn runs<T: Real, R: Reader<T>>(
+    /// Run the chain with one set of parameter values along a motion, its film on its path where
+    /// there is one.
+    fn run<T: Real, R: Reader<T>>(
         &self,
         p: &[T],
         reader: R,
-        motions: &[&Motion],
-    ) -> Result<Vec<R::Read>, ParameterError> {
-        let runs = Runs {
+        motion: &Motion,
+        path: Option<&FilmPath>,
+    ) -> Result<R::Read, ParameterError> {
+        let run = Run {
             reader,
             max_step_s: self.max_step_s,
-            motions,
+            motion,
+            path: path.map(|path| (path.places.as_slice(), p)),
         };
-        self.with_chain(p, runs)
+        self.with_chain(p, run)
+    }
+
+    /// Readings alone, N, along each motion.
+    fn values(&self, p: &[f64], motions: &[&Motion]) -> Result<Vec<Vec<f64>>, ParameterError> {
+        let paths = self.film_paths(p, false, motions)?;
+        let jobs: Vec<_> = motions.iter().zip(&paths).collect();
+        longest_first(
+            &jobs,
+            |(motion, _)| motion.len(),
+            |(motion, path)| self.run(p, Values, motion, path.as_deref()),
+        )
     }
 
     /// Build the chain with one set of parameter values: the law's first, then each effect's.
@@ -60,14 +77,18 @@ impl Chain {
             rest = after;
             (info.name, own)
         });
-        let spec = Spec {
+        self.spec(values).chain(effects, then)
+    }
+
+    /// The law with these parameters.
+    fn spec<'a, T>(&'a self, values: &'a [T]) -> Spec<'a, T> {
+        Spec {
             law: self.law.name,
             values,
             bearing: self.bearing.as_ref(),
             load_n: self.load_n,
             clock: self.clock,
-        };
-        spec.chain(effects, then)
+        }
     }
 
     fn checked<'a>(&self, parameters: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
@@ -148,7 +169,7 @@ impl Chain {
         let p = self.checked(&parameters)?;
         let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
         let runs = py
-            .detach(|| on_pool(|| self.runs(p, Values, &motions)))
+            .detach(|| on_pool(|| self.values(p, &motions)))
             .map_err(refused)?;
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
     }

@@ -1,17 +1,19 @@
-//! One chain, of whatever law, along many motions: what each run's readings become.
+//! One chain, of whatever law, along a motion: what its readings become.
 
 use crate::motion::Motion;
 use jbf_batch::Simd;
-use jbf_core::law::Named;
+use jbf_core::film_path::{OnPath, Place};
+use jbf_core::law::{Law, Named};
 use jbf_core::spec::Using;
 use jbf_core::{run, Chain, Dual, Real};
-use rayon::prelude::*;
 
-/// Runs a chain along motions, on all cores, and gives every reading to a reader.
-pub struct Runs<'a, R> {
+/// Runs a chain along a motion and gives every reading to a reader.
+pub struct Run<'a, T, R> {
     pub reader: R,
     pub max_step_s: f64,
-    pub motions: &'a [&'a Motion],
+    pub motion: &'a Motion,
+    /// The path of the film, and the law's parameters.
+    pub path: Option<(&'a [Place], &'a [T])>,
 }
 
 /// What becomes of one run's readings.
@@ -58,23 +60,30 @@ impl<const LANES: usize> Reader<Dual<LANES>> for Slopes {
     }
 }
 
-impl<T: Real, R: Reader<T>> Using<T> for Runs<'_, R> {
-    type Output = Vec<R::Read>;
+impl<T: Real, R: Reader<T>> Run<'_, T, R> {
+    #[inline(always)]
+    fn along<L: Law<T>>(&self, chain: &Chain<T, L>) -> R::Read {
+        self.reader.read(self.motion.len(), |sink| {
+            R::simd().dispatch(
+                #[inline(always)]
+                || run::predict(chain, &self.motion.record(), self.max_step_s, sink),
+            );
+        })
+    }
+}
+
+impl<T: Real, R: Reader<T>> Using<T> for Run<'_, T, R> {
+    type Output = R::Read;
 
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output {
-        let simd = R::simd();
-        self.motions
-            .par_iter()
-            .with_max_len(1)
-            .map(|motion| {
-                self.reader.read(motion.len(), |sink| {
-                    simd.dispatch(
-                        #[inline(always)]
-                        || run::predict(&chain, &motion.record(), self.max_step_s, sink),
-                    );
-                })
-            })
-            .collect()
+        let (Some((places, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
+            return self.along(&chain);
+        };
+        self.along(&Chain {
+            law: OnPath::new(chain.law, [p[first], p[second]], places),
+            effects: chain.effects,
+            rig: chain.rig,
+        })
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::runs::Slopes;
 use super::Chain;
+use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use crate::share::longest_first;
 use jbf_core::{Dual, ParameterError, Real};
@@ -29,13 +30,14 @@ impl Chain {
             MANY..=MOST => vec![which],
             _ => which.chunks(MANY).collect(),
         };
+        let paths = self.film_paths(p, true, motions)?;
         let jobs: Vec<(usize, usize)> = (0..motions.len())
             .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
             .collect();
         let done = longest_first(
             &jobs,
             |&(m, _)| motions[m].len(),
-            |&(m, g)| self.slopes(p, groups[g], motions[m]),
+            |&(m, g)| self.slopes(p, groups[g], motions[m], paths[m].as_deref()),
         )?;
         let mut done = done.into_iter();
         let mut out = Vec::with_capacity(motions.len());
@@ -48,11 +50,17 @@ impl Chain {
     }
 
     /// Values and derivatives with respect to at most `MOST` parameters along one run.
-    fn slopes(&self, p: &[f64], which: &[usize], motion: &Motion) -> Result<Slice, ParameterError> {
+    fn slopes(
+        &self,
+        p: &[f64],
+        which: &[usize],
+        motion: &Motion,
+        path: Option<&FilmPath>,
+    ) -> Result<Slice, ParameterError> {
         match which.len() {
-            n if n <= FEW => self.slopes_of::<FEW>(p, which, motion),
-            n if n <= MANY => self.slopes_of::<MANY>(p, which, motion),
-            _ => self.slopes_of::<MOST>(p, which, motion),
+            n if n <= FEW => self.slopes_of::<FEW>(p, which, motion, path),
+            n if n <= MANY => self.slopes_of::<MANY>(p, which, motion, path),
+            _ => self.slopes_of::<MOST>(p, which, motion, path),
         }
     }
 
@@ -61,6 +69,7 @@ impl Chain {
         p: &[f64],
         which: &[usize],
         motion: &Motion,
+        path: Option<&FilmPath>,
     ) -> Result<Slice, ParameterError> {
         let lifted: Vec<Dual<LANES>> = p
             .iter()
@@ -70,8 +79,7 @@ impl Chain {
                 None => Dual::of(v),
             })
             .collect();
-        let mut runs = self.runs(&lifted, Slopes, &[motion])?;
-        let (values, lanes) = runs.swap_remove(0);
+        let (values, lanes) = self.run(&lifted, Slopes, motion, path)?;
         let rows = lanes.iter().flat_map(|row| row[..which.len()].iter());
         Ok((values, rows.copied().collect()))
     }

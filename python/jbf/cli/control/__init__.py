@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from jbf.cli.arguments import Commands, command
+from jbf.cli.commands import COMMANDS
 from jbf.cli.control import robustness, run, tables, tune
 
 
 def add(commands: Commands) -> None:
     """Put the commands on the command line; without an action it is `tables`."""
-    does = "friction compensation in the loop: runs, the thesis's tables, settings, robustness"
-    parser = command(commands, "control", does, tables.run)
+    parser = command(commands, "control", COMMANDS["control"], tables.run)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", parser_class=type(parser))
     tables.add_options(parser)
     for action in (run, tables, tune, robustness):

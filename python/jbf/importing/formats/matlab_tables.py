@@ -27,7 +27,7 @@ def add_tables(source: ArraySource, path: Path) -> None:
             file=path,
             problem="holds a MATLAB table or timetable, which mat-io reads, and that is not "
             "installed",
-            mend="pip install 'jbf[timetable]', or save plain vectors",
+            mend="pip install 'jbf[timetable]' (Python 3.11 or later), or save plain vectors",
         ) from None
     with library_errors(path, "cannot be read by mat-io"):
         content = load_from_mat(str(path))

@@ -24,10 +24,11 @@ export class Chart {
         drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => { if (zoomed) zoomed(null, null); } },
       },
-      axes: [axis("time (s)", { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 52, space: height < 150 ? 18 : 30 })],
+      axes: [axis("time (s)", { size: 32, labelSize: 16, labelGap: 0 }), axis(unit, { size: 54, labelGap: 2, space: height < 150 ? 18 : 30 })],
       series: [{ label: "t (s)" }, ...curves],
       hooks: {
         drawClear: [(u) => self.shade(u)],
+        draw: [() => self.drawn?.()],
         setSelect: [(u) => {
           if (u.select.width < 3) return;
           const from = u.posToVal(u.select.left, "x");

@@ -1,19 +1,22 @@
 // Room 1: what is in the folder, files from elsewhere, records as they were read, trims.
 import { get, upload } from "./api.js";
 import { Chart, curve } from "./chart.js";
-import { h, number, put } from "./dom.js";
+import { h, put } from "./dom.js";
+import { ImportForm } from "./import_form.js";
+import { TrimHandles } from "./trim.js";
 
 export class DataRoom {
   constructor(page, place) {
-    this.page = page;
-    this.files = h("div"); this.raw = h("div"); this.map = h("div");
-    place.append(h("div", { class: "two" }, h("section", {}, h("h2", {}, "Files"), this.files), this.map), this.raw);
-    this.list();
+    this.page = page; page.importing = false;
+    this.files = h("div"); this.raw = h("div"); this.map = h("div"); this.picked = new Set();
+    this.place = place; this.shelf = h("section", {}, h("h2", {}, "Files"), this.files);
+    place.append(this.map, this.shelf, this.raw);
   }
 
   told(before) {
-    const { state } = this.page;
-    if (!before || JSON.stringify(before.runs) !== JSON.stringify(state.runs)) { this.list(); this.draw(); }
+    const { state } = this.page, names = (s) => JSON.stringify([s.rig, s.runs.map((r) => r.file)]);
+    if (!before || names(before) !== names(state)) this.list();
+    if (!before || JSON.stringify(before.runs) !== JSON.stringify(state.runs)) this.draw();
   }
 
   looked() { this.draw(); }
@@ -21,24 +24,29 @@ export class DataRoom {
   async list() {
     let found;
     try { found = await get("files"); } catch (error) { this.page.say(error.message); return; }
+    const { state } = this.page, some = state.runs.length > 0;
     const open = (rig, runs) => this.page.do("open", { rig, runs }).then((ok) => ok && this.page.enter("Data"));
-    const input = h("input", { type: "file", multiple: true, "aria-label": "choose files", onchange: (e) => this.take(e.target.files) });
+    const input = h("input", { type: "file", multiple: true, "aria-label": "choose files", "data-key": "choose", onchange: (e) => this.take(e.target.files) });
     const drop = h("div", { class: "drop",
       ondragover: (e) => { e.preventDefault(); drop.classList.add("over"); },
       ondragleave: () => drop.classList.remove("over"),
       ondrop: (e) => { e.preventDefault(); drop.classList.remove("over"); this.take(e.dataTransfer.files); } },
-    "Drop recordings here, or ", input);
+    h("b", {}, "Your own recording: "), "drop it here, or choose it: ", input);
+    const campaigns = found.campaigns.filter((c) => c.rig !== state.rig);
+    // Once there are runs they come first.
+    if (some) this.place.append(this.raw, this.shelf);
     put(this.files,
-      h("p", { class: "faint" }, this.page.state.folder),
-      h("div", { class: "row" }, h("button", { class: this.page.state.runs.length ? "" : "main", "data-key": "demo",
-        onclick: () => this.page.do("demo") }, "Open the demo's data")),
-      found.campaigns.length ? h("h3", {}, "Rigs with runs beside them") : null,
-      h("ul", { class: "plain" }, found.campaigns.map((c) => h("li", {},
-        h("button", { "data-key": `open-${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} runs`))),
-      this.picker(found, open),
-      this.recordings(found),
-      found.more ? h("p", { class: "faint" }, "There are more files: name a smaller folder.") : null,
-      drop);
+      h("p", { class: "faint" }, state.folder, state.rig ? ` · open: ${state.rig}` : ""),
+      h("div", { class: "two" },
+        h("div", {},
+          some ? null : h("div", { class: "row" }, h("button", { class: "main", "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo's data"), h("span", { class: "faint" }, "five runs of a bearing, with something hidden in them")),
+          campaigns.length ? [h("h3", {}, some ? "Open another rig with its runs" : "Rigs with their runs, in this folder"),
+            h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
+              h("button", { "data-key": `open-${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))] : null,
+          this.picker(found, open)),
+        h("div", {}, drop, this.recordings(found),
+          found.more ? h("p", { class: "faint" }, "There are more files: name a smaller folder.") : null,
+          some ? h("div", { class: "row" }, h("button", { "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo's data")) : null)));
   }
 
   // A rig and runs that do not lie together.
@@ -46,7 +54,7 @@ export class DataRoom {
     if (!found.rigs.length || !found.csv.length) return null;
     const rig = h("select", { "aria-label": "rig" }, found.rigs.map((name) => h("option", { value: name }, name)));
     const runs = h("select", { multiple: true, size: 4, "aria-label": "runs" }, found.csv.map((name) => h("option", { value: name }, name)));
-    return h("details", {}, h("summary", {}, "Choose a rig and runs"), h("div", { class: "row" }, rig, runs,
+    return h("details", {}, h("summary", { "data-key": "picker" }, "Choose a rig and runs that lie apart"), h("div", { class: "row" }, rig, runs,
       h("button", { onclick: () => open(rig.value, [...runs.selectedOptions].map((o) => o.value)) }, "Open")));
   }
 
@@ -54,49 +62,38 @@ export class DataRoom {
   recordings(found) {
     const names = [...found.other, ...found.csv.filter((f) => !found.campaigns.some((c) => c.runs.includes(f)))];
     if (!names.length) return null;
-    this.picked = new Set([...(this.picked ?? [])].filter((name) => names.includes(name)));
+    this.picked = new Set([...this.picked].filter((name) => names.includes(name)));
     const go = h("button", { "data-key": "import-chosen", disabled: !this.picked.size, onclick: () => this.look([...this.picked]) }, "Import the ticked …");
     const tick = (name, on) => { this.picked[on ? "add" : "delete"](name); go.disabled = !this.picked.size; };
-    return [h("h3", {}, "Recordings as a logger wrote them"), h("ul", { class: "plain" }, names.map((name) => h("li", {},
+    return [h("h3", {}, "Recordings in the folder, as a logger wrote them"), h("ul", { class: "plain list" }, names.map((name) => h("li", {},
       h("label", {}, h("input", { type: "checkbox", "data-key": `pick-${name}`, checked: this.picked.has(name), onchange: (e) => tick(name, e.target.checked) }), ` ${name}`)))),
     h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: tick what has the same columns"))];
   }
 
   async take(files) {
+    const names = [];
     for (const file of files) {
-      try { await upload(file); } catch (error) { this.page.say(error.message); return; }
+      try { names.push((await upload(file)).file); } catch (error) { this.page.say(error.message); break; }
     }
-    const names = [...files].map((f) => f.name).filter((name) => !name.endsWith(".toml"));
     this.picked = new Set(names);
     await this.list();
     if (names.length) this.look(names);
   }
 
-  // The map of recordings: columns and units, which can be changed until the numbers are right.
+  // What the columns are, in a form that can be changed until the numbers are right.
   async look(files) {
     const found = await this.page.do("look", { file: files[0] });
     if (!found) return;
-    const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map" });
-    text.value = found.map;
-    const into = h("input", { value: found.into, "aria-label": "name of the campaign", "data-key": "into" });
-    const shown = h("div"); let waits = 0, slow = false;
-    const attempt = async (name) => {
-      const begun = performance.now();
-      const told = await this.page.do(name, { files, map: text.value, into: into.value });
-      slow = performance.now() - begun > 1000;
-      if (!told) { put(shown); return; }
-      put(shown, told.runs.map((run) => h("div", {}, h("h3", {}, `${run.name}: ${run.samples} samples`), table(run.columns))));
-      if (name === "import") { put(this.map); this.page.enter("Data"); }
+    const importing = (now) => {
+      this.page.importing = now; this.page.next();
+      for (const part of [this.shelf, this.raw]) part.style.display = now ? "none" : "";
     };
-    text.addEventListener("input", () => { clearTimeout(waits); if (!slow) waits = setTimeout(() => attempt("try"), 500); });
-    put(this.map, h("h2", {}, `Import ${files.join(", ")}`), h("p", { class: "faint" }, `Read as ${found.format}. Change columns and units below; the numbers follow.`),
-      h("ul", {}, found.questions.map((q) => h("li", {}, q))), text,
-      h("div", { class: "row" }, h("label", {}, "Campaign ", into),
-        h("button", { "data-key": "try", onclick: () => attempt("try") }, "Try"),
-        h("button", { class: "main", "data-key": "import", onclick: () => attempt("import") }, "Import"),
-        h("button", { onclick: () => put(this.map) }, "Close")), shown);
-    text.focus(); text.setSelectionRange(0, 0); text.scrollTop = 0;
-    if (!found.questions.length) attempt("try");
+    importing(true);
+    new ImportForm(this.page, this.map, files, found, {
+      done: () => this.page.enter("Data"),
+      closed: () => { put(this.map); importing(false); },
+    });
+    scrollTo(0, 0);
   }
 
   async draw() {
@@ -104,12 +101,13 @@ export class DataRoom {
     const run = page.state.runs.find((r) => r.name === page.run);
     if (!run) { put(this.raw); this.chart = null; return; }
     if (!this.chart || this.drawn !== run.name) {
-      const force = h("div", { class: "plot" }), speed = h("div", { class: "plot" });
+      const force = h("div", { class: "plot" }), speed = h("div", { class: "plot" }), { units } = page;
       this.trims = h("div");
       put(this.raw, h("h2", {}, `${run.name}, as it was read`), this.trims, force, speed);
       const zoomed = (from, to) => page.look({ span: [from, to] });
-      this.chart = new Chart(force, { curves: [curve("friction_n", "measured", "measured")], unit: page.units.force, zoomed, sync: "data" });
-      this.speed = new Chart(speed, { curves: [curve("velocity_m_s", "speed", "model")], unit: page.units.speed, height: 130, zoomed, sync: "data" });
+      this.chart = new Chart(force, { curves: [curve("friction_n", "measured", "measured")], unit: `${units.noun} (${units.force})`, zoomed, sync: "data" });
+      this.speed = new Chart(speed, { curves: [curve("velocity_m_s", "speed", "model")], unit: `speed (${units.speed})`, height: 130, zoomed, sync: "data", legend: false });
+      this.handles = new TrimHandles(this.chart, (from, to) => page.do("trim", { run: page.run, from_s: from, to_s: to }));
       this.drawn = run.name;
     }
     this.trim(run);
@@ -118,25 +116,23 @@ export class DataRoom {
     try { found = await get("series", asked); } catch (error) { page.say(error.message); return; }
     const out = run.trim ? [[run.from_s, run.trim[0]], [run.trim[1], run.to_s]] : [];
     for (const chart of [this.chart, this.speed]) { chart.show(found); chart.mark(out, []); }
+    this.handles.show(run);
     this.raw.dataset.drawn = run.name;
   }
 
   trim(run) {
-    const [from, to] = run.trim ?? [run.from_s, run.to_s];
-    const step = (run.to_s - run.from_s) / 1000;
+    const [from, to] = run.trim ?? [run.from_s, run.to_s], findings = run.findings ?? [];
     const set = (which, value) => {
       const span = which === 0 ? [Number(value), to] : [from, Number(value)];
       return this.page.do("trim", { run: run.name, from_s: span[0], to_s: span[1] });
     };
-    const handle = (which, words, value) => h("label", {}, `${words} `,
-      h("input", { type: "range", min: run.from_s, max: run.to_s, step, value, "data-key": `trim-${which}`, onchange: (e) => set(which, e.target.value) }),
-      h("input", { type: "number", step, value: Number(value.toPrecision(8)), "aria-label": `${words}, s`, "data-key": `trim-n-${which}`, onchange: (e) => set(which, e.target.value) }), " s");
-    put(this.trims, h("div", { class: "row" }, handle(0, "Use from", from), handle(1, "to", to),
-      h("button", { disabled: !run.trim, onclick: () => this.page.do("trim", { run: run.name }) }, "All of it"),
-      h("span", { class: "faint" }, "Drag in a plot to zoom, double-click for all.")),
-    h("ul", {}, (run.findings ?? []).map((f) => h("li", {}, `${f.words}${f.done && f.done !== "none" ? ` (${f.done})` : ""}`))));
+    const end = (which, words, value) => h("label", {}, `${words} `,
+      h("input", { type: "number", class: "short", step: "any", value: Number(value.toPrecision(8)), "aria-label": `${words}, s`, "data-key": `trim-n-${which}`, onchange: (e) => set(which, e.target.value) }), " s");
+    put(this.trims, h("div", { class: "row" }, end(0, "Use from", from), end(1, "to", to),
+      h("button", { "data-key": "untrim", disabled: !run.trim, onclick: () => this.page.do("trim", { run: run.name }) }, "All of it"),
+      h("span", { class: "faint" }, "The handles in the plot trim; dragging zooms, a double click shows all.")),
+    run.findings === null ? h("p", { class: "faint" }, "Looking at what the recording did…")
+      : findings.length ? [h("h3", {}, "What the recording did"), h("ul", {}, findings.map((f) => h("li", {}, `${f.words}${f.done && f.done !== "none" ? ` (${f.done})` : ""}`)))]
+        : h("p", { class: "faint" }, "Nothing odd was found in the recording."));
   }
 }
-
-const table = (columns) => h("table", {}, h("thead", {}, h("tr", {}, ["column", "least", "median", "most"].map((w, i) => h("th", { class: i ? "n" : "" }, w)))),
-  h("tbody", {}, columns.map((c) => h("tr", {}, h("td", {}, c.name), [c.least, c.median, c.most].map((v) => h("td", { class: "n" }, number(v, 5)))))));

@@ -1,5 +1,4 @@
 // Room 4: the session, the model, its report, constants for firmware, and the same by command.
-import { download } from "./api.js";
 import { h, put } from "./dom.js";
 
 const THINGS = [
@@ -16,7 +15,7 @@ export class KeepRoom {
   constructor(page, place) {
     this.page = page; this.place = place;
     this.list = h("div"); this.words = h("p", { role: "status" }); this.same = h("div");
-    place.append(h("h2", {}, "Keep"), this.list, this.words, this.same);
+    place.append(h("h2", {}, "What to keep"), h("p", { class: "faint" }, "Of the model that is chosen at the left."), this.list, this.words, this.same);
   }
 
   told() {
@@ -27,22 +26,22 @@ export class KeepRoom {
       h("td", {}, h("button", { "data-key": `keep-${what}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
       h("td", {}, file ? h("button", { "data-key": `get-${what}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
       h("td", {}, title), h("td", { class: "faint" }, why))))));
-    put(this.same, node ? [h("h2", {}, "The same by command"), this.copied(page.state.command), h("h2", {}, "The same in Python"), this.copied(page.state.python)] : null);
+    put(this.same, page.state.command ? [h("h2", {}, node ? "The same by command" : "By command"), this.copied("command", page.state.command),
+      h("h2", {}, node ? "The same in Python" : "In Python"), this.copied("python", page.state.python)] : null);
   }
 
   looked() {}
 
-  copied(text) {
-    return h("div", {}, h("pre", {}, text), h("button", { onclick: () => navigator.clipboard.writeText(text) }, "Copy"));
+  copied(name, text) {
+    const copy = h("button", { "data-key": `copy-${name}`, onclick: async () => { await navigator.clipboard.writeText(text); copy.textContent = "Copied"; } }, "Copy");
+    return h("div", {}, h("pre", {}, text), copy);
   }
 
   async keep(what) {
     put(this.words, "…");
     const found = await this.page.do("keep", { what });
-    put(this.words, found ? `Written: ${found.written.join(", ")}` : "");
+    put(this.words, found ? `Written: ${found.written.join(", ")} in ${this.page.state.folder}${found.replaced.length ? ` (in the place of an earlier ${found.replaced.join(", ")})` : ""}` : "");
   }
 
-  async get(what, file) {
-    try { await download(what, file); } catch (error) { this.page.say(error.message); }
-  }
+  get(what, file) { return this.page.download(what, file); }
 }

@@ -1,10 +1,11 @@
 // The page: rooms, what is looked at, and news from the server.
-import { follow, post } from "./api.js";
+import { download, follow, post } from "./api.js";
 import { h, put } from "./dom.js";
 import { DataRoom } from "./data.js";
 import { SeeRoom } from "./see.js";
 import { LearnRoom } from "./learn.js";
 import { KeepRoom } from "./keep.js";
+import { showNext } from "./next.js";
 import { showModels, showRuns } from "./side.js";
 
 const ROOMS = { Data: DataRoom, See: SeeRoom, Learn: LearnRoom, Keep: KeepRoom };
@@ -13,24 +14,28 @@ const place = (id) => document.getElementById(id);
 class Page {
   constructor() {
     this.state = null; this.room = null; this.name = "Data"; this.draws = 0;
-    // What is looked at: a run, a stretch of it, a selection, a pattern, an effect.
-    this.run = null; this.span = [null, null]; this.selection = null; this.mark = null; this.effect = null;
+    // What is looked at: a run, a stretch of it, a selection and what it holds, an effect.
+    this.run = null; this.span = [null, null]; this.selection = null; this.brushed = null; this.effect = null;
+    // Whether a recording is being imported.
+    this.importing = false;
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
   get model() { return this.state.nodes.find((node) => node.id === this.state.current) ?? null; }
-  get units() { return this.state.units ?? { force: "N", speed: "m/s", velocity: "speed", friction: "friction" }; }
+  get units() { return this.state.units ?? { force: "N", speed: "m/s", velocity: "speed", friction: "friction", noun: "force" }; }
 
   told(state) {
     const before = this.state;
     this.state = state;
     const names = state.runs.map((run) => run.name);
     if (!names.includes(this.run)) { this.run = names[0] ?? null; this.span = [null, null]; this.selection = null; }
-    if (before && before.current !== state.current) this.mark = null;
+    // A mark is one of a model's own.
+    if (before && before.current !== state.current && this.selection?.mark !== undefined) { this.selection = null; this.brushed = null; }
     this.tabs(); this.head();
     showRuns(this, place("runs")); showModels(this, place("models"));
     if (!this.room) this.enter(names.length ? this.name : "Data");
     else this.room.told(before);
+    this.next();
     document.body.dataset.version = state.version;
   }
 
@@ -40,7 +45,10 @@ class Page {
     this.room = new ROOMS[name](this, place("room"));
     this.tabs();
     this.room.told(null);
+    this.next();
   }
+
+  next() { showNext(this, place("next")); }
 
   tabs() {
     put(place("tabs"), Object.keys(ROOMS).map((name, i) => h("button", {
@@ -69,15 +77,27 @@ class Page {
     try { this.say("", ""); return await post(name, asked); } catch (error) { this.say(error.message); return null; }
   }
 
+  // A text as a file of the browser's own.
+  async download(what, file) {
+    try { await download(what, file); } catch (error) { this.say(error.message); }
+  }
+
   // What is looked at has changed.
-  look(changes) { Object.assign(this, changes); showRuns(this, place("runs")); this.room.looked(changes); }
+  look(changes) {
+    Object.assign(this, changes);
+    if (!this.selection) this.brushed = null;
+    showRuns(this, place("runs")); this.room.looked(changes);
+  }
+
+  // What a selection holds, for the list of runs.
+  selected(brushed) { this.brushed = brushed; showRuns(this, place("runs")); }
 
   key(event) {
     if (["INPUT", "TEXTAREA", "SELECT"].includes(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
     const name = Object.keys(ROOMS)[Number(event.key) - 1];
     if (name) this.enter(name);
     else if (event.key === "z" && this.model) this.do("undo");
-    else if (event.key === "Escape") this.look({ selection: null, mark: null });
+    else if (event.key === "Escape" && this.selection) this.look({ selection: null });
   }
 }
 

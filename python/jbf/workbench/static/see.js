@@ -1,43 +1,47 @@
-// Room 2: measured and modelled in time and in the plane, a map over all runs, where it fails.
+// Room 2: measured and modelled in time and in the plane, over speed and over all runs; where it fails.
 import { get, post } from "./api.js";
 import { Chart, curve } from "./chart.js";
 import { h, key, number, put } from "./dom.js";
 import { Plane } from "./plane.js";
 import { RunsMap } from "./runs_map.js";
+import { Stribeck } from "./stribeck.js";
 
 export class SeeRoom {
   constructor(page, place) {
-    this.page = page; this.drag = "brush"; this.all = false; this.curve = true;
-    this.words = h("p", { class: "verdict" }); this.said = h("p", { class: "faint" });
-    const force = h("div", { class: "plot" }), rest = h("div", { class: "plot" }), plane = h("div"), map = h("div");
-    this.fails = h("div");
-    this.head = h("div", { class: "row" });
+    this.page = page; this.drag = "brush"; this.all = false; this.ends = ["", ""];
+    this.words = h("p", { class: "verdict" }); this.said = h("p", { class: "said", role: "status" });
+    this.head = h("div", { class: "row" }); this.fails = h("div"); this.which = h("div", { class: "row" });
+    const force = h("div", { class: "plot" }), rest = h("div", { class: "plot" }), plane = h("div"), map = h("div"), speeds = h("div");
+    this.residual = h("div", {}, h("h3", {}, "Record minus model"), rest);
     place.append(this.words, this.head, this.said,
-      h("div", { class: "two" }, h("section", {}, h("h2", {}, "In time"), force, h("h3", {}, "Record minus model"), rest),
-        h("section", {}, h("h2", {}, "Friction against speed"), plane)),
+      h("div", { class: "two" }, h("section", {}, h("h2", {}, "In time"), force, this.residual),
+        h("section", {}, h("div", { class: "row tight" }, h("h2", {}, "Friction against speed"), this.which), plane)),
       h("div", { class: "two" }, h("section", {}, h("h2", {}, "Where it fails, worst first"), this.fails),
-        h("section", {}, h("h2", {}, "Record minus model, by run and speed"), map)));
+        h("section", {}, h("h2", {}, "Means over speed, all runs (Stribeck)"), speeds)),
+      h("section", {}, h("h2", {}, "Record minus model, by run and speed"), map));
     const { units } = page;
     const brushed = (from, to) => this.select({ run: page.run, from_s: from, to_s: to });
     const zoomed = (from, to) => page.look({ span: [from, to] });
     const common = { brushed, zoomed, mode: () => this.drag, sync: "see" };
-    this.force = new Chart(force, { ...common, unit: units.force, height: 220, curves: [
+    this.force = new Chart(force, { ...common, unit: `${units.noun} (${units.force})`, height: 200, curves: [
       curve("friction_n", "measured", "measured"), curve("model_n", "model", "model", { width: 1.6 }),
       curve("beside_n", "beside", "beside", { dash: [6, 4], width: 1.4 })] });
-    this.rest = new Chart(rest, { ...common, unit: units.force, height: 130, legend: false, curves: [curve("residual_n", "record minus model", "measured")] });
-    this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 326 });
-    this.map = new RunsMap(map, (run) => page.look({ run, span: [null, null] }));
+    this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: [
+      curve("beside_residual_n", "of the other", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
+    this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 360 });
+    this.speeds = new Stribeck(speeds, { brushed: (box) => this.select(box && { box }) });
+    this.map = new RunsMap(map, (run, box) => page.look({ run, span: [null, null], ...(box ? { selection: { run, box } } : {}) }));
   }
 
   told(before) {
     const { state } = this.page;
-    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.record_names]);
+    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.record_names, this.page.model?.holdout_rms_n]);
     if (!before || now !== this.was) { this.was = now; this.looked({}); }
   }
 
   looked(changes) {
     const { page } = this;
-    if (!page.run) { put(this.words, "Open some runs in room 1."); return; }
+    if (!page.run) { put(this.words, "Nothing is open."); return; }
     this.heading(); this.failures(); this.draw(changes);
   }
 
@@ -45,28 +49,46 @@ export class SeeRoom {
     const { page } = this, node = page.model, unit = page.units.force;
     put(this.words, node
       ? `${node.words}: RMS ${number(node.rms_n)} ${unit} where the noise is ${number(node.noise_n)} ${unit}${node.holdout_rms_n ? `; on runs left out ${number(node.holdout_rms_n)} ${unit}` : ""}.`
-      : "The records alone: fit a model in room 3.");
+      : "The records alone: there is no model yet.");
+    this.residual.style.display = node ? "" : "none";
     const way = (mode, words) => h("label", {}, h("input", { type: "radio", name: "drag", checked: this.drag === mode, "data-key": `drag-${mode}`,
       onchange: () => { this.drag = mode; } }), ` ${words} `);
-    put(this.head, "Dragging: ", way("brush", "selects"), way("zoom", "zooms"),
-      h("button", { "data-key": "all-time", onclick: () => page.look({ span: [null, null] }) }, "All of the time"),
-      h("button", { "data-key": "no-selection", disabled: !page.selection, onclick: () => this.select(null) }, "Clear selection"),
-      h("label", {}, h("input", { type: "checkbox", checked: this.all, "data-key": "all-runs", onchange: (e) => { this.all = e.target.checked; this.looked({}); } }), " plane of all runs"),
-      h("label", {}, h("input", { type: "checkbox", checked: this.curve, "data-key": "curve", onchange: (e) => { this.curve = e.target.checked; this.draw(); } }), " steady curve"),
-      key("measured", "measured"), key("model", "model"), page.state.beside ? key("beside", "beside") : null, key("selected", "selected"));
+    const end = (which, words) => h("label", {}, `${words} `, h("input", { type: "number", class: "short", step: "any", value: this.ends[which], "data-key": `from-to-${which}`,
+      "aria-label": `${which ? "end" : "begin"} of a stretch, s`, onchange: (e) => { this.ends[which] = e.target.value; this.heading(); } }));
+    const [from, to] = this.ends.map(Number), there = this.ends.every((v) => v !== "") && from < to;
+    put(this.head, "Dragging", way("brush", "selects"), way("zoom", "zooms"),
+      end(0, "Time from"), end(1, "to"), "s",
+      h("button", { "data-key": "select-stretch", disabled: !there, onclick: () => this.select({ run: page.run, from_s: from, to_s: to }) }, "Select"),
+      h("button", { "data-key": "zoom-stretch", disabled: !there, onclick: () => page.look({ span: [from, to] }) }, "Zoom"),
+      h("button", { "data-key": "all-time", disabled: page.span[0] === null, onclick: () => page.look({ span: [null, null] }) }, "All of the time"),
+      h("button", { "data-key": "no-selection", disabled: !page.selection, onclick: () => this.select(null) }, "Clear selection"));
+    const runs = (all, words) => h("label", {}, h("input", { type: "radio", name: "plane", checked: this.all === all, "data-key": all ? "all-runs" : "this-run",
+      onchange: () => { this.all = all; this.looked({}); } }), ` ${words} `);
+    put(this.which, runs(false, "this run"), runs(true, "all runs"), key("measured", "measured"), node ? key("model", "model") : null);
   }
 
-  select(selection) { this.page.look({ selection, mark: null }); }
+  select(selection) { this.page.look({ selection }); }
 
   failures() {
     const { page } = this, node = page.model, unit = page.units.force;
-    if (!node) { put(this.fails, h("p", { class: "faint" }, "Nothing to compare with.")); return; }
+    if (!node) { put(this.fails, h("p", { class: "faint" }, "Nothing to compare with: fit a model first.")); return; }
+    const marked = page.selection?.mark;
     put(this.fails, node.failures.length ? h("table", {}, h("tbody", {}, node.failures.map((f, i) =>
-      h("tr", { class: page.mark === i ? "now" : "" },
-        h("td", {}, h("button", { "data-key": `fail-${i}`, "aria-pressed": String(page.mark === i),
-          onclick: () => page.look({ mark: page.mark === i ? null : i }) }, f.axis)),
-        h("td", { class: "n" }, `${(100 * f.share).toFixed(0)} %`), h("td", {}, f.where)))))
-      : h("p", {}, `Nowhere: what is left (${number(node.rms_n)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`));
+      h("tr", { class: marked === i ? "now" : "" },
+        h("td", {}, h("button", { "data-key": `fail-${i}`, "aria-pressed": String(marked === i), title: "mark it in every plot",
+          onclick: () => (marked === i ? this.select(null) : this.mark(i)) }, `along ${f.axis}`)),
+        h("td", {}, `${(100 * f.share).toFixed(0)} % of the mean square error: ${f.where}.`, marked === i ? h("div", { class: "faint" }, `Usually ${f.causes}. To see more: ${f.to_do}.`) : null)))))
+      : h("p", {}, `Nowhere: what is left (${number(node.rms_n)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`),
+      node.findings.length ? [h("h3", {}, "What the recording did"), h("ul", {}, node.findings.map((f) => h("li", {}, f.words)))] : null);
+  }
+
+  // A failure, in a run that has it.
+  mark(i) {
+    const { page } = this, { ranges_s: ranges } = page.model.failures[i], names = page.model.record_names;
+    const held = Object.entries(ranges).map(([k, stretches]) => [names[k], stretches.reduce((sum, [a, b]) => sum + b - a, 0)]);
+    const best = held.reduce((a, b) => (b[1] > a[1] ? b : a), [page.run, 0])[0];
+    const here = held.some(([name]) => name === page.run);
+    page.look({ selection: { mark: i }, ...(here ? {} : { run: best, span: [null, null] }) });
   }
 
   // What is drawn already is not asked for again: of a new selection only where it lies.
@@ -74,7 +96,7 @@ export class SeeRoom {
     const { page } = this, model = page.state.current;
     const ask = Symbol(); this.ask = ask;
     const plane = { model, runs: this.all ? page.state.runs.map((r) => r.name) : [page.run], columns: 400, rows: 300 };
-    const stays = Object.keys(changes).length > 0 && Object.keys(changes).every((name) => name === "selection" || name === "mark");
+    const stays = Object.keys(changes).length === 1 && "selection" in changes;
     try {
       const [found, brushed] = await Promise.all([
         stays ? null : Promise.all([
@@ -84,12 +106,11 @@ export class SeeRoom {
       if (this.ask !== ask) return;
       if (found) {
         const [series, density] = found;
-        this.force.show(series); this.rest.show(series); this.plane.show(density, page.units, this.curve ? page.model?.curve : null);
+        this.force.show(series); this.rest.show(series); this.plane.show(density, page.units); this.speeds.show(page.model, page.units);
       }
-      this.plane.select(brushed?.selected);
-      const marks = page.mark === null ? [] : this.stretches(page.mark), selected = brushed?.stretches_s[page.run] ?? [];
-      for (const chart of [this.force, this.rest]) chart.mark(marks, selected);
-      this.say(brushed);
+      this.plane.select(brushed?.selected); this.speeds.select(brushed?.speeds_m_s); this.map.select(brushed?.cells ?? []);
+      for (const chart of [this.force, this.rest]) chart.mark([], brushed?.by_run[page.run]?.stretches_s ?? []);
+      this.say(brushed); page.selected(brushed);
       document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
       document.body.dataset.draws = String(++page.draws);
       if (stays) return;
@@ -98,16 +119,12 @@ export class SeeRoom {
     } catch (error) { page.say(error.message); }
   }
 
-  // The worst bin of a pattern in the run that is shown.
-  stretches(index) {
-    const node = this.page.model;
-    return node.failures[index]?.ranges_s[String(node.record_names.indexOf(this.page.run))] ?? [];
-  }
-
   say(brushed) {
-    const { page } = this, unit = page.units.force;
-    if (!brushed) { this.said.textContent = page.mark === null ? "" : `Marked: ${page.model.failures[page.mark].bin}.`; return; }
+    const { page } = this, unit = page.units.force, mark = page.selection?.mark;
+    if (!brushed) { this.said.textContent = "Select by dragging in any plot: it is shown in all of them."; return; }
     const there = brushed.rms_n === null ? "" : `; record minus model there: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms_n)} ${unit}`;
-    this.said.textContent = `Selected: ${brushed.samples} samples in ${Object.keys(brushed.stretches_s).length} runs${there}.`;
+    const runs = Object.entries(brushed.by_run).map(([name, one]) => `${name} ${one.samples}`);
+    const named = runs.length ? ` (${runs.slice(0, 4).join(", ")}${runs.length > 4 ? ", …" : ""})` : "";
+    this.said.textContent = `${mark === undefined ? "Selected" : `Marked: ${page.model.failures[mark].bin}`}: ${brushed.samples} samples${named}${there}.`;
   }
 }

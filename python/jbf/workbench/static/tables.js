@@ -7,27 +7,27 @@ export function parameters(node) {
   const rows = Object.entries(node.parameters).map(([name, p]) => {
     const held = p.held || p.stderr === null || p.stderr === undefined;
     const half = 1.96 * p.stderr;
-    return h("tr", {}, h("td", {}, name), h("td", { class: "n" }, `${number(p.value, 4)} ${p.unit ?? ""}`),
-      h("td", { class: "n" }, held ? (p.note || "held") : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`));
+    return h("tr", {}, h("td", {}, p.shown ?? name), h("td", { class: "n" }, `${number(p.value, 4)} ${p.unit ?? ""}`),
+      h("td", { class: held ? "faint" : "n" }, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`));
   });
   return h("table", {}, head(["parameter", "value", "95 % interval"]), h("tbody", {}, rows));
 }
 
+// Shaded by their size; what two parameters share almost wholly stands out.
 export function correlations({ names, matrix }) {
-  if (names.length < 2) return null;
-  return h("details", {}, h("summary", {}, "Correlations of the estimates"), h("table", {},
-    h("thead", {}, h("tr", {}, h("th", {}), names.map((n) => h("th", { class: "n" }, n)))),
-    h("tbody", {}, matrix.map((row, i) => h("tr", {}, h("th", {}, names[i]), row.map((v) => {
-      const cell = h("td", { class: "n" }, v.toFixed(2));
-      if (Math.abs(v) > 0.95 && v < 0.9999) { cell.style.color = colour("bad"); cell.style.fontWeight = "700"; }
+  if (names.length < 2) return h("div");
+  const short = names.map((n) => n.split(".").at(-1));
+  return h("div", {}, h("table", { class: "matrix" }, h("caption", {}, "Correlations of the estimates"),
+    h("thead", {}, h("tr", {}, h("th", {}), short.map((n, i) => h("th", { class: "n", title: names[i] }, n)))),
+    h("tbody", {}, matrix.map((row, i) => h("tr", {}, h("th", { title: names[i] }, short[i]), row.map((v, k) => {
+      const cell = h("td", { class: "n" }, k > i ? "" : v.toFixed(2));
+      if (k < i) cell.style.background = `color-mix(in srgb, ${colour(v > 0 ? "beside" : "model")} ${Math.round(45 * Math.abs(v))}%, transparent)`;
+      if (k < i && Math.abs(v) > 0.95) cell.style.fontWeight = "700";
       return cell;
     }))))));
 }
 
 export function power(rows) {
-  const at = (value, unit) => (value === null ? "never" : `${number(value)} ${unit}`);
-  return h("table", {}, head(["effect (its strength)", "found, 80 %", "found, 95 %", "named alone, 80 %"]),
-    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, `${p.effect} (${p.parameter})`),
-      h("td", { class: "n" }, p.always ? "always" : at(p.found_80, p.unit)), h("td", { class: "n" }, p.always ? "always" : at(p.found_95, p.unit)),
-      h("td", { class: "n" }, at(p.alone_80, p.unit))))));
+  return h("table", {}, head(["effect", "found in 80 of 100 from", "that is, of the friction", "named alone from", "else it could be"]),
+    h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.found, p.share, p.alone, p.like].map((words) => h("td", { class: "n" }, words))))));
 }

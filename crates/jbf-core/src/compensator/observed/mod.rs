@@ -18,8 +18,9 @@
 //! v+ = keep' v + gain' (u - ...)                keep' = exp(-(a + b s) dt): stable for any s
 //! ```
 //!
-//! and the second is taken where `gain s > keep`; both rest at the same speed. A blind observer has
-//! nothing else that holds it.
+//! and the second is taken where `gain s > keep` and the first would turn the shaft round, or the
+//! observer is blind, which has nothing else that holds it; both rest at the same speed. Else the
+//! voltage that the loop sends against smooth friction cancels it in the first, as it was sent.
 //!
 //! The observer sticks as the plant does, so that rest teaches nothing that is not so. The
 //! compensator sends out F_hat with `dir` the direction that the motion is wanted in where the
@@ -194,6 +195,12 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
+    /// Whether a step with the smooth friction of its begin ends on the other side of rest.
+    #[inline]
+    fn turns_round(&self, velocity_rad_s: T, net_v: T) -> bool {
+        (self.keep * velocity_rad_s + self.gain * net_v) * velocity_rad_s < T::ZERO
+    }
+
     /// From rest, with what was learned.
     #[cold]
     fn begin_anew(&self, state: &mut State<T, M::State>) {
@@ -239,7 +246,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         let v = state.velocity_rad_s;
         let net_v = applied_v - state.friction.smooth - state.learned.rest_v;
         let s = state.steep_v_s_rad;
-        let (keep, gain, net_v) = if s > T::ZERO {
+        let (keep, gain, net_v) = if s > T::ZERO && (blind || self.turns_round(v, net_v)) {
             let damping = self.damping_v_s_rad + s;
             let keep = (-damping * self.input_rad_s_v).exp();
             (keep, (T::ONE - keep) / damping, net_v + s * v)

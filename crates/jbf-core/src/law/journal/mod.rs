@@ -38,6 +38,7 @@ use crate::stepper::{Rk4, Stepper, StiffStepper};
 use crate::transition::transition_eccentricity;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::{within, Asperities, Film, Gap};
+use parameters::FILM_PARAMETERS;
 
 /// Attitude angle at which a run starts, rad. The film forgets it within a second.
 pub const START_PHI_RAD: f64 = 0.15;
@@ -227,6 +228,19 @@ impl<T: Real> Journal<T> {
 
 impl<T: Real> Law<T> for Journal<T> {
     type State = State<T>;
+
+    const FILM_PARAMETERS: Option<[usize; 2]> = Some(FILM_PARAMETERS);
+
+    /// The square of the eccentricity ratio.
+    #[inline(always)]
+    fn film(&self, state: &State<T>) -> T {
+        state.e2
+    }
+
+    #[inline(always)]
+    fn put_film(&self, state: &mut State<T>, film: T) {
+        state.e2 = film;
+    }
 
     fn start(&self, load_n: T) -> State<T> {
         let loaded = self.under(load_n);

@@ -45,6 +45,9 @@ pub const PARAMETERS: &[Parameter] = &[
     .log(),
 ];
 
+/// `U_tr_m_s` and `K0`: those that move the film.
+pub(in crate::law) const FILM_PARAMETERS: [usize; 2] = [1, 2];
+
 /// The four numbers that a fit finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {

@@ -1,0 +1,80 @@
+//! Paths of films side by side: the bits of each stepped alone, on any instruction set.
+
+use jbf_batch::{film_paths, Simd};
+use jbf_core::film_path::FilmStep;
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::Law;
+use jbf_core::{Bearing, Clock};
+
+fn law(i: usize, k0: f64) -> Journal<f64> {
+    let parameters = Parameters {
+        u_tr_m_s: 0.05 + 0.001 * i as f64,
+        k0,
+        ..Parameters::TABLE_4_2
+    };
+    Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
+}
+
+/// Steps of unlike lengths under a load of its own, which is not the constructor's.
+fn steps(count: usize, motion: usize, longest_s: f64) -> Vec<FilmStep> {
+    let speed = |t: f64| 0.127 * (t * (0.4 + 0.3 * motion as f64)).sin().abs();
+    let mut time_s = 0.0;
+    (0..count)
+        .map(|i| {
+            let dt_s = longest_s * (1.0 + (i % 5) as f64) / 5.0;
+            let at = |share: f64| speed(time_s + share * dt_s);
+            let step = FilmStep {
+                speed_m_s: [at(0.0), at(0.5), at(1.0)],
+                dt_s,
+                load_n: 80.0 + 10.0 * motion as f64,
+            };
+            time_s += dt_s;
+            step
+        })
+        .collect()
+}
+
+fn alone(law: &Journal<f64>, steps: &[FilmStep]) -> Vec<f64> {
+    let mut film = law.start(steps[0].load_n);
+    let place = |s: &FilmStep| {
+        law.advance(&mut film, s.speed_m_s, 1.0, s.dt_s);
+        law.film(&film)
+    };
+    steps.iter().map(place).collect()
+}
+
+#[test]
+fn the_bits_of_each_alone() {
+    // As many as fill one block, less, more; of a motion each, or some of one.
+    for count in [1, 7, 16, 30, 45] {
+        let motions: Vec<Vec<FilmStep>> = (0..count)
+            .map(|m| steps(50 + 37 * (m % 6), m / 5, 0.02))
+            .collect();
+        let films: Vec<(Journal<f64>, &[FilmStep])> = (0..count)
+            .map(|i| (law(i, 7.5e5), motions[i / 3 * 3].as_slice()))
+            .collect();
+        for simd in Simd::available() {
+            for ((law, steps), path) in films.iter().zip(film_paths(&films, simd)) {
+                assert_eq!(path.expect("inside"), alone(law, steps), "{}", simd.name());
+            }
+        }
+    }
+}
+
+/// A film that a coarse step carries out of its bearing has no path; its neighbours have theirs.
+#[test]
+fn what_leaves_the_bearing_is_told() {
+    let coarse = steps(200, 1, 5.0);
+    let films = [
+        (law(0, 7.5e5), coarse.as_slice()),
+        (law(1, 7.5e5), &coarse[..0]),
+    ];
+    let paths = film_paths(&films, Simd::best());
+    assert_eq!(paths[0], None);
+    assert_eq!(paths[1], Some(vec![]));
+}
+
+#[test]
+fn no_films_no_paths() {
+    assert!(film_paths(&[], Simd::best()).is_empty());
+}

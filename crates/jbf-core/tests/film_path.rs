@@ -1,0 +1,156 @@
+//! A film on the path of its own parameters: the chain round it gives the same bits.
+
+mod common;
+
+use common::motion::Sines;
+use jbf_core::effect::Effects;
+use jbf_core::film_path::{FilmStep, FilmSteps, OnPath, Place};
+use jbf_core::law::journal::{Journal, Parameters};
+use jbf_core::law::Law;
+use jbf_core::run::{inner_step_s, predict, Record};
+use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
+use std::cell::RefCell;
+
+const MAX_STEP_S: f64 = 0.02;
+
+/// A law with derivatives by f_m, U_tr and K0 where its numbers carry any.
+fn law<T: Real>(lifted: impl Fn(f64, usize) -> T) -> Journal<T> {
+    let p = Parameters::TABLE_4_2;
+    let parameters = Parameters {
+        f_m: lifted(p.f_m, 0),
+        u_tr_m_s: lifted(p.u_tr_m_s, 1),
+        k0: lifted(p.k0, 2),
+        gamma: T::of(p.gamma),
+    };
+    Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
+}
+
+fn chain<T: Real, L: Law<T>>(law: L) -> Chain<T, L, Effects<T>> {
+    let mut effects = Effects::NONE;
+    for (name, values) in [
+        ("coulomb_drag", &[T::of(1.0)][..]),
+        ("presliding", &[T::of(2e4)]),
+        ("sensor_lag", &[T::of(0.05)]),
+    ] {
+        effects.set(name, values).expect("valid");
+    }
+    Chain::round(law, effects, Some(&Bearing::THESIS))
+}
+
+/// Two-way motion at uneven samples, some so far apart that steps lie between them.
+struct Columns([Vec<f64>; 5]);
+
+impl Columns {
+    fn new() -> Self {
+        let sines = Sines::two_way(1.0);
+        let mut time_s = 0.0;
+        let motions: Vec<Motion<f64>> = (0..600)
+            .map(|i| {
+                time_s += if i % 7 == 0 { 0.05 } else { 0.013 };
+                sines.at(time_s)
+            })
+            .collect();
+        let column = |f: fn(&Motion<f64>) -> f64| motions.iter().map(f).collect();
+        Self([
+            column(|m| m.time_s),
+            column(|m| m.velocity_m_s),
+            column(|m| m.acceleration_m_s2),
+            column(|m| m.angle_rad),
+            column(|m| m.load_n),
+        ])
+    }
+
+    fn record(&self) -> Record<'_> {
+        let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] = &self.0;
+        Record {
+            time_s,
+            velocity_m_s,
+            acceleration_m_s2,
+            angle_rad,
+            load_n,
+            temperature_c: None,
+        }
+    }
+}
+
+/// The steps of a record, and a film's places along them.
+fn path<const N: usize>(record: &Record<'_>, by: [usize; 2]) -> Vec<Place> {
+    let asked: RefCell<Vec<FilmStep>> = RefCell::new(Vec::new());
+    let asks = Chain::round(FilmSteps::new(|s| asked.borrow_mut().push(s)), (), None);
+    let inner_s = inner_step_s(&chain(law(|v, _| v)), record, MAX_STEP_S);
+    predict(&asks, record, inner_s, |_, _| {});
+    let alone = law(Dual::<N>::parameter);
+    let load = |s: &FilmStep| Dual::of(s.load_n);
+    let mut film = alone.start(load(&asked.borrow()[0]));
+    let steps = asked.into_inner();
+    let place = |s: &FilmStep| {
+        alone.set_load(&mut film, load(s));
+        alone.advance(
+            &mut film,
+            s.speed_m_s.map(Dual::of),
+            Dual::ONE,
+            Dual::of(s.dt_s),
+        );
+        let e2 = alone.film(&film);
+        Place {
+            film: e2.value,
+            slopes: by.map(|n| e2.slope[n]),
+        }
+    };
+    steps.iter().map(place).collect()
+}
+
+fn readings<T: Real, L: Law<T>>(law: L, record: &Record<'_>) -> Vec<T> {
+    let mut out = Vec::new();
+    predict(&chain(law), record, MAX_STEP_S, |_, f| out.push(f));
+    out
+}
+
+#[test]
+fn the_same_bits_and_slopes() {
+    let columns = Columns::new();
+    let record = columns.record();
+    let by = <Journal<f64> as Law<f64>>::FILM_PARAMETERS.expect("a film");
+    let path = path::<3>(&record, by);
+    assert!(path.len() > 600, "reversals and inner steps are steps");
+
+    let plain = law(|v, _| v);
+    let of = |n: usize| [plain_parameter(by[0]), plain_parameter(by[1])][n];
+    let followed = readings(OnPath::new(plain, [of(0), of(1)], &path), &record);
+    let stepped = readings(plain, &record);
+    assert!(followed
+        .iter()
+        .zip(&stepped)
+        .all(|(a, b)| a.to_bits() == b.to_bits()));
+
+    let lifted = law(Dual::<3>::parameter);
+    let parameters = by.map(|n| Dual::<3>::parameter(plain_parameter(n), n));
+    let followed = readings(OnPath::new(lifted, parameters, &path), &record);
+    let stepped = readings(lifted, &record);
+    for (a, b) in followed.iter().zip(&stepped) {
+        assert_eq!(a.value.to_bits(), b.value.to_bits());
+        assert_eq!(a.slope, b.slope);
+    }
+    assert!(stepped
+        .iter()
+        .any(|f| f.slope[1] != 0.0 && f.slope[2] != 0.0));
+}
+
+/// U_tr or K0, by its number on the page.
+fn plain_parameter(number: usize) -> f64 {
+    let p = Parameters::TABLE_4_2;
+    [p.f_m, p.u_tr_m_s, p.k0, p.gamma][number]
+}
+
+/// Past its end the film steps by itself: from where the path left its eccentricity.
+#[test]
+fn a_path_too_short_is_no_panic() {
+    let columns = Columns::new();
+    let record = columns.record();
+    let path = path::<3>(&record, [1, 2]);
+    let followed = readings(
+        OnPath::new(law(|v, _| v), [0.06, 7.5e5], &path[..100]),
+        &record,
+    );
+    assert!(followed.iter().all(|f| f.is_finite()));
+}

@@ -1,0 +1,72 @@
+"""Friction over the speed, as Stribeck drew it: means of all runs, of record and model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.comparison.axes import BOUNDARY_SHARE
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.parts import added_by, beside_friction
+from jbf.models.catalogue import transition_speed
+from jbf.models.model import Model
+
+Array = npt.NDArray[np.float64]
+
+BINS = 24
+FEWEST = 5
+"""Fewer samples make no mean worth a dot."""
+
+
+@dataclass(frozen=True)
+class OverSpeed:
+    """One way of the motion: bins of as many samples each, the slowest first.
+
+    Attributes
+    ----------
+    way
+        1.0 or -1.0.
+    speed_m_s
+        Mean speed of each bin, with its sign.
+    measured_n, scatter_n
+        Mean and standard deviation of the readings, without what is no friction.
+    modelled_n
+        Mean of the model at the same samples.
+    """
+
+    way: float
+    speed_m_s: Array
+    measured_n: Array
+    scatter_n: Array
+    modelled_n: Array
+
+
+def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
+    """Means at each speed of all samples that count, one of each way in which there was motion."""
+    rest = added_by(comparison, beside_friction(comparison))
+    prepared, samples = comparison.campaign.prepared, comparison.samples
+    speed = samples.flat([p.motion.velocity_m_s for p in prepared])
+    measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
+    modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
+    found = []
+    for way in (1.0, -1.0):
+        own = np.flatnonzero(speed * way > 0.0)
+        if len(own) < FEWEST:
+            continue
+        order = own[np.argsort(way * speed[own], kind="stable")]
+        parts = np.array_split(order, max(min(BINS, len(order) // FEWEST), 1))
+        rows = [
+            (speed[p].mean(), measured[p].mean(), measured[p].std(), modelled[p].mean())
+            for p in parts
+        ]
+        x, mean, scatter, model = np.array(rows).T
+        found.append(OverSpeed(way, x, mean, scatter, model))
+    return tuple(found)
+
+
+def regimes(model: Model) -> list[tuple[float, str]]:
+    """Speeds, m/s, at which a regime begins, and its name; none of a law that has no film."""
+    u_tr = transition_speed(model.law, model.values.tolist())
+    return [] if u_tr is None else [(BOUNDARY_SHARE * u_tr, "mixed"), (u_tr, "full film")]

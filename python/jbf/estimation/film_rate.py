@@ -1,0 +1,62 @@
+"""Whether a film can be followed along the records, or answers so fast that they never see it.
+
+A film that has come to rest long before the next sample is a curve of friction over speed, and
+nothing in the records tells how fast it is. To follow it all the same takes hundreds of steps from
+sample to sample, in every one of the thousands of predictions of a search. Times in milliseconds
+look like that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from jbf import _core
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.problem import Problem
+from jbf.models.catalogue import find_law
+from jbf.models.vocabulary import Clock
+
+MOST_STEPS = 200.0
+"""From sample to sample, as a mean over the campaign. By then a film has forgotten what the sample
+before left of it two hundred times over."""
+ANY_STEPS = 1e5
+"""So many in all are taken whatever the records: a prediction has them in some milliseconds."""
+
+
+def check_film(
+    campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
+) -> None:
+    """An InputError where a law's film is far too fast for these records, wherever a search begins.
+
+    Parameters
+    ----------
+    seed
+        Values by name that the search starts from.
+    """
+    if not find_law(law).has_film:
+        return
+    problem = Problem(campaign, law, clock, ())
+    known = {name: value for name, value in (seed or {}).items() if name in problem.names}
+    rate = min(
+        problem.chain.film_rate_1_s(start, campaign.motions) for start in problem.starts(known)
+    )
+    followed = min(rate, _core.FASTEST_FILM_1_S)
+    seconds = math.fsum(p.run.duration_s for p in campaign.prepared)
+    steps = followed * seconds
+    samples = sum(len(p.friction_n) for p in campaign.prepared)
+    if steps <= max(MOST_STEPS * samples, ANY_STEPS):
+        return
+    every = float(np.median([p.step_s for p in campaign.prepared]))
+    first = campaign.prepared[0].run
+    raise InputError(
+        file=first.path or first.name,
+        column="time_s",
+        problem=f"the film of the law {law} cannot be identified from these runs: on this rig it "
+        f"answers within {1.0 / rate:.1g} s, and there is a sample every {every:.2g} s",
+        mend="check that times are in seconds, and the rig's bearing and load, or take a law "
+        "without a film, such as stribeck",
+    )

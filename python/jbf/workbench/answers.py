@@ -1,0 +1,138 @@
+"""What is told of a model, a fit, a round and a diagnosis: plain numbers and words for the page.
+
+What is as long as a record goes to files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jbf.comparison.comparison import Comparison
+from jbf.comparison.over_speed import friction_over_speed, regimes
+from jbf.diagnosis import Diagnosis, Step
+from jbf.diagnosis.power import Power
+from jbf.errors import JbfError
+from jbf.estimation.fit import Fit
+from jbf.models.model import Model
+from jbf.models.parameter_units import shown
+from jbf.models.parameter_value import ParameterValue
+from jbf.reporting.tables import power_rows
+from jbf.reporting.words import verdict_sentence
+from jbf.workbench.marks import failure_marks
+
+Answer = dict[str, Any]
+
+
+def of_model(comparison: Comparison) -> Answer:
+    model = comparison.model
+    return {
+        "law": model.law,
+        "effects": list(model.effects),
+        "model": model.to_toml(),
+        "rms_n": comparison.rms_n,
+        "holdout_rms_n": None,
+        "noise_n": comparison.noise_n,
+        "runs": [{"name": r.name, "rms_n": r.rms_n} for r in comparison.runs],
+        "failures": failure_marks(comparison),
+        "findings": [f.to_dict() for f in comparison.findings],
+        "parameters": _parameters(model, model.parameters),
+        "trials": None,
+        "stribeck": _stribeck(comparison),
+    }
+
+
+def _stribeck(comparison: Comparison) -> Answer:
+    """Friction over the speed: means of record and model each way, the law alone, its regimes."""
+    ways = [
+        {name: value.tolist() if name != "way" else value for name, value in vars(own).items()}
+        for own in friction_over_speed(comparison)
+    ]
+    found = {"ways": ways, "regimes_m_s": regimes(comparison.model)}
+    return {**found, "steady": _steady_curve(comparison)}
+
+
+def _steady_curve(comparison: Comparison) -> Answer | None:
+    """The law at steady speeds, over those of the runs; None of a law that has none."""
+    model = comparison.model
+    motions = [p.motion.velocity_m_s for p in comparison.campaign.prepared]
+    most = max(float(np.nanmax(np.abs(v))) for v in motions)
+    speeds = most * np.geomspace(1e-4, 1.0, 120)
+    try:
+        force = model.steady_friction(speeds)
+    except JbfError:
+        return None
+    return {"velocity_m_s": speeds.tolist(), "friction_n": np.asarray(force).tolist()}
+
+
+def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
+    """Each parameter with the name and the unit that people see."""
+    seen = shown(model.law, model.effects, model.rig.quantities)
+    return {
+        name: {**p.to_dict(), "shown": seen[name][0], "unit": seen[name][1]}
+        for name, p in values.items()
+    }
+
+
+def of_fit(fit: Fit) -> Answer:
+    told = [name for name, p in fit.parameters.items() if not p.held]
+    return {
+        "parameters": _parameters(fit.model, fit.parameters),
+        "correlations": {"names": told, "matrix": np.round(fit.correlations, 3).tolist()},
+        "doubtful": list(fit.doubtful),
+        "converged": fit.converged,
+    }
+
+
+def of_step(step: Step) -> Answer:
+    return {
+        "holdout_rms_n": step.holdout_rms_n if math.isfinite(step.holdout_rms_n) else None,
+        "trials": [t.to_dict() for t in step.trials],
+    }
+
+
+def power_told(power: Iterable[Power], model: Model) -> list[Answer]:
+    """How strong each effect must be to be found, in the words of the reports."""
+    found = list(power)
+    rows = power_rows(found, model.law, model.rig.quantities)
+    names = ("effect", "found", "share", "alone", "like")
+    return [
+        {**dict(zip(names, row, strict=True)), "hidden": p.hidden}
+        for p, row in zip(found, rows, strict=True)
+    ]
+
+
+def of_diagnosis(diagnosis: Diagnosis) -> Answer:
+    told = diagnosis.to_dict()
+    next_run = diagnosis.experiment
+    return {
+        "sentence": verdict_sentence(diagnosis, ""),
+        "summary": diagnosis.summary(),
+        "next_run": None if next_run is None else next_run.run.to_csv(),
+        **{
+            key: told[key]
+            for key in ("verdict", "effects", "alternatives", "weights", "steps", "unexplained",
+                        "next_experiment", "not_tried", "elapsed_s")
+        },
+    }  # fmt: skip
+
+
+def kept_records(comparison: Comparison, folder: Path) -> Answer:
+    """Writes time, speed, friction, prediction and which samples count, a file a run."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = zip(
+        comparison.campaign.prepared,
+        comparison.predictions,
+        comparison.samples.counted,
+        strict=True,
+    )
+    for number, (p, predicted, counted) in enumerate(rows):
+        np.save(
+            folder / f"{number}.npy",
+            np.vstack([p.run.time_s, p.motion.velocity_m_s, p.friction_n, predicted, counted]),
+        )
+    return {"record_names": [p.run.name for p in comparison.campaign.prepared]}

@@ -1,0 +1,262 @@
+"""The map as a form: which column of the file is what, read in which unit, turned or not.
+
+The text of the map stays what counts. The form is read from it and writes into it; what a form
+cannot say (a formula, a cut, a clock) stays as it was written.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from jbf.errors import InputError
+from jbf.importing.columns import split_unit
+from jbf.importing.expression import OPEN
+from jbf.importing.formats.registry import open_source
+from jbf.importing.guess_rig import guess_rig
+from jbf.importing.mapping import Map, read_map
+from jbf.importing.targets import KNOWN, wanted_unit
+from jbf.importing.units import parse_unit
+
+FIRST = 3
+"""Values of a column that are shown as the file has them."""
+_PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
+_ANSWERED = re.compile(r"^# Open:\n(?:#   .*\n)+\n?", re.MULTILINE)
+"""What a guess asked; the form shows what is still open."""
+_LINE = re.compile(r"\w+\s*=")
+WORDS = {
+    "time_s": "time",
+    "position_m": "position of the slide",
+    "angle_rad": "angle of the shaft or joint",
+    "velocity_m_s": "speed of the slide, or at the surface",
+    "velocity_rad_s": "speed of the joint, as an angle",
+    "speed_rpm": "speed of the shaft or joint, in turns",
+    "friction_n": "friction force",
+    "torque_n_m": "torque at the joint",
+    "motor_torque_n_m": "torque of the motor",
+    "current_a": "motor current",
+    "torque_percent": "torque, % of the rated one",
+    "force_percent": "force, % of the rated one",
+    "load_n": "load (normal force)",
+    "temperature_c": "temperature",
+    "pressure_pa": "pressure",
+    "motor_angle_rad": "angle of the motor",
+    "motor_velocity_rad_s": "speed of the motor, as an angle",
+    "motor_speed_rpm": "speed of the motor, in turns",
+}
+"""What a column of a run is, for whoever does not know its name."""
+SUGGESTED = (
+    "s", "ms", "us", "min", "m", "cm", "mm", "um", "in", "rad", "deg", "rev", "m/s", "mm/s", "um/s",
+    "m/min", "mm/min", "rad/s", "deg/s", "rpm", "N", "mN", "kN", "lbf", "N m", "mN m", "N cm", "A",
+    "mA", "%", "Pa", "kPa", "MPa", "bar", "mbar", "psi", "°C", "K",
+)  # fmt: skip
+"""Units that are offered; any other may be written."""
+
+
+def file_columns(path: Path) -> list[dict[str, Any]]:
+    """The columns of a file: name, unit, first values as they stand."""
+    found = []
+    with open_source(path) as source:
+        for table in source.tables:
+            head = source.head(table, FIRST)
+            for column in table.columns:
+                values = head.get(column.name, np.empty(0))[:FIRST]
+                found.append(
+                    {
+                        "name": column.name,
+                        "unit": column.unit or split_unit(column.name)[1],
+                        "first": [_shown(value) for value in values],
+                    }
+                )
+    return found
+
+
+def _shown(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def quantities() -> list[dict[str, Any]]:
+    """What a column can be: key, words, the units offered for it."""
+    found = []
+    for key in (*WORDS, *(k for k in KNOWN if k not in WORDS)):
+        wanted = wanted_unit(key)
+        units = [u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(wanted)]
+        found.append({"key": key, "words": WORDS.get(key, key), "units": units})
+    return found
+
+
+def form_of(text: str) -> dict[str, Any]:
+    """The map of a text as the form shows it.
+
+    Raises
+    ------
+    InputError
+        The text is no map.
+    """
+    made = _map_of(text)
+    rows = []
+    for key, expression in made.columns.items():
+        plain = _PLAIN.fullmatch(expression)
+        row: dict[str, Any] = {"key": key, "expression": expression}
+        if plain is not None:
+            row |= {
+                "column": plain["column"],
+                "unit": plain["unit"],
+                "turned": bool(plain["sign"]),
+            }
+        rows.append(row)
+    return {"rows": rows, "rig": {name: dict(part) for name, part in made.rig.items()}}
+
+
+def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
+    """The text with other columns, and with other values of the rig (`drive.pitch_m` to a number).
+
+    Where the columns speak of another machine its sections are guessed anew; what was filled in
+    stays.
+
+    Raises
+    ------
+    InputError
+        The text is no map.
+    """
+    before = _map_of(text)
+    document: Any = _parsed(_ANSWERED.sub("", text))
+    _put(document["columns"], {k: v for k, v in columns.items() if k in before.columns})
+    sections = _sections(before, columns, rig)
+    for name in set(before.rig) - set(sections):
+        del document[name]
+    for name, content in sections.items():
+        if name not in document:
+            document[name] = tomlkit.table()
+        _put(document[name], content)
+    new = [f"{k} = {_quoted(v)}" for k, v in columns.items() if k not in before.columns]
+    return _with_lines(tomlkit.dumps(document), new)
+
+
+def _with_lines(text: str, new: Sequence[str]) -> str:
+    """The text with lines behind the last one of its columns."""
+    lines = text.split("\n")
+    if not new:
+        return text
+    at = begin = lines.index("[columns]")
+    for number, line in enumerate(lines[begin + 1 :], begin + 1):
+        if line.startswith("["):
+            break
+        if _LINE.match(line):
+            at = number
+    return "\n".join([*lines[: at + 1], *new, *lines[at + 1 :]])
+
+
+def _quoted(text: str) -> str:
+    return tomlkit.item(text).as_string()
+
+
+def _sections(
+    before: Map, columns: Mapping[str, str], rig: Mapping[str, Any]
+) -> dict[str, dict[str, Any]]:
+    filled = {k: v for part in before.rig.values() for k, v in part.items() if v != OPEN}
+    sections = {name: dict(part) for name, part in before.rig.items()}
+    if set(columns) != set(before.columns) or not before.rig:
+        guessed, _ = guess_rig(set(columns))
+        if guessed:
+            sections = {
+                name: {k: filled.get(k, v) if v == OPEN else v for k, v in part.items()}
+                for name, part in guessed.items()
+            }
+    for place, value in rig.items():
+        name, _, key = place.partition(".")
+        if name in sections and value != sections[name].get(key):
+            sections[name].pop(key, None)
+            if value not in ("", None):
+                sections[name][key] = value
+    return sections
+
+
+def _put(section: Any, content: Mapping[str, Any]) -> None:
+    """Make a section hold this; what stays keeps its comments."""
+    for key in [key for key in section if key not in content]:
+        del section[key]
+    for key, value in content.items():
+        if section.get(key) != value:
+            section[key] = value
+
+
+def expression_of(row: Mapping[str, Any]) -> str:
+    """A row of the form as an expression."""
+    column = str(row["column"]).replace("`", "")
+    unit = str(row.get("unit") or "").strip()
+    return f"{'-' if row.get('turned') else ''}`{column}`{f' [{unit}]' if unit else ''}"
+
+
+def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, Any]) -> str:
+    """The text as a form changed it.
+
+    Raises
+    ------
+    InputError
+        Two columns are said to be the same, or the text is no map.
+    """
+    formulas = {row["key"]: row["expression"] for row in form_of(text)["rows"]
+                if "column" not in row}  # fmt: skip
+    columns: dict[str, str] = {}
+    for row in rows:
+        key = str(row["key"])
+        if key in columns:
+            words = WORDS.get(key, key)
+            raise InputError(problem=f"two columns are the {words}", mend="keep one of them")
+        columns[key] = expression_of(row)
+    kept = {k: v for k, v in formulas.items() if k not in columns}
+    numbers = {place: _number(value) for place, value in rig.items()}
+    return rewritten(text, {**columns, **kept}, numbers)
+
+
+def _number(value: Any) -> Any:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return str(value)
+
+
+def cut_name(text: str) -> str | None:
+    """The file of trims that a map names, as it is written there.
+
+    Raises
+    ------
+    InputError
+        The text is no map.
+    """
+    if _map_of(text).cut.file is None:
+        return None
+    return str(_parsed(text)["cut"]["file"])
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return tomlkit.parse(text)
+    except TOMLKitError as error:
+        raise InputError(problem=f"the map is no TOML ({error})", mend="correct it") from None
+
+
+def _map_of(text: str) -> Map:
+    with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
+        path = Path(there) / "map.toml"
+        path.write_text(text, encoding="utf-8")
+        try:
+            return read_map(path)
+        except InputError as error:
+            raise unplaced(error) from None
+
+
+def unplaced(error: InputError) -> InputError:
+    """The error without the temporary file that the map stood in."""
+    fields = error._fields()
+    if str(fields.get("file") or "").endswith("map.toml"):
+        fields["file"] = "the map"
+    return InputError(**fields)

@@ -1,0 +1,85 @@
+"""The workbench listens on loopback alone, and nothing that a page sends is run."""
+
+from __future__ import annotations
+
+import socket
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("starlette", reason="the workbench's server is an extra")
+
+from jbf.errors import InputError
+from jbf.workbench.serve import HOST, listening
+from starlette.testclient import TestClient
+
+
+def others() -> list[str]:
+    """Addresses of this machine that others can reach."""
+    found = {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)}
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # sends nothing
+            found.add(str(probe.getsockname()[0]))
+        except OSError:
+            pass
+    return sorted(a for a in found if not a.startswith("127.") and ":" not in a)
+
+
+def test_it_listens_on_loopback_and_nowhere_else() -> None:
+    listener = listening(0)
+    listener.listen()
+    try:
+        address, port = listener.getsockname()
+        assert (address, HOST) == ("127.0.0.1", "127.0.0.1")
+        socket.create_connection(("127.0.0.1", port), 5.0).close()
+        for other in others():
+            with pytest.raises(OSError):  # noqa: PT011 (refused, or unreachable)
+                socket.create_connection((other, port), 5.0).close()
+    finally:
+        listener.close()
+
+
+def test_a_port_that_is_taken_is_said_in_a_line() -> None:
+    listener = listening(0)
+    listener.listen()
+    port = int(listener.getsockname()[1])
+    try:
+        with pytest.raises(InputError, match=f"port {port} cannot be had"):
+            listening(port)
+    finally:
+        listener.close()
+
+
+CODE = "__import__('pathlib').Path('run.txt').write_text('x')"
+
+
+@pytest.mark.parametrize(
+    ("address", "asked"),
+    [
+        ("try", {"files": ["new.csv"], "map": f'[columns]\ntime_s = "{CODE}"\n'
+                 'position_m = "`x`"\nfriction_n = "`f`"\n[drive]\nmotion = "linear"\n'
+                 'friction = "force"\n'}),
+        ("fit", {"effects": [CODE]}),
+        ("fit", {"effects": ["os:system"]}),
+        ("law", {"law": CODE}),
+        ("open", {"rig": "code.toml", "runs": ["new.csv"]}),
+        ("keep", {"what": CODE}),
+    ],
+)  # fmt: skip
+def test_no_code_of_a_page_is_run(
+    client: TestClient,
+    campaign: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    address: str,
+    asked: dict[str, object],
+) -> None:
+    monkeypatch.chdir(campaign)
+    (campaign / "new.csv").write_text("t,x,f\n0,0,1\n1,1,1\n")
+    (campaign / "code.toml").write_text(f'[drive]\nmotion = "{CODE}"\n')
+    client.post("/api/open", json={"rig": "rig.toml", "runs": ["stopgo.csv"]})
+    answer = client.post(f"/api/{address}", json=asked)
+    for name in ("new.csv", "code.toml"):
+        (campaign / name).unlink()
+    assert answer.status_code == 422 or answer.json()["problem"]
+    assert not (campaign / "run.txt").exists()

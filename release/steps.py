@@ -1,0 +1,66 @@
+"""What the programs here share: commands, and an environment in which nothing leaks in."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+_LEAKS = (
+    "PYTHON", "VIRTUAL_ENV", "CONDA", "PYTEST", "COVERAGE", "RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_BUILD_", "CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_INCREMENTAL", "MATURIN_", "PYO3_",
+)  # fmt: skip
+"""Beginnings of variables that would bring something of this shell into a build or a test."""
+
+
+def clean_environment() -> dict[str, str]:
+    """This process's, without what points at source trees, environments or flags."""
+    return {k: v for k, v in os.environ.items() if not k.startswith(_LEAKS)}
+
+
+def say(text: str) -> None:
+    """A line about what is done, at once."""
+    print(f"-- {text}", flush=True)
+
+
+def run(
+    command: Sequence[str | Path],
+    *,
+    cwd: Path,
+    environment: Mapping[str, str] | None = None,
+    quiet: bool = False,
+) -> str:
+    """Run a command, whose failure ends the program with its output; returns what it printed."""
+    words = [str(word) for word in command]
+    done = subprocess.run(
+        words,
+        cwd=cwd,
+        env=dict(clean_environment() if environment is None else environment),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    if done.returncode or not quiet:
+        print(done.stdout, end="", flush=True)
+    if done.returncode:
+        sys.exit(f"{' '.join(words)}: exit code {done.returncode}")
+    return done.stdout
+
+
+def make_environment(folder: Path, python: str = sys.executable) -> Path:
+    """A new virtual environment; returns its interpreter."""
+    # Of the interpreter itself, not of an environment that it may stand in.
+    base = run([python, "-c", "import sys; print(sys._base_executable)"], cwd=ROOT, quiet=True)
+    run([base.strip(), "-m", "venv", folder], cwd=ROOT, quiet=True)
+    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def tracked_files() -> list[Path]:
+    """What git keeps, and what is new and not ignored; relative to the root."""
+    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = run(listed, cwd=ROOT, quiet=True).split("\0")
+    return [Path(name) for name in names if name and (ROOT / name).is_file()]

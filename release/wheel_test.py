@@ -1,0 +1,132 @@
+"""A wheel as a stranger gets it: installed from a package alone, asked for a diagnosis, tested.
+
+`python release/wheel_test.py dist/*.whl`. A new environment in a folder of its own, nothing
+compiled (`--only-binary`); the tests are copied there without the package, so that what they import
+can only be the installed one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import sys
+import tempfile
+import time
+import zipfile
+from pathlib import Path
+
+from build import BUILD_FOLDER
+from steps import ROOT, make_environment, run, say, tracked_files
+
+TESTS = (
+    "test_batch", "test_cli", "test_cli_habits", "test_control_tuning", "test_drive_files",
+    "test_fitting", "test_frames", "test_import_clocks", "test_import_headers",
+    "test_late_imports", "test_model", "test_model_file", "test_parallel_calls", "test_plot",
+    "test_record", "test_report", "test_rig",
+)  # fmt: skip
+"""Of every room something, in a minute or two; none needs an extra or the rest of the tree."""
+COPIED = ("python/tests/", "simulator/", "benches/", "pyproject.toml")
+TOOLS = ("pytest>=8", "hypothesis>=6.100")
+MUST_HOLD = (
+    "jbf/_core.pyi",
+    "jbf/py.typed",
+    "jbf/data/",
+    "jbf/workbench/static/",
+    "jbf/workbench/vendored_files/uPlot.iife.min.js",
+    "jbf/workbench/vendored_files/uPlot.LICENSE",
+    ".dist-info/licenses/LICENSE-MIT",
+    ".dist-info/licenses/LICENSE-APACHE",
+    ".dist-info/licenses/THIRD_PARTY.md",
+)
+
+
+def find_wheel(place: Path) -> Path:
+    """A wheel, or the only one in a folder."""
+    wheels = sorted(place.glob("*.whl")) if place.is_dir() else [place]
+    if len(wheels) != 1 or not wheels[0].is_file():
+        sys.exit(f"{place} is neither a wheel nor a folder of one")
+    return wheels[0].resolve()
+
+
+def check_contents(wheel: Path) -> None:
+    """What a wheel must hold, and what it must not."""
+    with zipfile.ZipFile(wheel) as archive:
+        contents = {name: archive.read(name) for name in archive.namelist()}
+    for wanted in MUST_HOLD:
+        if not any(wanted in name for name in contents):
+            sys.exit(f"{wheel.name} lacks {wanted}")
+    if strays := [n for n in contents if "tests/" in n or n.endswith((".pyc", ".rs"))]:
+        sys.exit(f"{wheel.name} holds {strays[0]}, which is not for users")
+    for name, content in contents.items():
+        for place in (str(Path.home()), str(ROOT), BUILD_FOLDER):
+            if os.fsencode(place) in content:
+                sys.exit(f"{name} names {place}..., a folder of the machine that built it")
+
+
+def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:
+    """Install and diagnose; ends the program where jbf comes from elsewhere or errs."""
+    start, before = time.monotonic(), os.times()
+    install = [python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", wheel]
+    run(install, cwd=folder)
+    installed = time.monotonic()
+    jbf = python.with_name("jbf.exe" if os.name == "nt" else "jbf")
+    run([jbf, "--version"], cwd=folder)
+    where = run(
+        [python, "-c", "import jbf, jbf._core; print(jbf.__file__); print(jbf._core.__file__)"],
+        cwd=folder,
+    )
+    inside = python.parents[1].resolve()
+    for line in where.split():
+        if not (Path(line).resolve().is_relative_to(inside) and "site-packages" in line):
+            sys.exit(f"jbf comes from {line}, not from the wheel")
+    data, found = folder / "jbf-demo", folder / "found.json"
+    run([jbf, "demo", data], cwd=folder, quiet=True)
+    took, after = time.monotonic(), os.times()
+    spent = after.children_user + after.children_system
+    spent -= before.children_user + before.children_system
+    say(
+        f"pip install {installed - start:.0f} s, jbf demo {took - installed:.0f} s, "
+        f"{spent:.0f} s of the processor for both"
+    )
+    # The same from files, as of one's own rig.
+    own = data / "hidden"
+    run([jbf, "diagnose", own / "rig.toml", own, "--json", found], cwd=folder, quiet=True)
+    answer = json.loads(found.read_text(encoding="utf-8"))
+    if (answer["verdict"], set(answer["effects"])) != ("missing", {"coulomb_drag", "sensor_lag"}):
+        sys.exit(f"the diagnosis says {answer['verdict']} {answer['effects']}")
+
+
+def run_tests(python: Path, folder: Path, tests: list[str]) -> None:
+    """The tests against what is installed."""
+    tree = folder / "tree"
+    for name in tracked_files():
+        if name.as_posix().startswith(COPIED):
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, tree / name)
+    files = [f"python/tests/{name}.py" for name in tests] or ["python/tests"]
+    run([python, "-m", "pytest", *files], cwd=tree)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("wheel", type=Path, help="a wheel, or the folder of one")
+    parser.add_argument("--python", default=sys.executable, help="another interpreter to test with")
+    parser.add_argument("--tests", nargs="*", default=list(TESTS), help="of python/tests")
+    chosen = parser.parse_args()
+    wheel = find_wheel(chosen.wheel)
+    check_contents(wheel)
+    with tempfile.TemporaryDirectory(prefix="jbf-wheel-") as name:
+        folder = Path(name)
+        say(f"{wheel.name} in a new environment")
+        python = make_environment(folder / "environment", chosen.python)
+        first_diagnosis(python, wheel, folder)
+        run([python, "-m", "pip", "install", "--quiet", *TOOLS], cwd=folder)
+        run_tests(python, folder, chosen.tests)
+    say(f"{wheel.name} passed")
+
+
+if __name__ == "__main__":
+    main()

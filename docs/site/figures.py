@@ -1,6 +1,7 @@
 """Make every picture and generated page anew, from one commit: `make figures`.
 
 Writes docs/reference/figures.md: which command made what, on which machine, from which commit.
+`--as-committed` makes nothing, and tells of each the commit that brought what stands there now.
 """
 
 from __future__ import annotations
@@ -9,7 +10,6 @@ import os
 import platform
 import subprocess
 import sys
-import time
 from datetime import date
 from pathlib import Path
 
@@ -65,23 +65,39 @@ def machine() -> str:
     return f"{processor}, {os.cpu_count()} cores, Python {platform.python_version()}"
 
 
+def brought(names: tuple[str, ...]) -> str:
+    """The commit that last changed what a script writes, and its day."""
+    paths = [f"docs/{name}" for name in names]
+    return said("git", "log", "-1", "--format=%h, %as", "--", *paths).strip()
+
+
+def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
+    """The page."""
+    lines = ["| beside `docs` | made by | commit |", "| --- | --- | --- |"]
+    for script, names, source in rows:
+        shown = ", ".join(f"`{name}`" for name in names)
+        lines.append(f"| {shown} | `.venv/bin/python {script}` | {source} |")
+    lines += [f"| `{name}` | {why} | |" for name, why in NOT_ANEW.items()]
+    text = "\n".join([HEAD, told, "", *lines, ""])
+    PAGE.write_text(text, encoding="utf-8")
+
+
 def main() -> int:
     """Run all; stop at the first that fails."""
-    source, rows = commit(), []
-    for script, written in SCRIPTS.items():
-        begun = time.monotonic()
+    if "--as-committed" in sys.argv[1:]:
+        rows = [(script, names, brought(names)) for script, names in SCRIPTS.items()]
+        write(
+            rows, "Not made at one time: the commit is the one that brought what stands there now."
+        )
+        return 0
+    source = commit()
+    for script in SCRIPTS:
         print(script, flush=True)
         done = subprocess.run([sys.executable, script], cwd=ROOT)
         if done.returncode != 0:
             return done.returncode
-        took = time.monotonic() - begun
-        names = ", ".join(f"`{name}`" for name in written)
-        rows.append(f"| {names} | `.venv/bin/python {script}` | {took:.0f} s |")
-    rows += [f"| `{name}` | {why} | |" for name, why in NOT_ANEW.items()]
-    told = f"jbf at commit {source}, {date.today().isoformat()}, on {machine()}."
-    head = "| beside `docs` | made by | took |\n| --- | --- | --- |\n"
-    text = f"{HEAD}\n{told}\n\n{head}" + "\n".join(rows) + "\n"
-    PAGE.write_text(text, encoding="utf-8")
+    rows = [(script, names, source) for script, names in SCRIPTS.items()]
+    write(rows, f"Made {date.today().isoformat()} from one commit, on {machine()}.")
     return 0
 
 

@@ -49,7 +49,8 @@ class Source:
             return f"notebooks/{page.stem}.md"
         if page.is_dir():
             raise Broken(f"{name} is a folder that nothing tells of")
-        self.shown[page] = f"source/{name}.md"
+        # Folders that begin with a dot are left out of a site.
+        self.shown[page] = f"source/{name.lstrip('.')}.md"
         return self.shown[page]
 
     def turned(self, page: Path, text: str) -> str:

@@ -128,7 +128,7 @@ def test_compare_fit_and_diagnose_take_either(
     page = (folder / "a.html").read_text()
     ledger = json.loads((folder / "runs" / "import.json").read_text())
     assert ledger["files"][0]["sha256"][:12] in page
-    assert "What it was imported from" in page
+    assert "columns, made of (unit as read" in page
     model = jbf.Model.load(folder / "a.toml")
     assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(12.0, abs=0.2)
 

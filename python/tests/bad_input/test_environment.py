@@ -70,7 +70,7 @@ def test_an_odd_environment_changes_nothing(name: str, folder: Path) -> None:
                 ODD[name])  # fmt: skip
     assert (found.returncode, found.stderr) == (0, b"")
     assert b"RMS 0.500 N against" in found.stdout
-    assert b"<img" in (folder / "new.html").read_bytes()
+    assert b"<svg" in (folder / "new.html").read_bytes()
     assert "Lauf µ ∅" in (folder / "new.json").read_text(encoding="utf-8")
 
 

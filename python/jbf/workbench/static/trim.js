@@ -10,9 +10,10 @@ export class TrimHandles {
     chart.drawn = () => this.place();
   }
 
-  // The run's ends and the stretch that is used.
+  // The run's ends and the stretch that is used; a handle that is being moved stays where it is.
   show(run) {
-    this.ends = [run.from_s, run.to_s]; this.span = [...(run.trim ?? this.ends)];
+    this.ends = [run.from_s, run.to_s];
+    if (!this.moving) this.span = [...(run.trim ?? this.ends)];
     this.place();
   }
 
@@ -23,7 +24,7 @@ export class TrimHandles {
       onmousedown: (e) => e.stopPropagation(),
       onpointerdown: (e) => { handle.setPointerCapture(e.pointerId); this.held = which; },
       onpointermove: (e) => { if (this.held === which) this.move(which, this.chart.plot.posToVal(e.clientX - this.chart.plot.over.getBoundingClientRect().left, "x")); },
-      onpointerup: () => { if (this.held === which) { this.held = null; this.set(...this.span); } },
+      onpointerup: () => { if (this.held === which) { this.held = null; this.letGo(); } },
       onkeydown: (e) => this.key(which, e) });
     return handle;
   }
@@ -35,10 +36,16 @@ export class TrimHandles {
     else if (event.key === "Home" || event.key === "End") this.move(which, this.ends[which]);
     else return;
     event.preventDefault(); event.stopPropagation();
-    clearTimeout(this.waits); this.waits = setTimeout(() => this.set(...this.span), 400);
+    clearTimeout(this.waits); this.waits = setTimeout(() => this.letGo(), 400);
+  }
+
+  letGo() {
+    this.moving = false;
+    this.set(...this.span);
   }
 
   move(which, value) {
+    this.moving = true;
     const [low, high] = which ? [this.span[0], this.ends[1]] : [this.ends[0], this.span[1]];
     this.span[which] = Math.min(Math.max(value, low), high);
     this.chart.mark([[this.ends[0], this.span[0]], [this.span[1], this.ends[1]]], []);

@@ -225,6 +225,7 @@ def page(effect: Effect) -> str:
     lines += [
         "",
         "```sh",
+        "# not tested: on your rig and runs",
         f"jbf fit rig.toml runs/ {options}--effects {chosen} --out model.toml",
         "```",
         "",

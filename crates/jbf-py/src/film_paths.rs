@@ -2,7 +2,7 @@
 //! film each is tried on the same path, and a search comes back to where it was.
 //!
 //! A path is found by every number that it depends on, to the bit, so that what is kept changes no
-//! answer.
+//! answer (python/tests/test_film_paths.py).
 
 use jbf_core::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};
@@ -114,54 +114,5 @@ impl Drop for FilmPaths {
 fn forget(entry: Option<(Film, Arc<FilmPath>)>) {
     if let Some((_, path)) = entry {
         PLACES.fetch_sub(path.places.len(), Ordering::Relaxed);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn film(bits: u64) -> Film {
-        Film {
-            bearing: None,
-            load_n: Some(104.0),
-            clock: Clock::Journal,
-            bits: [bits, 0, 0],
-        }
-    }
-
-    fn path(film: f64, has_slopes: bool) -> Arc<FilmPath> {
-        let slopes = [0.0; 2];
-        Arc::new(FilmPath {
-            places: vec![Place { film, slopes }],
-            has_slopes,
-        })
-    }
-
-    fn found(paths: &FilmPaths, bits: u64, with_slopes: bool) -> Option<f64> {
-        let path = paths.kept(&film(bits), with_slopes)?;
-        Some(path.places[0].film)
-    }
-
-    #[test]
-    fn slopes_take_the_place_of_none() {
-        let paths = FilmPaths::default();
-        paths.keep(film(1), path(1.0, false));
-        assert_eq!(found(&paths, 1, false), Some(1.0));
-        assert_eq!(found(&paths, 1, true), None);
-        paths.keep(film(1), path(3.0, true));
-        assert_eq!([true, false].map(|s| found(&paths, 1, s)), [Some(3.0); 2]);
-    }
-
-    #[test]
-    fn the_one_left_longest_ago_goes_first() {
-        let paths = FilmPaths::default();
-        for bits in 0..4 {
-            paths.keep(film(bits), path(bits as f64, false));
-        }
-        assert_eq!(found(&paths, 0, false), Some(0.0));
-        paths.keep(film(4), path(4.0, false));
-        assert_eq!(found(&paths, 0, false), Some(0.0));
-        assert_eq!(found(&paths, 1, false), None);
     }
 }

@@ -13,8 +13,8 @@ from jbf.estimation.likelihood import (
     next_step_gain,
     share_of_gain,
 )
-from jbf.estimation.minimum import search
 from jbf.estimation.samples import least_weights
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 
@@ -65,7 +65,7 @@ def evidence_alone(
     if richer.samples is simpler.samples or gain <= 0.0:
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
-    values, *_ = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS)
+    values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
     there = problem.solution(values, samples, simpler.noise)
     return min(gain, evidence(candidates, richer, there, anywhere=anywhere))
 

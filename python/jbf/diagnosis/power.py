@@ -23,7 +23,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
-from jbf.estimation.likelihood import unexplained
+from jbf.estimation.likelihood import spanned
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come
 
@@ -120,7 +120,12 @@ def power(
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
     seen = dict(zip(models, found, strict=True))
-    return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
+    apart = _apart(seen)
+    return tuple(
+        _power(candidates, runs, models, seen[name], apart[name], name)
+        for name in models
+        if name in asked
+    )
 
 
 @dataclass(frozen=True)
@@ -234,14 +239,32 @@ def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Arr
     return np.column_stack([change, more, runs.shown([j[:, own] for j in slopes])])
 
 
+def _apart(seen: dict[str, _Seen]) -> dict[str, dict[str, float]]:
+    """Of each effect what each other one cannot make up for, in units of the noise."""
+    apart: dict[str, dict[str, float]] = {name: {} for name in seen}
+    whole = [name for name, own in seen.items() if np.isfinite(own.times[0])]
+    if not whole:
+        return apart
+    changes = np.column_stack([seen[name].change for name in whole])
+    for other, rival in seen.items():
+        span = spanned(rival.ways)
+        left = changes - span @ (span.T @ changes)
+        for name, change in zip(whole, left.T, strict=True):
+            if name != other:
+                apart[name][other] = float(np.sqrt(_worth(change)))
+    return apart
+
+
 def _power(
     candidates: Candidates,
     runs: RunsAtHand,
     models: dict[str, Strength],
-    seen: dict[str, _Seen],
+    own: _Seen,
+    apart: dict[str, float],
     name: str,
 ) -> Power:
-    model, own = models[name], seen[name]
+    """The power of one effect; `apart` is how far each other one leaves it."""
+    model = models[name]
 
     def strength(times: float) -> float | None:
         return float(model.values(times)[model.which]) if np.isfinite(times) else None
@@ -250,13 +273,10 @@ def _power(
     if np.isfinite(own.times[0]):
         tie, mine = candidates.policy.tie, price_of(candidates, _parameters(runs.base, model))
         sure = float(stats.norm.ppf(LEVELS[0]))
-        for other, rival in models.items():
-            if other == name:
-                continue
-            dearer = mine - price_of(candidates, _parameters(runs.base, rival))
+        for other, left in apart.items():
+            dearer = mine - price_of(candidates, _parameters(runs.base, models[other]))
             # The difference of two gains is normal, with four times its mean as variance.
             needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
-            left = np.sqrt(_worth(unexplained(seen[other].ways, own.change)))
             alone[other] = needed / max(left, 1e-300)
     like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
     most = max([1.0, *alone.values()])

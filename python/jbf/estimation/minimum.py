@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize
 
 from jbf.estimation.noise import WHITE, Noise, estimate_noise
 from jbf.estimation.peaks import other_peaks
-from jbf.estimation.problem import Problem
+from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.search import Found, Method, Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
 Array = npt.NDArray[np.float64]
-Method = Literal["dogbox", "trf"]
 
 MAX_EVALUATIONS = 60
 """Steps of a search that converges."""
@@ -37,60 +36,6 @@ a law that is wrong have many valleys."""
 MOST_FORGIVEN = 1.02
 """A fit weighted by the colour of its noise may have so many times the plain fit's RMS. Of coloured
 noise it has hardly more; the error of a wrong model is as smooth, and would be forgiven."""
-
-
-def search(
-    problem: Problem,
-    samples: Samples,
-    start: Array,
-    noise: Noise,
-    evaluations: int,
-    method: Method = "dogbox",
-) -> tuple[Array, bool, str]:
-    """Least squares on innovations from one start: values, whether converged, what ended it.
-
-    Parameters
-    ----------
-    method
-        `dogbox` takes the fewest steps; `trf` stays off the bounds on its way and finds lower
-        valleys where a law is wrong.
-    """
-    memory: dict[bytes, tuple[Array, Array]] = {}
-
-    def evaluate(x: Array) -> tuple[Array, Array]:
-        key = x.tobytes()
-        if key not in memory:
-            memory.clear()
-            values = problem.decode(x, start)
-            r, j, count = problem.gauss_newton_rows(values, samples, noise)
-            problem.best.seen(values, float(r @ r) / max(count, 1))
-            memory[key] = (-r, j)
-        return memory[key]
-
-    def residual(x: Array) -> Array:
-        return evaluate(x)[0]
-
-    def jacobian(x: Array) -> Array:
-        return evaluate(x)[1]
-
-    low, high = problem.encode(problem.lower), problem.encode(problem.upper)
-    x0 = problem.encode(start)
-    margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
-    margin = np.minimum(margin, 0.25 * (high - low))
-    found = optimize.least_squares(
-        residual,
-        np.clip(x0, low + margin, high - margin),
-        jac=jacobian,
-        bounds=(low, high),
-        method=method,
-        x_scale="jac",
-        # A hundredth of a unit of chi-square is far below what any verdict turns on.
-        xtol=1e-7,
-        ftol=1e-6,
-        gtol=1e-12,
-        max_nfev=evaluations,
-    )
-    return problem.decode(found.x, start), bool(found.status > 0), str(found.message)
 
 
 def approach(
@@ -126,18 +71,25 @@ def approach(
     if each:
         groups = [[min(group, key=few.square)] for group in groups]
     starts = sorted(itertools.chain.from_iterable(groups), key=few.square)
-    best = starts[0]
+    visited = Visited()
+    best = Found(starts[0], False, "")
     if len(starts) > 1:
-        short = [search(few, some, s, WHITE, steps, method)[0] for s in starts[:followed]]
-        best = min(short, key=few.square)
-    values, converged, message = best, False, "not followed"
-    if len(starts) == 1 or problem.square(best) < least:
-        values, converged, message = search(few, some, best, WHITE, evaluations)
+        trials = starts[:followed]
+        short = [search(few, some, s, WHITE, steps, method, visited) for s in trials]
+        best = min(short, key=lambda found: visited.square(few, some, found.values))
+    end = replace(best, converged=False, message="not followed")
+    if len(starts) == 1 or _square(problem, few, visited, best.values) < least:
+        if not best.converged or method != "dogbox":
+            # It goes on where one of those before ended.
+            visited.ended.clear()
+            best = search(few, some, best.values, WHITE, evaluations, visited=visited)
         # The whole has its minimum near that of its part.
-        converged = converged and few is problem
-    samples = problem.samples_at(values)
-    noise = noise_at(problem, samples, values)
-    return problem.solution(problem.wrapped(values), samples, noise, converged, message)
+        end = replace(best, converged=best.converged and few is problem)
+    values, lines = end.values, visited.lines_at(end.values) if few is problem else None
+    samples = problem.samples_at(values, lines)
+    noise = noise_at(problem, samples, values, lines)
+    values = problem.wrapped(values)
+    return problem.solution(values, samples, noise, end.converged, end.message, lines)
 
 
 def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
@@ -149,21 +101,22 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         Those to fit; the campaign's where not given, and then those beside jumps weighed anew.
     """
     every = problem.campaign.samples if samples is None else samples
-    values, noise = near.values, near.noise
-    converged, message = near.converged, near.message
+    end, noise = Found(near.values, near.converged, near.message), near.noise
     if not near.converged:
-        values, converged, message = search(problem, every, values, WHITE, MAX_EVALUATIONS)
-        noise = noise_at(problem, every, values)
+        end = search(problem, every, end.values, WHITE, MAX_EVALUATIONS)
+        noise = noise_at(problem, every, end.values)
     if near.samples is not every:
         # With jumps at full weight the search found its way; with little it finds the place.
-        left = problem.samples_at(values)
-        return settle(problem, problem.solution(values, left, noise, False, message), left)
+        left = problem.samples_at(end.values)
+        there = problem.solution(end.values, left, noise, False, end.message)
+        return settle(problem, there, left)
     if noise.colour > 0.0:
-        again = search(problem, every, values, noise, MAX_EVALUATIONS)
-        if problem.square(again[0], every) <= MOST_FORGIVEN**2 * problem.square(values, every):
-            values, converged, message = again
-            noise = noise_at(problem, every, values)
-    return problem.solution(problem.wrapped(values), every, noise, converged, message)
+        again = search(problem, every, end.values, noise, MAX_EVALUATIONS)
+        most = MOST_FORGIVEN**2 * problem.square(end.values, every)
+        if problem.square(again.values, every) <= most:
+            end = again
+            noise = noise_at(problem, every, end.values)
+    return problem.solution(problem.wrapped(end.values), every, noise, end.converged, end.message)
 
 
 def search_peaks(problem: Problem, near: Solution) -> Solution:
@@ -181,7 +134,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 
         lower, upper = problem.lower[which], problem.upper[which]
         starts = other_peaks(square, near.values, which, lower, upper)
-        ends = [search(problem, samples, s, noise, TRIAL_EVALUATIONS)[0] for s in starts]
+        ends = [search(problem, samples, s, noise, TRIAL_EVALUATIONS).values for s in starts]
         best = min(ends, key=square, default=near.values)
         if square(best) < square(near.values):
             near = settle(problem, problem.solution(best, samples, noise, False))
@@ -204,11 +157,21 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     return search_peaks(problem, settle(problem, near))
 
 
-def noise_at(problem: Problem, samples: Samples, values: Array) -> Noise:
+def _square(problem: Problem, few: Problem, visited: Visited, values: Array) -> float:
+    """Sum of squares of weighted residuals of the whole, N^2."""
+    if few is problem:
+        return visited.square(problem, problem.campaign.samples, values)
+    return problem.square(values)
+
+
+def noise_at(
+    problem: Problem, samples: Samples, values: Array, lines: Lines | None = None
+) -> Noise:
     """The noise description that fits the residuals at some values, the runs' deviations apart; of
-    many long runs, those of some."""
+    many long runs, those of some. `lines` are the residuals there, if they are known."""
     which = problem.searched
     samples = samples if len(which) == len(samples.runs) else samples.only(which)
-    residuals = samples.without_deviations(problem.residuals(values, which), WHITE)
+    residuals = problem.residuals(values, which) if lines is None else lines[0]
+    residuals = samples.without_deviations(residuals, WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
     return estimate_noise(masked, samples.steps_s, samples.counted, problem.campaign.most_noise_n)

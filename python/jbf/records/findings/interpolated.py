@@ -45,6 +45,8 @@ LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
 """Phases, in periods off the best, at which a polygon must leave more, and the share of that which
 the best may leave."""
+IN_VAIN = 4
+"""Halvings of a search after which it has come nearer, or does not."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
@@ -280,13 +282,19 @@ def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple
     reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
     best = (np.inf, period, phase)
     steps = np.linspace(-1.0, 1.0, 5)
-    for _ in range(9):
+    first = np.inf
+    for k in range(9):
         periods = np.repeat(best[1] + reach_period * steps, len(steps))
         phases = np.tile(best[2] + reach_phase * steps, len(steps))
         left = _lefts(time, values, periods, phases)
-        k = int(np.argmin(left))
-        if left[k] < best[0]:
-            best = (float(left[k]), float(periods[k]), float(phases[k]))
+        least = int(np.argmin(left))
+        if left[least] < best[0]:
+            best = (float(left[least]), float(periods[least]), float(phases[least]))
+        if k == 0:
+            first = best[0]
+        # What a true polygon leaves falls with every halving, in proportion.
+        if k == IN_VAIN and best[0] > 0.5 * first:
+            break
         reach_period *= 0.5
         reach_phase *= 0.5
     return best[1], best[2]

@@ -20,7 +20,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.long_run import score_inflation
-from jbf.estimation.minimum import noise_at
+from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
 from jbf.estimation.samples import Samples

@@ -95,6 +95,10 @@ def swap_cost(
     least = policy.least_swap * likelihood_gain(whole, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
+    looked = candidates.look(effects, near)
+    could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
+    if cost(looked.found()) - share * could_gain >= policy.contender:
+        return cost(looked.found())
     first = cost(candidates.rank(effects, near))
     if first >= policy.contender:
         return first

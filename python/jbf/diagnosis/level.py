@@ -20,6 +20,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -182,6 +183,16 @@ def _ends(samples: Samples) -> Places:
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
 
 
+_known: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
+
+
+def _rows(near: Solution) -> tuple[Array, Array]:
+    """Innovations of a solution and their derivatives, kept while every candidate is tested."""
+    if near not in _known:
+        _known[near] = near.stacked()
+    return _known[near]
+
+
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
 ) -> tuple[float, Directions]:
@@ -190,9 +201,19 @@ def score_test(
     few = problem.thinned
     # What a smaller model sets aside beside its jumps would seem to ask for anything.
     samples = near.samples if few is problem else few.campaign.samples
+    mine = np.array([few.names[i].split(".")[0] in added for i in few.open], dtype=bool)
+    # At the null the rest of the model is as it was, and so are its derivatives.
+    known = few is problem and near.free == np.count_nonzero(~mine)
     best: tuple[float, Array, Array] | None = None
     for start in starts:
-        r, j = samples.stacked(*few.linearise(start), near.noise)
+        if known:
+            own = [i for i, added_here in zip(few.open, mine, strict=True) if added_here]
+            r, rest = _rows(near)
+            _, ways = samples.stacked(*few.linearise(start, by=own), near.noise)
+            j = np.empty((len(r), len(mine)))
+            j[:, mine], j[:, ~mine] = ways, rest
+        else:
+            r, j = samples.stacked(*few.linearise(start), near.noise)
         gain = promised_gain(*triangular(r, j), len(r))
         if few is not problem:
             gain = score_gain(problem, start, near)
@@ -200,8 +221,6 @@ def score_test(
             best = gain, r, j
     assert best is not None
     gain, r, j = best
-    own = [few.names[i].split(".")[0] in added for i in few.open]
-    mine = np.array(own, dtype=bool)
     return gain, Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
 
 

@@ -34,6 +34,8 @@ LEVELS = (0.80, 0.95)
 """Chances of being found."""
 LOOKS = 14
 """Strengths tried for each."""
+POWERS = (1.0, 8.0)
+"""Powers of its strength with which what an effect is worth may grow."""
 AGREES = 0.05
 """Relative difference in strength that ends it."""
 NEARLY_ALL = 0.97
@@ -198,14 +200,20 @@ def non_centrality(price: float, parameters: int, chance: float) -> float:
 def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
     """How many times its usual strength an effect has that is worth so much; nan where none is.
 
-    What an effect is worth grows as its square, nearly; where it grows all at once (a lag within a
-    sample shows nothing) the search halves what is left between too little and enough.
+    What an effect is worth grows as its square, nearly, or as it did from one look to the next;
+    where it grows all at once (a lag within a sample shows nothing) the search halves what is left
+    between too little and enough.
     """
     little, enough = 0.0, np.inf
+    power, before = 2.0, None
     for _ in range(LOOKS):
-        left = runs.shown(runs.change(model, times))
-        worth = _worth(left)
-        further = float(np.clip(np.sqrt(wanted / max(worth, 1e-300)), 1e-3, 30.0))
+        worth = max(_worth(runs.shown(runs.change(model, times))), 1e-300)
+        if before is not None and worth != before[1] and times != before[0]:
+            # As it grew from the last strength to this one.
+            grown = np.log(worth / before[1]) / np.log(times / before[0])
+            power = float(np.clip(grown, *POWERS))
+        before = (times, worth)
+        further = float(np.clip((wanted / worth) ** (1.0 / power), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times
         # At a bound there is no more to be had.
@@ -233,10 +241,10 @@ def _worth(left: Array) -> float:
 def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Array:
     """What an effect changes, and what its parameters change, apart from what the model can."""
     problem = model.problem.thinned
-    own = [k for k, i in enumerate(problem.open) if problem.names[i].startswith(f"{model.name}.")]
-    _, slopes = problem.linearise(model.values(times))
+    own = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
+    _, slopes = problem.linearise(model.values(times), by=own)
     more = runs.shown(runs.change(model, FURTHER * times))
-    return np.column_stack([change, more, runs.shown([j[:, own] for j in slopes])])
+    return np.column_stack([change, more, runs.shown(slopes)])
 
 
 def _apart(seen: dict[str, _Seen]) -> dict[str, dict[str, float]]:

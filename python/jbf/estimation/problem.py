@@ -130,11 +130,17 @@ class Problem:
         runs = self._runs(which)
         return [p.friction_n - f for f, p in zip(self.predict(values, which), runs, strict=True)]
 
-    def linearise(self, values: Array, which: Sequence[int] | None = None) -> Lines:
-        """Residuals, and derivatives of the prediction by the search variables; of some runs."""
-        runs = self._runs(which)
-        scale = np.where(self.log, values, 1.0)[self.open]
-        rows = self.chain.jacobian(values, [p.core for p in runs], self.open)
+    def linearise(
+        self,
+        values: Array,
+        which: Sequence[int] | None = None,
+        by: Sequence[int] | None = None,
+    ) -> Lines:
+        """Residuals, and derivatives of the prediction by the search variables; of some runs, by
+        some of the parameters."""
+        runs, by = self._runs(which), self.open if by is None else by
+        scale = np.where(self.log, values, 1.0)[by]
+        rows = self.chain.jacobian(values, [p.core for p in runs], by)
         residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
         return residuals, [_scaled(j, scale) for _, j in rows]
 

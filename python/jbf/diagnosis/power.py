@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -187,6 +188,7 @@ def _parameters(base: Solution, model: Strength) -> int:
     return max(len(model.problem.open) - base.free, 1)
 
 
+@lru_cache(maxsize=64)
 def non_centrality(price: float, parameters: int, chance: float) -> float:
     """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
 

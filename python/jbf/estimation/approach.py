@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +30,7 @@ whose null is a flat place stays there."""
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked."""
 LOOKED = 3
-"""Steps of a first look, from the best of the starting points."""
+"""Steps of a first look, from the best start that the first seed has."""
 
 
 @dataclass(frozen=True)
@@ -65,18 +66,36 @@ class Approach:
         self, problem: Problem, seeds: Sequence[Mapping[str, float]], *, each: bool = False
     ) -> None:
         self.problem, self.few = problem, problem.thinned
-        few = self.few
-        groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
-        if each:
-            groups = [[min(group, key=few.square)] for group in groups]
-        self.starts = sorted(itertools.chain.from_iterable(groups), key=few.square)
+        self._groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
+        self._each = each
+        self._squares: dict[bytes, float] = {}
         self.visited = Visited()
 
+    @cached_property
+    def _nearest(self) -> Array:
+        """The best start from the first seed."""
+        return min(self._groups[0], key=self._square)
+
+    @cached_property
+    def starts(self) -> list[Array]:
+        """Where to start from, best first."""
+        groups = self._groups
+        if self._each:
+            groups = [[min(group, key=self._square)] for group in groups]
+        return sorted(itertools.chain.from_iterable(groups), key=self._square)
+
+    def _square(self, values: Array) -> float:
+        """Sum of squares of weighted residuals, N^2, asked once for each start."""
+        key = values.tobytes()
+        if key not in self._squares:
+            self._squares[key] = self.few.square(values)
+        return self._squares[key]
+
     def look(self, near: Solution) -> Look:
-        """A few steps from the best start, beside the solution of a smaller model."""
+        """A few steps from the first seed's best start, beside the solution of a smaller model."""
         problem, few, visited = self.problem, self.few, self.visited
         some = few.campaign.samples
-        search(few, some, self.starts[0], WHITE, LOOKED, visited=visited)
+        search(few, some, self._nearest, WHITE, LOOKED, visited=visited)
         # The search that follows goes the same way, and has not joined it.
         visited.ended.clear()
         places = list(visited.places.values())

@@ -27,8 +27,7 @@ pub fn all_in_lanes(
     let share = runs.len().div_ceil(rayon::current_num_threads());
     let groups: Vec<Vec<usize>> = order
         .chunk_by(|&a, &b| is_record(&runs[a]) == is_record(&runs[b]))
-        .flat_map(|kind| kind.chunks(share.clamp(1, LANES)))
-        .map(<[usize]>::to_vec)
+        .flat_map(|kind| dealt(kind, share.clamp(1, LANES)))
         .collect();
     let done: Vec<Vec<Result1>> = groups
         .par_iter()
@@ -45,6 +44,14 @@ pub fn all_in_lanes(
         .collect();
     found.sort_by_key(|&(i, _)| i);
     Ok(found.into_iter().map(|(_, result)| result).collect())
+}
+
+/// Groups of at most so many, neighbours in different ones: what is alike takes as long.
+fn dealt(runs: &[usize], most: usize) -> Vec<Vec<usize>> {
+    let groups = runs.len().div_ceil(most);
+    (0..groups)
+        .map(|k| runs.iter().copied().skip(k).step_by(groups).collect())
+        .collect()
 }
 
 fn is_record(run: &Run) -> bool {

@@ -27,6 +27,10 @@ SAME = 0.1
 of the residual: squares then differ by some hundredth."""
 
 
+ENDED = 1e-6
+"""Relative difference of squares at which a search ends."""
+
+
 @dataclass(frozen=True)
 class Place:
     """Search variables, and the rows of the likelihood there: innovations and their derivatives."""
@@ -150,7 +154,7 @@ def search(
             x_scale="jac",
             # A hundredth of a unit of chi-square is far below what any verdict turns on.
             xtol=1e-7,
-            ftol=1e-6,
+            ftol=ENDED,
             gtol=1e-12,
             max_nfev=evaluations,
         )
@@ -170,8 +174,8 @@ def _key(values: Array) -> bytes:
 
 
 def _joins(place: Place, other: list[Place]) -> bool:
-    """Whether a place is one, for the data, that another search has left for a lower one."""
-    if min(seen.square for seen in other) > place.square:
+    """Whether a place is one, for the data, that another search has left for one as low or lower."""
+    if min(seen.square for seen in other) > (1.0 + ENDED) * place.square:
         return False
     return any(_one(place, seen) for seen in other)
 

@@ -86,9 +86,8 @@ def test_a_search_ends_where_another_has_been(campaign: Campaign) -> None:
 
 
 def place(x: float, residual: tuple[float, float], slope: tuple[float, float]) -> Place:
-    return Place(
-        np.array([np.log(x)]), np.array([x]), np.array(residual), np.array([slope]).T, count=2
-    )
+    value = np.array([x])
+    return Place(np.log(value), value, value, np.array(residual), np.array([slope]).T, count=2)
 
 
 def test_what_makes_two_places_one() -> None:
@@ -100,7 +99,10 @@ def test_what_makes_two_places_one() -> None:
     higher = place(1.1, (1.2, 0.0), (0.1, 0.0))
     assert not _joins(here, [higher])
     # Two parameters a third apart are two places, whatever is predicted there.
-    assert not _joins(here, [place(1.5, (1.0, 0.0), (0.0, 0.0)), lower])
+    assert not _joins(here, [place(1.5, (1.0, 0.0), (0.01, 0.0)), lower])
+    # But one that the data do not tell may be anywhere.
+    nothing = place(9.0, (1.0, 0.0), (0.0, 0.0))
+    assert _joins(place(1.0, (1.0, 0.0), (0.0, 0.0)), [nothing, lower])
     # So are those whose predictions differ by a fifth of the residual, by either's derivatives.
     steep = place(1.1, (1.0, 0.0), (2.0, 0.0))
     assert not _joins(here, [steep, lower])
@@ -111,6 +113,7 @@ def test_an_approach_goes_on_from_its_first_look(
     campaign: Campaign, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     near = base(campaign)
+    near = Solution(**{**vars(near), "noise": WHITE})
     problem = Problem(campaign, "coulomb", "journal", ("inertia_leak",))
     whole = approach(problem, [{}], 8)
     asked = counted(problem, monkeypatch)
@@ -129,7 +132,9 @@ def test_an_approach_goes_on_from_its_first_look(
     assert 0.0 < look.gain <= look.promised * (1.0 + 1e-9)
     seen = way.solution_of(look, near)
     assert seen.noise is near.noise
-    assert near.cost - seen.cost == pytest.approx(look.gain, rel=1e-6)
+    assert seen.samples.square(seen.residuals) == pytest.approx(
+        near.samples.square(near.residuals) * np.exp(-look.gain / near.samples.count)
+    )
 
 
 def test_a_start_far_off_promises_more_than_it_has(campaign: Campaign) -> None:

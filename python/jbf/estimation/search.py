@@ -33,10 +33,12 @@ ENDED = 1e-6
 
 @dataclass(frozen=True)
 class Place:
-    """Search variables, and the rows of the likelihood there: innovations and their derivatives."""
+    """Search variables, parameter values, those of them that are searched, and the rows of the
+    likelihood there: innovations and their derivatives."""
 
     x: Array
     values: Array
+    searched: Array
     residual: Array
     jacobian: Array
     count: int
@@ -124,7 +126,7 @@ def search(
             lines = problem.linearise(values) if keeps else None
             r, j, count = problem.gauss_newton_rows(values, samples, noise, lines)
             problem.best.seen(values, float(r @ r) / max(count, 1))
-            place = Place(problem.encode(values), values, r, j, count)
+            place = Place(problem.encode(values), values, values[problem.open], r, j, count)
             if visited is None:
                 memory.places.clear()
             memory.come(place, lines)
@@ -174,7 +176,7 @@ def _key(values: Array) -> bytes:
 
 
 def _joins(place: Place, other: list[Place]) -> bool:
-    """Whether a place is one, for the data, that another search has left for one as low or lower."""
+    """Whether a place is one, for the data, that another search left for one as low or lower."""
     if min(seen.square for seen in other) > (1.0 + ENDED) * place.square:
         return False
     return any(_one(place, seen) for seen in other)
@@ -182,8 +184,10 @@ def _joins(place: Place, other: list[Place]) -> bool:
 
 def _one(a: Place, b: Place) -> bool:
     """Whether two places are one for the data, by the linear model at either."""
-    size = np.maximum(np.abs(a.values), np.abs(b.values))
-    if np.any(np.abs(a.values - b.values) > NEAR * size):
+    size = np.maximum(np.abs(a.searched), np.abs(b.searched))
+    far = np.abs(a.searched - b.searched) > NEAR * size
+    # What the data do not tell may be anywhere.
+    if np.any(far & (np.any(a.jacobian, axis=0) | np.any(b.jacobian, axis=0))):
         return False
     step = a.x - b.x
     most = SAME**2 * min(a.square, b.square)

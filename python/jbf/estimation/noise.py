@@ -79,6 +79,11 @@ class Noise:
 
 WHITE = Noise()
 
+EARNED = 20.0
+"""What colour must gain in twice the log likelihood for its two parameters."""
+FURTHER = 4.0
+"""Times what the best start's quadratic promises that colour may gain."""
+
 
 def innovation_cost(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
@@ -155,6 +160,10 @@ def estimate_noise(
 
     starts = [np.array([m, c]) for m in (-1.0, 1.5) for c in (-4.0, -1.5, 0.5)]
     best = min(starts, key=cost)
+    white = innovation_cost(WHITE, residuals, steps, masks)
+    promised = 0.5 * float(slope(best) @ np.linalg.solve(curvature(best), slope(best)))
+    if cost(best) - FURTHER * promised >= white - EARNED:
+        return WHITE
     # A slope of 0.3 of a step of one leaves less than 0.1 in twice the log likelihood.
     found = optimize.minimize(
         cost,
@@ -164,8 +173,7 @@ def estimate_noise(
         hess=curvature,
         options={"maxiter": 40, "gtol": 0.3},
     )
-    white = innovation_cost(WHITE, residuals, steps, masks)
-    if found.fun >= white - 20.0:
+    if found.fun >= white - EARNED:
         return WHITE
     noise = unpack(found.x)
     if most_n is None:

@@ -10,8 +10,8 @@
 - a first line `# in a clone of the repository` has a block run at its root;
 - a first line `# not tested: WHY`, and a shell line that ends in `(not tested: WHY)`, are not run;
 - `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
-- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`); another word
-  after it says of what.
+- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`);
+  another word after it says of what.
 
 A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` says
 which test compiles it.

@@ -95,9 +95,11 @@ def main() -> int:
         parser.error(f"{unknown[0]} makes no figure; these do: {', '.join(SCRIPTS)}")
     made = [] if asked.as_committed else asked.scripts or list(SCRIPTS)
     source = commit()
+    # The date that matplotlib writes into SVG is the commit's.
+    dated = {**os.environ, "SOURCE_DATE_EPOCH": said("git", "log", "-1", "--format=%ct").strip()}
     for script in made:
         start = time.monotonic()
-        done = subprocess.run([sys.executable, script], cwd=ROOT)
+        done = subprocess.run([sys.executable, script], cwd=ROOT, env=dated)
         if done.returncode != 0:
             return done.returncode
         print(f"{script}: {time.monotonic() - start:.0f} s", flush=True)

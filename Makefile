@@ -73,8 +73,9 @@ docs: $(BUILT)
 	$(VENV)/bin/python docs/site/build.py
 	$(VENV)/bin/python -m pytest docs/site/tests -n 2 --dist worksteal --durations 5
 
+# ONLY="docs/laws.py ..." makes those alone; the page then tells which stand as they were.
 figures: $(BUILT)
-	$(VENV)/bin/python docs/site/figures.py
+	$(VENV)/bin/python docs/site/figures.py $(ONLY)
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py

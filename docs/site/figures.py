@@ -1,8 +1,9 @@
 """Make every picture and generated page anew, from one commit: `make figures`.
 
 Writes docs/reference/figures.md: which command made what, on which machine, from which commit.
-Scripts that are named are run alone; of the others the page tells the commit that brought what
-stands there now. `--as-committed` makes nothing, and tells that of all.
+Scripts that are named are run alone (`make figures ONLY=...`, which builds this commit's extension
+first); of the others the page tells the commit that brought what stands there now.
+`--as-committed` makes nothing, and tells that of all.
 """
 
 from __future__ import annotations

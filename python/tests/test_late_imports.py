@@ -61,3 +61,10 @@ def test_every_public_name_comes_when_it_is_asked_for() -> None:
     assert set(jbf.__all__) <= set(dir(jbf))
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = jbf.no_such_name
+
+
+def test_a_diagnosis_imports_no_statistics_and_no_signal_processing() -> None:
+    # Half a second of every command, for what scipy.special and a filter of the core say as well.
+    there = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")
+    assert "scipy.optimize" in there
+    assert not there & {"scipy.stats", "scipy.signal"}

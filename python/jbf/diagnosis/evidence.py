@@ -5,7 +5,7 @@ In twice the log likelihood.
 
 from __future__ import annotations
 
-from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
+from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
     effective_share,
@@ -95,10 +95,12 @@ def swap_cost(
     least = policy.least_swap * likelihood_gain(whole, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
-    looked = candidates.look(effects, near)
-    could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
-    if cost(looked.found()) - share * could_gain >= policy.contender:
-        return cost(looked.found())
+    if not many_peaks(effects):
+        # Of one peak among many no step tells where another one is.
+        looked = candidates.look(effects, near)
+        could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
+        if cost(looked.found()) - share * could_gain >= policy.contender:
+            return cost(looked.found())
     first = cost(candidates.rank(effects, near))
     if first >= policy.contender:
         return first

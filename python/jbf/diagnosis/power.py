@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
@@ -193,7 +193,7 @@ def non_centrality(price: float, parameters: int, chance: float) -> float:
     """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
 
     def lacking(root: float) -> float:
-        return float(stats.ncx2.sf(price, parameters, root**2)) - chance
+        return 1.0 - float(special.chndtr(price, parameters, root**2)) - chance
 
     top = np.sqrt(price) + 10.0
     return float(optimize.brentq(lacking, 1e-3, top)) ** 2
@@ -282,7 +282,7 @@ def _power(
     alone: dict[str, float] = {}
     if np.isfinite(own.times[0]):
         tie, mine = candidates.policy.tie, price_of(candidates, _parameters(runs.base, model))
-        sure = float(stats.norm.ppf(LEVELS[0]))
+        sure = float(special.ndtri(LEVELS[0]))
         for other, left in apart.items():
             dearer = mine - price_of(candidates, _parameters(runs.base, models[other]))
             # The difference of two gains is normal, with four times its mean as variance.

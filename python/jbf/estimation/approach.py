@@ -21,6 +21,7 @@ from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.search import Found, Method, Visited, search
 from jbf.estimation.solution import Solution
+from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
 
@@ -149,7 +150,13 @@ class Approach:
         best = Found(starts[0], False, "")
         if len(starts) > 1:
             trials = starts[:followed]
-            short = [search(few, some, s, WHITE, steps, method, visited) for s in trials]
+            peaks = any(find_effect(name).peaks for name in problem.effects)
+            short = []
+            for start in trials:
+                short.append(search(few, some, start, WHITE, steps, method, visited))
+                if peaks:
+                    # Two ways that meet may part again for different peaks.
+                    visited.ended.clear()
             best = min(short, key=lambda found: visited.square(few, some, found.values))
         end = replace(best, converged=False, message="not followed")
         if len(starts) == 1 or _square(problem, few, visited, best.values) < least:

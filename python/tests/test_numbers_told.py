@@ -8,14 +8,17 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
 import pytest
-from jbf.control import TASKS, THESIS_BENCH, thesis_model
+from jbf.control import TASKS, THESIS_BENCH, run, thesis_model
 from jbf.control.robustness import Outcome
 from jbf.control.thesis_tables import Cell, Tables
+from jbf.diagnosis.late_channels import _finding
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.result import Diagnosis
 from jbf.plot.style import axes_or_new
+from jbf.reporting.control_run_plot import plot_runs
 from jbf.reporting.control_run_text import robustness_text
 from jbf.reporting.control_tables_text import assumptions_text, score_text, tables_text
 from jbf.reporting.cut_plot import _shade
@@ -92,3 +95,18 @@ def test_what_makes_half_of_a_pattern_has_half_of_it(
     half = [0.5 * r for r in before.residuals]
     shares = _shares(before, failure, {"half": half, "nothing": [0.0 * r for r in half]})
     assert shares == {"half": pytest.approx(0.5)}
+
+
+def test_the_rows_of_a_picture_of_loops_are_named_once() -> None:
+    task = replace(TASKS["velocity sine"], seconds=6.0)
+    results = [run(None, scheme, task) for scheme in ("none", "coulomb")]
+    axes = np.array(plot_runs(results).axes).reshape(-1, 2)
+    named = [[ax.get_ylabel() for ax in column if ax.get_ylabel()] for column in axes.T]
+    assert len(named[0]) >= 4
+    assert named[1] == []
+
+
+@pytest.mark.parametrize(("drift", "way"), [(2e-5, "slower"), (-2e-5, "faster")])
+def test_a_clock_that_drifts_is_slower_or_faster(drift: float, way: str) -> None:
+    words = _finding("run1", 1e-3, drift).words
+    assert f"runs {way} than the motion's by 20 parts in a million: +1 ms" in words

@@ -61,3 +61,8 @@ def test_every_public_name_comes_when_it_is_asked_for() -> None:
     assert set(jbf.__all__) <= set(dir(jbf))
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = jbf.no_such_name
+
+
+def test_words_are_said_without_what_draws() -> None:
+    """The door knows pictures by name alone, until one is asked for."""
+    assert "matplotlib.axes" not in imported("import jbf.reporting.door")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -12,12 +13,14 @@ import numpy as np
 import pytest
 from jbf.control import TASKS, THESIS_BENCH, run, thesis_model
 from jbf.control.robustness import Outcome
+from jbf.control.run import _mend
 from jbf.control.thesis_tables import Cell, Tables
 from jbf.diagnosis.late_channels import _finding
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.result import Diagnosis
 from jbf.plot.style import axes_or_new
+from jbf.records.motion.compared import compared
 from jbf.reporting.control_run_plot import plot_runs
 from jbf.reporting.control_run_text import robustness_text
 from jbf.reporting.control_tables_text import assumptions_text, score_text, tables_text
@@ -38,6 +41,9 @@ def test_false_names_of_a_hundred_decoys_in_percent(named: int, said: str) -> No
     """Clopper and Pearson's upper limit of so many of a hundred, 95 %."""
     level = Level.shared(DEFAULT, 20, 1000.0, 1.0)
     words = level_words(replace(level, decoys=100, decoys_named=named))
+    # No residual has been asked yet.
+    assert level.blocks == 0
+    assert "by the residual itself" not in words
     assert f"{named} would have made a name (false names below {said})" in words
 
 
@@ -110,3 +116,18 @@ def test_the_rows_of_a_picture_of_loops_are_named_once() -> None:
 def test_a_clock_that_drifts_is_slower_or_faster(drift: float, way: str) -> None:
     words = _finding("run1", 1e-3, drift).words
     assert f"runs {way} than the motion's by 20 parts in a million: +1 ms" in words
+
+
+@pytest.mark.parametrize(
+    ("problem", "mend"), [("top_speed_rad_s is 9", "lower counts"), ("dt_s is 0", "correct it")]
+)
+def test_what_to_do_about_a_loop_that_is_refused(problem: str, mend: str) -> None:
+    assert _mend(problem).startswith(mend)
+
+
+@pytest.mark.parametrize(("samples", "widths"), [(30, 0), (67, 0), (68, 1), (76, 2), (92, 3)])
+def test_a_short_path_is_compared_over_few_widths(samples: int, widths: int) -> None:
+    time = 0.01 * np.arange(samples)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(list(compared(time, 0.1 * time, np.full(samples, 0.1)))) == widths

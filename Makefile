@@ -42,7 +42,7 @@ help:
 	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
-	@echo "make supply  licences, sources and known faults of every dependency (cargo-deny, pip-audit)"
+	@echo "make supply  licences, sources and known faults of every dependency; the workflows (cargo-deny, pip-audit, zizmor)"
 	@echo "make sbom    what an installed jbf consists of, as CycloneDX, into target/sbom"
 	@echo "make licences  THIRD_PARTY.md: the texts of what is linked into a wheel"
 	@echo "make publish-check  packs every crate that is published, as the registry would"
@@ -73,8 +73,9 @@ docs: $(BUILT)
 	$(VENV)/bin/python docs/site/build.py
 	$(VENV)/bin/python -m pytest docs/site/tests -n 2 --dist worksteal --durations 5
 
+# ONLY="docs/laws.py ..." makes those alone; the page then tells which stand as they were.
 figures: $(BUILT)
-	$(VENV)/bin/python docs/site/figures.py
+	$(VENV)/bin/python docs/site/figures.py $(ONLY)
 
 test: $(BUILT)
 	cargo test --workspace --exclude jbf-py
@@ -180,12 +181,15 @@ supply:
 	if [ $$code != 0 ] || grep -q "could not be audited" <<<"$$told"; then \
 		echo "SKIPPED: pip-audit cannot ask for known faults of every package here"; \
 	else echo "$$told"; fi
+	@if [ -x $(AUDIT)/bin/zizmor ]; then $(AUDIT)/bin/zizmor --offline --quiet .github; \
+	else echo "SKIPPED: pip has no zizmor for this machine"; fi
 
 # In environments of their own: what a user installs, and the tools that look at it.
 AUDIT := target/audit
 $(AUDIT)/.made: pyproject.toml | $(BUILT)
 	@rm -rf $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT) && $(VENV)/bin/python -m venv $(AUDIT)/runtime
 	@$(AUDIT)/bin/pip install --quiet --disable-pip-version-check pip-audit cyclonedx-bom
+	@-$(AUDIT)/bin/pip install --quiet --disable-pip-version-check --only-binary zizmor zizmor
 	@$(VENV)/bin/python -c 'import tomlkit; p = tomlkit.parse(open("pyproject.toml").read())["project"]; \
 		print("\n".join(p["dependencies"]))' > $(AUDIT)/runtime.txt
 	@$(AUDIT)/runtime/bin/pip install --quiet --disable-pip-version-check -r $(AUDIT)/runtime.txt

@@ -15,9 +15,13 @@ from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import jbf
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
+
 from rigsim import AXIS_EFFECTS, OF_TEMPERATURE, AxisRun, axis_campaign
 from rigsim.foreign import FOREIGN, draw_foreign
 from rigsim.warmth import Kind

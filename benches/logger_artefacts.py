@@ -9,6 +9,7 @@ changes, so every row should be `adequate`, or say what the recording did.
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 from collections.abc import Callable
 from importlib.resources import as_file, files
@@ -98,6 +99,7 @@ TREATMENTS: dict[str, Callable[[Columns], str]] = {
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0]).parse_args()
     print("| force channel | verdict | named | held-out / noise | findings |")
     print("| --- | --- | --- | --- | --- |")
     with as_file(files("jbf") / "data" / "demo" / "plain") as plain:

@@ -11,8 +11,12 @@ import argparse
 import resource
 import sys
 import time
+from pathlib import Path
 
 import jbf
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
+
 from drives import recorded
 from rigsim import AXIS_EFFECTS, axis_campaign
 

@@ -8,6 +8,7 @@ friction_n. The recordings are not ours to ship: without them this says so and d
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
 from dataclasses import replace
@@ -54,11 +55,14 @@ def diagnosed(title: str, run: jbf.Run) -> None:
 
 def main() -> int:
     """Do it."""
-    if len(sys.argv) != 2:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
+    parser.add_argument("folder", type=Path, nargs="?", help="the recordings")
+    folder = parser.parse_args().folder
+    if folder is None:
         print("skipped: name the folder of the recordings: python benches/real_records.py FOLDER")
         return 0
     for name in ("emps", "tribometer"):
-        path = Path(sys.argv[1]) / name / "run.csv"
+        path = folder / name / "run.csv"
         if not path.is_file():
             print(f"skipped: there is no {path}")
             continue

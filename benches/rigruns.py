@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import jbf
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
+
 import rigsim
 from jbf.models.catalogue import find_parameter, parameters_of
 from rigsim.warmth import REFERENCE_C

@@ -24,7 +24,9 @@ INK, NOTE, ROOM, CORE, ARROW = "#222222", "#555555", "#e8f0f7", "#f6e7dc", "#7a8
 
 FLOORS: list[list[tuple[str, str]]] = [
     [("cli", "arguments in, files out")],
+    [("workbench", "files and clicks in;\na page in the browser out")],
     [("reporting", "results in; words, tables,\npictures, pages, JSON out")],
+    [("plot", "results in;\nsingle pictures out")],
     [
         ("control", "model in; loop, bench,\ncompensators out"),
         ("diagnosis", "comparison in;\nwhat is missing out"),
@@ -95,20 +97,24 @@ def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float 
 def rooms() -> Figure:
     """The rooms from top to bottom, each importing only those below it."""
     counts = imports()
-    figure, ax = canvas(9.4, 9.2)
+    figure, ax = canvas(9.4, 1.12 * len(FLOORS) + 0.24)
     places: dict[str, tuple[float, float]] = {}
     order = [name for floor in FLOORS for name, _ in floor]
     for k, floor in enumerate(FLOORS):
         for i, (name, words) in enumerate(floor):
             if not name:
                 continue
-            x, y = 4.3 + 2.8 * (i - (len(floor) - 1) / 2), 8.6 - 1.12 * k
+            x, y = 4.3 + 2.8 * (i - (len(floor) - 1) / 2), 1.12 * (len(FLOORS) - k) - 0.36
             places[name] = (x, y)
             box(ax, x, y, (5.2, 0.62) if name == "_core" else (2.5, 0.74), name, words)
             below = [f"{n} {counts[name, n]}" for n in order if counts[name, n]]
             if below and len(floor) == 1:
                 said = textwrap.fill(", ".join(below), 46)
-                ax.text(x + 1.4, y, f"imports\n{said}", va="center", fontsize=7.5, color=NOTE)
+                note = ax.text(
+                    x + 1.4, y, f"imports\n{said}", va="center", fontsize=7.5, color=NOTE
+                )
+                note.set_bbox({"fc": "white", "ec": "none", "pad": 1.0})  # over an arrow
+                note.set_zorder(3)
     for a, b in pairwise(FLOORS):
         for name, _ in a:
             for other, _ in b:

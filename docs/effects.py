@@ -24,6 +24,7 @@ RIG = jbf.Rig.thesis()
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
 IN_NEWTONS = {"F_c_n": 12.0, "F_s_n": 12.0, "F_v_n_s_m": 60.0}
 RATE_HZ = 200.0
+NOISE_N = 0.1
 PLAIN, WITH = "0.3", "tab:red"
 
 
@@ -134,34 +135,66 @@ def shown(effect: Effect) -> Shown:
     return Shown({p.name: p.starts[0] for p in effect.parameters})
 
 
-def draw(effect: Effect) -> Figure:
-    """Friction against speed and along time, without the effect and with it."""
+def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0) -> jbf.Run:
+    """The motion under which an effect is shown, without friction."""
     what = shown(effect)
     time, speed = speed_of(what.motion)
+    speed = speed_times * speed
     assert RIG.bearing is not None
     assert RIG.load is not None
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) / RATE_HZ)))
-    load = np.full(len(time), what.load_share * RIG.load.normal_n)
-    celsius = None if what.warms_c is None else np.linspace(*what.warms_c, len(time))
-    run = jbf.Run.from_arrays(
+    load = np.full(len(time), load_times * what.load_share * RIG.load.normal_n)
+    return jbf.Run.from_arrays(
         time,
         speed,
         angle_rad=angle / RIG.bearing.radius_m,
         load_n=load,
-        temperature_c=celsius,
+        temperature_c=None if what.warms_c is None else np.linspace(*what.warms_c, len(time)),
     )
+
+
+def models_of(effect: Effect) -> tuple[jbf.Model, jbf.Model]:
+    """The law without an effect and with it."""
+    what = shown(effect)
     own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
     others = _others(what)
     values = {**values, **what.beside}
-    plain = jbf.Model(RIG, law, effects=others, parameters=values).predict(run)
-    model = jbf.Model(RIG, law, effects=[*others, effect.name], parameters=values | own)
-    changed = model.predict(run)
+    return (
+        jbf.Model(RIG, law, effects=others, parameters=values),
+        jbf.Model(RIG, law, effects=[*others, effect.name], parameters=values | own),
+    )
+
+
+def record(effect: Effect, folder: Path) -> None:
+    """A rig and two runs with an effect in them: the picture's motion, and half of it under more
+    load, with noise. The command of the effect's page is tried on them."""
+    model = models_of(effect)[1]
+    RIG.write(folder / "rig.toml")
+    (folder / "runs").mkdir()
+    for number, times in enumerate(((1.0, 1.0), (0.5, 1.3))):
+        motion = motion_of(effect, *times)
+        noise = np.random.default_rng(number).normal(0.0, NOISE_N, len(motion.time_s))
+        kept = slice(None, None, 4)
+        jbf.Run.from_arrays(
+            motion.time_s[kept],
+            motion.velocity_m_s[kept],
+            (model.predict(motion) + noise)[kept],
+            angle_rad=motion.angle_rad[kept],
+            load_n=motion.load_n[kept],
+            temperature_c=None if motion.temperature_c is None else motion.temperature_c[kept],
+        ).write_csv(folder / "runs" / f"{number}.csv")
+
+
+def draw(effect: Effect) -> Figure:
+    """Friction against speed and along time, without the effect and with it."""
+    motion = motion_of(effect)
+    plain, changed = (model.predict(motion) for model in models_of(effect))
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
     plane, along = figure.subplots(1, 2)
-    _curves(plane, speed, plain, changed)
+    _curves(plane, motion.velocity_m_s, plain, changed)
     plane.set(xlabel="speed, m/s", ylabel="friction, N")
-    _curves(along, time, plain, changed)
+    _curves(along, motion.time_s, plain, changed)
     along.set(xlabel="time, s")
     figure.legend(*along.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
@@ -190,7 +223,7 @@ def page(effect: Effect) -> str:
     if what.beside:
         named = ", ".join(f"`{n}` = {v:g}" for n, v in what.beside.items())
         under += f", both with {named}"
-    chosen = ",".join([*_others(what), effect.name])
+    chosen = sorted([*_others(what), effect.name], key=list(catalogue()).index)
     law, options = "`journal`, Table 4.2", ""
     if "journal" in effect.refused:
         options = "--law coulomb "
@@ -224,9 +257,16 @@ def page(effect: Effect) -> str:
         lines += ["", f"**Not with these laws.** {refused_words(effect)}."]
     lines += [
         "",
+        "On your rig and runs:",
+        "",
+        f"<!-- given: effect {effect.name} -->",
         "```sh",
-        "# not tested: on your rig and runs",
-        f"jbf fit rig.toml runs/ {options}--effects {chosen} --out model.toml",
+        f"jbf fit rig.toml runs/ {options}--effects {','.join(chosen)} --out model.toml",
+        "```",
+        "```output",
+        f"    effects                = {', '.join(chosen)}",
+        "...",
+        f"    {effect.name}.{effect.parameters[0].name} ... +/- ...",
         "```",
         "",
     ]

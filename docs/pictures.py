@@ -7,6 +7,7 @@ from pathlib import Path
 
 import jbf
 import jbf.plot
+import matplotlib
 from jbf import control
 from jbf.plot.style import one_axes
 from matplotlib.axes import Axes
@@ -27,7 +28,9 @@ def main() -> None:
     folder = HERE / "images" / "plot"
     folder.mkdir(exist_ok=True)
     for name, draw in each(diagnosis).items():
-        jbf.plot.save(draw(one_axes(None, SMALL)), folder / f"{name}.svg")
+        # The same picture is the same file: names in it not drawn by lot.
+        with matplotlib.rc_context({"svg.hashsalt": name}):
+            jbf.plot.save(draw(one_axes(None, SMALL)), folder / f"{name}.svg")
 
 
 def each(diagnosis: jbf.Diagnosis) -> dict[str, Callable[[Axes], Axes]]:

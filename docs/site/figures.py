@@ -1,15 +1,19 @@
 """Make every picture and generated page anew, from one commit: `make figures`.
 
 Writes docs/reference/figures.md: which command made what, on which machine, from which commit.
-`--as-committed` makes nothing, and tells of each the commit that brought what stands there now.
+Scripts that are named are run alone (`make figures ONLY=...`, which builds this commit's extension
+first); of the others the page tells the commit that brought what stands there now.
+`--as-committed` makes nothing, and tells that of all.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
 import subprocess
 import sys
+import time
 from datetime import date
 from pathlib import Path
 
@@ -83,21 +87,31 @@ def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
 
 
 def main() -> int:
-    """Run all; stop at the first that fails."""
-    if "--as-committed" in sys.argv[1:]:
-        rows = [(script, names, brought(names)) for script, names in SCRIPTS.items()]
-        write(
-            rows, "Not made at one time: the commit is the one that brought what stands there now."
-        )
-        return 0
+    """Run all, or those that are named; stop at the first that fails."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scripts", nargs="*", metavar="SCRIPT", help="such as docs/laws.py")
+    parser.add_argument("--as-committed", action="store_true")
+    asked = parser.parse_args()
+    if unknown := [name for name in asked.scripts if name not in SCRIPTS]:
+        parser.error(f"{unknown[0]} makes no figure; these do: {', '.join(SCRIPTS)}")
+    made = [] if asked.as_committed else asked.scripts or list(SCRIPTS)
     source = commit()
-    for script in SCRIPTS:
-        print(script, flush=True)
-        done = subprocess.run([sys.executable, script], cwd=ROOT)
+    # The date that matplotlib writes into SVG is the commit's.
+    dated = {**os.environ, "SOURCE_DATE_EPOCH": said("git", "log", "-1", "--format=%ct").strip()}
+    for script in made:
+        start = time.monotonic()
+        done = subprocess.run([sys.executable, script], cwd=ROOT, env=dated)
         if done.returncode != 0:
             return done.returncode
-    rows = [(script, names, source) for script, names in SCRIPTS.items()]
-    write(rows, f"Made {date.today().isoformat()} from one commit, on {machine()}.")
+        print(f"{script}: {time.monotonic() - start:.0f} s", flush=True)
+    rows = [(s, names, source if s in made else brought(names)) for s, names in SCRIPTS.items()]
+    if made:
+        told = f"Made {date.today().isoformat()} from {source}, on {machine()}."
+        if len(made) < len(SCRIPTS):
+            told += " Others: the commit that brought what stands there now."
+    else:
+        told = "Not made at one time: the commit is the one that brought what stands there now."
+    write(rows, told)
     return 0
 
 

@@ -10,7 +10,8 @@
 - a first line `# in a clone of the repository` has a block run at its root;
 - a first line `# not tested: WHY`, and a shell line that ends in `(not tested: WHY)`, are not run;
 - `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
-- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`).
+- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`);
+  another word after it says of what.
 
 A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` says
 which test compiles it.
@@ -30,7 +31,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 
-from pages import ROOT, Block, blocks, name_of
+from pages import DOCS, ROOT, Block, blocks, name_of
 
 ELSEWHERE = {
     ("crates/jbf-core/README.md", "rust"): "cargo test --doc -p jbf-core",
@@ -41,7 +42,8 @@ PROSE = {"", "text"}
 SIMULATOR = ROOT / "simulator"
 DEMO = ROOT / "python" / "jbf" / "data" / "demo" / "hidden"
 WHY = re.compile(r"not tested: (\S+ \S+ [^)\n]+)")
-SECONDS = 400
+SECONDS = 1800
+"""A shell block that takes longer hangs; a busy machine is slow."""
 
 
 class Wrong(Exception):
@@ -94,10 +96,19 @@ def _schema(folder: Path) -> None:
     shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
 
 
-GIVEN: dict[str, Callable[[Path], None]] = {
+def _effect(folder: Path, name: str) -> None:
+    """Runs with an effect in them."""
+    sys.path.insert(0, str(DOCS))
+    import effects
+
+    effects.record(effects.catalogue()[name], folder)
+
+
+GIVEN: dict[str, Callable[..., None]] = {
     "campaign": _campaign,
     "warm_campaign": _warm_campaign,
     "schema": _schema,
+    "effect": _effect,
 }
 IN_A_CLONE = "# in a clone of the repository"
 
@@ -219,8 +230,8 @@ def run(page: Path, keep: Path | None = None) -> None:
     name = name_of(page)
     with tempfile.TemporaryDirectory() as temporary:
         folder = (keep or Path(temporary)).resolve()
-        for given in re.findall(r"<!-- given: (\w+) -->", text):
-            GIVEN[given](folder)
+        for given, *of in map(str.split, re.findall(r"<!-- given: (.*?) -->", text)):
+            GIVEN[given](folder, *of)
         reader = Reader(folder)
         for block in blocks(text):
             if (name, block.language) in ELSEWHERE:

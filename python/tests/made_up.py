@@ -59,6 +59,9 @@ class MadeUp:
         The same where a model has only been ranked.
     scores
         What a score test promises; plenty where nothing is said.
+    promised
+        What a first look promises, of those that have not been ranked; without end where nothing is
+        said.
     peaks
         Gain once the other peaks were searched.
     from_richer
@@ -77,6 +80,7 @@ class MadeUp:
     gains: dict[Set, float]
     ranked: Mapping[Set, float] = field(default_factory=dict)
     scores: Mapping[Set, float] = field(default_factory=dict)
+    promised: Mapping[Set, float] = field(default_factory=dict)
     peaks: Mapping[Set, float] = field(default_factory=dict)
     from_richer: Mapping[Set, float] = field(default_factory=dict)
     left_out: Mapping[Set, float] = field(default_factory=dict)
@@ -111,6 +115,17 @@ class MadeUp:
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         for effects in sets:
             self.rank(effects, near)
+
+    def look_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        for effects in sets:
+            self.look(effects, near)
+
+    def look(self, effects: Sequence[str], near: Solution) -> Any:
+        here = self._note("look", effects)
+        gain = self.ranked.get(here, self._gain(effects))
+        promised = np.inf if ("rank", here) in self.asked else self.promised.get(here, np.inf)
+        seen = solution(effects, gain, self.smooth)
+        return SimpleNamespace(found=lambda: seen, promised=promised)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         here = self._note("rank", effects)

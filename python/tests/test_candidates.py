@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from by_hand import coulomb, four_runs
 from jbf import Rig, Run
 from jbf.diagnosis import candidates as module
 from jbf.diagnosis.candidates import Candidates
+from jbf.estimation.approach import Look
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -44,9 +46,22 @@ class Fits:
     def approach(
         self, problem: Problem, seeds: Sequence[Mapping[str, float]], *_: Any, **__: Any
     ) -> Solution:
-        self.notes.append(("approach", [dict(seed) for seed in seeds]))
-        made = solution(problem.effects, self.fresh)
-        return replace(made, values=problem.starts({})[0])
+        return self.begin(problem, seeds).follow()
+
+    def begin(
+        self, problem: Problem, seeds: Sequence[Mapping[str, float]], **_: Any
+    ) -> SimpleNamespace:
+        made = replace(solution(problem.effects, self.fresh), values=problem.starts({})[0])
+
+        def look(near: Solution) -> Look:
+            self.notes.append(("look", [dict(seed) for seed in seeds]))
+            return Look(made.values, 1.0, 30.0, None)
+
+        def follow(*_: Any) -> Solution:
+            self.notes.append(("approach", [dict(seed) for seed in seeds]))
+            return made
+
+        return SimpleNamespace(look=look, follow=follow, solution_of=lambda look, near: made)
 
     def settle(self, problem: Problem, near: Solution, *_: Any) -> Solution:
         self.notes.append(("settle", near))
@@ -65,6 +80,9 @@ def fits(monkeypatch: pytest.MonkeyPatch) -> Fits:
     found = Fits()
     for name in ("approach", "settle", "search_peaks"):
         monkeypatch.setattr(module, name, getattr(found, name))
+    monkeypatch.setattr(module, "Approach", found.begin)
+    # Solutions that are made up have no residual of the campaign's.
+    monkeypatch.setattr(Candidates, "_least_square", lambda *_: np.inf)
     monkeypatch.setattr(
         module, "left_out_by_run", lambda problem, near, apart: [np.array([near.rms_n])]
     )
@@ -78,6 +96,24 @@ def test_each_state_is_reached_once(campaign: Campaign, fits: Fits) -> None:
     assert every.rank(["sensor_lag"]) is first
     assert every.converge(("sensor_lag",)) is first
     assert fits.called() == ["approach", "settle"]
+
+
+def test_a_first_look_goes_on_where_it_ended(campaign: Campaign, fits: Fits) -> None:
+    every = Candidates(campaign, "coulomb", "journal")
+    near = every.converge([])
+    fits.notes.clear()
+    looked = every.look(["sensor_lag"], near)
+    assert (looked.state, looked.promised) == ("looked", 30.0)
+    assert every.look(["sensor_lag"], near) is looked
+    # Where it was looked at only it is no start for anything.
+    assert every.values_of(["sensor_lag"]) is None
+    seeds = fits.notes[0][1]
+    every.rank(["sensor_lag"])
+    assert (looked.state, looked.promised) == ("ranked", np.inf)
+    assert fits.notes == [("look", seeds), ("approach", seeds)]
+    # What was ranked is not looked at.
+    every.look(["sensor_lag"], near)
+    assert fits.called() == ["look", "approach"]
 
 
 def test_a_candidate_starts_from_the_smaller_model_and_anew(campaign: Campaign, fits: Fits) -> None:

@@ -66,3 +66,10 @@ def test_every_public_name_comes_when_it_is_asked_for() -> None:
 def test_words_are_said_without_what_draws() -> None:
     """The door knows pictures by name alone, until one is asked for."""
     assert "matplotlib.axes" not in imported("import jbf.reporting.door")
+
+
+def test_a_diagnosis_imports_no_statistics_and_no_signal_processing() -> None:
+    # Half a second of every command, for what scipy.special and a filter of the core say as well.
+    there = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")
+    assert "scipy.optimize" in there
+    assert not there & {"scipy.stats", "scipy.signal"}

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from campaigns import campaign
+from jbf._core import first_order_filter
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_floor import noise_floor
@@ -85,3 +86,26 @@ def test_no_other_description_fits_better(seed: int) -> None:
     found = cost(estimate_noise(runs, steps, masks))
     grid = [Noise(m, c) for m in np.geomspace(0.04, 0.6, 25) for c in np.linspace(0.01, 0.99, 50)]
     assert found < min(map(cost, grid)) + 0.1
+
+
+@pytest.mark.parametrize("shape", [(400,), (400, 3), (0,), (5, 0)])
+def test_the_filter_is_scipys(shape: tuple[int, ...]) -> None:
+    from scipy import signal
+
+    values = np.random.default_rng(3).standard_normal(shape)
+    found = first_order_filter((1.0, -0.9), -0.45, values)
+    assert found.shape == shape
+    if values.size:
+        assert np.array_equal(found, signal.lfilter([1.0, -0.9], [1.0, -0.45], values, axis=0))
+    # A view is filtered as it is seen.
+    turned = np.asfortranarray(values)[::-1]
+    if values.size:
+        assert np.array_equal(
+            first_order_filter((0.0, 2.0), 0.3, turned),
+            signal.lfilter([0.0, 2.0], [1.0, 0.3], turned, axis=0),
+        )
+
+
+def test_a_cube_is_refused() -> None:
+    with pytest.raises(ValueError, match="3 axes"):
+        first_order_filter((1.0, 0.0), 0.0, np.zeros((2, 2, 2)))

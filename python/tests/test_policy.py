@@ -59,6 +59,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "least_swap": 0.05,
         "contender": 60.0,
         "close": 0.6,
+        "foreseen": 2.0,
         "promise": 5.0,
         "peaks_share": 0.5,
         "most_looks": 6,
@@ -263,6 +264,15 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
         61.0,
     ),
     "close": (selected({"sensor_lag": PRICE + 280.0, "sensor_drift": PRICE + LINE}), 0.59, 0.61),
+    # A first look promises 50 of the 108 that it must come to.
+    "foreseen": (
+        selected(
+            {"sensor_lag": PRICE + 280.0},
+            promised={frozenset(["sensor_drift"]): 0.5 * LINE},
+        ),
+        1.99,
+        2.01,
+    ),
     "promise": (
         # It lacks 10, and its next step promises 2.
         selected(

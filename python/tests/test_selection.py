@@ -197,6 +197,40 @@ def test_only_candidates_that_could_lead_converge() -> None:
     assert "sensor_lag" not in fitted(candidates, "converge")
 
 
+def test_what_promises_far_less_than_the_leader_has_is_not_followed() -> None:
+    line = 0.6 * (300.0 - PRICE) - 60.0
+    promised = sets({"sensor_drift": 0.5 * line + 1.0, "sensor_lag": 0.5 * line - 1.0})
+    candidates = made({"sensor_offset": 300.0}, promised=promised)
+    found = tried(candidates)
+    assert found.leader == "sensor_offset"
+    assert "sensor_drift" in fitted(candidates, "rank")
+    assert "sensor_lag" not in fitted(candidates, "rank")
+    (left,) = (t for t in found.trials if t.effect == "sensor_lag")
+    assert left.outcome == "rejected"
+    assert left.reason == f"could have {line - 2.0:.0f} in evidence at most: not followed"
+
+
+def test_what_was_left_behind_is_followed_where_the_leader_fails() -> None:
+    # The leader predicts runs left out worse: the next has what it was left behind for.
+    gains = {"sensor_offset": 300.0, "sensor_lag": 80.0 + PRICE}
+    candidates = made(
+        gains,
+        promised=sets({"sensor_lag": 10.0}),
+        left_out=sets({"sensor_offset": 9.0}),
+    )
+    found = tried(candidates)
+    assert found.leader == "sensor_lag"
+    assert "sensor_lag" in fitted(candidates, "rank")
+
+
+def test_a_rival_that_promises_far_less_does_not_replace() -> None:
+    gains = {"sensor_lag": 1000.0, "sensor_drift": 1000.0}
+    for promised, asked in ((300.0, False), (490.0, True)):
+        candidates = made(gains, promised=sets({"sensor_drift": promised}))
+        weights(cast(Candidates, candidates), ("sensor_lag",))
+        assert ("sensor_drift" in fitted(candidates, "rank")) == asked
+
+
 def test_a_candidate_converges_where_its_next_step_promises_enough() -> None:
     # Each lacks 10; a step that takes s of the square promises 1000 log(1 / (1 - s)).
     ranked = dict.fromkeys(sets({"sensor_drift": 0.0, "sensor_lag": 0.0}), PRICE - 10.0)

@@ -76,6 +76,8 @@ pub struct OnPath<'a, T, L> {
     law: L,
     parameters: [T; 2],
     path: &'a [Place],
+    /// Of each step that is made its number on the path; all are made where there are none.
+    ends: Option<&'a [u32]>,
 }
 
 impl<'a, T, L> OnPath<'a, T, L> {
@@ -85,6 +87,24 @@ impl<'a, T, L> OnPath<'a, T, L> {
             law,
             parameters,
             path,
+            ends: None,
+        }
+    }
+
+    /// The same for [`crate::run::Steps::Last`]: the number, on the path, of the last step before
+    /// each sample but the first.
+    pub fn at(self, ends: &'a [u32]) -> Self {
+        Self {
+            ends: Some(ends),
+            ..self
+        }
+    }
+
+    #[inline(always)]
+    fn place(&self, step: usize) -> Option<&Place> {
+        match self.ends {
+            None => self.path.get(step),
+            Some(ends) => self.path.get(*ends.get(step)? as usize),
         }
     }
 }
@@ -120,7 +140,7 @@ impl<T: Real, L: Law<T>> Law<T> for OnPath<'_, T, L> {
     }
     #[inline(always)]
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T) {
-        let Some(place) = self.path.get(state.1) else {
+        let Some(place) = self.place(state.1) else {
             // Beyond the end of the path the film steps by itself.
             return self.law.advance(&mut state.0, speed_m_s, rate, dt_s);
         };

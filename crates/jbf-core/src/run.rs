@@ -28,6 +28,28 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
+    sink: impl FnMut(usize, T),
+) {
+    predict_by(chain, record, max_step_s, Steps::Every, sink);
+}
+
+/// Which of the steps between two samples a chain makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// Every one.
+    Every,
+    /// The last before a sample alone: of a chain that remembers nothing
+    /// ([`EffectSet::remembers`], [`crate::film_path::OnPath`]) the others change no reading.
+    Last,
+}
+
+/// As [`predict`], with all steps or the last ones alone.
+#[inline(always)]
+pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    record: &Record<'_>,
+    max_step_s: f64,
+    made: Steps,
     mut sink: impl FnMut(usize, T),
 ) {
     let Some(mut from) = record.sample(0) else {
@@ -42,7 +64,14 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
         // To the reversal first, where there is one; from there no sign changes.
         let zero = reversal(&from, &sample, radius_m);
         let to = zero.unwrap_or(sample);
-        between(chain, &mut state, &from, &to, max_step_s);
+        let dt_s = to.time_s - from.time_s;
+        let steps = libm::ceil(dt_s / max_step_s - 1e-9).clamp(1.0, 1e6);
+        let first = match (made, zero.is_some()) {
+            (Steps::Every, _) => 1,
+            (Steps::Last, false) => steps as u32,
+            (Steps::Last, true) => steps as u32 + 1,
+        };
+        between(chain, &mut state, [&from, &to], steps, first);
         if zero.is_none() {
             sink(i, state.reading_n);
             i += 1;
@@ -145,21 +174,19 @@ fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
     Some(zero)
 }
 
-/// Equal inner steps from one motion to the next. What is imposed has no derivatives: it is
-/// plain numbers until a step takes it.
+/// Equal inner steps from one motion to the next, from the `first` on. What is imposed has no
+/// derivatives: it is plain numbers until a step takes it.
 #[inline(always)]
 fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     state: &mut State<T, L::State, E>,
-    from: &Motion<f64>,
-    to: &Motion<f64>,
-    max_step_s: f64,
+    [from, to]: [&Motion<f64>; 2],
+    steps: f64,
+    first: u32,
 ) {
-    let dt = to.time_s - from.time_s;
-    let steps = libm::ceil(dt / max_step_s - 1e-9).clamp(1.0, 1e6);
-    let inner = T::of(dt / steps);
+    let inner = T::of((to.time_s - from.time_s) / steps);
     let radius_m = chain.rig.radius_m.value();
-    for k in 1..=steps as u32 {
+    for k in first..=steps as u32 {
         let motion = from.towards(to, f64::from(k) / steps, radius_m);
         chain.step(state, &motion.lift(), inner);
     }

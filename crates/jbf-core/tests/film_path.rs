@@ -3,11 +3,11 @@
 mod common;
 
 use common::motion::Sines;
-use jbf_core::effect::Effects;
+use jbf_core::effect::{EffectSet, Effects, CATALOGUE};
 use jbf_core::film_path::{FilmStep, FilmSteps, OnPath, Place};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::Law;
-use jbf_core::run::{inner_step_s, predict, Record};
+use jbf_core::run::{inner_step_s, predict, predict_by, Record, Steps};
 use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
 use std::cell::RefCell;
 
@@ -26,13 +26,21 @@ fn law<T: Real>(lifted: impl Fn(f64, usize) -> T) -> Journal<T> {
 }
 
 fn chain<T: Real, L: Law<T>>(law: L) -> Chain<T, L, Effects<T>> {
+    with(
+        law,
+        &[
+            ("coulomb_drag", &[1.0]),
+            ("presliding", &[2e4]),
+            ("sensor_lag", &[0.05]),
+        ],
+    )
+}
+
+fn with<T: Real, L: Law<T>>(law: L, named: &[(&str, &[f64])]) -> Chain<T, L, Effects<T>> {
     let mut effects = Effects::NONE;
-    for (name, values) in [
-        ("coulomb_drag", &[T::of(1.0)][..]),
-        ("presliding", &[T::of(2e4)]),
-        ("sensor_lag", &[T::of(0.05)]),
-    ] {
-        effects.set(name, values).expect("valid");
+    for (name, values) in named {
+        let lifted: Vec<T> = values.iter().map(|&v| T::of(v)).collect();
+        effects.set(name, &lifted).expect("valid");
     }
     Chain::round(law, effects, Some(&Bearing::THESIS))
 }
@@ -75,10 +83,24 @@ impl Columns {
 
 /// The steps of a record, and a film's places along them.
 fn path<const N: usize>(record: &Record<'_>, by: [usize; 2]) -> Vec<Place> {
+    let inner_s = inner_step_s(&chain(law(|v, _| v)), record, MAX_STEP_S);
+    path_and_ends::<N>(record, by, inner_s).0
+}
+
+/// The same, and of each sample but the first the number of the last step before it.
+fn path_and_ends<const N: usize>(
+    record: &Record<'_>,
+    by: [usize; 2],
+    inner_s: f64,
+) -> (Vec<Place>, Vec<u32>) {
     let asked: RefCell<Vec<FilmStep>> = RefCell::new(Vec::new());
     let asks = Chain::round(FilmSteps::new(|s| asked.borrow_mut().push(s)), (), None);
-    let inner_s = inner_step_s(&chain(law(|v, _| v)), record, MAX_STEP_S);
-    predict(&asks, record, inner_s, |_, _| {});
+    let mut ends = Vec::new();
+    predict(&asks, record, inner_s, |i, _| {
+        if i > 0 {
+            ends.push(u32::try_from(asked.borrow().len()).expect("few") - 1);
+        }
+    });
     let alone = law(Dual::<N>::parameter);
     let load = |s: &FilmStep| Dual::of(s.load_n);
     let mut film = alone.start(load(&asked.borrow()[0]));
@@ -97,7 +119,7 @@ fn path<const N: usize>(record: &Record<'_>, by: [usize; 2]) -> Vec<Place> {
             slopes: by.map(|n| e2.slope[n]),
         }
     };
-    steps.iter().map(place).collect()
+    (steps.iter().map(place).collect(), ends)
 }
 
 fn readings<T: Real, L: Law<T>>(law: L, record: &Record<'_>) -> Vec<T> {
@@ -134,6 +156,42 @@ fn the_same_bits_and_slopes() {
     assert!(stepped
         .iter()
         .any(|f| f.slope[1] != 0.0 && f.slope[2] != 0.0));
+}
+
+/// Of effects that remember nothing the steps between two samples change no reading.
+#[test]
+fn the_last_step_before_each_sample_is_enough() {
+    let columns = Columns::new();
+    let record = columns.record();
+    let inner_s = inner_step_s(&with(law(|v, _| v), &[]), &record, MAX_STEP_S);
+    let (path, ends) = path_and_ends::<3>(&record, [1, 2], inner_s);
+    let on_path = || OnPath::new(law(|v, _| v), [1, 2].map(plain_parameter), &path);
+    let mut told = 0;
+    for info in CATALOGUE {
+        let start: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        let stepped = with(on_path(), &[(info.name, &start)]);
+        let before_film = inner_step_s(&stepped, &record, MAX_STEP_S) != inner_s;
+        if before_film || stepped.effects.remembers() {
+            continue;
+        }
+        told += 1;
+        let at_samples = with(on_path().at(&ends), &[(info.name, &start)]);
+        let mut expected = Vec::new();
+        predict(&stepped, &record, MAX_STEP_S, |_, f| expected.push(f));
+        predict_by(
+            &at_samples,
+            &record,
+            MAX_STEP_S,
+            Steps::Last,
+            |i, f: f64| {
+                assert_eq!(f.to_bits(), expected[i].to_bits(), "{} {i}", info.name);
+            },
+        );
+    }
+    assert!(told > 15, "{told}");
+    let remembers = |name, start: &[f64]| with(on_path(), &[(name, start)]).effects.remembers();
+    assert!(remembers("sensor_lag", &[0.05]) && remembers("presliding", &[2e4]));
+    assert!(!remembers("coulomb_drag", &[1.0]) && !remembers("sensor_offset", &[0.1]));
 }
 
 /// U_tr or K0, by its number on the page.

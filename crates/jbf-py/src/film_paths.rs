@@ -28,16 +28,19 @@ pub struct Film {
     pub bits: [u64; 3],
 }
 
-/// The places of a film, with slopes or without.
+/// The places of a film, with slopes or without, and of each sample but the first the number of the
+/// last step before it.
 pub struct FilmPath {
     pub places: Vec<Place>,
     pub has_slopes: bool,
+    pub ends: Arc<[u32]>,
 }
 
 /// What a motion asks of a film, and whether all of it is under one load.
 pub struct Steps {
     pub every: Vec<FilmStep>,
     pub one_load: bool,
+    pub ends: Arc<[u32]>,
 }
 
 /// What is kept along one motion.

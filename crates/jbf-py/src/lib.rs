@@ -9,6 +9,7 @@ mod chain;
 mod control;
 mod curves;
 mod film_paths;
+mod filter;
 mod instrument;
 mod motion;
 mod pool;
@@ -31,6 +32,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::film_integrals, m)?)?;
     m.add_function(wrap_pyfunction!(curves::transition_eccentricity, m)?)?;
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
+    m.add_function(wrap_pyfunction!(filter::first_order_filter, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::thesis_bearing, m)?)?;

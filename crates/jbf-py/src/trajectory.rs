@@ -1,5 +1,7 @@
 //! Trajectories to a tolerance: many runs at once, each its own thread's work.
 
+mod lanes;
+
 use crate::pool::on_pool;
 use jbf_core::driver::{follow, Cost, Film, Sample, Sampled, Sine, Start};
 use jbf_core::law::journal::{Journal, Parameters, START_PHI_RAD};
@@ -27,11 +29,30 @@ struct Run {
 /// A number whose derivatives are wanted, if it has any.
 trait Number: Real + Send + Sync {
     fn slopes(&self) -> &[f64];
+
+    /// All runs of a film without inertia.
+    fn reduced(
+        film: &Journal<Self>,
+        runs: &[Run],
+        start: &Start<Self>,
+        tolerance: f64,
+    ) -> Result<Vec<Result1>, ParameterError> {
+        all(film, runs, start, tolerance)
+    }
 }
 
 impl Number for f64 {
     fn slopes(&self) -> &[f64] {
         &[]
+    }
+
+    fn reduced(
+        film: &Journal<f64>,
+        runs: &[Run],
+        start: &Start<f64>,
+        tolerance: f64,
+    ) -> Result<Vec<Result1>, ParameterError> {
+        lanes::all_in_lanes(film, runs, start, tolerance)
     }
 }
 
@@ -140,7 +161,7 @@ impl Asked {
             all(&film, runs, &start, self.tolerance)
         } else {
             let film = Journal::new(&self.bearing, load_n, parameters, clock)?;
-            all(&film, runs, &start, self.tolerance)
+            T::reduced(&film, runs, &start, self.tolerance)
         }
     }
 }

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
@@ -81,4 +81,4 @@ def _lasting_chance(
         pairs = counted[1:] & counted[:-1] & (large[1:] | large[:-1])
         product += float(np.sum((x[1:] * x[:-1])[pairs]))
         square += CLIPPED**2 * usual * int(pairs.sum())
-    return float(stats.norm.sf(product / np.sqrt(square))) if square > 0.0 else 1.0
+    return float(special.ndtr(-product / np.sqrt(square))) if square > 0.0 else 1.0

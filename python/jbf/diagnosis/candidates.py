@@ -19,11 +19,12 @@ from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
+from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share, likelihood_gain
-from jbf.estimation.minimum import approach, search_peaks, settle
+from jbf.estimation.minimum import search_peaks, settle
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import effects as catalogue
@@ -31,7 +32,7 @@ from jbf.models.catalogue import find_effect, why_not
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
-State = Literal["posed", "ranked", "converged"]
+State = Literal["posed", "looked", "ranked", "converged"]
 Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
@@ -50,12 +51,18 @@ class Fitted:
     Attributes
     ----------
     state
-        `posed`, `ranked` (a few steps) or `converged`.
+        `posed`, `looked` (at first sight), `ranked` (a few steps) or `converged`.
     score
         What its score test promised beside the first model that asked, in twice the log
         likelihood; infinite where the null is out of a step's reach.
     directions
         Where its score was tested; until the level of the tests has been calibrated by them.
+    approach, least
+        A fit that was looked at only, and the sum of squares that it must come below to be
+        followed.
+    promised
+        What it may gain by the linear model, in twice the log likelihood; infinite once it was
+        followed.
     peaks_searched
         True once its other peaks were looked for.
     left_out
@@ -68,6 +75,9 @@ class Fitted:
     solution: Solution | None = None
     score: float | None = None
     directions: Directions | None = None
+    approach: Approach | None = None
+    least: float = np.inf
+    promised: float = np.inf
     peaks_searched: bool = False
     left_out: dict[bool, tuple[Array, Array]] = field(default_factory=dict)
 
@@ -133,7 +143,7 @@ class Candidates:
     def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
         """Parameter name to value of a set of effects; None where it was not fitted."""
         fitted = self._fitted.get(frozenset(effects))
-        if fitted is None or fitted.solution is None:
+        if fitted is None or fitted.state in ("posed", "looked"):
             return None
         return fitted.named_values()
 
@@ -205,30 +215,50 @@ class Candidates:
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit these effects well enough to rank them, from a smaller model's solution."""
         fitted = self.fitted(effects)
-        if fitted.state == "posed":
-            seeds: list[Mapping[str, float]] = [{}]
-            if near is not None:
-                law = self._values_of(near)
-                # A law that had to make up for a missing effect may be a poor start; of an effect
-                # with many peaks the one that it had to climb is no start at all.
-                anew = many_peaks(near.effects)
-                kept = {} if anew else {n: v for n, v in law.items() if "." in n}
-                seeds = [law, kept]
-            known = None if self.before is None else self.before.values_of(effects)
-            if known is not None:
-                # From where it was before the samples were seen in another light.
-                seeds = [known]
-            each = near is not None and many_peaks(near.effects)
-            least = self._least_square(near)
-            fitted.solution = approach(fitted.problem, seeds, RANKING_EVALUATIONS, least, each=each)
-            fitted.state = "ranked"
+        if fitted.state in ("posed", "looked"):
+            way = fitted.approach or self._way(fitted, effects, near)
+            fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.least))
+            fitted.state, fitted.approach, fitted.promised = "ranked", None, np.inf
         return fitted.found()
+
+    def look(self, effects: Sequence[str], near: Solution) -> Fitted:
+        """Look at a fit of these effects, from a smaller model's solution."""
+        fitted = self.fitted(effects)
+        if fitted.state == "posed":
+            fitted.approach = self._way(fitted, effects, near)
+            look = fitted.approach.look(near)
+            fitted.solution = fitted.approach.solution_of(look, near)
+            fitted.state, fitted.promised = "looked", look.promised
+        return fitted
+
+    def _way(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
+        """The approach of a fit from a smaller model's solution."""
+        seeds: list[Mapping[str, float]] = [{}]
+        if near is not None:
+            law = self._values_of(near)
+            # A law that had to make up for a missing effect may be a poor start; of an effect
+            # with many peaks the one that it had to climb is no start at all.
+            anew = many_peaks(near.effects)
+            kept = {} if anew else {n: v for n, v in law.items() if "." in n}
+            seeds = [law, kept]
+        known = None if self.before is None else self.before.values_of(effects)
+        if known is not None:
+            # From where it was before the samples were seen in another light.
+            seeds = [known]
+        each = near is not None and many_peaks(near.effects)
+        fitted.least = self._least_square(near)
+        return Approach(fitted.problem, seeds, each=each)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Rank several sets of effects, each from a smaller model's solution."""
         # Those that take longest first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("trying", lambda effects: self.rank(effects, near), order, near)
+
+    def look_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
+        """Look at several sets of effects beside a smaller model."""
+        order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
+        self._each("looking at", lambda effects: self.look(effects, near), order, near)
 
     def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Test the scores of several sets of effects beside a smaller model."""
@@ -325,8 +355,8 @@ class Candidates:
         """The sum of squares from which on something beside a smaller model shows in its score."""
         if near is None:
             return np.inf
-        square = self.fitted(near.effects).problem.square(near.values)
-        samples = self.campaign.samples.count
+        every = self.campaign.samples
+        square, samples = every.square(near.residuals), every.count
         shows = self.policy.least_score * self.level.price(1, samples)
         return square * float(np.exp(-shows / samples))
 

@@ -13,8 +13,6 @@ from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
 from typing import Any
 
-from scipy import stats
-
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
@@ -106,6 +104,8 @@ class Rate:
     @classmethod
     def of(cls, what: str, told: Sequence[bool]) -> Rate:
         """From what came true and what did not."""
+        from scipy import stats  # most of a second to import
+
         found = stats.binomtest(sum(told), len(told)).proportion_ci(SURE, method="exact")
         return cls(what, sum(told), len(told), float(found.low), float(found.high))
 

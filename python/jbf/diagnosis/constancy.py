@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
@@ -59,7 +59,7 @@ class Disagreement:
         """True where one set of parameters cannot be right for all runs."""
         if self.degrees == 0 or self.gain <= policy.constancy_ratio * self.degrees:
             return False
-        return bool(stats.chi2.sf(self.gain, self.degrees) < policy.constancy_chance)
+        return bool(special.chdtrc(self.degrees, self.gain) < policy.constancy_chance)
 
 
 def disagreement(problem: Problem, solution: Solution, effect: str | None = None) -> Disagreement:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy import fft, stats
+from scipy import fft, special
 
 if TYPE_CHECKING:
     from jbf.diagnosis.level import Directions
@@ -51,5 +51,4 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
 
 def rate_below(named: int, draws: int) -> float:
     """The largest rate at which so few of so many still happen (Clopper & Pearson 1934)."""
-    found = stats.binomtest(named, draws, alternative="less").proportion_ci(SURE, method="exact")
-    return float(found.high)
+    return float(special.betaincinv(named + 1, draws - named, SURE)) if named < draws else 1.0

@@ -20,10 +20,11 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.long_run import score_inflation
-from jbf.estimation.minimum import noise_at, search
+from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
 from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 
@@ -77,7 +78,7 @@ def deviation(
         return None
     between, finding = found
     allowed = replace(counted, between=between)
-    values, *_ = search(problem, allowed, solution.values, solution.noise, EVALUATIONS)
+    values = search(problem, allowed, solution.values, solution.noise, EVALUATIONS).values
     # What the runs deviated by had passed for colour.
     after = problem.solution(values, allowed, noise_at(problem, allowed, values))
     gain = counted.cost(solution.residuals, solution.noise) - after.cost

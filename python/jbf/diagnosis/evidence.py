@@ -5,7 +5,7 @@ In twice the log likelihood.
 
 from __future__ import annotations
 
-from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates
+from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
     effective_share,
@@ -13,8 +13,8 @@ from jbf.estimation.likelihood import (
     next_step_gain,
     share_of_gain,
 )
-from jbf.estimation.minimum import search
 from jbf.estimation.samples import least_weights
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 
@@ -65,7 +65,7 @@ def evidence_alone(
     if richer.samples is simpler.samples or gain <= 0.0:
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
-    values, *_ = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS)
+    values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
     there = problem.solution(values, samples, simpler.noise)
     return min(gain, evidence(candidates, richer, there, anywhere=anywhere))
 
@@ -95,6 +95,12 @@ def swap_cost(
     least = policy.least_swap * likelihood_gain(whole, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
+    if not many_peaks(effects):
+        # Of one peak among many no step tells where another one is.
+        looked = candidates.look(effects, near)
+        could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
+        if cost(looked.found()) - share * could_gain >= policy.contender:
+            return cost(looked.found())
     first = cost(candidates.rank(effects, near))
     if first >= policy.contender:
         return first

@@ -14,10 +14,10 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.lateness import Lateness, lateness
 from jbf.estimation.likelihood import independent_share
-from jbf.estimation.minimum import search
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
@@ -137,7 +137,7 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
     known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
     start = np.array([known[name] for name in late.names])
     samples = late.samples_at(start)
-    values, *_ = search(late, samples, start, found.solution.noise, EVALUATIONS)
+    values = search(late, samples, start, found.solution.noise, EVALUATIONS).values
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
     late_s = found.late_s + shared_s
     if not _beside_its_motion(problem, late_s, 0.0):
@@ -208,8 +208,9 @@ def _refitted(
     again = Problem(campaign, problem.law, problem.clock, effects)
     start = np.array([known[name] for name in again.names])
     samples = again.samples_at(start)
-    values, converged, message = search(again, samples, start, near.noise, EVALUATIONS)
-    return again, again.solution(values, samples, near.noise, converged, message)
+    end = search(again, samples, start, near.noise, EVALUATIONS)
+    solution = again.solution(end.values, samples, near.noise, end.converged, end.message)
+    return again, solution
 
 
 def _finding(run: str, late_s: float, drift: float) -> Finding:

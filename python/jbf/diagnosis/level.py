@@ -20,10 +20,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.decoys import decoy_gains
 from jbf.diagnosis.policy import Policy
@@ -113,7 +114,7 @@ class Level:
 @cache
 def _gained_by_noise(chance: float) -> float:
     """What noise makes one parameter gain, in twice the log likelihood, with that probability."""
-    return float(stats.chi2.isf(chance, 1))
+    return float(special.chdtri(1, chance))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +183,16 @@ def _ends(samples: Samples) -> Places:
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
 
 
+_known: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
+
+
+def _rows(near: Solution) -> tuple[Array, Array]:
+    """Innovations of a solution and their derivatives, kept while every candidate is tested."""
+    if near not in _known:
+        _known[near] = near.stacked()
+    return _known[near]
+
+
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
 ) -> tuple[float, Directions]:
@@ -190,9 +201,19 @@ def score_test(
     few = problem.thinned
     # What a smaller model sets aside beside its jumps would seem to ask for anything.
     samples = near.samples if few is problem else few.campaign.samples
+    mine = np.array([few.names[i].split(".")[0] in added for i in few.open], dtype=bool)
+    # At the null the rest of the model is as it was, and so are its derivatives.
+    known = few is problem and near.free == np.count_nonzero(~mine)
     best: tuple[float, Array, Array] | None = None
     for start in starts:
-        r, j = samples.stacked(*few.linearise(start), near.noise)
+        if known:
+            own = [i for i, added_here in zip(few.open, mine, strict=True) if added_here]
+            r, rest = _rows(near)
+            _, ways = samples.stacked(*few.linearise(start, by=own), near.noise)
+            j = np.empty((len(r), len(mine)))
+            j[:, mine], j[:, ~mine] = ways, rest
+        else:
+            r, j = samples.stacked(*few.linearise(start), near.noise)
         gain = promised_gain(*triangular(r, j), len(r))
         if few is not problem:
             gain = score_gain(problem, start, near)
@@ -200,9 +221,16 @@ def score_test(
             best = gain, r, j
     assert best is not None
     gain, r, j = best
-    own = [few.names[i].split(".")[0] in added for i in few.open]
-    mine = np.array(own, dtype=bool)
     return gain, Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
+
+
+def _explained(ways: Array, target: Array) -> Array:
+    """What columns of unit length, some of which may be one, explain of a target."""
+    size, axes = np.linalg.eigh(ways.T @ ways)
+    told = size > 1e-12 * size[-1]
+    step = axes[:, told] @ ((axes[:, told].T @ (ways.T @ target)) / size[told])
+    found: Array = ways @ step
+    return found
 
 
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
@@ -216,17 +244,20 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     if not told:
         return level
     every = np.column_stack([d.ways for d in told])
-    explained, *_ = np.linalg.lstsq(every, told[0].innovations, rcond=1e-8)
-    noise = told[0].innovations - every @ explained
+    noise = told[0].innovations - _explained(every, told[0].innovations)
     noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
     # Scores may have been tested beside models whose residuals remember more or less.
     blocks = min((d.blocks for d in told), key=len)
     random = np.random.default_rng(len(blocks))
-    signs = random.integers(0, 2, (DRAWS, len(blocks))).astype(np.int8) * 2.0 - 1.0
-    least = np.ones(DRAWS)
-    for one in told:
-        gain = np.sum((signs @ one.by_block(noise, blocks)) ** 2, axis=1)
-        least = np.minimum(least, stats.chi2.sf(gain, one.ways.shape[1]))
+    signs = random.integers(0, 2, (DRAWS, len(blocks)), dtype=np.int8).astype(np.float32)
+    signs = 2.0 * signs - np.float32(1.0)
+    # All at once: the signs are read from memory once.
+    columns = np.column_stack([one.by_block(noise, blocks) for one in told])
+    scores = (signs @ columns.astype(np.float32)).astype(np.float64)
+    ends = np.cumsum([one.ways.shape[1] for one in told])
+    least: Array = np.ones(DRAWS)
+    for squares in np.split(scores**2, ends[:-1], axis=1):
+        least = np.minimum(least, special.chdtrc(squares.shape[1], np.sum(squares, axis=1)))
     least.sort()
     silent = max(level.candidates - len(told), 0)
     # So many draws have a name, and those that say nothing may have one besides.

@@ -105,6 +105,12 @@ class Policy:
     close: float = _number(
         0.6, "share of the leader's evidence that a ranked candidate needs to converge", "as above"
     )
+    foreseen: float = _number(
+        2.0,
+        "times what the linear model promises after three steps that a candidate may gain in the "
+        "end; where even that is less than the leader's share it is not followed",
+        "of fits with effects of every kind the largest gained 1.5 times that",
+    )
     promise: float = _number(
         5.0,
         "times what its next step promises that a ranked candidate may still gain",

@@ -13,17 +13,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
-from jbf.estimation.likelihood import unexplained
+from jbf.estimation.likelihood import spanned
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come
 
@@ -34,6 +35,8 @@ LEVELS = (0.80, 0.95)
 """Chances of being found."""
 LOOKS = 14
 """Strengths tried for each."""
+POWERS = (1.0, 8.0)
+"""Powers of its strength with which what an effect is worth may grow."""
 AGREES = 0.05
 """Relative difference in strength that ends it."""
 NEARLY_ALL = 0.97
@@ -120,7 +123,12 @@ def power(
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
     seen = dict(zip(models, found, strict=True))
-    return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
+    apart = _apart(seen)
+    return tuple(
+        _power(candidates, runs, models, seen[name], apart[name], name)
+        for name in models
+        if name in asked
+    )
 
 
 @dataclass(frozen=True)
@@ -180,11 +188,12 @@ def _parameters(base: Solution, model: Strength) -> int:
     return max(len(model.problem.open) - base.free, 1)
 
 
+@lru_cache(maxsize=64)
 def non_centrality(price: float, parameters: int, chance: float) -> float:
     """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
 
     def lacking(root: float) -> float:
-        return float(stats.ncx2.sf(price, parameters, root**2)) - chance
+        return 1.0 - float(special.chndtr(price, parameters, root**2)) - chance
 
     top = np.sqrt(price) + 10.0
     return float(optimize.brentq(lacking, 1e-3, top)) ** 2
@@ -193,14 +202,20 @@ def non_centrality(price: float, parameters: int, chance: float) -> float:
 def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
     """How many times its usual strength an effect has that is worth so much; nan where none is.
 
-    What an effect is worth grows as its square, nearly; where it grows all at once (a lag within a
-    sample shows nothing) the search halves what is left between too little and enough.
+    What an effect is worth grows as its square, nearly, or as it did from one look to the next;
+    where it grows all at once (a lag within a sample shows nothing) the search halves what is left
+    between too little and enough.
     """
     little, enough = 0.0, np.inf
+    power, before = 2.0, None
     for _ in range(LOOKS):
-        left = runs.shown(runs.change(model, times))
-        worth = _worth(left)
-        further = float(np.clip(np.sqrt(wanted / max(worth, 1e-300)), 1e-3, 30.0))
+        worth = max(_worth(runs.shown(runs.change(model, times))), 1e-300)
+        if before is not None and worth != before[1] and times != before[0]:
+            # As it grew from the last strength to this one.
+            grown = np.log(worth / before[1]) / np.log(times / before[0])
+            power = float(np.clip(grown, *POWERS))
+        before = (times, worth)
+        further = float(np.clip((wanted / worth) ** (1.0 / power), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times
         # At a bound there is no more to be had.
@@ -228,20 +243,38 @@ def _worth(left: Array) -> float:
 def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Array:
     """What an effect changes, and what its parameters change, apart from what the model can."""
     problem = model.problem.thinned
-    own = [k for k, i in enumerate(problem.open) if problem.names[i].startswith(f"{model.name}.")]
-    _, slopes = problem.linearise(model.values(times))
+    own = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
+    _, slopes = problem.linearise(model.values(times), by=own)
     more = runs.shown(runs.change(model, FURTHER * times))
-    return np.column_stack([change, more, runs.shown([j[:, own] for j in slopes])])
+    return np.column_stack([change, more, runs.shown(slopes)])
+
+
+def _apart(seen: dict[str, _Seen]) -> dict[str, dict[str, float]]:
+    """Of each effect what each other one cannot make up for, in units of the noise."""
+    apart: dict[str, dict[str, float]] = {name: {} for name in seen}
+    whole = [name for name, own in seen.items() if np.isfinite(own.times[0])]
+    if not whole:
+        return apart
+    changes = np.column_stack([seen[name].change for name in whole])
+    for other, rival in seen.items():
+        span = spanned(rival.ways)
+        left = changes - span @ (span.T @ changes)
+        for name, change in zip(whole, left.T, strict=True):
+            if name != other:
+                apart[name][other] = float(np.sqrt(_worth(change)))
+    return apart
 
 
 def _power(
     candidates: Candidates,
     runs: RunsAtHand,
     models: dict[str, Strength],
-    seen: dict[str, _Seen],
+    own: _Seen,
+    apart: dict[str, float],
     name: str,
 ) -> Power:
-    model, own = models[name], seen[name]
+    """The power of one effect; `apart` is how far each other one leaves it."""
+    model = models[name]
 
     def strength(times: float) -> float | None:
         return float(model.values(times)[model.which]) if np.isfinite(times) else None
@@ -249,14 +282,11 @@ def _power(
     alone: dict[str, float] = {}
     if np.isfinite(own.times[0]):
         tie, mine = candidates.policy.tie, price_of(candidates, _parameters(runs.base, model))
-        sure = float(stats.norm.ppf(LEVELS[0]))
-        for other, rival in models.items():
-            if other == name:
-                continue
-            dearer = mine - price_of(candidates, _parameters(runs.base, rival))
+        sure = float(special.ndtri(LEVELS[0]))
+        for other, left in apart.items():
+            dearer = mine - price_of(candidates, _parameters(runs.base, models[other]))
             # The difference of two gains is normal, with four times its mean as variance.
             needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
-            left = np.sqrt(_worth(unexplained(seen[other].ways, own.change)))
             alone[other] = needed / max(left, 1e-300)
     like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
     most = max([1.0, *alone.values()])

@@ -16,9 +16,9 @@ import numpy.typing as npt
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_weights
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 
@@ -74,6 +74,6 @@ def _keeps(problem: Problem, solution: Solution, samples: Samples, most: float) 
     and weights would give up what they call so.
     """
     moved = samples.within(solution.samples.counted)
-    values, _, _ = search(problem, moved, solution.values, solution.noise, EVALUATIONS)
+    values = search(problem, moved, solution.values, solution.noise, EVALUATIONS).values
     before = solution.samples.rms(solution.residuals)
     return solution.samples.rms(problem.residuals(values)) <= most * before

@@ -8,6 +8,7 @@ replace better is exchanged.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,8 @@ from jbf.models.catalogue import may_come, may_go
 
 Names = tuple[str, ...]
 
+AHEAD = 3
+"""Candidates that gained most at a first look, of which one may lead."""
 LESS = 0.95
 """Share of an RMS below which another is less for anybody who reads the ledger."""
 CHANCE = "gains no more than chance would"
@@ -32,11 +35,13 @@ SMOOTH = "fits better, but by no more than so smooth a residual strays: too few 
 
 @dataclass(frozen=True)
 class Ranked:
-    """A candidate beside a model: its evidence, and the solution that has it."""
+    """A candidate beside a model: its evidence, and the solution that has it; where it was not
+    followed, the most evidence that it could have."""
 
     evidence: float
     effect: str
     solution: Solution
+    most: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -68,11 +73,17 @@ def left_out_confirms(evidence: float, gained_share: float, better: float, polic
     return gained_share > 0.0 or better >= policy.least_better_runs
 
 
-def try_candidates(candidates: Candidates, present: Names) -> Round:
-    """Fit every candidate beside the effects present, and say which should be added."""
+def try_candidates(candidates: Candidates, present: Names, *, every: bool = False) -> Round:
+    """Fit every candidate beside the effects present, and say which should be added.
+
+    Parameters
+    ----------
+    every
+        Follow those, too, that promise far less than the leader.
+    """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
-    ranked = _rank(candidates, present, base)
+    ranked = _rank(candidates, present, base, every)
     leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
     bare = base.rms_n
@@ -90,7 +101,10 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
         reason = SMOOTH if rms < LESS * bare else CHANCE
         if gain > candidates.level.critical - price_of(candidates, 1):
             reason = SLIGHT
-        if gain > 0 and leader is None:
+        if np.isfinite(found.most):
+            outcome = "rejected"
+            reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"
+        elif gain > 0 and leader is None:
             after = candidates.left_out_rms((*present, name), apart=True)
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
             runs = [candidates.left_out_by_run(e, apart=True) for e in (present, (*present, name))]
@@ -115,6 +129,10 @@ def try_candidates(candidates: Candidates, present: Names) -> Round:
             outcome = "rejected"
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
+    behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
+    if behind > best:
+        # What it was left behind for does not lead.
+        return try_candidates(candidates, present, every=True)
     ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
 
@@ -131,7 +149,7 @@ def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:
     return found.solution.rms_n > policy.leader_rms * least_n
 
 
-def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked]:
+def _rank(candidates: Candidates, present: Names, base: Solution, every: bool) -> list[Ranked]:
     """Every candidate beside the effects present, most evidence first; those that could lead have
     converged."""
     policy = candidates.policy
@@ -144,14 +162,18 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
     # Of a smooth error a sample tells less, and anything gains a little.
     shown = [name for name in rivals if scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
-    candidates.rank_all([(*present, name) for name in shown], base)
-    for name in shown:
+    behind = {} if every else _left_behind(candidates, present, shown, base)
+    followed = [name for name in shown if name not in behind]
+    candidates.rank_all([(*present, name) for name in followed], base)
+    for name in followed:
         first[name] = evidence(candidates, candidates.rank((*present, name)), base)
     line = policy.close * max(max(first.values(), default=0.0), 0.0) - policy.contender
     found: list[Ranked] = []
     for name in rivals:
         effects = (*present, name)
-        if first[name] == -np.inf:
+        if name in behind:
+            solution = candidates.look(effects, base).found()
+        elif first[name] == -np.inf:
             solution = base
         else:
             solution = candidates.rank(effects)
@@ -161,18 +183,34 @@ def _rank(candidates: Candidates, present: Names, base: Solution) -> list[Ranked
         # At its null an effect leaves the model as it was: no candidate is worse than that.
         more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
-        found.append(Ranked(gain, name, solution))
+        found.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
     found.sort(key=lambda r: -r.evidence)
     # One that might lead from a higher peak gets its chance.
     for i, r in enumerate(found):
         effects = (*present, r.effect)
         likely = max(policy.peaks_share * found[0].evidence, 0.0)
-        if many_peaks(effects) and r.evidence > likely:
+        if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     # Of two that are one in these runs the one nearer to the record supposes less of the machine.
     order = {name: i for i, name in enumerate(rivals)}
     return sorted(found, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
+
+
+def _left_behind(
+    candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
+) -> dict[str, float]:
+    """After a first look at every candidate: those that could not come near the leader, and the
+    most evidence that each could have."""
+    policy = candidates.policy
+    candidates.look_all([(*present, name) for name in shown], base)
+    looked = {name: candidates.look((*present, name), base) for name in shown}
+    most = {name: policy.foreseen * fitted.promised for name, fitted in looked.items()}
+    gained = {name: likelihood_gain(looked[name].found(), base) for name in shown}
+    ahead = sorted(shown, key=lambda name: -gained[name])[:AHEAD]
+    leads = max((evidence(candidates, looked[n].found(), base) for n in ahead), default=0.0)
+    line = policy.close * max(leads, 0.0) - policy.contender
+    return {name: gain for name, gain in most.items() if gain < line}
 
 
 def still_needed(candidates: Candidates, present: Names) -> Names:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
@@ -60,7 +60,7 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
     share = (between - within * of_between / of_within) / square
     if share < policy.pattern_share:
         return []
-    if stats.f.sf(ratio, of_between, of_within) > policy.constancy_chance:
+    if special.fdtrc(of_between, of_within, ratio) > policy.constancy_chance:
         return []
     size = 100.0 * float(np.sqrt(share * square / moved))
     where = (

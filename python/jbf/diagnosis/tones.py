@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
@@ -37,7 +36,8 @@ def find_tones(
         n = len(e)
         if n < SHORTEST:
             continue
-        f, spectrum = signal.periodogram(e, 1.0 / p.step_s, window="boxcar", detrend="constant")
+        f = np.fft.rfftfreq(n, p.step_s)
+        spectrum = np.abs(np.fft.rfft(e - np.mean(e))) ** 2
         band = f > LEAST_TURNS / p.run.duration_s
         if not band.any():
             continue

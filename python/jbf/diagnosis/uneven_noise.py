@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.problem import Problem
@@ -114,7 +114,7 @@ def robust_weights(
     if sigma <= 0.0 or not len(flat):
         return ones, []
     beyond = float(np.mean(np.abs(flat) > 4.0 * sigma))
-    if beyond < max(heavy * 2.0 * stats.norm.sf(4.0), 5.0 / len(flat)):
+    if beyond < max(heavy * 2.0 * special.ndtr(-4.0), 5.0 / len(flat)):
         return ones, []
     # A weight on the residual whose square is Huber's on the square.
     weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
@@ -132,4 +132,4 @@ def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
     logs = np.log(sizes)
     middle = float(np.sum(logs / error**2) / np.sum(1.0 / error**2))
     square = float(np.sum(((logs - middle) / error) ** 2))
-    return bool(stats.chi2.sf(square, len(sizes) - 1) < policy.deviation_chance)
+    return bool(special.chdtrc(len(sizes) - 1, square) < policy.deviation_chance)

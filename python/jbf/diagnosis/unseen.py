@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
@@ -103,7 +103,8 @@ def propose_to_see(
 def chance_to_name(evidence: float, price: float) -> float:
     """How likely an effect is found that is worth so much evidence at its usual strength, and is
     anything from weak to strong."""
-    return float(np.mean(stats.ncx2.sf(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)))
+    missed = special.chndtr(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)
+    return float(np.mean(1.0 - missed))
 
 
 def _with_usual(candidates: Candidates, present: Names, name: str) -> tuple[Problem, Array]:

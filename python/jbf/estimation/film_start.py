@@ -13,10 +13,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import behind_gaps
 from jbf.estimation.film_rate import check_film
-from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem

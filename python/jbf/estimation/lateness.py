@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage, stats
+from scipy import ndimage, special
 
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
@@ -263,4 +263,4 @@ def _common(drifts: list[_Place]) -> tuple[float, float] | None:
     mean = float(np.sum(w * d) / np.sum(w))
     spread = float(np.sum(w * (d - mean) ** 2)) / max(len(d) - 1, 1)
     square = mean**2 * float(np.sum(w)) / max(spread, 1.0)
-    return mean, float(stats.chi2.sf(0.5 * square, 1))
+    return mean, float(special.chdtrc(1, 0.5 * square))

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import search
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
@@ -138,7 +138,7 @@ def _predicted(
     if step is not None:
         # A law that misses the data badly is no place to extrapolate from.
         start = min((step, start), key=lambda v: part.square(v, kept))
-    values, _, _ = search(part, kept, start, solution.noise, EVALUATIONS)
+    values = search(part, kept, start, solution.noise, EVALUATIONS).values
     return problem.residuals(values, group)
 
 
@@ -184,6 +184,6 @@ def _halves(problem: Problem, solution: Solution) -> list[Array]:
     residuals = []
     first, second = solution.samples.halves()
     for kept, left in ((first, second), (second, first)):
-        values, _, _ = search(problem, kept, solution.values, solution.noise, EVALUATIONS)
+        values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
         residuals.append(problem.residuals(values)[0][left.counted[0]])
     return [np.concatenate(residuals)]

@@ -17,6 +17,9 @@ from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
+INDEPENDENT = 1e-10
+"""Singular values of a design, as a share of the largest, of directions that are its own."""
+
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
     """Gain in twice the log likelihood, each sample with the smaller of the weights that the two
@@ -111,8 +114,18 @@ def unexplained(design: Array, target: Array) -> Array:
     design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
     design = design[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(design, target, rcond=1e-10)
+    step, *_ = np.linalg.lstsq(design, target, rcond=INDEPENDENT)
     return np.asarray(target - design @ step)
+
+
+def spanned(design: Array) -> Array:
+    """Orthonormal columns that span those of a design, shape (n, rank)."""
+    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
+    design = np.ldexp(design, -power)
+    size = np.linalg.norm(design, axis=0)
+    axes, sizes, _ = np.linalg.svd(design[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+    span: Array = axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)]
+    return span
 
 
 def unexplained_square(design: Array, target: Array) -> float:

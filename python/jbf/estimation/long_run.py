@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 Array = npt.NDArray[np.float64]
 
@@ -90,7 +90,7 @@ def between_runs(
     if runs < LEAST_RUNS or white <= 0.0:
         return 0.0
     square = float(np.sum(pulls[own] ** 2 / sizes[own])) / (white * inflation)
-    if stats.chi2.sf(square, runs - 1) > BY_CHANCE:
+    if special.chdtrc(runs - 1, square) > BY_CHANCE:
         return 0.0
     return float(np.sum(pulls**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
 

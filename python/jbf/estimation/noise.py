@@ -14,7 +14,9 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize, signal, special
+from scipy import optimize, special
+
+from jbf import _core
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -39,22 +41,26 @@ class Noise:
 
     def innovations(self, values: Array, step_s: float) -> Array:
         """Whiten values of shape (n,) or (n, k) along the first axis."""
-        now, before = self._filter(step_s)
-        out: Array = signal.lfilter(now, before, values, axis=0) if before else values
-        return out
+        if self.white:
+            return values
+        phi, left = self._keeps(step_s)
+        return _core.first_order_filter((1.0, -phi), -phi * left, values)
 
     def coloured(self, innovations: Array, step_s: float) -> Array:
         """The noise whose innovations these are; undoes :meth:`innovations`."""
-        now, before = self._filter(step_s)
-        out: Array = signal.lfilter(before, now, innovations, axis=0) if before else innovations
-        return out
+        if self.white:
+            return innovations
+        phi, left = self._keeps(step_s)
+        return _core.first_order_filter((1.0, -phi * left), -phi, innovations)
 
-    def _filter(self, step_s: float) -> tuple[list[float], list[float]]:
-        """Coefficients of the filter that whitens; none of white noise."""
-        if self.colour <= 0.0 or self.memory_s <= 0.0:
-            return [], []
-        phi = float(np.exp(-step_s / self.memory_s))
-        return [1.0, -phi], [1.0, -phi * (1.0 - self.colour)]
+    @property
+    def white(self) -> bool:
+        """Whether nothing of it remembers."""
+        return self.colour <= 0.0 or self.memory_s <= 0.0
+
+    def _keeps(self, step_s: float) -> tuple[float, float]:
+        """What the coloured part keeps from one sample to the next; what an innovation leaves."""
+        return float(np.exp(-step_s / self.memory_s)), 1.0 - self.colour
 
     def coloured_share(self, step_s: float) -> float:
         """Share of the variance that the coloured part has, 0 to 1."""
@@ -79,6 +85,11 @@ class Noise:
 
 WHITE = Noise()
 
+EARNED = 20.0
+"""What colour must gain in twice the log likelihood for its two parameters."""
+FURTHER = 4.0
+"""Times what the best start's quadratic promises that colour may gain."""
+
 
 def innovation_cost(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
@@ -100,11 +111,12 @@ def _changes(
     total, count, slope, curvature = 0.0, 0, np.zeros(2), np.zeros((2, 2))
     for residual, step, mask in zip(residuals, steps, masks, strict=True):
         phi, left = float(np.exp(-step / noise.memory_s)), 1.0 - noise.colour
-        before = [1.0, -phi * left]
-        e = signal.lfilter([1.0, -phi], before, residual)
+        before = -phi * left
+        e = _core.first_order_filter((1.0, -phi), before, residual)
         # Of e(t) = r(t) - phi r(t-1) + phi (1 - colour) e(t-1).
-        by_memory = signal.lfilter([0.0, phi * step / noise.memory_s], before, left * e - residual)
-        by_colour = signal.lfilter([0.0, -phi], before, e)
+        faster = (0.0, phi * step / noise.memory_s)
+        by_memory = _core.first_order_filter(faster, before, left * e - residual)
+        by_colour = _core.first_order_filter((0.0, -phi), before, e)
         ways = np.column_stack([by_memory, by_colour])[mask]
         own = e[mask]
         total += float(own @ own)
@@ -155,6 +167,10 @@ def estimate_noise(
 
     starts = [np.array([m, c]) for m in (-1.0, 1.5) for c in (-4.0, -1.5, 0.5)]
     best = min(starts, key=cost)
+    white = innovation_cost(WHITE, residuals, steps, masks)
+    promised = 0.5 * float(slope(best) @ np.linalg.solve(curvature(best), slope(best)))
+    if cost(best) - FURTHER * promised >= white - EARNED:
+        return WHITE
     # A slope of 0.3 of a step of one leaves less than 0.1 in twice the log likelihood.
     found = optimize.minimize(
         cost,
@@ -164,8 +180,7 @@ def estimate_noise(
         hess=curvature,
         options={"maxiter": 40, "gtol": 0.3},
     )
-    white = innovation_cost(WHITE, residuals, steps, masks)
-    if found.fun >= white - 20.0:
+    if found.fun >= white - EARNED:
         return WHITE
     noise = unpack(found.x)
     if most_n is None:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.replicates import period_samples
@@ -63,9 +62,17 @@ def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
         # The first moments of a rest may still settle.
         begin = first + (end - first) // 4
         if end - begin >= 60:
-            part = signal.detrend(values[begin:end])
+            part = _off_its_line(values[begin:end])
             found.append((float(part @ part) / (len(part) - 2), len(part)))
     return found
+
+
+def _off_its_line(values: Array) -> Array:
+    """Values less the straight line through them."""
+    place = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    above = values - np.mean(values)
+    left: Array = above - place * float(place @ above) / float(place @ place)
+    return left
 
 
 def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:

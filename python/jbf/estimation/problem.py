@@ -36,6 +36,8 @@ from jbf.records.arguments import by_name
 from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
+Lines = tuple[list[Array], list[Array]]
+"""Residuals, and derivatives of the prediction by the search variables, one array a run each."""
 
 BOUNDLESS = 1e50
 """A derivative beyond this has grown without bound: a search squares what it makes of them."""
@@ -129,29 +131,41 @@ class Problem:
         return [p.friction_n - f for f, p in zip(self.predict(values, which), runs, strict=True)]
 
     def linearise(
-        self, values: Array, which: Sequence[int] | None = None
-    ) -> tuple[list[Array], list[Array]]:
-        """Residuals, and derivatives of the prediction by the search variables; of some runs."""
-        runs = self._runs(which)
-        scale = np.where(self.log, values, 1.0)[self.open]
-        rows = self.chain.jacobian(values, [p.core for p in runs], self.open)
+        self,
+        values: Array,
+        which: Sequence[int] | None = None,
+        by: Sequence[int] | None = None,
+    ) -> Lines:
+        """Residuals, and derivatives of the prediction by the search variables; of some runs, by
+        some of the parameters."""
+        runs, by = self._runs(which), self.open if by is None else by
+        scale = np.where(self.log, values, 1.0)[by]
+        rows = self.chain.jacobian(values, [p.core for p in runs], by)
         residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
         return residuals, [_scaled(j, scale) for _, j in rows]
 
     def gauss_newton_rows(
-        self, values: Array, samples: Samples, noise: Noise
+        self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
     ) -> tuple[Array, Array, int]:
-        """Innovations and their derivatives in few rows, and how many innovations there are."""
+        """Innovations and their derivatives in few rows, and how many innovations there are; from
+        what :meth:`linearise` gave, if that is at hand."""
         r, j, count = [], [], 0
         lengths = [len(p.friction_n) for p in self.campaign.prepared]
         for group in groups_of(lengths, len(self.open)):
             part = samples if len(group) == len(lengths) else samples.only(group)
-            innovations, slopes = part.stacked(*self.linearise(values, group), noise)
+            own = self.linearise(values, group) if lines is None else lines
+            innovations, slopes = part.stacked(*own, noise)
             few = triangular(innovations, slopes)
             r.append(few[0])
             j.append(few[1])
             count += len(innovations)
         return np.concatenate(r), np.concatenate(j), count
+
+    @property
+    def few_numbers(self) -> bool:
+        """Whether derivatives at all samples may be held."""
+        samples = sum(len(p.friction_n) for p in self.campaign.prepared)
+        return samples * len(self.open) <= MOST_HELD
 
     @cached_property
     def searched(self) -> list[int]:
@@ -179,13 +193,19 @@ class Problem:
         samples = self.campaign.samples if samples is None else samples
         return samples.square(self.residuals(values))
 
-    def samples_at(self, values: Array) -> Samples:
-        """The samples that the model at these values leaves."""
+    def samples_at(self, values: Array, lines: Lines | None = None) -> Samples:
+        """The samples that the model at these values leaves; `lines` are the residuals there, if
+        they are known."""
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
         if not moves_jumps(effects):
             return samples
-        return samples_beside_jumps(samples, self.campaign.prepared, self.predict(values))
+        prepared = self.campaign.prepared
+        if lines is None:
+            predicted = self.predict(values)
+        else:
+            predicted = [p.friction_n - r for p, r in zip(prepared, lines[0], strict=True)]
+        return samples_beside_jumps(samples, prepared, predicted)
 
     def solution(
         self,
@@ -194,13 +214,16 @@ class Problem:
         noise: Noise,
         converged: bool = True,
         message: str = "",
+        lines: Lines | None = None,
     ) -> Solution:
-        """The solution at given values, on given samples."""
+        """The solution at given values, on given samples; from what :meth:`linearise` gave, if that
+        is at hand."""
         residuals: Sequence[Array]
         jacobian: Sequence[Array]
         count = len(self.campaign.prepared)
-        numbers = sum(len(p.friction_n) for p in self.campaign.prepared) * len(self.open)
-        if numbers <= MOST_HELD:
+        if lines is not None:
+            residuals, jacobian = lines
+        elif self.few_numbers:
             residuals, jacobian = self.linearise(values)
         else:
             residuals = OnDemand(lambda i: self.residuals(values, [i])[0], count)

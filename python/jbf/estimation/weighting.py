@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.left_out import left_out_residuals
-from jbf.estimation.minimum import MAX_EVALUATIONS, search
+from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -83,6 +84,7 @@ def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]
         pull = [weights(np.abs(r) / scale) for r in found.residuals]
         weight = tuple(w * p for w, p in zip(start.samples.weight, pull, strict=True))
         samples = replace(start.samples, weight=weight)
-        values, converged, message = search(problem, samples, found.values, WHITE, MAX_EVALUATIONS)
-        found = problem.solution(problem.wrapped(values), samples, WHITE, converged, message)
+        end = search(problem, samples, found.values, WHITE, MAX_EVALUATIONS)
+        there = problem.wrapped(end.values)
+        found = problem.solution(there, samples, WHITE, end.converged, end.message)
     return found

@@ -18,7 +18,7 @@ from jbf.estimation.blocks import blocks_of
 from jbf.estimation.bootstrap import read_again
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.minimum import noise_at
+from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.model import Model

@@ -22,32 +22,8 @@ pub fn follow<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     tolerance: f64,
     sink: impl FnMut(usize, &Sample<T>),
 ) -> Result<Cost, Error> {
-    checked(start, times_s, tolerance)?;
-    let journal = film.journal();
-    let loaded = journal.nominal();
-    let eps = start.eps.unwrap_or(loaded.eps_tr);
-    let state = film.at([eps * start.phi_rad.cos(), eps * start.phi_rad.sin()]);
-    let mut way = Way {
-        film,
-        excitation,
-        loaded,
-        times_s,
-        sink,
-        time_s: start.time_s,
-        state,
-        touching: eps.value() > loaded.eps_tr.value(),
-        step_s: 0.0,
-        next: 0,
-        goal: Goal::new(film, &loaded, tolerance.min(0.1)),
-        cost: Cost::default(),
-    };
-    if start.eps.is_none() {
-        way.touching = way.closes_in();
-    }
-    let top = libm::fabs(excitation.velocity_m_s(start.time_s));
-    way.step_s = crate::law::Law::longest_step_s(journal, top) * sqrt(sqrt(tolerance));
-    way.emit_start();
-    while way.next < times_s.len() {
+    let mut way = Way::from_start(film, excitation, start, times_s, tolerance, sink)?;
+    while !way.done() {
         way.stretch();
     }
     Ok(way.cost)
@@ -75,13 +51,56 @@ pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) cost: Cost,
 }
 
-impl<T, F, E, S, const N: usize> Way<'_, T, F, E, S, N>
+impl<'a, T, F, E, S, const N: usize> Way<'a, T, F, E, S, N>
 where
     T: Real,
     F: Film<T, N>,
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
+    /// At the start, samples there handed over.
+    pub(super) fn from_start(
+        film: &'a F,
+        excitation: &'a E,
+        start: &Start<T>,
+        times_s: &'a [f64],
+        tolerance: f64,
+        sink: S,
+    ) -> Result<Self, Error> {
+        checked(start, times_s, tolerance)?;
+        let journal = film.journal();
+        let loaded = journal.nominal();
+        let eps = start.eps.unwrap_or(loaded.eps_tr);
+        let state = film.at([eps * start.phi_rad.cos(), eps * start.phi_rad.sin()]);
+        let mut way = Self {
+            film,
+            excitation,
+            loaded,
+            times_s,
+            sink,
+            time_s: start.time_s,
+            state,
+            touching: eps.value() > loaded.eps_tr.value(),
+            step_s: 0.0,
+            next: 0,
+            goal: Goal::new(film, &loaded, tolerance.min(0.1)),
+            cost: Cost::default(),
+        };
+        if start.eps.is_none() {
+            way.touching = way.closes_in();
+        }
+        let top = libm::fabs(excitation.velocity_m_s(start.time_s));
+        way.step_s = crate::law::Law::longest_step_s(journal, top) * sqrt(sqrt(tolerance));
+        way.emit_start();
+        Ok(way)
+    }
+
+    /// Are all samples handed over?
+    #[inline]
+    pub(super) fn done(&self) -> bool {
+        self.next >= self.times_s.len()
+    }
+
     pub(super) fn linearise(&mut self, system: &F::System, ub: T) -> Linear<T, N> {
         self.cost.linearisations += 1;
         system.linearise(&self.state, ub)

@@ -14,9 +14,10 @@
 
 use super::follow::Way;
 use super::goal::inverse_root;
-use super::trial::{Tried, Verdict};
+use super::trial::{Asked, Tried, Verdict};
 use super::{Excitation, Film, Sample};
 use crate::real::Real;
+use crate::stepper::rodas5p::Stages;
 use crate::stepper::Linear;
 
 /// What the next step is to do.
@@ -62,37 +63,49 @@ where
     pub(super) fn stretch(&mut self) {
         let mut stretch = self.begin();
         while self.time_s < stretch.end_s {
-            let tried = self.attempt(&stretch);
-            match self.judge(&stretch, &tried) {
-                Verdict::TooLong(share) => {
-                    self.cost.rejected += 1;
-                    self.step_s = (tried.step_s * share).max(tried.shortest_s);
-                    if let Aim::Touch(_) = stretch.aim {
-                        stretch.aim = Aim::Ahead;
-                    }
-                }
-                Verdict::Stuck => self.wait(&mut stretch, &tried),
-                Verdict::Reverses(zero_s) => {
-                    self.cost.rejected += 1;
-                    stretch.end_s = zero_s;
-                }
-                Verdict::Touches(ahead_s) => {
-                    self.cost.rejected += 1;
-                    stretch.aim = Aim::Touch(ahead_s);
-                }
-                Verdict::WrongSide => {
-                    self.cost.rejected += 1;
-                    self.change_side(&mut stretch);
-                    stretch.aim = Aim::Turned;
-                    self.look(&mut stretch);
-                }
-                Verdict::Sound(along) => self.take(&mut stretch, &tried, &along),
-            }
+            let asked = self.ask(&stretch);
+            self.answer(&mut stretch, &asked, &asked.stages());
         }
         self.time_s = stretch.end_s;
     }
 
-    fn begin(&mut self) -> Stretch<T, F::System, N> {
+    /// Do as the stages of a step say.
+    #[inline]
+    pub(super) fn answer(
+        &mut self,
+        stretch: &mut Stretch<T, F::System, N>,
+        asked: &Asked<T, F::System, N>,
+        stages: &Stages<T, N>,
+    ) {
+        let tried = self.tried(asked, stages);
+        match self.judge(stretch, &tried) {
+            Verdict::TooLong(share) => {
+                self.cost.rejected += 1;
+                self.step_s = (tried.step_s * share).max(tried.shortest_s);
+                if let Aim::Touch(_) = stretch.aim {
+                    stretch.aim = Aim::Ahead;
+                }
+            }
+            Verdict::Stuck => self.wait(stretch, &tried),
+            Verdict::Reverses(zero_s) => {
+                self.cost.rejected += 1;
+                stretch.end_s = zero_s;
+            }
+            Verdict::Touches(ahead_s) => {
+                self.cost.rejected += 1;
+                stretch.aim = Aim::Touch(ahead_s);
+            }
+            Verdict::WrongSide => {
+                self.cost.rejected += 1;
+                self.change_side(stretch);
+                stretch.aim = Aim::Turned;
+                self.look(stretch);
+            }
+            Verdict::Sound(along) => self.take(stretch, &tried, &along),
+        }
+    }
+
+    pub(super) fn begin(&mut self) -> Stretch<T, F::System, N> {
         let last = self.times_s[self.times_s.len() - 1];
         let end_s = self.excitation.next_kink_s(self.time_s).min(last);
         let direction = self.direction(end_s);
@@ -151,7 +164,7 @@ where
     fn take(
         &mut self,
         stretch: &mut Stretch<T, F::System, N>,
-        tried: &Tried<T, N>,
+        tried: &Tried<'_, T, N>,
         along: &[[T; 5]; 2],
     ) {
         self.state = tried.stages.end;
@@ -172,7 +185,7 @@ where
 
     /// Nothing left to try: the film waits where it is.
     #[cold]
-    fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<T, N>) {
+    fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         let [x, y] = [self.state[0], self.state[1]];
         self.state = self.film.at([x, y]);
         let still = |place: T| [place, T::ZERO, T::ZERO, T::ZERO, T::ZERO];
@@ -186,7 +199,7 @@ where
 
     /// Stand at the end of a step, and look there if the stretch goes on.
     #[inline]
-    fn go_on(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<T, N>) {
+    fn go_on(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         self.time_s = tried.to_s;
         stretch.here.speed_m_s = tried.speed_m_s;
         if self.time_s < stretch.end_s {

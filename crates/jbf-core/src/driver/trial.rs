@@ -8,14 +8,43 @@ use super::{Excitation, Film, Sample};
 use crate::real::Real;
 use crate::stepper::rodas5p::{self, Input, Stages};
 use crate::stepper::rodas5p_tableau::NODES;
+use crate::stepper::{Linear, StiffSystem};
+
+/// A step that is asked for: what its stages are computed from, and where it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<T, Y, const N: usize> {
+    pub(super) system: Y,
+    pub(super) linear: Linear<T, N>,
+    pub(super) state: [T; N],
+    pub(super) input: Input<T>,
+    /// Its length on the film's clock.
+    pub(super) dt: T,
+    pub(super) step_s: f64,
+    pub(super) to_s: f64,
+    pub(super) speed_m_s: f64,
+}
+
+impl<T: Real, Y: StiffSystem<T, N>, const N: usize> Asked<T, Y, N> {
+    /// Compute it.
+    #[inline]
+    pub(super) fn stages(&self) -> Stages<T, N> {
+        rodas5p::step(
+            &self.system,
+            &self.linear,
+            &self.state,
+            &self.input,
+            self.dt,
+        )
+    }
+}
 
 /// A step that was tried.
-pub(super) struct Tried<T, const N: usize> {
+pub(super) struct Tried<'a, T, const N: usize> {
     pub(super) step_s: f64,
     /// Where it ends, s, and the speed there, m/s.
     pub(super) to_s: f64,
     pub(super) speed_m_s: f64,
-    pub(super) stages: Stages<T, N>,
+    pub(super) stages: &'a Stages<T, N>,
     /// Its error over what is allowed.
     pub(super) share: f64,
     /// Finite, and no leap across the gap.
@@ -74,8 +103,9 @@ where
         }
     }
 
+    /// What the next step is to be.
     #[inline]
-    pub(super) fn attempt(&mut self, stretch: &Stretch<T, F::System, N>) -> Tried<T, N> {
+    pub(super) fn ask(&self, stretch: &Stretch<T, F::System, N>) -> Asked<T, F::System, N> {
         let step_s = self.length(stretch);
         let to_s = if step_s == stretch.end_s - self.time_s {
             stretch.end_s
@@ -83,21 +113,39 @@ where
             self.time_s + step_s
         };
         let dt = T::of(step_s) * self.film.journal().rate;
-        let input = |speed_m_s: f64| self.input(stretch.direction * speed_m_s);
+        let seen = |speed_m_s: f64| self.input(stretch.direction * speed_m_s);
         let speed_at = |c: f64| self.excitation.velocity_m_s(self.time_s + c * step_s);
         let speed_m_s = self.excitation.velocity_m_s(to_s);
-        let seen = Input {
-            at_nodes: NODES.map(|c| input(speed_at(c))),
-            at_end: input(speed_m_s),
+        let input = Input {
+            at_nodes: NODES.map(|c| seen(speed_at(c))),
+            at_end: seen(speed_m_s),
             change: stretch.here.rate * dt,
         };
-        let stages = rodas5p::step(
-            &stretch.system,
-            &stretch.here.linear,
-            &self.state,
-            &seen,
+        Asked {
+            system: stretch.system,
+            linear: stretch.here.linear,
+            state: self.state,
+            input,
             dt,
-        );
+            step_s,
+            to_s,
+            speed_m_s,
+        }
+    }
+
+    /// What a step that was asked for turned out to be.
+    #[inline]
+    pub(super) fn tried<'s>(
+        &mut self,
+        asked: &Asked<T, F::System, N>,
+        stages: &'s Stages<T, N>,
+    ) -> Tried<'s, T, N> {
+        let &Asked {
+            step_s,
+            to_s,
+            speed_m_s,
+            ..
+        } = asked;
         self.cost.slopes += 7;
         let (eps_here, eps) = (radius(&self.state), radius(&stages.end));
         let depth = eps - self.loaded.eps_tr.value();
@@ -123,7 +171,7 @@ where
     pub(super) fn judge(
         &mut self,
         stretch: &Stretch<T, F::System, N>,
-        tried: &Tried<T, N>,
+        tried: &Tried<'_, T, N>,
     ) -> Verdict<T> {
         if tried.step_s > tried.shortest_s {
             if !tried.sound {
@@ -141,7 +189,7 @@ where
         if let Some(zero_s) = self.untold_reversal(stretch.direction, tried) {
             return Verdict::Reverses(zero_s);
         }
-        let stages = &tried.stages;
+        let stages = tried.stages;
         let along = [
             stages.quartic(&self.state, 0),
             stages.quartic(&self.state, 1),
@@ -159,7 +207,7 @@ where
 
     /// Where inside a step the speed leaves `direction`, if it does.
     #[inline]
-    fn untold_reversal(&self, direction: f64, tried: &Tried<T, N>) -> Option<f64> {
+    fn untold_reversal(&self, direction: f64, tried: &Tried<'_, T, N>) -> Option<f64> {
         if tried.speed_m_s * direction > 0.0 || tried.speed_m_s == direction {
             return None;
         }

@@ -118,6 +118,16 @@ impl<T: Real> EffectSet<T> for Effects<T> {
             .min(self.instrument.longest_step_s());
         film.min(contact).min(after)
     }
+    #[inline]
+    fn remembers(&self) -> bool {
+        let film = self.drive.remembers()
+            || self.lubricant.remembers()
+            || self.load.remembers()
+            || self.film.remembers();
+        let contact =
+            self.contact.remembers() || self.transmission.remembers() || self.bristle.remembers();
+        film || contact || self.other.remembers() || self.instrument.remembers()
+    }
     #[inline(always)]
     fn has_drive(&self) -> bool {
         self.drive.has_drive()

@@ -18,6 +18,10 @@ impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
     fn longest_step_s(&self) -> f64 {
         self.0.longest_step_s().min(self.1.longest_step_s())
     }
+    #[inline]
+    fn remembers(&self) -> bool {
+        self.0.remembers() || self.1.remembers()
+    }
     #[inline(always)]
     fn has_drive(&self) -> bool {
         self.0.has_drive() || self.1.has_drive()
@@ -128,6 +132,10 @@ impl<T: Real, A: EffectSet<T>> EffectSet<T> for Option<A> {
     #[inline]
     fn longest_step_s(&self) -> f64 {
         self.as_ref().map_or(f64::INFINITY, A::longest_step_s)
+    }
+    #[inline]
+    fn remembers(&self) -> bool {
+        self.as_ref().is_some_and(A::remembers)
     }
     #[inline(always)]
     fn has_drive(&self) -> bool {

@@ -36,6 +36,13 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         f64::INFINITY
     }
 
+    /// True where what an effect does depends on what was before: without it the steps between two
+    /// samples change nothing at the second.
+    #[inline]
+    fn remembers(&self) -> bool {
+        core::mem::size_of::<Self::State>() > 0
+    }
+
     /// True where the journal may part from the commanded side.
     #[inline(always)]
     fn has_drive(&self) -> bool {

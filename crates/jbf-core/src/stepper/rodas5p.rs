@@ -26,10 +26,18 @@ pub(crate) struct Input<T> {
 
 /// What one step computed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stages<T, const N: usize> {
-    unknowns: [[T; N]; 8],
+pub struct Stages<T, const N: usize> {
+    pub(crate) unknowns: [[T; N]; 8],
     /// The state at the end.
     pub end: [T; N],
+}
+
+impl<const N: usize> Stages<f64, N> {
+    /// No stages.
+    pub(crate) const NONE: Self = Self {
+        unknowns: [[0.0; N]; 8],
+        end: [0.0; N],
+    };
 }
 
 impl<T: Real, const N: usize> Stages<T, N> {
@@ -71,7 +79,7 @@ fn combined<T: Real, const N: usize, const K: usize>(
 }
 
 /// One step from a system already linearised at `state`.
-#[inline]
+#[inline(always)]
 pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     system: &S,
     linear: &Linear<T, N>,

@@ -77,7 +77,7 @@ impl Chain {
             .flat_map(|(_, steps)| laws.iter().map(|&law| (law, steps.every.as_slice())))
             .collect();
         let mut traced = film_paths(&films, Simd::best()).into_iter();
-        for (i, _) in &missing {
+        for (i, steps) in &missing {
             let lanes: Option<Vec<Vec<f64>>> = traced
                 .by_ref()
                 .take(laws.len())
@@ -88,6 +88,7 @@ impl Chain {
             let path = Arc::new(FilmPath {
                 places: joined(&lanes, by.map(|n| APART * p[n])),
                 has_slopes: with_slopes,
+                ends: Arc::clone(&steps.ends),
             });
             motions[*i].film_paths().keep(film(*i), Arc::clone(&path));
             paths[*i] = Some(path);
@@ -141,11 +142,21 @@ fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
 fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let every = RefCell::new(Vec::with_capacity(motion.len() * 9 / 8));
     let asks = jbf_core::Chain::round(FilmSteps::new(|s| every.borrow_mut().push(s)), (), None);
-    run::predict(&asks, &motion.record(), inner_s, |_, _| {});
+    let mut ends = Vec::with_capacity(motion.len());
+    run::predict(&asks, &motion.record(), inner_s, |i, _| {
+        if i > 0 {
+            // A path of more steps than a u32 counts would not fit into memory.
+            ends.push(every.borrow().len().saturating_sub(1) as u32);
+        }
+    });
     let every = every.into_inner();
     let first = motion.record().load_n.first().copied();
     let one_load = every.iter().all(|s: &FilmStep| Some(s.load_n) == first);
-    Steps { every, one_load }
+    Steps {
+        every,
+        one_load,
+        ends: ends.into(),
+    }
 }
 
 /// The longest inner step along each motion, s.

@@ -49,7 +49,7 @@ impl Chain {
             reader,
             max_step_s: self.max_step_s,
             motion,
-            path: path.map(|path| (path.places.as_slice(), p)),
+            path: path.map(|path| (path, p)),
         };
         self.with_chain(p, run)
     }

@@ -1,11 +1,14 @@
 //! One chain, of whatever law, along a motion: what its readings become.
 
+use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use jbf_batch::Simd;
-use jbf_core::film_path::{OnPath, Place};
+use jbf_core::effect::EffectSet;
+use jbf_core::film_path::OnPath;
 use jbf_core::law::{Law, Named};
+use jbf_core::run::{self, Steps};
 use jbf_core::spec::Using;
-use jbf_core::{run, Chain, Dual, Real};
+use jbf_core::{Chain, Dual, Real};
 
 /// Runs a chain along a motion and gives every reading to a reader.
 pub struct Run<'a, T, R> {
@@ -13,7 +16,7 @@ pub struct Run<'a, T, R> {
     pub max_step_s: f64,
     pub motion: &'a Motion,
     /// The path of the film, and the law's parameters.
-    pub path: Option<(&'a [Place], &'a [T])>,
+    pub path: Option<(&'a FilmPath, &'a [T])>,
 }
 
 /// What becomes of one run's readings.
@@ -62,11 +65,11 @@ impl<const LANES: usize> Reader<Dual<LANES>> for Slopes {
 
 impl<T: Real, R: Reader<T>> Run<'_, T, R> {
     #[inline(always)]
-    fn along<L: Law<T>>(&self, chain: &Chain<T, L>) -> R::Read {
+    fn along<L: Law<T>>(&self, chain: &Chain<T, L>, made: Steps) -> R::Read {
         self.reader.read(self.motion.len(), |sink| {
             R::simd().dispatch(
                 #[inline(always)]
-                || run::predict(chain, &self.motion.record(), self.max_step_s, sink),
+                || run::predict_by(chain, &self.motion.record(), self.max_step_s, made, sink),
             );
         })
     }
@@ -76,14 +79,21 @@ impl<T: Real, R: Reader<T>> Using<T> for Run<'_, T, R> {
     type Output = R::Read;
 
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output {
-        let (Some((places, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
-            return self.along(&chain);
+        let (Some((path, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
+            return self.along(&chain, Steps::Every);
         };
-        self.along(&Chain {
-            law: OnPath::new(chain.law, [p[first], p[second]], places),
+        let law = OnPath::new(chain.law, [p[first], p[second]], &path.places);
+        let (law, made) = if chain.effects.remembers() {
+            (law, Steps::Every)
+        } else {
+            (law.at(&path.ends), Steps::Last)
+        };
+        let on_path = Chain {
+            law,
             effects: chain.effects,
             rig: chain.rig,
-        })
+        };
+        self.along(&on_path, made)
     }
 }
 

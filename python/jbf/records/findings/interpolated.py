@@ -8,7 +8,6 @@ between never were.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -45,6 +44,8 @@ LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
 """Phases, in periods off the best, at which a polygon must leave more, and the share of that which
 the best may leave."""
+IN_VAIN = 4
+"""Halvings of a search after which it has come nearer, or does not."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
@@ -195,39 +196,72 @@ def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[flo
     first: with corners nearly as many as samples a wrong one may come nearer on this grid."""
     place = (t - t[0]) / step
     even = float(np.max(np.abs(place - np.arange(len(t))))) < EVEN
-    looks = _even_looks(len(t)) if even else tuple(_looks(place))
-    found = []
-    for period, left_of in looks:
-        left = np.sqrt(np.mean((left_of @ (y - y[0])) ** 2, axis=1))
-        k = int(np.argmin(left))
-        if left[k] < LIKELY * noise:
-            found.append((float(left[k]), period * step, float(PHASES[k]) * period * step))
-    return [(period, phase) for _, period, phase in sorted(found)[:FOLLOWED]]
+    looks = _even_looks(len(t)) if even else _looks(place)
+    above = y - y[0]
+    taken = np.add.reduceat((looks.basis @ above) ** 2, looks.begins).reshape(-1, len(PHASES))
+    square = np.maximum(float(above @ above) - taken, 0.0) / looks.free[:, None]
+    best = np.argmin(square, axis=1)
+    left = np.sqrt(np.min(square, axis=1))
+    likely = np.flatnonzero(left < LIKELY * noise)
+    found = [
+        (float(left[i]), float(looks.periods[i]) * step, float(PHASES[best[i]])) for i in likely
+    ]
+    return [(period, phase * period) for _, period, phase in sorted(found)[:FOLLOWED]]
 
 
-def _looks(place: Array) -> Iterator[tuple[float, Array]]:
-    """Of each period, in samples, what takes the best polygons out of samples at given places:
-    one matrix a phase, shape (phases, free, n)."""
+@dataclass(frozen=True)
+class _Looks:
+    """The polygons of every period and phase of a first look, at given places.
+
+    Attributes
+    ----------
+    periods, free
+        Periods, in samples, and how many samples each leaves beyond its corners, shape (p,).
+    basis
+        What spans the polygons of one period and phase after the other, orthonormal, shape
+        (rows, n).
+    begins
+        Where each one's rows begin.
+    """
+
+    periods: Array
+    free: Array
+    basis: Array
+    begins: npt.NDArray[np.intp]
+
+
+def _looks(place: Array) -> _Looks:
     n = len(place)
-    for period in PERIODS.tolist():
-        count = int(np.ceil((place[-1] - place[0]) / period)) + 2
-        if n - count < LEAST_FREE:
-            continue
-        at = place[None, :] / period - PHASES[:, None] + 1.0
-        low = np.clip(np.floor(at).astype(int), 0, count - 2)
+    counts = np.ceil((place[-1] - place[0]) / PERIODS).astype(np.intp) + 2
+    periods, parts, rows = [], [], []
+    # Those of as many corners at once.
+    for count in np.unique(counts[n - counts >= LEAST_FREE]).tolist():
+        own = PERIODS[counts == count]
+        at = place[None, None, :] / own[:, None, None] - PHASES[None, :, None] + 1.0
+        at = at.reshape(-1, n)
+        low = np.clip(np.floor(at).astype(np.intp), 0, count - 2)
         share = at - low
-        design = np.zeros((len(PHASES), n, count))
-        one, row = np.arange(len(PHASES))[:, None], np.arange(n)[None, :]
+        design = np.zeros((len(at), n, count))
+        one, row = np.arange(len(at))[:, None], np.arange(n)[None, :]
         design[one, row, low] = 1.0 - share
         design[one, row, low + 1] = share
-        basis, _ = np.linalg.qr(design, mode="complete")
-        yield period, np.ascontiguousarray(np.swapaxes(basis[:, :, count:], 1, 2))
+        basis, _ = np.linalg.qr(design)
+        periods.append(own)
+        parts.append(np.swapaxes(basis, 1, 2).reshape(-1, n))
+        rows.append(np.full(len(at), count))
+    corners = np.concatenate(rows)
+    return _Looks(
+        periods=np.concatenate(periods),
+        free=(n - corners[:: len(PHASES)]).astype(np.float64),
+        basis=np.concatenate(parts),
+        begins=np.cumsum(corners) - corners,
+    )
 
 
 @lru_cache(maxsize=1)
-def _even_looks(n: int) -> tuple[tuple[float, Array], ...]:
+def _even_looks(n: int) -> _Looks:
     """The same for evenly spaced samples, kept: nearly every record's are."""
-    return tuple(_looks(np.arange(n, dtype=np.float64)))
+    return _looks(np.arange(n, dtype=np.float64))
 
 
 def _polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
@@ -280,13 +314,19 @@ def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple
     reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
     best = (np.inf, period, phase)
     steps = np.linspace(-1.0, 1.0, 5)
-    for _ in range(9):
+    first = np.inf
+    for k in range(9):
         periods = np.repeat(best[1] + reach_period * steps, len(steps))
         phases = np.tile(best[2] + reach_phase * steps, len(steps))
         left = _lefts(time, values, periods, phases)
-        k = int(np.argmin(left))
-        if left[k] < best[0]:
-            best = (float(left[k]), float(periods[k]), float(phases[k]))
+        least = int(np.argmin(left))
+        if left[least] < best[0]:
+            best = (float(left[least]), float(periods[least]), float(phases[least]))
+        if k == 0:
+            first = best[0]
+        # What a true polygon leaves falls with every halving, in proportion.
+        if k == IN_VAIN and best[0] > 0.5 * first:
+            break
         reach_period *= 0.5
         reach_phase *= 0.5
     return best[1], best[2]

@@ -114,7 +114,7 @@ impl<T: Real> StiffSystem<T, 2> for Film<'_, T> {
 /// The film with its asperities in touch, or free of them, whatever its eccentricity: smooth
 /// where the law itself has the kink of `W` at eps_tr, so that an error-controlled step may
 /// look across it. Outside the bearing its numbers are not finite.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct SmoothFilm<T> {
     load_number: T,
     eps_tr: T,
@@ -128,6 +128,33 @@ impl<T: Real> SmoothFilm<T> {
             load_number: loaded.load_number,
             eps_tr: loaded.eps_tr,
             k0: if touching { law.k0 } else { T::ZERO },
+        }
+    }
+}
+
+impl SmoothFilm<f64> {
+    /// A film that carries nothing.
+    pub(crate) const NONE: Self = Self {
+        load_number: 1.0,
+        eps_tr: 0.5,
+        k0: 0.0,
+    };
+}
+
+impl<T: Copy> SmoothFilm<T> {
+    /// Load number, eps_tr, and `K0` or zero.
+    #[inline(always)]
+    pub(crate) fn parts(&self) -> [T; 3] {
+        [self.load_number, self.eps_tr, self.k0]
+    }
+
+    /// From these.
+    #[inline(always)]
+    pub(crate) fn of_parts([load_number, eps_tr, k0]: [T; 3]) -> Self {
+        Self {
+            load_number,
+            eps_tr,
+            k0,
         }
     }
 }

@@ -1,0 +1,190 @@
+//! Films without inertia along several excitations at once. Steps to a tolerance are of unlike lengths
+//! and number, but the stages of one are the same operations as those of another: of several ways the
+//! next step of each is computed in lanes, and each then goes on as its own step says.
+//!
+//! A step of one film waits for its own roots and divisions; of several they overlap. The bits are those
+//! of [`super::follow`].
+
+use super::follow::Way;
+use super::stretch::Stretch;
+use super::trial::Asked;
+use super::{Cost, Excitation, Sample, Start};
+use crate::error::Error;
+use crate::law::journal::film_linear::SmoothFilm;
+use crate::law::journal::Journal;
+use crate::real::Real;
+use crate::stepper::rodas5p::{self, Input, Stages};
+use crate::stepper::Linear;
+
+type Step = Asked<f64, SmoothFilm<f64>, 2>;
+
+/// One way: its excitation, its samples (s, rising), and what takes them.
+pub struct Along<'a, E, S> {
+    /// The imposed speed.
+    pub excitation: &'a E,
+    /// Where its samples are, s.
+    pub times_s: &'a [f64],
+    /// Takes each sample with its index.
+    pub sink: S,
+}
+
+/// [`super::follow`] along at most `K` excitations from one start; `lanes` computes the next step of
+/// each, as [`step`] does.
+///
+/// # Errors
+/// As [`super::trajectory`], of the first excitation that breaks a rule.
+pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K: usize>(
+    film: &Journal<f64>,
+    along: [Option<Along<'_, E, S>>; K],
+    start: &Start<f64>,
+    tolerance: f64,
+    mut lanes: impl FnMut(&[Step; K], &mut [Stages<f64, 2>; K]),
+) -> Result<[Cost; K], Error> {
+    let mut refused = None;
+    let mut ways = along.map(|a| {
+        let a = a?;
+        Way::from_start(film, a.excitation, start, a.times_s, tolerance, a.sink)
+            .map_err(|error| {
+                refused.get_or_insert(error);
+            })
+            .ok()
+    });
+    if let Some(error) = refused {
+        return Err(error);
+    }
+    let mut stretches: [Option<Stretch<f64, SmoothFilm<f64>, 2>>; K] = [const { None }; K];
+    let mut steps = [Step::NONE; K];
+    let mut stages = [Stages::NONE; K];
+    loop {
+        let mut on = [false; K];
+        for i in 0..K {
+            if let Some(way) = &mut ways[i] {
+                on[i] = next(way, &mut stretches[i], &mut steps[i]);
+            }
+        }
+        if on == [false; K] {
+            break;
+        }
+        // A way that has come to its end repeats its last step.
+        lanes(&steps, &mut stages);
+        for i in 0..K {
+            if let (true, Some(way), Some(stretch)) = (on[i], &mut ways[i], &mut stretches[i]) {
+                way.answer(stretch, &steps[i], &stages[i]);
+            }
+        }
+    }
+    Ok(ways.map(|way| way.map_or(Cost::default(), |way| way.cost)))
+}
+
+/// The next step of a way, on the next stretch where one has ended; false at the last sample.
+#[inline]
+fn next<E: Excitation, S: FnMut(usize, &Sample<f64>)>(
+    way: &mut Way<'_, f64, Journal<f64>, E, S, 2>,
+    stretch: &mut Option<Stretch<f64, SmoothFilm<f64>, 2>>,
+    step: &mut Step,
+) -> bool {
+    loop {
+        if let Some(on) = stretch {
+            if way.time_s < on.end_s {
+                *step = way.ask(on);
+                return true;
+            }
+            way.time_s = on.end_s;
+            *stretch = None;
+        }
+        if way.done() {
+            return false;
+        }
+        *stretch = Some(way.begin());
+    }
+}
+
+impl Step {
+    /// No step: numbers that stay finite.
+    const NONE: Self = Self {
+        system: SmoothFilm::NONE,
+        linear: Linear {
+            slope: [0.0; 2],
+            jacobian: [[0.0; 2]; 2],
+            by_input: [0.0; 2],
+        },
+        state: [0.5, 0.0],
+        input: Input {
+            at_nodes: [0.0; 4],
+            at_end: 0.0,
+            change: 0.0,
+        },
+        dt: 1.0,
+        step_s: 1.0,
+        to_s: 1.0,
+        speed_m_s: 0.0,
+    };
+}
+
+/// The steps, one array a number, so that a compiler can put neighbours into the lanes of one register;
+/// `T` is meant to be a lane ([`Real::SIDE_BY_SIDE`]).
+#[inline(always)]
+pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2>; K]) {
+    let of = |pick: fn(&Step) -> f64| -> [f64; K] { core::array::from_fn(|i| pick(&steps[i])) };
+    let system = [
+        of(|s| s.system.parts()[0]),
+        of(|s| s.system.parts()[1]),
+        of(|s| s.system.parts()[2]),
+    ];
+    let slope = [of(|s| s.linear.slope[0]), of(|s| s.linear.slope[1])];
+    let jacobian = [
+        of(|s| s.linear.jacobian[0][0]),
+        of(|s| s.linear.jacobian[0][1]),
+        of(|s| s.linear.jacobian[1][0]),
+        of(|s| s.linear.jacobian[1][1]),
+    ];
+    let by_input = [of(|s| s.linear.by_input[0]), of(|s| s.linear.by_input[1])];
+    let state = [of(|s| s.state[0]), of(|s| s.state[1])];
+    let at_nodes = [
+        of(|s| s.input.at_nodes[0]),
+        of(|s| s.input.at_nodes[1]),
+        of(|s| s.input.at_nodes[2]),
+        of(|s| s.input.at_nodes[3]),
+    ];
+    let (at_end, change, dt) = (of(|s| s.input.at_end), of(|s| s.input.change), of(|s| s.dt));
+    let mut unknowns = [[[0.0; K]; 2]; 8];
+    let mut end = [[0.0; K]; 2];
+    for i in 0..K {
+        let t = |column: &[f64; K]| T::of(column[i]);
+        let done = rodas5p::step(
+            &SmoothFilm::of_parts([t(&system[0]), t(&system[1]), t(&system[2])]),
+            &Linear {
+                slope: [t(&slope[0]), t(&slope[1])],
+                jacobian: [
+                    [t(&jacobian[0]), t(&jacobian[1])],
+                    [t(&jacobian[2]), t(&jacobian[3])],
+                ],
+                by_input: [t(&by_input[0]), t(&by_input[1])],
+            },
+            &[t(&state[0]), t(&state[1])],
+            &Input {
+                at_nodes: [
+                    t(&at_nodes[0]),
+                    t(&at_nodes[1]),
+                    t(&at_nodes[2]),
+                    t(&at_nodes[3]),
+                ],
+                at_end: t(&at_end),
+                change: t(&change),
+            },
+            t(&dt),
+        );
+        for (column, unknown) in unknowns.iter_mut().zip(&done.unknowns) {
+            column[0][i] = unknown[0].value();
+            column[1][i] = unknown[1].value();
+        }
+        end[0][i] = done.end[0].value();
+        end[1][i] = done.end[1].value();
+    }
+    for (i, stages) in out.iter_mut().enumerate() {
+        for (to, from) in stages.unknowns.iter_mut().zip(&unknowns) {
+            *to = [from[0][i], from[1][i]];
+        }
+        stages.end = [end[0][i], end[1][i]];
+    }
+}

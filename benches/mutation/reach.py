@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
@@ -21,9 +20,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import coverage
+from processor import run
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 900.0
+"""Of processor time, for one file of tests."""
 ANY = "0"
 """The line that stands for all of a module."""
 BACK = 12
@@ -115,14 +116,11 @@ def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None
         command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-p", "no:cacheprovider", file]
         command += ["--cov=jbf", "--cov-report=", "--cov-context=test", f"--junitxml={report}"]
         environment = os.environ | {"COVERAGE_FILE": str(data)}
-        try:
-            done = subprocess.run(
-                command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=limit_s
-            )
-        except subprocess.TimeoutExpired:
-            print(f"{file}: longer than {limit_s:.0f} s, left out", file=sys.stderr)
+        code, told, errors = run(command, ROOT, environment, limit_s)
+        if code is None:
+            print(f"{file}: longer than {limit_s:.0f} s, left out", file=sys.stderr, flush=True)
             continue
-        print(f"{file}: {done.stdout.splitlines()[-1] if done.stdout else done.stderr[-200:]}")
+        print(f"{file}: {told.splitlines()[-1] if told else errors[-200:]}", flush=True)
 
 
 def _passed(report: Path) -> Iterator[tuple[str, float]]:
@@ -157,6 +155,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--by-file", type=Path, help="also the short form, for a sample in CI")
     parser.add_argument("--data", type=Path, help="where to keep what was measured, to go on there")
+    parser.add_argument("--longest", type=float, default=LONGEST_S, help="processor time, s a file")
     asked = parser.parse_args()
     files = asked.tests or sorted(
         p.relative_to(ROOT).as_posix() for p in (ROOT / "python" / "tests").glob("**/test_*.py")
@@ -164,7 +163,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         kept = asked.data or Path(folder)
         kept.mkdir(parents=True, exist_ok=True)
-        measured(files, kept)
+        measured(files, kept, asked.longest)
         found = gathered(kept)
     found.write(asked.out)
     if asked.by_file:

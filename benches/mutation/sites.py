@@ -106,17 +106,29 @@ def faults_of(source: str, file: str) -> list[Fault]:
     return found
 
 
+def _compiles(fault: Fault, source: str) -> bool:
+    """False of `**` that opens up a dictionary, and the like: nobody needs a test to notice."""
+    try:
+        compile(fault.applied(source), fault.file, "exec")
+    except SyntaxError:
+        return False
+    return True
+
+
 def drawn(root: Path, files: list[Path], seed: str) -> Iterator[Fault]:
     """One fault of every site, both in an order drawn by lot.
 
     A longer sample of the same seed begins with the shorter one.
     """
     sites: dict[tuple[str, int, int], list[Fault]] = defaultdict(list)
-    for path in files:
-        for fault in faults_of(path.read_text("utf-8"), path.relative_to(root).as_posix()):
+    sources = {path.relative_to(root).as_posix(): path.read_text("utf-8") for path in files}
+    for file, source in sources.items():
+        for fault in faults_of(source, file):
             sites[fault.file, fault.line, fault.column].append(fault)
     chance = random.Random(seed)
     order = sorted(sites)
     chance.shuffle(order)
     for site in order:
-        yield chance.choice(sites[site])
+        fault = chance.choice(sites[site])
+        if _compiles(fault, sources[fault.file]):
+            yield fault

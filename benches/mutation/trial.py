@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import difflib
 import re
-import subprocess
 import sys
 import time
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from mutants.faults import Copy
+from processor import run
 from reach import Chosen
 from sites import Fault
 
@@ -55,19 +55,9 @@ class Bench:
         """Exit code (None: out of time) and output of tests, in order, to the first failure."""
         command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no"]
         command += ["-p", "no:cacheprovider", *tests]
-        try:
-            done = subprocess.run(
-                command,
-                cwd=self.copy.folder,
-                env=self.copy.environment | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=limit_s,
-            )
-        except subprocess.TimeoutExpired:
-            return None, ""
-        return done.returncode, done.stdout
+        environment = self.copy.environment | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+        code, told, _ = run(command, self.copy.folder, environment, limit_s)
+        return code, told
 
     def is_sound(self, test: str) -> bool:
         """True where a test passes without a fault; else it notices nothing."""
@@ -87,7 +77,7 @@ class Bench:
         # A file of tests may have gone since it was measured.
         tests = [t for t in chosen.tests if (self.copy.folder / t.split("::")[0]).is_file()]
         trial.tests = len(tests)
-        limit_s = 120.0 + 8.0 * chosen.seconds
+        limit_s = 60.0 + 6.0 * chosen.seconds
         begun = time.monotonic()
         while tests:
             path.write_text(after, "utf-8")

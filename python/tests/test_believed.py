@@ -121,6 +121,16 @@ def test_a_glitch_of_the_speed_is_left_out(with_path: bool, off: float) -> None:
     assert abs(m.velocity_m_s[800] - v[800]) < 3e-4
 
 
+@pytest.mark.parametrize("with_path", [True, False])
+def test_many_glitches_of_a_speed_are_believed_where_a_path_denies_them(with_path: bool) -> None:
+    """One sample in a hundred: alone that many may be the motion's own."""
+    v, x = true()
+    speed = measured(v, 5)
+    speed[50 : len(v) - 50 : 100] += 0.05
+    found = imposed(speed, counted(x) if with_path else None).findings
+    assert ("glitches" in {f.kind for f in found}) == with_path
+
+
 def test_a_slip_that_the_path_confirms_is_no_glitch() -> None:
     v, _ = true()
     v = v.copy()
@@ -210,7 +220,12 @@ def test_an_angle_in_another_unit_is_converted(factor: float, unit: str) -> None
 
 @pytest.mark.parametrize(
     ("factor", "unit"),
-    [(1e3, "mm/s"), (1.0 / RADIUS_M, "rad/s"), (30.0 / np.pi / RADIUS_M, "minute")],
+    [
+        (1e3, "mm/s"),
+        (60.0, "m/min"),
+        (1.0 / RADIUS_M, "rad/s"),
+        (30.0 / np.pi / RADIUS_M, "minute"),
+    ],
 )
 def test_a_speed_in_another_unit_is_converted(factor: float, unit: str) -> None:
     v, x = true()

@@ -54,6 +54,15 @@ def test_lost_samples_that_were_filled_in() -> None:
     assert not np.isin(TIME[lost], native.time_s).any()
 
 
+@pytest.mark.parametrize(("share", "is_found"), [(0.005, False), (0.04, True)])
+def test_a_few_that_were_filled_in_are_no_channel_of_its_own(share: float, is_found: bool) -> None:
+    lost = np.zeros(len(TIME), dtype=bool)
+    lost[5 : -5 : round(1.0 / share)] = True
+    y = force(TIME, 3)
+    native = find_filled_in(TIME, np.interp(TIME, TIME[~lost], y[~lost]))
+    assert (native is not None) == is_found
+
+
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("step_n", [0.0, 1e-4, 0.0137, 0.1, 0.31, 1.7])
 def test_steps_of_a_converter_are_no_lines(step_n: float, seed: int) -> None:

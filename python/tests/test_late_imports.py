@@ -63,6 +63,11 @@ def test_every_public_name_comes_when_it_is_asked_for() -> None:
         _ = jbf.no_such_name
 
 
+def test_words_are_said_without_what_draws() -> None:
+    """The door knows pictures by name alone, until one is asked for."""
+    assert "matplotlib.axes" not in imported("import jbf.reporting.door")
+
+
 def test_a_diagnosis_imports_no_statistics_and_no_signal_processing() -> None:
     # Half a second of every command, for what scipy.special and a filter of the core say as well.
     there = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")

@@ -18,6 +18,7 @@ FAILED_ONCE = {
     700059: "an overflow in a search's quadratic",
     700074: "the same, of a film that has no noise",
     800020: "a force late by more than its run divided by no sample",
+    910015: "a law that leaves nothing divided by a noise of zero",
 }
 
 

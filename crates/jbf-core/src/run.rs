@@ -97,8 +97,19 @@ pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     record: &Record<'_>,
     max_step_s: f64,
 ) -> f64 {
-    let film_s = film_step_s(chain, record).max(SHORTEST_FILM_STEP_S);
-    max_step_s.min(film_s).min(chain.effects.longest_step_s())
+    let enough_s = step_s(record) / L::ENOUGH_STEPS;
+    let law_s = film_step_s(chain, record)
+        .max(SHORTEST_FILM_STEP_S)
+        .max(enough_s);
+    max_step_s.min(law_s).min(chain.effects.longest_step_s())
+}
+
+/// Mean time from sample to sample, s.
+fn step_s(record: &Record<'_>) -> f64 {
+    match record.time_s {
+        [first, .., last] => (last - first) / (record.time_s.len() - 1) as f64,
+        _ => 0.0,
+    }
 }
 
 /// Longest step, s, that follows the film.

@@ -3,9 +3,10 @@
 mod common;
 
 use common::motion::Sines;
-use common::{chain, readings};
-use jbf_core::run::{film_rate_1_s, predict, Record};
-use jbf_core::Motion;
+use common::{chain, chain_round, readings};
+use jbf_core::law::{with_law, Named, Visitor, CATALOGUE};
+use jbf_core::run::{film_rate_1_s, inner_step_s, predict, Record};
+use jbf_core::{Clock, Motion};
 
 /// Samples of a motion as columns.
 struct Columns([Vec<f64>; 5], Option<Vec<f64>>);
@@ -138,4 +139,45 @@ fn warm_oil_asks_for_short_steps() {
     slower.waves[0][0] *= thin;
     let wanted = rate(&Columns::of(&slower, 0.01, 400)) / thin;
     assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
+}
+
+/// A law of the catalogue, with its starting values, along a record: its inner step (s), and its
+/// readings (N).
+struct Along<'a>(Record<'a>, f64);
+
+impl Visitor<f64> for Along<'_> {
+    type Output = (f64, Vec<f64>);
+
+    fn visit<L: Named<f64>>(self, law: L) -> Self::Output {
+        let chain = chain_round(law, &[]);
+        let mut out = Vec::new();
+        predict(&chain, &self.0, self.1, |_, reading| out.push(reading));
+        (inner_step_s(&chain, &self.0, self.1), out)
+    }
+}
+
+/// Between samples that are far apart laws without a film take no more steps than the records can tell
+/// of: 16 of 0.4 s, not 200, and what friction is then hardly differs. Of other records all are taken.
+#[test]
+fn samples_far_apart_are_not_walked_in_milliseconds() {
+    let slow = Sines::two_way(std::f64::consts::TAU / 40.0);
+    for name in ["lugre", "seven_parameter"] {
+        let info = CATALOGUE
+            .iter()
+            .find(|law| law.name == name)
+            .expect("known");
+        let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
+        for (apart_s, inner_s) in [(0.4, 0.02), (0.2, 0.0125), (0.03, 0.002), (0.002, 0.002)] {
+            let columns = Columns::of(&slow, apart_s, 300);
+            let along = |most_s: f64| {
+                let visitor = Along(columns.record(), most_s);
+                with_law(name, None, None, &values, Clock::Journal, visitor).expect("sound")
+            };
+            let ((inner, usual), (_, fine)) = (along(0.02), along(2e-4));
+            assert!((inner - inner_s).abs() < 1e-12, "{name} {apart_s} {inner}");
+            let squares = usual.iter().zip(&fine).map(|(a, b)| (a - b).powi(2));
+            let apart_n = (squares.sum::<f64>() / 300.0).sqrt();
+            assert!(apart_n < 2e-3, "{name} {apart_s} s: {apart_n} N");
+        }
+    }
 }

@@ -173,6 +173,9 @@ def _spread(
 ) -> tuple[float, float, float] | None:
     """Standard deviation between runs of a deviation along a column, the probability of so much by
     chance, and how many times as much as chance it is (DerSimonian & Laird 1986)."""
+    if sigma**2 == 0.0:
+        # A model that leaves nothing leaves no run anything to deviate by.
+        return None
     estimates, precisions = [], []
     columns = [c[:, None] for c in column]
     for i in range(len(samples.runs)):

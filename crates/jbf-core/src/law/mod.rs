@@ -48,6 +48,11 @@ pub trait Law<T: Real> {
     /// where the viscous part acts beside it, as it does beside a law's own bristle.
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
+    /// So many steps from sample to sample are enough, however far apart the samples are: a law whose
+    /// stepper is stable at any step goes on a straight line between them, and of more than the line
+    /// no record tells. Infinite where a step that is too long loses its way.
+    const ENOUGH_STEPS: f64 = f64::INFINITY;
+
     /// The two parameters, by their numbers on the law's page, on which the path of its film
     /// depends, where friction is told no more of the film than [`Law::film`]; see
     /// [`crate::film_path`].

@@ -160,6 +160,8 @@ impl<T: Real> Law<T> for SevenParameter<T> {
 
     const HAS_BRISTLE: bool = true;
 
+    const ENOUGH_STEPS: f64 = 16.0;
+
     in_newtons!();
 
     fn start(&self, _load_n: T) -> State<T> {

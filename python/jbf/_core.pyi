@@ -22,6 +22,7 @@ __all__ = [
     "control_run",
     "effects",
     "film_integrals",
+    "first_order_filter",
     "laws",
     "read_force",
     "steady_friction",

@@ -36,7 +36,7 @@ def test_a_share_in_percent(share: float, said: str) -> None:
     assert pattern_rows([cast(Any, pattern)]) == [("angle", said, "once a turn")]
 
 
-@pytest.mark.parametrize(("named", "said"), [(0, "3 %"), (4, "8.9 %"), (61, "69 %")])
+@pytest.mark.parametrize(("named", "said"), [(0, "3 %"), (4, "8.9 %"), (61, "69 %"), (99, "100 %")])
 def test_false_names_of_a_hundred_decoys_in_percent(named: int, said: str) -> None:
     """Clopper and Pearson's upper limit of so many of a hundred, 95 %."""
     level = Level.shared(DEFAULT, 20, 1000.0, 1.0)

@@ -41,7 +41,7 @@ def level_words(level: Level) -> str:
         below = 100.0 * rate_below(level.decoys_named, level.decoys)
         said += (
             f"; of {level.decoys} campaigns of decoys, candidates in the wrong place along these "
-            f"runs, {level.decoys_named} would have made a name (false names below {below:.2g} %)"
+            f"runs, {level.decoys_named} would have made a name (false names below {below:.{2 if below < 99.0 else 3}g} %)"
         )
     return said
 

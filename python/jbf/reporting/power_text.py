@@ -39,9 +39,10 @@ def level_words(level: Level) -> str:
         said += f"; to be worth a name it must gain {number(level.worth)}"
     if level.decoys:
         below = 100.0 * rate_below(level.decoys_named, level.decoys)
+        told = f"{below:.2g}" if below < 99.5 else "100"
         said += (
             f"; of {level.decoys} campaigns of decoys, candidates in the wrong place along these "
-            f"runs, {level.decoys_named} would have made a name (false names below {below:.{2 if below < 99.0 else 3}g} %)"
+            f"runs, {level.decoys_named} would have made a name (false names below {told} %)"
         )
     return said
 

@@ -8,7 +8,7 @@ import pytest
 from campaigns import campaign
 from jbf._core import first_order_filter
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.noise import WHITE, Noise, _changes, estimate_noise, innovation_cost
+from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.replicates import period_samples
 
@@ -109,18 +109,3 @@ def test_the_filter_is_scipys(shape: tuple[int, ...]) -> None:
 def test_a_cube_is_refused() -> None:
     with pytest.raises(ValueError, match="3 axes"):
         first_order_filter((1.0, 0.0), 0.0, np.zeros((2, 2, 2)))
-
-
-def test_the_slope_of_the_cost_is_that_of_differences() -> None:
-    residuals = [coloured(seed, 0.4, 0.3, 0.2, 900) for seed in (4, 5)]
-    masks = [np.ones(900, bool), np.arange(900) % 7 > 0]
-    steps = [STEP_S, 1.5 * STEP_S]
-
-    def cost(log_memory: float, colour: float) -> float:
-        return innovation_cost(Noise(float(np.exp(log_memory)), colour), residuals, steps, masks)
-
-    at, by = (np.log(0.15), 0.4), 1e-5
-    slope, _ = _changes(Noise(0.15, 0.4), residuals, steps, masks)
-    by_memory = (cost(at[0] + by, at[1]) - cost(at[0] - by, at[1])) / (2.0 * by)
-    by_colour = (cost(at[0], at[1] + by) - cost(at[0], at[1] - by)) / (2.0 * by)
-    assert slope == pytest.approx([by_memory, by_colour], rel=1e-5)

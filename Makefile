@@ -211,10 +211,12 @@ sbom: $(AUDIT)/.made
 licences:
 	$(PYTHON) release/licences.py
 
-# Every crate but those that say `publish = false`.
+# Every crate but those that say `publish = false`. In a new folder each time: cargo takes a package of
+# the same name, version and place as unchanged, and would build one crate on last week's other.
 publish-check:
 	$(PYTHON) release/licences.py --check
-	cargo publish --dry-run --quiet --allow-dirty --workspace
+	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
+		CARGO_TARGET_DIR="$$folder" cargo publish --dry-run --quiet --allow-dirty --workspace
 
 # The archive is packed, and the wheel built from it in an empty folder: nothing of this tree helps.
 wheel: $(MADE)

@@ -131,7 +131,7 @@ mutants: $(BUILT)
 # Mutants drawn by lot, SAMPLE of each ROOM by SEED; fails where fewer than LEAST of them are caught.
 mutation: $(BUILT)
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
-		--seed $(or $(SEED),1) --budget $(or $(BUDGET),15) --least $(or $(LEAST),0.58)
+		--seed $(or $(SEED),1) --budget $(or $(BUDGET),60) --least $(or $(LEAST),0.58)
 
 coverage: $(BUILT)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal --cov=jbf --cov-report=term-missing:skip-covered

@@ -118,6 +118,35 @@ class InputError(JbfError, ValueError):
         return partial(type(self), **self._fields()), ()
 
 
+class Unfinished(InputError):
+    """A fit or a diagnosis that was ended because it would have taken too long.
+
+    Parameters
+    ----------
+    steps
+        Inner steps of the model that it took.
+    fit
+        The best :class:`jbf.Fit` so far, None where there is none.
+    """
+
+    def __init__(self, *, steps: float, fit: Any = None, file: str | None = None) -> None:
+        self.steps, self.fit = steps, fit
+        best = "nothing is fitted yet"
+        if fit is not None:
+            model = " + ".join([fit.model.law, *fit.model.effects])
+            unit = fit.model.rig.quantities.force
+            best = f"the best so far is {model}, RMS {fit.rms_n:.3g} {unit}, not finished"
+        super().__init__(
+            problem=f"no answer from these runs in {steps:.1g} steps of the model; {best}",
+            mend="take a law without memory, such as stribeck, or records with samples closer "
+            "together",
+            file=file,
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(type(self), steps=self.steps, fit=self.fit, file=self.file), ()
+
+
 def printable(text: str) -> str:
     """A text whose control characters are escaped: they move no terminal."""
     return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)

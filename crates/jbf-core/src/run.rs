@@ -104,6 +104,17 @@ pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     max_step_s.min(law_s).min(chain.effects.longest_step_s())
 }
 
+/// How many inner steps [`predict`] takes along a record, to within one a sample and reversal: what it
+/// costs.
+pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
+    chain: &Chain<T, L, E>,
+    record: &Record<'_>,
+    max_step_s: f64,
+) -> f64 {
+    let samples = record.time_s.len() as f64;
+    samples * (1.0 + step_s(record) / inner_step_s(chain, record, max_step_s))
+}
+
 /// Mean time from sample to sample, s.
 fn step_s(record: &Record<'_>) -> f64 {
     match record.time_s {

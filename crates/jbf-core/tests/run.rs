@@ -5,7 +5,7 @@ mod common;
 use common::motion::Sines;
 use common::{chain, chain_round, readings};
 use jbf_core::law::{with_law, Named, Visitor, CATALOGUE};
-use jbf_core::run::{film_rate_1_s, inner_step_s, predict, Record};
+use jbf_core::run::{film_rate_1_s, inner_step_s, inner_steps, predict, Record};
 use jbf_core::{Clock, Motion};
 
 /// Samples of a motion as columns.
@@ -139,6 +139,19 @@ fn warm_oil_asks_for_short_steps() {
     slower.waves[0][0] *= thin;
     let wanted = rate(&Columns::of(&slower, 0.01, 400)) / thin;
     assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
+}
+
+/// What a prediction costs is counted as it is made: a step for each sample, and the inner ones.
+#[test]
+fn the_cost_of_a_run_is_its_inner_steps() {
+    let chain = chain::<f64>(&[]);
+    let columns = Columns::of(&Sines::two_way(1.0), 0.01, 401);
+    let film_s = inner_step_s(&chain, &columns.record(), 1.0);
+    for max_step_s in [1e-3, 0.5 * film_s] {
+        let counted = inner_steps(&chain, &columns.record(), max_step_s);
+        let every = 401.0 + 401.0 * 0.01 / max_step_s.min(film_s);
+        assert!((counted / every - 1.0).abs() < 1e-6, "{counted} {every}");
+    }
 }
 
 /// A law of the catalogue, with its starting values, along a record: its inner step (s), and its

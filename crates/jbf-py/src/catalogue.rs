@@ -1,6 +1,6 @@
 //! The catalogue of laws and effects, as dictionaries.
 
-use jbf_core::effect::{moves_jumps, peaks, type_names, Parameter, CATALOGUE};
+use jbf_core::effect::{moves_jumps, peaks, spreads_jumps, type_names, Parameter, CATALOGUE};
 use jbf_core::law;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -48,6 +48,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         }
         d.set_item("refused", refused)?;
         d.set_item("moves_jumps", moves_jumps(info.name))?;
+        d.set_item("spreads_jumps", spreads_jumps(info.name))?;
         d.set_item("peaks", peaks(info.name))?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("further_of", info.further_of)?;

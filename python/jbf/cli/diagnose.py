@@ -10,7 +10,7 @@ from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
 from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
-from jbf.errors import InputError, Stopped
+from jbf.errors import InputError, Stopped, Unfinished
 from jbf.models.catalogue import find_law
 from jbf.models.vocabulary import AUTO
 from jbf.reporting.json import json_text
@@ -95,6 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
                 texts[arguments.report] = diagnosis_page(diagnosis, arguments.typed)
     except Stopped as stop:
         raise outputs.keep(stop, arguments.out) from None
+    except Unfinished as end:
+        raise outputs.keep_unfinished(end, arguments.out) from None
     told = hold_out.left(diagnosis.model, held)
     if arguments.json:
         texts[arguments.json] = json_text(diagnosis.to_dict() | told)

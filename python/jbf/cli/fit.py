@@ -10,7 +10,7 @@ from jbf.cli import hold_out, inputs, outputs
 from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import Report, shown
-from jbf.errors import InputError, Stopped, quoted
+from jbf.errors import InputError, Stopped, Unfinished, quoted
 from jbf.models.catalogue import check_applies, find_parameter, in_chain_order, parameters_of
 
 if TYPE_CHECKING:
@@ -80,6 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
                 fitted = _repeated(fitted, runs, repeats, report)
     except Stopped as stop:
         raise outputs.keep(stop, arguments.out) from None
+    except Unfinished as end:
+        raise outputs.keep_unfinished(end, arguments.out) from None
     told = hold_out.left(fitted.model, held)
     outputs.write({arguments.out: fitted.model.to_toml()})
     outputs.say(fitted.report() + hold_out.words(fitted.model, told), wanted)

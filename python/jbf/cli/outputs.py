@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from jbf.errors import InputError, Stopped, printable
+from jbf.errors import InputError, Stopped, Unfinished, printable
 from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
@@ -153,6 +153,14 @@ def keep(stop: Stopped, out: str | None) -> Kept:
         return Kept(f"{told}, not finished")
     write({out: found.model.to_toml()})
     return Kept(f"{told}, written to {'standard output' if out == STDOUT else out}, not finished")
+
+
+def keep_unfinished(end: Unfinished, out: str | None) -> Unfinished:
+    """Write the best model so far where the whole would have been; the error that says so."""
+    if end.fit is not None and out is not None:
+        write({out: end.fit.model.to_toml()})
+        end.problem += f", written to {'standard output' if out == STDOUT else out}"
+    return end
 
 
 def write(texts: Mapping[str, str]) -> None:

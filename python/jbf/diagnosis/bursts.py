@@ -27,6 +27,8 @@ APART_S = 0.5
 """Large innovations closer than this are one burst."""
 CLIPPED = 3.0
 """Standard deviations at which innovations are clipped."""
+NO_NOISE = 1e-9
+"""Share of the largest innovation below which the rest is rounding."""
 NAMED = 4
 """Bursts named in the description."""
 
@@ -44,7 +46,10 @@ def find_bursts(
     if not len(every):
         return []
     # The middle of the distribution: bursts must not hide behind the spread that they cause.
-    sigma = float(np.median(np.abs(every))) / 0.6745
+    # Where there is no noise at all, half of them are zero.
+    sigma = max(float(np.median(np.abs(every))) / 0.6745, NO_NOISE * float(np.max(np.abs(every))))
+    if sigma == 0.0:
+        return []
     far = np.abs(every) > policy.burst_sigma * sigma
     square = float(every @ every)
     share = float(np.sum(every[far] ** 2)) / max(square, 1e-300)

@@ -15,7 +15,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import Power, power
 from jbf.diagnosis.rounds import step
 from jbf.diagnosis.selection import try_candidates
-from jbf.errors import Stopped
+from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import Fit, fit
@@ -88,5 +88,7 @@ def one_round(
         strengths = power(candidates, chosen)
     except KeyboardInterrupt:
         raise Stopped(fitted) from None
+    except Unfinished as stop:
+        raise Unfinished(steps=stop.steps, fit=fitted, file=campaign.named) from None
     ledger = step(candidates, chosen, comparison.noise_n, trials)
     return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison, strengths)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,5 +29,7 @@ class Reached:
         """That model with its errors; None where there is none yet."""
         if self.candidates is None:
             return None
+        # What is left to do is little, and there is nothing after it.
+        self.candidates.campaign.work.renew(math.inf)
         problem = self.candidates.fitted(self.present).problem
         return finish(problem, self.candidates.converge(self.present))

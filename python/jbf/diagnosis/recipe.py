@@ -25,7 +25,7 @@ from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
-from jbf.errors import Stopped
+from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
@@ -78,6 +78,8 @@ def diagnose(
         A run lacks friction, or nothing moves in it.
     Stopped
         It was interrupted; it has the model that the last round began from.
+    Unfinished
+        It would have taken too long; it has that model, too.
     """
     reached = Reached()
     try:
@@ -87,6 +89,9 @@ def diagnose(
         if fitted is None:
             raise
         raise Stopped(fitted) from None
+    except Unfinished as stop:
+        named = None if reached.candidates is None else reached.candidates.campaign.named
+        raise Unfinished(steps=stop.steps, fit=reached.fit(), file=named) from None
 
 
 def _diagnose(
@@ -109,8 +114,9 @@ def _diagnose(
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
     recorded = Campaign.prepare(rig, runs)
     laws: tuple[LawTried, ...] = ()
+    no_law: dict[str, str] = {}
     if law == AUTO:
-        laws = which_law(recorded, clock, policy, progress)
+        laws, no_law = which_law(recorded, clock, policy, progress)
         law = laws[0].law
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
@@ -182,7 +188,7 @@ def _diagnose(
         after=compare_prepared(fit.model, campaign),
         elapsed_s=time.monotonic() - begun,
         level=candidates.level,
-        not_tried=candidates.not_tried,
+        not_tried=no_law | candidates.not_tried,
         unseen=hidden,
         policy=policy,
         findings=candidates.campaign.findings,

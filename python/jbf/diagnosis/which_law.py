@@ -9,7 +9,7 @@ the records tells, are tied; of these the one with fewest parameters is taken.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.policy import Policy
-from jbf.errors import InputError
+from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
 from jbf.estimation.film_start import settled_campaign
@@ -32,6 +32,8 @@ Mask = npt.NDArray[np.bool_]
 
 NUISANCES = ("sensor_offset", "inertia_leak", "gravity")
 """Effects that are no friction, and that no law can say."""
+LAW_SHARE = 0.25
+"""Of the work of a diagnosis, what one law may take to be compared."""
 STRETCHES = 40
 """Parts of a campaign whose mean squares are compared."""
 
@@ -77,33 +79,53 @@ def allowed(rig: Rig) -> list[str]:
     return found
 
 
-def followed(campaign: Campaign, clock: Clock) -> list[str]:
-    """Those of them whose film, where they have one, is not too fast for the records."""
-    found = []
+def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
+    """Those of them whose film, where they have one, is not too fast for the records, and why not
+    the others."""
+    found, refused = [], {}
     for name in allowed(campaign.rig):
         try:
             check_film(campaign, name, clock)
-        except InputError:
+        except InputError as error:
+            refused[f"law {name}"] = error.problem
             continue
         found.append(name)
-    return found
+    return found, refused
 
 
 def which_law(
     campaign: Campaign, clock: Clock, policy: Policy, progress: Progress | None = None
-) -> tuple[LawTried, ...]:
-    """The laws that the rig allows, the one to take first, then by their left-out error."""
-    names = followed(campaign, clock)
-    left = []
+) -> tuple[tuple[LawTried, ...], dict[str, str]]:
+    """The laws that the rig allows, the one to take first, then by their left-out error; and those
+    that were not tried to their end, each with the reason."""
+    names, refused = followed(campaign, clock)
+    left: dict[str, list[Array]] = {}
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
-        candidates = Candidates(settled_campaign(campaign, name, clock), name, clock)
-        beside = tuple(effect for effect in NUISANCES if effect in candidates.names)
-        left.append(left_out(candidates, beside))
-    tried = compared(names, [len(find_law(n).parameters) for n in names], left, policy)
+        errors = _within(campaign, name, clock)
+        if errors is None:
+            refused[f"law {name}"] = "takes too long to follow along these records"
+        else:
+            left[name] = errors
+    if not left:
+        raise Unfinished(steps=campaign.work.most, file=campaign.named)
+    counts = [len(find_law(name).parameters) for name in left]
+    tried = compared(list(left), counts, list(left.values()), policy)
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
-    return (first, *(t for t in tried if t is not first))
+    return (first, *(t for t in tried if t is not first)), refused
+
+
+def _within(campaign: Campaign, law: str, clock: Clock) -> list[Array] | None:
+    """Left-out errors of a law beside what is no friction; None where its share of the work is not
+    enough for them."""
+    own = replace(campaign, work=campaign.work.part(LAW_SHARE))
+    try:
+        candidates = Candidates(settled_campaign(own, law, clock), law, clock)
+        beside = tuple(effect for effect in NUISANCES if effect in candidates.names)
+        return left_out(candidates, beside)
+    except Unfinished:
+        return None
 
 
 def left_out(candidates: Candidates, effects: tuple[str, ...]) -> list[Array]:
@@ -149,14 +171,20 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     kept = tuple(effect for effect in effects if effect in NUISANCES)
     most = len(candidates.fitted(effects).problem.open)
     left, names, counts = [left_out(candidates, effects)], [""], [most]
-    for name in followed(whole, clock):
-        other = Candidates(whole, name, clock, policy)
+    for name in followed(whole, clock)[0]:
+        own = replace(whole, work=whole.work.part(LAW_SHARE))
+        other = Candidates(own, name, clock, policy)
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
         # Far off in the fit is far off elsewhere.
-        if other.converge(kept).rms_n < policy.leader_rms * candidates.converge(effects).rms_n:
-            left.append(left_out(other, kept))
+        far = policy.leader_rms * candidates.converge(effects).rms_n
+        try:
+            errors = left_out(other, kept) if other.converge(kept).rms_n < far else None
+        except Unfinished:
+            continue
+        if errors is not None:
+            left.append(errors)
             names.append(name)
             counts.append(count)
     tried = compared(names, counts, left, policy)

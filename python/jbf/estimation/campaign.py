@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +14,7 @@ from jbf.estimation.converter import curve_rms_n, noise_before
 from jbf.estimation.noise_floor import most_noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
+from jbf.estimation.work import Work
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
@@ -56,6 +57,8 @@ class Campaign:
     most_noise_n
         The most that the noise on the friction can be, N, by what comes again in the records; None
         where nothing does.
+    work
+        What fits to it may cost yet; shared by every campaign that is made of this one.
     """
 
     rig: Rig
@@ -63,6 +66,7 @@ class Campaign:
     samples: Samples
     most_noise_n: float | None = None
     more_findings: tuple[Finding, ...] = ()
+    work: Work = field(default_factory=Work)
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
@@ -91,7 +95,14 @@ class Campaign:
                 mend="check that the force was connected, and its scale",
             )
         samples = Samples.of(prepared)
-        return cls(rig, prepared, samples, most_noise(prepared, samples))
+        work = Work.of(sum(len(p.friction_n) for p in prepared))
+        return cls(rig, prepared, samples, most_noise(prepared, samples), work=work)
+
+    @property
+    def named(self) -> str:
+        """What a message calls it: the file of its first run."""
+        first = self.prepared[0].run
+        return str(first.path or first.name)
 
     @property
     def motions(self) -> list[Driven]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jbf.errors import InputError, Stopped
+from jbf.errors import InputError, Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
@@ -191,6 +192,8 @@ def fit(
         An unknown name, a missing column, runs in which nothing moves, or a film too fast for them.
     Stopped
         It was interrupted; it has the best fit so far.
+    Unfinished
+        It would have taken too long; it has the best fit so far.
     """
     chosen = in_chain_order(effects)
     check_rig(rig, law)
@@ -203,12 +206,16 @@ def fit(
     check_film(campaign, law, clock, {**given, **problem.fixed})
     try:
         solution = best_weighting(problem, minimum(problem, [given]))
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Unfinished) as stop:
+        campaign.work.renew(math.inf)
         values = problem.best.values
         if values is None:
             raise
         samples = problem.samples_at(values)
         near = problem.solution(problem.wrapped(values), samples, WHITE, False, "interrupted")
-        raise Stopped(finish(problem, near, given)) from None
+        best = finish(problem, near, given)
+        if isinstance(stop, Unfinished):
+            raise Unfinished(steps=stop.steps, fit=best, file=campaign.named) from None
+        raise Stopped(best) from None
     fitted = finish(problem, solution, given)
     return replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps
+from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps, spreads_jumps
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.rows import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
@@ -39,6 +39,8 @@ Array = npt.NDArray[np.float64]
 Lines = tuple[list[Array], list[Array]]
 """Residuals, and derivatives of the prediction by the search variables, one array a run each."""
 
+SLOPES_COST = 2.0
+"""A pass with derivatives takes so many times the time of one without."""
 BOUNDLESS = 1e50
 """A derivative beyond this has grown without bound: a search squares what it makes of them."""
 
@@ -123,7 +125,9 @@ class Problem:
 
     def predict(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
         """Predictions, N, one array a run; of some runs."""
-        return self.chain.predict(values, [p.core for p in self._runs(which)])
+        motions = [p.core for p in self._runs(which)]
+        self.campaign.work.take(self.chain.inner_steps(values, motions))
+        return self.chain.predict(values, motions)
 
     def residuals(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
         """Record minus prediction, N, one array a run; of some runs."""
@@ -140,7 +144,9 @@ class Problem:
         some of the parameters."""
         runs, by = self._runs(which), self.open if by is None else by
         scale = np.where(self.log, values, 1.0)[by]
-        rows = self.chain.jacobian(values, [p.core for p in runs], by)
+        motions = [p.core for p in runs]
+        self.campaign.work.take(SLOPES_COST * self.chain.inner_steps(values, motions))
+        rows = self.chain.jacobian(values, motions, by)
         residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
         return residuals, [_scaled(j, scale) for _, j in rows]
 
@@ -198,14 +204,14 @@ class Problem:
         they are known."""
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
-        if not moves_jumps(effects):
+        if not (moves_jumps(effects) or spreads_jumps(effects)):
             return samples
         prepared = self.campaign.prepared
         if lines is None:
             predicted = self.predict(values)
         else:
             predicted = [p.friction_n - r for p, r in zip(prepared, lines[0], strict=True)]
-        return samples_beside_jumps(samples, prepared, predicted)
+        return samples_beside_jumps(samples, prepared, predicted, effects)
 
     def solution(
         self,

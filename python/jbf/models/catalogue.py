@@ -91,8 +91,9 @@ class Effect:
 
     `needs` names what it needs of the law and of the record; `refused` tells for each law that
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
-    instants at which friction jumps; `peaks` is the parameter along which a likelihood has many
-    peaks, None for most; `further_of` the effect of which this is a further one, None for most.
+    instants at which friction jumps, `spreads_jumps` where what is read of a jump lasts; `peaks` is
+    the parameter along which a likelihood has many peaks, None for most; `further_of` the effect of
+    which this is a further one, None for most.
     `rust_place` and `rust_type` are the names of its types in the core, empty
     of an effect of one's own; `columns` are those that such an effect asks for.
     """
@@ -106,6 +107,7 @@ class Effect:
     needs: tuple[str, ...]
     refused: Mapping[str, str]
     moves_jumps: bool
+    spreads_jumps: bool
     peaks: str | None
     longest_step_s: float
     parameters: tuple[Parameter, ...]

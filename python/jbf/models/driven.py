@@ -50,6 +50,10 @@ class DrivenChain:
         rows = self.core.jacobian(parameters, [d.motion for d in driven], which)
         return [(d.at_samples(f), d.at_samples(j)) for d, (f, j) in zip(driven, rows, strict=True)]
 
+    def inner_steps(self, parameters: Array, driven: Sequence[Driven]) -> float:
+        """How many inner steps a prediction takes."""
+        return self.core.inner_steps(parameters, [d.motion for d in driven])
+
     def film_rate_1_s(self, parameters: Array, driven: Sequence[Driven]) -> float:
         """Fastest rate of the law's film, 1/s."""
         return self.core.film_rate_1_s(parameters, [d.motion for d in driven])

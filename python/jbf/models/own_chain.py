@@ -90,6 +90,10 @@ class OwnChain:
         """Fastest rate of the law's film, 1/s."""
         return self.core.film_rate_1_s(self._inner(parameters), motions)
 
+    def inner_steps(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
+        """How many inner steps a prediction takes."""
+        return self.core.inner_steps(self._inner(parameters), motions)
+
     def jacobian(
         self, parameters: Array, motions: Sequence[_core.Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:

@@ -224,6 +224,7 @@ def register_effect(
         needs=(),
         refused={},
         moves_jumps=False,
+        spreads_jumps=False,
         peaks=None,
         longest_step_s=np.inf,
         parameters=pages,

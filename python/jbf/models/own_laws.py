@@ -110,6 +110,7 @@ def register_law(
         needs=(),
         refused={},
         moves_jumps=False,
+        spreads_jumps=False,
         peaks=None,
         longest_step_s=np.inf,
         parameters=pages,

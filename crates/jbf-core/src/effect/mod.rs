@@ -61,7 +61,9 @@ mod vogel;
 
 pub use crate::law::Scales;
 pub use crate::page::Parameter;
-pub use catalogue::{fits, moves_jumps, peaks, type_names, Effects, States, CATALOGUE};
+pub use catalogue::{
+    fits, moves_jumps, peaks, spreads_jumps, type_names, Effects, States, CATALOGUE,
+};
 pub use info::{Info, Stage};
 pub use need::Need;
 pub use place::{
@@ -87,6 +89,9 @@ pub trait Effect<T: Real>: Copy + Debug {
     /// True where a parameter moves the instants at which friction jumps: no fit may lean on the
     /// samples next to such a jump.
     const MOVES_JUMPS: bool = false;
+    /// True where what is read of a jump lasts: an error in the jump's instant is read as long, and
+    /// not in the samples next to it alone.
+    const SPREADS_JUMPS: bool = false;
     /// A parameter along which the likelihood of a record has peak beside peak: a fit looks for
     /// higher ones.
     const PEAKS: Option<&'static str> = None;

@@ -88,6 +88,15 @@ macro_rules! signal_chain {
             }
         }
 
+        /// True where an error in the instant of a jump is read for long; see
+        /// [`Effect::SPREADS_JUMPS`].
+        pub fn spreads_jumps(name: &str) -> bool {
+            match name {
+                $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::SPREADS_JUMPS,)*)*
+                _ => false,
+            }
+        }
+
         /// The parameter of the effect of that name along which likelihoods have many peaks; see
         /// [`Effect::PEAKS`].
         pub fn peaks(name: &str) -> Option<&'static str> {

@@ -25,6 +25,7 @@ impl<T: Real> Effect<T> for SensorLag<T> {
         .parameters(&[
             Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3]).null(0.0),
         ]);
+    const SPREADS_JUMPS: bool = true;
     /// The reading, N.
     type State = T;
 

@@ -17,7 +17,7 @@ use jbf_core::{Bearing, Clock, ParameterError, Real};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use runs::{FilmRate, Reader, Run, Values};
+use runs::{FilmRate, InnerSteps, Reader, Run, Values};
 
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
@@ -185,6 +185,21 @@ impl Chain {
         let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
         let film_rate = FilmRate { motions: &motions };
         self.with_chain(p, film_rate).map_err(refused)
+    }
+
+    /// How many inner steps a prediction along all of the motions takes: what it costs.
+    fn inner_steps(
+        &self,
+        parameters: PyReadonlyArray1<'_, f64>,
+        motions: Vec<Py<Motion>>,
+    ) -> PyResult<f64> {
+        let p = self.checked(&parameters)?;
+        let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
+        let counted = InnerSteps {
+            motions: &motions,
+            max_step_s: self.max_step_s,
+        };
+        self.with_chain(p, counted).map_err(refused)
     }
 
     /// Readings (N) and their derivatives with respect to the parameters `which`: for each

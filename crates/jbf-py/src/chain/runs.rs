@@ -113,3 +113,18 @@ impl Using<f64> for FilmRate<'_> {
         rates.fold(0.0, f64::max)
     }
 }
+
+/// Inner steps along all of the motions.
+pub struct InnerSteps<'a> {
+    pub motions: &'a [&'a Motion],
+    pub max_step_s: f64,
+}
+
+impl Using<f64> for InnerSteps<'_> {
+    type Output = f64;
+
+    fn with<L: Named<f64>>(self, chain: Chain<f64, L>) -> f64 {
+        let along = |m: &&Motion| run::inner_steps(&chain, &m.record(), self.max_step_s);
+        self.motions.iter().map(along).sum()
+    }
+}

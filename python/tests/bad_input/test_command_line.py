@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import jbf.diagnosis
@@ -174,12 +176,11 @@ def more(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(autouse=True)
-def forgotten() -> None:
-    for name in ("rude",):
-        try:
-            jbf.forget_effect(name)
-        except jbf.InputError:
-            continue
+def forgotten() -> Iterator[None]:
+    """What a command has registered stays: no other test may meet it."""
+    yield
+    with suppress(jbf.InputError):
+        jbf.forget_effect("rude")
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -27,6 +27,8 @@ SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
 """Columns that a motion to be proposed has."""
 MOST_SAMPLES = 6000
 """Samples of a run to be proposed."""
+NO_NOISE_N = 1e-100
+"""Less than any noise, N, and more than nothing: records without noise part any two models."""
 
 
 class Rival:
@@ -55,7 +57,7 @@ class Rival:
         slopes = noise.innovations(own[1], step_s)
         design = np.concatenate([slopes, self.known])
         target = np.concatenate([gap, np.zeros(len(self.known))])
-        return unexplained_square(design, target) / max(self.noise_n, 1e-300) ** 2
+        return unexplained_square(design, target) / max(self.noise_n, NO_NOISE_N) ** 2
 
 
 def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:

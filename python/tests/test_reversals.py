@@ -51,7 +51,7 @@ def test_nothing_is_doubtful_where_the_reading_is_at_once() -> None:
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("sensor_lag",))
     values = problem.starts({})[0]
     every = problem.campaign.samples
-    assert problem.samples_at(values).count < every.count
+    assert problem.samples_at(values) is not every
     values[problem.names.index("sensor_lag.tau_s")] = 0.0
     assert problem.samples_at(values) is every
     bare = Problem(problem.campaign, "journal", "journal", ("coulomb_drag",))

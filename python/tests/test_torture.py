@@ -19,6 +19,7 @@ FAILED_ONCE = {
     700074: "the same, of a film that has no noise",
     800020: "a force late by more than its run divided by no sample",
     910015: "a law that leaves nothing divided by a noise of zero",
+    920034: "derivatives without bound in a run to be proposed",
     920025: "the same, of a run to be proposed",
 }
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from jbf.diagnosis.candidates import Candidates, Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
 from jbf.estimation.likelihood import unexplained_square
+from jbf.estimation.problem import bounded
 from jbf.models.chain import core_load_n, core_motion, imposed
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
@@ -45,7 +46,7 @@ class Rival:
         values = self.solution.values
         ((friction, slopes),) = self.problem.chain.jacobian(values, [motion], self.problem.open)
         scale = np.where(self.problem.log, values, 1.0)[self.problem.open]
-        return friction, slopes * scale
+        return friction, bounded(slopes, scale)
 
     def separation(
         self, own: tuple[Array, Array], truth: tuple[Array, Array], step_s: float

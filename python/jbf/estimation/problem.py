@@ -148,7 +148,7 @@ class Problem:
         self.campaign.work.take(SLOPES_COST * self.chain.inner_steps(values, motions))
         rows = self.chain.jacobian(values, motions, by)
         residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
-        return residuals, [_scaled(j, scale) for _, j in rows]
+        return residuals, [bounded(j, scale) for _, j in rows]
 
     def gauss_newton_rows(
         self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
@@ -240,7 +240,7 @@ class Problem:
         )
 
 
-def _scaled(jacobian: Array, scale: Array) -> Array:
+def bounded(jacobian: Array, scale: Array) -> Array:
     """Derivatives by the search's variables; none where a step too coarse for wild parameters let
     them grow without bound, so that the search turns back by its residuals."""
     with np.errstate(over="ignore", invalid="ignore"):

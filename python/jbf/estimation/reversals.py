@@ -16,31 +16,40 @@ from jbf.estimation.prepared import Prepared
 Array = npt.NDArray[np.float64]
 
 MOST = 0.29
-"""Standard deviation of a place somewhere in a stretch, as a share of it."""
+"""Standard deviation of a place somewhere between two samples, as a share of their distance."""
 
 
 def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
-    """Standard error of a prediction (N) behind each reversal whose instant is not known to the
-    sample, until it is less than `least_n`; zero elsewhere, shape (n,)."""
-    motion = p.motion
+    """Standard error of a prediction (N) behind each reversal, from its instant's, until it is less
+    than `least_n`; zero elsewhere, shape (n,)."""
+    motion, time_s = p.motion, p.run.time_s
     found = np.zeros(len(prediction))
     if len(prediction) < 3:
         return found
-    rate_n_s = np.abs(np.gradient(prediction, p.run.time_s))
-    unknown = np.flatnonzero(np.diff(np.concatenate(([0], ~motion.sign_known, [0])).astype(int)))
-    for first, end in zip(unknown[::2], unknown[1::2], strict=True):
-        if first == 0 or end == len(prediction) or motion.resting[first - 1 : end + 1].any():
-            continue
-        velocity = motion.velocity_m_s[first - 1 : end + 1]
-        if velocity[0] * velocity[-1] >= 0.0:
-            continue
-        # The jump lies somewhere between two samples whose signs are known.
-        lasts_s = float(p.run.time_s[end] - p.run.time_s[first - 1])
-        slope = abs(float(velocity[-1] - velocity[0])) / lasts_s
-        error = float(np.max(motion.velocity_error_m_s[first:end]))
-        error_s = min(error / slope, MOST * lasts_s)
-        behind = error_s * rate_n_s[first:]
-        small = np.flatnonzero(behind[end - first :] < least_n)
-        last = end - first + (int(small[0]) if len(small) else len(behind))
-        found[first : first + last] = np.maximum(found[first : first + last], behind[:last])
+    rate_n_s = np.abs(np.gradient(prediction, time_s))
+    befores, afters = _reversals(p)
+    for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
+        between_s = float(time_s[after] - time_s[before])
+        slope = float(abs(motion.velocity_m_s[after] - motion.velocity_m_s[before])) / between_s
+        error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
+        error_s = min(error / slope, MOST * between_s)
+        last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
+        behind_n = error_s * rate_n_s[before + 1 : last + 1]
+        # It dies away from where the sign is known again.
+        small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
+        if len(small):
+            behind_n = behind_n[: after - before - 1 + int(small[0])]
+        found[before + 1 : before + 1 + len(behind_n)] = behind_n
     return found
+
+
+def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
+    """The last samples of one sign before each reversal, and the first of the other after it, where
+    the motion does not rest between."""
+    motion = p.motion
+    known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity_m_s != 0.0))
+    turned = np.flatnonzero(np.diff(np.sign(motion.velocity_m_s[known])) != 0.0)
+    befores, afters = known[turned], known[turned + 1]
+    rests = np.concatenate(([0], np.cumsum(motion.resting)))
+    moving = rests[afters] == rests[befores]
+    return befores[moving].tolist(), afters[moving].tolist()

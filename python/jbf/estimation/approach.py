@@ -30,6 +30,10 @@ TRIAL_EVALUATIONS = 6
 whose null is a flat place stays there."""
 FOLLOWED = 2
 """How many of the starting points are given them where candidates are ranked."""
+MANY = 24
+"""Starting points that are all tried on all runs; of more"""
+LIKELY = 6
+"""one of so many, after a look at one run: the one that goes fastest goes through every speed."""
 LOOKED = 3
 """Steps of a first look, from the best start that the first seed has."""
 
@@ -75,15 +79,28 @@ class Approach:
     @cached_property
     def _nearest(self) -> Array:
         """The best start from the first seed."""
-        return min(self._groups[0], key=self._square)
+        return min(self._likely(self._groups[0]), key=self._square)
 
     @cached_property
     def starts(self) -> list[Array]:
         """Where to start from, best first."""
-        groups = self._groups
+        groups = [self._likely(group) for group in self._groups]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
         return sorted(itertools.chain.from_iterable(groups), key=self._square)
+
+    def _likely(self, group: list[Array]) -> list[Array]:
+        """Of many starts, those that predict one run better than most do."""
+        few = self.few
+        runs = few.campaign.prepared
+        if len(group) <= MANY or len(runs) < 2:
+            return group
+        fastest = [float(np.max(np.abs(p.motion.velocity_m_s))) for p in runs]
+        which = [int(np.argmax(fastest))]
+        samples = few.campaign.samples.only(which)
+        squares = [samples.square(few.residuals(start, which)) for start in group]
+        order = np.argsort(squares, kind="stable")
+        return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
 
     def _square(self, values: Array) -> float:
         """Sum of squares of weighted residuals, N^2, asked once for each start."""

@@ -196,7 +196,7 @@ def _by_any_weights(
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
     old = problem.campaign
-    whole = Campaign(old.rig, tuple(prepared), Samples.of(prepared), old.most_noise_n)
+    whole = replace(old, prepared=tuple(prepared), samples=Samples.of(prepared), more_findings=())
     return settled_campaign(whole, problem.law, problem.clock)
 
 

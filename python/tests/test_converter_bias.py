@@ -86,6 +86,14 @@ def test_it_is_taken_off_once() -> None:
     assert np.array_equal(shifted.friction_n, problem.campaign.prepared[0].friction_n)
 
 
+def test_it_stays_off_once_the_model_is_fitted_again() -> None:
+    problem, _ = stepped()
+    corrected = without_bias(problem, approach(problem, [{}], 30), DEFAULT)
+    assert corrected is not None
+    again = Problem(corrected, "journal", "journal", ())
+    assert without_bias(again, approach(again, [{}], 30), DEFAULT) is None
+
+
 def test_how_far_it_must_move_is_the_policys() -> None:
     problem, near = stepped()
     assert without_bias(problem, near, replace(DEFAULT, bias_moves=0.09)) is not None

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pytest
 from jbf import Model, Rig, Run
 from jbf.records.motion.imposed import impose
+from jbf.records.motion.rests import backward_beside_rest
 
 Array = npt.NDArray[np.float64]
 RADIUS_M = 0.0127
@@ -70,3 +71,19 @@ def test_an_angle_that_wraps_is_the_angle_that_does_not() -> None:
         assert b.sign_known.all()
     ripple = Model(Rig.thesis(), effects=["position_ripple"], parameters={"position_ripple.a": 0.2})
     np.testing.assert_allclose(ripple.predict(wraps), ripple.predict(whole), atol=1e-6)
+
+
+def test_what_sets_out_does_not_slow_down() -> None:
+    rest = np.array([1, 1, 0, 0, 0, 0, 0, 0, 1, 1], dtype=bool)
+    t = 0.02 * np.arange(10)
+    # A polynomial swings by a tenth of a sample's worth where the shaft starts, and stops.
+    v = np.array([0.0, 0.0, 2e-4, -2e-3, -4e-3, -4e-3, -2e-3, 1e-4, 0.0, 0.0])
+    a = np.array([0.0, 0.0, -0.1, -0.1, -0.1, 0.1, 0.1, 0.1, 0.0, 0.0])
+    swings = [2, 7]
+    assert np.flatnonzero(backward_beside_rest(rest, t, v, a)).tolist() == swings
+    # The other way round it is the same, and no rest has none.
+    assert np.flatnonzero(backward_beside_rest(rest, t, -v, -a)).tolist() == swings
+    assert not backward_beside_rest(np.zeros(10, dtype=bool), t, v, a).any()
+    # A speed that is there at once, held with noise on its slope, sets out in any case.
+    held = np.where(rest, 0.0, 0.1)
+    assert not backward_beside_rest(rest, t, held, np.where(rest, 0.0, -0.1)).any()

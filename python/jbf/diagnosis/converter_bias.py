@@ -16,16 +16,39 @@ from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import bias_n, origin_n
 from jbf.estimation.problem import Problem
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
+EVALUATIONS = 8
+"""Steps of a fit to readings whose bias has changed a little,"""
+MOST_TURNS = 8
+"""and how often there is one."""
 NO_BIAS = 0.8
 """Noise, in steps, beside which there is none."""
 
 
 def without_bias(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
     """The campaign with the bias of its steps taken off the readings; None where it is off already.
+
+    Without it the model fits another force, which has another bias: off and on, until it stays.
+    """
+    found = None
+    for _ in range(MOST_TURNS):
+        again = _once(problem, solution, policy)
+        if again is None:
+            break
+        found = again
+        problem = Problem(again, problem.law, problem.clock, problem.effects, problem.fixed)
+        samples, noise = problem.samples_at(solution.values), solution.noise
+        end = search(problem, samples, solution.values, noise, EVALUATIONS)
+        solution = problem.solution(end.values, samples, noise, end.converged, end.message)
+    return found
+
+
+def _once(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
+    """The same by one solution.
 
     How much of it the noise before the converter leaves, the residual says: a model that is wrong
     by a good part of a step does not know where in a step its force lies, and shows none.

@@ -112,6 +112,27 @@ def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2
     return beside
 
 
+def backward_beside_rest(
+    rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array
+) -> Mask:
+    """True from a rest to where the speed goes the way that it grows: what sets out does not slow
+    down, and what comes to rest does not speed up, by more than a sample's worth."""
+    backward = np.zeros(len(rest), dtype=bool)
+    step_s = np.gradient(time_s) if len(time_s) > 1 else np.zeros(len(time_s))
+    small = np.abs(velocity_m_s) < np.abs(acceleration_m_s2) * step_s
+    growing = velocity_m_s * acceleration_m_s2
+    edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        part = slice(first, end)
+        if first > 0:
+            slows = small[part] & (growing[part] < 0.0)
+            backward[part] |= np.logical_and.accumulate(slows)
+        if end < len(rest):
+            speeds = (small[part] & (growing[part] > 0.0))[::-1]
+            backward[part] |= np.logical_and.accumulate(speeds)[::-1]
+    return backward
+
+
 def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
     """True from a rest to where the path has gone the way of the speed by more than `least`, m.
 

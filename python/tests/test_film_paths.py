@@ -82,3 +82,23 @@ def test_slopes_are_those_of_predictions(effects: tuple[str, ...]) -> None:
         assert np.max(np.abs(column - expected)) < 1e-4 * np.max(np.abs(expected))
     [(_, other)] = one.jacobian(values * 1.01, [used], list(range(len(values))))
     assert not np.array_equal(other, slopes)
+
+
+@pytest.mark.parametrize("speed_m_s", [0.0, 8.7e-18, -8.7e-18, 1e-300, -1e-300, 1e-13, -1e-13])
+def test_a_reversal_at_a_sample_moves_no_reading(speed_m_s: float) -> None:
+    """The speed of a sample at which the motion turns round is zero but for rounding: readings are
+    those of a chain that goes along no path, and of one whose speed there is small and known."""
+    t = np.arange(0.0, 12.0, 0.02)
+    at = 157
+
+    def turning(speed_m_s: float) -> _core.Motion:
+        v = 0.127 * np.sin(t - t[at])
+        v[at] = speed_m_s
+        return _core.Motion(t, v, 0.127 * np.cos(t), np.cos(t - t[at]), np.full(len(t), 104.0))
+
+    found = chain().predict(VALUES, [turning(speed_m_s)])[0]
+    # Null of an effect that remembers: each step is made.
+    stepped = chain(("wear_in",)).predict(np.append(VALUES, [0.0, 1.0]), [turning(speed_m_s)])[0]
+    assert found == pytest.approx(stepped, abs=1e-9)
+    known = chain().predict(VALUES, [turning(1e-9)])[0]
+    assert np.abs(found - known)[at + 1 :].max() < 1e-3

@@ -1,6 +1,6 @@
 //! A whole recorded run through a chain: the samples as slices, inner steps between them.
 
-use crate::chain::{Chain, State};
+use crate::chain::{Chain, State, SHORTEST_STEP_S};
 use crate::effect::{EffectSet, Rig, Signal};
 use crate::law::Law;
 use crate::motion::{crossing, Motion};
@@ -61,8 +61,10 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     sink(0, state.reading_n);
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
-        // To the reversal first, where there is one; from there no sign changes.
-        let zero = reversal(&from, &sample, radius_m);
+        // To the reversal first, where there is one; from there no sign changes. One at the sample
+        // itself is reached with it: no step is left behind it.
+        let zero = reversal(&from, &sample, radius_m)
+            .filter(|zero| sample.time_s - zero.time_s >= SHORTEST_STEP_S);
         let to = zero.unwrap_or(sample);
         let dt_s = to.time_s - from.time_s;
         let steps = libm::ceil(dt_s / max_step_s - 1e-9).clamp(1.0, 1e6);

@@ -141,6 +141,30 @@ fn warm_oil_asks_for_short_steps() {
     assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
 }
 
+/// A speed that is zero but for rounding where the motion turns round is a reversal at that sample:
+/// what follows is as if the speed were small there.
+#[test]
+fn a_reversal_may_lie_at_a_sample() {
+    let turning = |speed_m_s: f64| {
+        let mut columns = Columns::of(&Sines::two_way(1.0), 0.02, 400);
+        let velocity = &mut columns.0[1];
+        let at = (1..399)
+            .find(|&i| velocity[i] * velocity[i + 1] < 0.0)
+            .expect("it turns round");
+        velocity[at] = speed_m_s;
+        (run(&[], &columns, 1e-2), at)
+    };
+    let (small, at) = turning(-1e-9);
+    for speed_m_s in [-8.7e-18, -1e-13, -1e-300] {
+        let (found, _) = turning(speed_m_s);
+        for (i, (a, b)) in found.iter().zip(&small).enumerate() {
+            // Of a speed below the rounding of its neighbour's nothing is left: the shaft rests there.
+            let rests = i == at && *a == 0.0;
+            assert!(rests || (a - b).abs() < 1e-3, "{speed_m_s} {i}: {a} {b}");
+        }
+    }
+}
+
 /// What a prediction costs is counted as it is made: a step for each sample, and the inner ones.
 #[test]
 fn the_cost_of_a_run_is_its_inner_steps() {

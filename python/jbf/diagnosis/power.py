@@ -38,7 +38,7 @@ LOOKS = 14
 POWERS = (1.0, 8.0)
 """Powers of its strength with which what an effect is worth may grow."""
 AGREES = 0.05
-"""Relative difference in strength that ends it."""
+"""Relative difference in strength up to which one looks no more: how it grows says the rest."""
 NEARLY_ALL = 0.97
 """Share of a gain from which on a noise that is described anew forgives nothing of it."""
 BEYOND = 1.2
@@ -217,7 +217,7 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
         before = (times, worth)
         further = float(np.clip((wanted / worth) ** (1.0 / power), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
-            return times
+            return times * further
         # At a bound there is no more to be had.
         if np.array_equal(model.values(times * further), model.values(times)):
             return times if further < 1.0 else np.nan

@@ -143,11 +143,15 @@ fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let every = RefCell::new(Vec::with_capacity(motion.len() * 9 / 8));
     let asks = jbf_core::Chain::round(FilmSteps::new(|s| every.borrow_mut().push(s)), (), None);
     let mut ends = Vec::with_capacity(motion.len());
+    let mut before = 0;
     run::predict(&asks, &motion.record(), inner_s, |i, _| {
-        if i > 0 {
+        let made = every.borrow().len();
+        // Samples at one instant have no step between them, and no end.
+        if i > 0 && made > before {
             // A path of more steps than a u32 counts would not fit into memory.
-            ends.push(every.borrow().len().saturating_sub(1) as u32);
+            ends.push((made - 1) as u32);
         }
+        before = made;
     });
     let every = every.into_inner();
     let first = motion.record().load_n.first().copied();

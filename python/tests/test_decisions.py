@@ -70,6 +70,8 @@ def test_what_left_out_runs_must_confirm(
     strength: float, share: float, better: float, confirmed: bool
 ) -> None:
     assert left_out_confirms(strength, share, better, DEFAULT) == confirmed
+    # Far worse as a whole is no confirmation, in however many runs it is better.
+    assert not left_out_confirms(strength, share, better, DEFAULT, 1.3)
 
 
 # ---- evidence ---------------------------------------------------------------------------------

@@ -52,6 +52,7 @@ def test_the_numbers_are_these_until_somebody_means_to_change_them() -> None:
         "most_effects": 5,
         "least_left_out_gain": 0.5,
         "least_better_runs": 0.66,
+        "left_out_worse": 1.25,
         "leader_rms": 1.25,
         "weak": 60.0,
         "refused_rms": 0.99,
@@ -249,6 +250,7 @@ TURNS: dict[str, tuple[Callable[[Policy], object], float, float]] = {
     "most_effects": (rounds, 4, 5),
     "least_left_out_gain": (lambda p: left_out_confirms(30.0, 0.5, 1.0, p), 0.49, 0.51),
     "least_better_runs": (lambda p: left_out_confirms(99.0, -1.0, 0.66, p), 0.65, 0.67),
+    "left_out_worse": (lambda p: left_out_confirms(99.0, -1.0, 1.0, p, 1.25), 1.24, 1.26),
     "weak": (lambda p: left_out_confirms(60.0, 0.1, 0.0, p), 59.0, 61.0),
     "least_score": (
         selected({"sensor_lag": 300.0}, scores={frozenset(["sensor_lag"]): 0.3 * PRICE}),

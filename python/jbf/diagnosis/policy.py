@@ -66,6 +66,12 @@ class Policy:
         "where it predicts them worse together",
         "two of three: a run that alone tells a parameter is predicted without it",
     )
+    left_out_worse: float = _number(
+        1.25,
+        "times the error on runs left out, without a candidate, that may be left with it",
+        "a run that alone tells a parameter is predicted without it, as before; one that is "
+        "predicted far worse speaks against it",
+    )
     leader_rms: float = _number(
         1.25,
         "times the smallest RMS of all candidates with evidence that the leader's may be",

@@ -54,7 +54,9 @@ class Round:
     unconfirmed: frozenset[str] = frozenset()
 
 
-def left_out_confirms(evidence: float, gained_share: float, better: float, policy: Policy) -> bool:
+def left_out_confirms(
+    evidence: float, gained_share: float, better: float, policy: Policy, times: float = 1.0
+) -> bool:
     """Do runs left out confirm what a candidate gains where it is fitted?
 
     Any gain will do where the evidence is strong, or one in most of the runs: one run alone may
@@ -67,7 +69,11 @@ def left_out_confirms(evidence: float, gained_share: float, better: float, polic
         Gain in mean square on left-out runs, as a share of that in the fit.
     better
         Share of the runs that are predicted better.
+    times
+        RMS on left-out runs, over that without the candidate.
     """
+    if times > policy.left_out_worse:
+        return False
     if evidence <= policy.weak:
         return gained_share > policy.least_left_out_gain
     return gained_share > 0.0 or better >= policy.least_better_runs
@@ -109,10 +115,11 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
             gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
             runs = [candidates.left_out_by_run(e, apart=True) for e in (present, (*present, name))]
             better = float(np.mean(runs[1] < runs[0]))
+            times = after / max(before, 1e-300)
             alone = evidence_alone(candidates, found.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"
-            elif left_out_confirms(gain, gained, better, policy):
+            elif left_out_confirms(gain, gained, better, policy, times):
                 if _found_its_way(candidates, present, name, base):
                     return try_candidates(candidates, present)
                 leader, best = name, gain

@@ -139,6 +139,18 @@ def test_a_slip_that_the_path_confirms_is_no_glitch() -> None:
     assert imposed(measured(v, 6), counted(x)).findings == ()
 
 
+@pytest.mark.parametrize("motion", ["usual", "fast"])
+@pytest.mark.parametrize("sd", [1e-5, TACHOMETER_M_S])
+def test_a_speed_that_the_path_denies_is_not_believed_there(motion: str, sd: float) -> None:
+    """Too long for a glitch: a tenth of a second at half the speed, or beside it."""
+    v, x = true(motion)
+    for spoilt in (0.5 * v[1000:1006], v[1000:1006] + 0.05):
+        speed = measured(v, 6, sd)
+        speed[1000:1006] = spoilt
+        m = imposed(speed, counted(x))
+        assert np.max(np.abs(m.velocity_m_s - v)[990:1016]) < 5e-4
+
+
 # ---- a speed that is late ------------------------------------------------------------------------
 
 

@@ -23,7 +23,12 @@ from jbf.plot.style import axes_or_new
 from jbf.records.motion.compared import compared
 from jbf.reporting.control_run_plot import plot_runs
 from jbf.reporting.control_run_text import robustness_text
-from jbf.reporting.control_tables_text import assumptions_text, score_text, tables_text
+from jbf.reporting.control_tables_text import (
+    assumptions_text,
+    score_text,
+    tables_report,
+    tables_text,
+)
 from jbf.reporting.cut_plot import _shade
 from jbf.reporting.gallery import _shares
 from jbf.reporting.page import pattern_rows
@@ -69,6 +74,13 @@ def test_how_many_cells_are_near_the_thesis() -> None:
     assert "worst 50 % off" in score_text(tables_of(0.3, 0.2))
     (line,) = (x for x in assumptions_text([("as it is", tables_of(0.3, 0.2))]).splitlines()[3:])
     assert line.split()[3:] == ["1.50"] * 14 + ["14", "14"]
+
+
+def test_the_friction_scale_is_in_volts_under_the_rigs_load() -> None:
+    found = re.search(r"friction scale +(\S+) V", tables_report(tables_of(0.3, 0.2), []))
+    assert found is not None
+    # 28.26 mV a newton, 104 N.
+    assert float(found[1]) == pytest.approx(2.939, abs=1e-3)
 
 
 def test_robustness_names_its_columns_by_a_letter() -> None:

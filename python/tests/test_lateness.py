@@ -132,6 +132,13 @@ def test_of_two_runs_nobody_knows() -> None:
     assert told(DIFFER_S[:2]) is None
 
 
+def test_the_samples_beside_reversals_tell_it_in_steps() -> None:
+    found = lateness(*fitted(campaign(DIFFER_S)), 0, CHANCE, at_jumps=True)
+    assert found is not None
+    np.testing.assert_allclose(found.late_s, DIFFER_S, atol=2.2e-3)
+    assert lateness(*fitted(campaign((0.0,) * 4)), 0, CHANCE, at_jumps=True) is None
+
+
 # ---- what is done about it ---------------------------------------------------------------------
 
 

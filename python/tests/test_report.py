@@ -121,6 +121,19 @@ def test_the_ledger_comes_first_and_the_verdict_is_a_sentence(
     assert "Made by" not in remains
 
 
+def test_every_candidate_of_every_round_is_on_the_page(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    found = make_diagnosis("missing")
+    page = diagnosis_page(found)
+    tried = page.partition("<h2>Candidates tried</h2>")[2].partition("<h2>")[0]
+    assert re.findall(r"<h3>Beside the (.*?)</h3>", tried) == ["bare law"]
+    for trial in found.steps[0].trials:
+        assert trial.effect in tried
+        assert trial.reason in tried
+        assert f"{trial.evidence:.0f}".replace("-", "") in tried
+
+
 def test_a_failure_says_what_it_came_from_and_what_to_do(
     make_diagnosis: Callable[[str], Diagnosis],
 ) -> None:

@@ -8,7 +8,6 @@ import pytest
 from jbf import Run
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.imposed import ImposedMotion, impose
-from jbf.records.motion.rests import rest_edges, still_samples, unsure_beside_rest, without_swings
 from scipy.signal import butter, sosfilt
 
 Array = npt.NDArray[np.float64]
@@ -137,6 +136,18 @@ def test_a_slip_that_the_path_confirms_is_no_glitch() -> None:
     v[[800, 1900]] += 0.05
     x = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * STEP_S)))
     assert imposed(measured(v, 6), counted(x)).findings == ()
+
+
+@pytest.mark.parametrize("motion", ["usual", "fast"])
+@pytest.mark.parametrize("sd", [1e-5, TACHOMETER_M_S])
+def test_a_speed_that_the_path_denies_is_not_believed_there(motion: str, sd: float) -> None:
+    """Too long for a glitch: a tenth of a second at half the speed, or beside it."""
+    v, x = true(motion)
+    for spoilt in (0.5 * v[1000:1006], v[1000:1006] + 0.05):
+        speed = measured(v, 6, sd)
+        speed[1000:1006] = spoilt
+        m = imposed(speed, counted(x))
+        assert np.max(np.abs(m.velocity_m_s - v)[990:1016]) < 5e-4
 
 
 # ---- a speed that is late ------------------------------------------------------------------------
@@ -333,67 +344,3 @@ def test_held_readings_of_the_path_are_put_where_the_speed_says(held: int) -> No
     assert (found.kind, found.channel) == ("held_samples", "angle_rad")
     assert found.size == pytest.approx(held * STEP_S)
     assert error(m, v) < 2.0 * TACHOMETER_M_S
-
-
-# ---- rests ---------------------------------------------------------------------------------------
-
-
-def test_the_edges_of_a_rest_are_its_samples_beside_motion() -> None:
-    rest = np.array([1, 1, 1, 0, 0, 1, 1, 1, 0, 1], dtype=bool)
-
-    def edges(rest: npt.NDArray[np.bool_], speed: float = 0.0, rate: float = 0.0) -> list[int]:
-        n = len(rest)
-        v, a = np.where(rest, 0.0, speed), np.where(rest, 0.0, rate)
-        return np.flatnonzero(rest_edges(rest, 0.1 * np.arange(n), v, a)).tolist()
-
-    assert edges(rest) == [2, 5, 7, 9]
-    # 0.18 s ago by the motion after the rest; the motion before it came from elsewhere.
-    assert edges(rest, 0.9, 5.0) == [1, 2, 5, 6, 7, 9]
-    assert edges(rest, 0.9, -5.0) == [2, 5, 6, 7, 9]
-    assert edges(np.ones(5, dtype=bool)) == []
-    assert edges(np.zeros(5, dtype=bool)) == []
-
-
-def test_a_slow_reversal_is_no_rest() -> None:
-    time = np.arange(400) * 5e-3
-    rate, step = 0.008, 7e-6
-    v = rate * (time - 1.0)
-    v[-1] = 0.2
-    path = step * np.round(0.5 * rate * (time - 1.0) ** 2 / step)
-    assert np.ptp(path[190:211]) <= step
-    assert not still_samples(time, path, v, step).any()
-    # One that turns back at once is two of them.
-    graze = 0.05 * (time - 1.0) ** 2 - 3e-5
-    graze[-1] = 0.2
-    path = step * np.round((0.05 / 3.0 * (time - 1.0) ** 3 - 3e-5 * (time - 1.0)) / step)
-    assert np.ptp(path[188:213]) <= step
-    assert not still_samples(time, path, graze, step).any()
-    # Nor is a long rest a reversal, where rounding leaves speeds of either sign about it.
-    at_rest = np.where(np.abs(time - 1.0) < 0.8, 0.0, 1e-15 * np.sign(time - 1.0))
-    at_rest[-1] = 1.0
-    assert still_samples(time, np.zeros(400), at_rest, step)[45:355].all()
-    # A stop on the way is one, as fast before as after.
-    way = np.where(np.abs(time - 1.0) < 0.4, 0.0, 0.01)
-    path = step * np.round(np.cumsum(way) * 5e-3 / step)
-    way[-1] = 0.2
-    assert still_samples(time, path, way, step)[140:260].all()
-    # As long a rest between the same speeds is one.
-    still = np.where(np.abs(time - 1.0) < 0.4, 0.0, v)
-    path = step * np.round(np.cumsum(still) * 5e-3 / step)
-    assert still_samples(time, path, still, step)[140:260].all()
-
-
-def test_a_shaft_does_not_go_back_before_it_sets_out() -> None:
-    v = np.array([-0.1, 0.0, -0.1, 0.1, 0.5, -0.5, 0.1, -0.2, 0.0, 0.3])
-    rest = np.array([0, 1, 0, 0, 0, 0, 0, 0, 1, 0], dtype=bool)
-    known = np.array([0, 0, 0, 0, 1, 1, 0, 0, 0, 1], dtype=bool)
-    without_swings(rest, v, known)
-    # Beside the rests alone, and only what is not sure; no sure sample, no way.
-    assert v.tolist() == [-0.1, 0.0, 0.0, 0.1, 0.5, -0.5, 0.0, -0.2, 0.0, 0.3]
-
-
-def test_the_first_way_from_a_rest_is_the_paths() -> None:
-    path = np.array([0.0, 0.0, 0.0, 0.0, -1.0, -2.0, -3.0, -3.0, -3.0])
-    speed = np.array([0.0, 0.0, 0.0, 0.4, -0.8, -1.0, -1.0, 0.0, 0.0])
-    rest = np.array([1, 1, 1, 0, 0, 0, 0, 1, 1], dtype=bool)
-    assert np.flatnonzero(unsure_beside_rest(rest, path, speed, 0.9)).tolist() == [3, 6]

@@ -10,7 +10,7 @@ import pytest
 from by_hand import Array, Friction, coulomb, four_runs
 from campaigns import campaign
 from jbf import Rig, Run, diagnose
-from jbf.diagnosis.constancy import disagreement, find_disagreement
+from jbf.diagnosis.constancy import disagreement, find_disagreement, own_step
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
@@ -81,6 +81,22 @@ def test_what_a_run_asks_for_is_said_with_its_size() -> None:
     found = re.search(r"run d asks for F_v_n_s_m (\S+) N s/m higher", words)
     assert found is not None
     assert float(found[1]) == pytest.approx(6.0, rel=0.25)
+
+
+def test_what_a_run_asks_for_is_said_to_three_digits() -> None:
+    """With next to no noise the step is what the runs were made with: 6 N where the others have a
+    common fit, to first order in the logarithm."""
+
+    def more(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + np.sign(v)
+
+    runs = [*four_runs(coulomb, noise_n=1e-6)[:3], four_runs(more, noise_n=1e-6)[3]]
+    problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ())
+    solution = minimum(problem, [{}])
+    common = dict(zip(problem.names, solution.values, strict=True))["F_c_n"]
+    found = re.match(r"F_c_n (\S+) % higher", own_step(problem, solution, "d"))
+    assert found is not None
+    assert float(found[1]) == pytest.approx(100.0 * np.expm1(6.0 / common - 1.0), rel=2e-3)
 
 
 def test_one_run_cannot_disagree() -> None:

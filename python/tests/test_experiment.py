@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 
@@ -59,6 +60,16 @@ def test_the_motion_keeps_to_the_limits() -> None:
         assert len(excitation.velocity_m_s) == 1500
         assert abs(excitation.velocity_m_s[0]) < 1e-3
     assert {e.load_n for e in seen} == {80.0, 120.0}
+
+
+@pytest.mark.parametrize("top", [0.1, 2.0])
+def test_a_motion_goes_as_fast_as_it_is_said_to(top: float) -> None:
+    kinds = set()
+    for excitation in excitations(Limits(top, 5.0 * top, 60.0), 0.01):
+        fastest = max(float(said) for said in re.findall(r"(\S+) m/s", excitation.words))
+        assert np.max(np.abs(excitation.velocity_m_s)) == pytest.approx(fastest, rel=0.02)
+        kinds.add(excitation.words.split()[1])
+    assert kinds >= {"two-way", "one-way", "run", "and"}
 
 
 def test_a_mixed_motion_has_rests_a_fast_and_a_quick_part() -> None:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import InputError, Model, compare, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import active_effects, jumps, moves_jumps
+from jbf.estimation.jumps import active_effects, jumps, moves_jumps, samples_beside_jumps
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
 from jbf.models.catalogue import parameters_of
 
 
@@ -32,6 +37,24 @@ def test_two_jumps_at_a_gap_are_seen_and_a_resolved_rise_is_none() -> None:
 def test_only_effects_that_move_jumps_cast_doubt() -> None:
     assert moves_jumps(["sensor_lag", "time_delay"])
     assert not moves_jumps(["sensor_lag", "drive_compliance"])
+
+
+@pytest.mark.parametrize("noise_n", [0.3, 3.0])
+def test_a_sample_beside_a_jump_counts_by_what_is_in_doubt_there(noise_n: float) -> None:
+    """Half of the change over the sample, beside the noise; and no test looks at it."""
+    t = np.arange(0.0, 10.0, 0.02)
+    jumped = np.where(t < 5.0, 20.0, -20.0)
+    read = jumped + noise_n * np.random.default_rng(4).standard_normal(len(t))
+    every = np.ones(len(t))
+    samples = Samples(("a",), (0.02,), (every > 0.0,), (every,))
+    prepared = cast(Prepared, SimpleNamespace(friction_n=read))
+    found = samples_beside_jumps(samples, [prepared], [jumped])
+    beside = np.zeros(len(t), dtype=bool)
+    beside[[249, 250]] = True
+    np.testing.assert_array_equal(found.counted[0], ~beside)
+    np.testing.assert_array_equal(found.weight[0][~beside], 1.0)
+    wanted = noise_n / np.hypot(noise_n, 20.0)
+    np.testing.assert_allclose(found.weight[0][beside], wanted, rtol=0.1)
 
 
 @pytest.mark.parametrize("name", ["time_delay", "backlash"])

@@ -132,6 +132,13 @@ def test_of_two_runs_nobody_knows() -> None:
     assert told(DIFFER_S[:2]) is None
 
 
+def test_the_samples_beside_reversals_tell_it_in_steps() -> None:
+    found = lateness(*fitted(campaign(DIFFER_S)), 0, CHANCE, at_jumps=True)
+    assert found is not None
+    np.testing.assert_allclose(found.late_s, DIFFER_S, atol=2.2e-3)
+    assert lateness(*fitted(campaign((0.0,) * 4)), 0, CHANCE, at_jumps=True) is None
+
+
 # ---- what is done about it ---------------------------------------------------------------------
 
 
@@ -150,6 +157,25 @@ def test_late_runs_are_shifted_to_where_they_belong() -> None:
     before = fitted(problem.campaign)[1].rms_n
     assert before > 5.0 * there[1].rms_n
     assert on_time(*there, DEFAULT) is None
+
+
+@pytest.mark.parametrize(("share", "believed"), [(0.0, True), (0.3, False)])
+def test_what_large_noise_alone_says_is_no_lateness(
+    share: float, believed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Runs seem to differ while every sample counts alike, and do not once the noise is weighed."""
+    random, drawn = np.random.default_rng(0), []
+    for p in campaign((0.0,) * 4).prepared:
+        sd = share * np.maximum(np.abs(p.friction_n) - 5.0, 0.0)
+        drawn.append(replace(p.run, friction_n=p.friction_n + sd * random.standard_normal(len(sd))))
+
+    def seemingly(problem: object, near: Solution, look: int, *more: object) -> Lateness | None:
+        alike = all(set(w.tolist()) <= {0.0, 1.0} for w in near.samples.weight)
+        return Lateness(DIFFER_S, 0.0, 3e-3) if alike and look == 0 else None
+
+    monkeypatch.setattr(late_channels, "lateness", seemingly)
+    there = fitted(Campaign.prepare(Rig(), drawn))
+    assert (late_channels._shifted(*there, DEFAULT) is not None) == believed
 
 
 def test_a_drifting_clock_is_set_right() -> None:

@@ -107,6 +107,16 @@ def test_what_a_candidate_could_explain_is_no_noise() -> None:
     )
 
 
+def test_two_candidates_that_are_one_ask_for_what_one_does() -> None:
+    """What both explain is taken away once, and nothing is made of what neither does."""
+    noise = white(np.random.default_rng(0)) * (0.1 + 3.0 * effects()[-1])
+    told = [replace(one, counted=np.ones(1)) for one in directions(noise)[-1:]]
+    alone, pair = (calibrated(level(), again) for again in (told, 2 * told))
+    assert alone.critical > 1.5 * level().critical
+    # A candidate without a direction fewer, which is next to nothing here.
+    assert pair.critical == pytest.approx(alone.critical, rel=0.05)
+
+
 def test_a_direction_is_what_the_law_cannot_make_up_for() -> None:
     law = np.stack([np.ones_like(TIME), np.cos(0.2 * TIME)], axis=1)
     noise = white(np.random.default_rng(3))

@@ -23,9 +23,14 @@ from jbf.plot.style import axes_or_new
 from jbf.records.motion.compared import compared
 from jbf.reporting.control_run_plot import plot_runs
 from jbf.reporting.control_run_text import robustness_text
-from jbf.reporting.control_tables_text import assumptions_text, score_text, tables_text
+from jbf.reporting.control_tables_text import (
+    assumptions_text,
+    score_text,
+    tables_report,
+    tables_text,
+)
 from jbf.reporting.cut_plot import _shade
-from jbf.reporting.gallery import _shares
+from jbf.reporting.gallery import _sentence, _shares
 from jbf.reporting.page import pattern_rows
 from jbf.reporting.power_text import level_words
 
@@ -71,6 +76,13 @@ def test_how_many_cells_are_near_the_thesis() -> None:
     assert line.split()[3:] == ["1.50"] * 14 + ["14", "14"]
 
 
+def test_the_friction_scale_is_in_volts_under_the_rigs_load() -> None:
+    found = re.search(r"friction scale +(\S+) V", tables_report(tables_of(0.3, 0.2), []))
+    assert found is not None
+    # 28.26 mV a newton, 104 N.
+    assert float(found[1]) == pytest.approx(2.939, abs=1e-3)
+
+
 def test_robustness_names_its_columns_by_a_letter() -> None:
     names = ("position sine", "velocity triangle")
     outcomes = [Outcome("nothing", dict(zip(names, (0.5, 1.2), strict=True)))]
@@ -101,6 +113,34 @@ def test_what_makes_half_of_a_pattern_has_half_of_it(
     half = [0.5 * r for r in before.residuals]
     shares = _shares(before, failure, {"half": half, "nothing": [0.0 * r for r in half]})
     assert shares == {"half": pytest.approx(0.5)}
+
+
+def test_of_a_pattern_that_no_axis_shows_no_effect_makes_a_part(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    """Along the model's force, which an effect moves itself; of no means at all; in other bins."""
+    before = make_diagnosis("missing").before
+    failure = before.failures[0]
+    made = {"all of it": before.residuals}
+    assert _shares(before, failure, made)
+    for other in (
+        replace(failure, axis="force"),
+        replace(failure, means_n=0.0 * failure.means_n),
+        replace(failure, bins=failure.bins[1:]),
+    ):
+        assert _shares(before, other, made) == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("sensor_lag and another fit as well", "sensor_lag and another fit as well."),
+        ("check the zero, and sensor_drift.", "Check the zero, and sensor_drift."),
+        ("wear", "Wear."),
+    ],
+)
+def test_a_sentence_has_a_capital_and_an_effect_keeps_its_name(words: str, said: str) -> None:
+    assert _sentence(words) == said
 
 
 def test_the_rows_of_a_picture_of_loops_are_named_once() -> None:

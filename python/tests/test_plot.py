@@ -14,7 +14,8 @@ import jbf
 import jbf.plot
 import numpy as np
 import pytest
-from jbf import Comparison, Fit, InputError, Run, compare, control
+from by_hand import LAW, coulomb, four_runs
+from jbf import Comparison, Fit, InputError, Model, Rig, Run, compare, control
 from jbf.comparison.parts import added_by, beside_friction, friction_alone, made_of
 from jbf.diagnosis.power import Power
 from jbf.diagnosis.result import Diagnosis
@@ -182,6 +183,20 @@ def test_a_failure_is_made_of_the_effect_that_was_missing(found: Diagnosis) -> N
     left = found.before.samples.flat(found.before.residuals)
     said = found.before.samples.flat(parts)
     assert float(said @ left) / float(said @ said) == pytest.approx(1.0, abs=0.15)
+
+
+def test_a_parameter_that_shows_nowhere_takes_no_part() -> None:
+    """How fast a warming goes that changes nothing: what an offset says is still the offset."""
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
+    idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
+    before, after = (
+        Model(Rig(), "coulomb", effects=["warm_up", *more], parameters=idle | values)
+        for more, values in (((), {}), (("sensor_offset",), {"sensor_offset.b_n": 0.5}))
+    )
+    (parts,) = made_of(compare(before, runs), compare(after, runs)).values()
+    for part, run in zip(parts, runs, strict=True):
+        assert len(part) == len(run)
+        assert np.mean(part) == pytest.approx(0.5, rel=0.05)
 
 
 def test_a_kind_of_picture_that_is_none(tmp_path: Path) -> None:

@@ -16,8 +16,10 @@ import numpy as np
 import pytest
 from jbf import Fit, Run, compare, read_run
 from jbf.comparison.bins import Axis
+from jbf.diagnosis import Remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.errors import InputError
+from jbf.reporting import gallery
 from jbf.reporting.advice import ADVICE, advice_on
 from jbf.reporting.diagnosis_page import diagnosis_page
 from jbf.reporting.gallery import failure_cards, remainder_cards
@@ -119,6 +121,19 @@ def test_the_ledger_comes_first_and_the_verdict_is_a_sentence(
     assert "Made by" not in remains
 
 
+def test_every_candidate_of_every_round_is_on_the_page(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    found = make_diagnosis("missing")
+    page = diagnosis_page(found)
+    tried = page.partition("<h2>Candidates tried</h2>")[2].partition("<h2>")[0]
+    assert re.findall(r"<h3>Beside the (.*?)</h3>", tried) == ["bare law"]
+    for trial in found.steps[0].trials:
+        assert trial.effect in tried
+        assert trial.reason in tried
+        assert f"{trial.evidence:.0f}".replace("-", "") in tried
+
+
 def test_a_failure_says_what_it_came_from_and_what_to_do(
     make_diagnosis: Callable[[str], Diagnosis],
 ) -> None:
@@ -130,6 +145,29 @@ def test_a_failure_says_what_it_came_from_and_what_to_do(
     (first, *_) = remainder_cards(make_diagnosis("unexplained"))
     assert first.cause.startswith("None in the catalogue. Usually ")
     assert first.to_do == f"{advice_on(found.failures[0].axis).to_do.capitalize()}."
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_what_remains_is_drawn_along_where_it_is(
+    count: int,
+    bare_fit: Fit,
+    runs: list[Run],
+    make_diagnosis: Callable[[str], Diagnosis],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a recording that is one run, what differs by run is seen in time."""
+    after = compare(bare_fit.model, runs[:count])
+    drawn = {
+        "angle": "Shaft angle (deg)",
+        "direction": "Direction of motion",
+        "run": "Time (s)" if count == 1 else "Run",
+        "frequency": "Frequency (Hz)",
+        "stroke": "Time (s)",
+    }
+    left = tuple(Remainder(axis, "somewhere", 0.3) for axis in drawn)
+    monkeypatch.setattr(gallery, "svg", lambda axes, alt: axes[0].get_xlabel())
+    found = replace(make_diagnosis("unexplained"), after=after, unexplained=left)
+    assert [card.picture for card in remainder_cards(found)] == [*drawn.values()]
 
 
 def test_every_kind_of_failure_has_advice() -> None:

@@ -170,6 +170,24 @@ def test_equal_readings_of_a_coarse_converter_are_not_quiet() -> None:
     assert min(least) > 0.2
 
 
+@pytest.mark.parametrize("samples", [60, 190, 1501])
+def test_of_few_samples_no_size_of_noise_is_told(samples: int) -> None:
+    """Noise that grows steeply with the force: of six runs' 1140 samples no bin has two hundred."""
+
+    def steep(i: int, force: Array, random: np.random.Generator) -> Array:
+        sd = 0.01 + np.maximum(np.abs(force) - 5.0, 0.0)
+        return force + sd * random.standard_normal(len(force))
+
+    whole = campaign(steep, 2)
+    runs = [p.run.select(slice(samples)) for p in whole.prepared]
+    problem, solution = fitted(Campaign.prepare(Rig(), runs))
+    sizes, found = noise_sizes(problem, solution, DEFAULT)
+    enough = solution.samples.count >= 1200
+    assert enough == (samples > 200)
+    assert ("noise_with_force" in {f.kind for f in found}) == enough
+    assert all(np.ptp(s) > 0.0 for s in sizes) == enough
+
+
 @pytest.mark.parametrize("seed", [0, 1])
 def test_heavy_tails(seed: int) -> None:
     seen, solution = looked(lambda i, f, random: f + NOISE_N * random.standard_t(3.0, len(f)), seed)

@@ -50,15 +50,16 @@ def settled() -> Figure:
             lines[cell.row].append(cell.ratio or np.nan)
     _ratios(left, scales, lines, "scale of the compensator, V for a friction coefficient of 1")
     rig = bench.volts_per_n * 104.0
-    for x, word in ((rig, "the rig's own"), (LISTED_VOLTS, "as listed")):
+    for x, word, side in ((rig, "the rig's own", "left"), (LISTED_VOLTS, "as listed", "right")):
         left.axvline(x, color="black", linestyle=":", linewidth=1.0)
-        left.text(x, 0.95, f" {word} ", rotation=90, ha="right", va="top", fontsize=8)
+        left.text(x, 5.5, f"  {word}  ", ha=side, va="top", fontsize=8)
     left.xaxis.set_major_locator(FixedLocator([2.0, 3.0, 5.0, 10.0, 20.0]))
     left.xaxis.set_major_formatter(ScalarFormatter())
     left.xaxis.set_minor_formatter(NullFormatter())
     left.set_title("dynamic model, learned")
     left.set_ylabel("RMS error, bench / thesis")
-    left.legend(fontsize=7, frameon=False, loc="lower left")
+    named = left.get_legend_handles_labels()
+    figure.legend(*named, fontsize=8, frameon=False, loc="outside lower center", ncols=len(lines))
 
     belts = np.array([10.0, 20.0, 30.0, 40.0, 60.0, 100.0, 200.0, 400.0, 1000.0])
     lines = {row: [] for row in control.TASKS if row != "velocity square"}

@@ -37,7 +37,7 @@ def main() -> None:
         )
         panel.axhline(0.06, color="black", linestyle=":", linewidth=1.0)
         panel.text(0.11, 0.064, "$U_{tr}$", fontsize=9)
-        panel.plot([0.1, 0.25, 0.5, 1.0, 2.0], [0.127] * 5, "ko", markersize=4)
+        panel.plot([0.1, 0.25, 0.5, 1.0, 2.0], [0.127] * 5, "ko", markersize=4, clip_on=False)
         panel.text(0.11, 0.15, "the thesis's two-way runs", fontsize=8)
         panel.set(xscale="log", yscale="log", title=TITLES[clock])
         panel.set_xlabel("frequency of the motion, rad/s")

@@ -54,7 +54,11 @@ def main() -> int:
         shot(page, "learn")
         page.keyboard.press("2")
         page.click("[data-key=fail-0]")
+        size = page.viewport_size
+        # The pictures of this room are whole a little further down.
+        page.set_viewport_size({"width": size["width"], "height": size["height"] + 30})
         shot(page, "see")
+        page.set_viewport_size(size)
         page.keyboard.press("3")
         page.click("[data-key=add-sensor_lag]")
         models(page, 2)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress, one_axes
+from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress, legend_above, one_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,7 +63,7 @@ def _response(ax: Axes, r: Result, stride: int, named: bool) -> None:
     ax.plot(t, r.response[::stride], color=MODEL, linewidth=0.9, label="response")
     dress(ax, r.scheme, "Time (s)" if named else "", f"{what} ({r.task.unit})" if named else "")
     if named:
-        ax.legend(loc="upper right", fontsize="x-small", frameon=False)
+        legend_above(ax, 2)
 
 
 def _error(ax: Axes, r: Result, stride: int, named: bool) -> None:

@@ -10,6 +10,7 @@ line a campaign, as `benches/promises.py` reads them; a second call with the sam
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import sys
@@ -68,19 +69,28 @@ def campaign(seed: int) -> Iterator[dict[str, Any]]:
     if found.effects:
         return
     bare = found.model
+    # Each with noise of its own: of campaigns that share it all are found, or none is.
+    draws = itertools.count(1000 * seed)
     for power in found.power:
         for kind, value in (("found", power.found_80), ("alone", power.alone_80)):
+            draw = next(draws)
             if value is None or power.always:
                 continue
-            yield answer(seed, kind, power, value, bare, runs)
+            yield answer(seed, kind, power, value, bare, runs, draw)
 
 
 def answer(
-    seed: int, kind: str, power: Power, value: float, bare: jbf.Model, runs: list[jbf.Run]
+    seed: int,
+    kind: str,
+    power: Power,
+    value: float,
+    bare: jbf.Model,
+    runs: list[jbf.Run],
+    draw: int,
 ) -> dict[str, Any]:
     """What a diagnosis says of it."""
     strong = at_strength(bare, power, value)
-    again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, seed))
+    again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, draw))
     could = {other for name in again.effects for other in (name, *again.alternatives[name])}
     alone = again.effects == (power.effect,) and not again.alternatives[power.effect]
     return {

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Limits, Rig, diagnose
-from jbf.diagnosis import Policy, late_channels, recipe
+from jbf.diagnosis import Policy, late_channels
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.rounds import Selected, select, step
+from jbf.diagnosis.rounds import select
 from jbf.diagnosis.selection import (
     Ranked,
     _leaves_more,
@@ -327,56 +327,6 @@ def test_a_number_is_what_a_test_of_the_remainder_waits_for(name: str) -> None:
     # Where the test begins to speak, it is this number that had kept it silent.
     assert gate.finds(with_number(name, gate.loose), quiet)
     assert not gate.finds(with_number(name, gate.strict), loud)
-
-
-# ---- how often the recording is looked at ------------------------------------------------------
-
-
-@pytest.mark.parametrize("most", [2, DEFAULT.most_looks])
-def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks, rounds_of = [], []
-
-    def seen(candidates: Candidates, present: tuple[str, ...]) -> Campaign:
-        looks.append(candidates.campaign)
-        return candidates.campaign
-
-    def selected(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
-        rounds_of.append(candidates)
-        assert start is None
-        return Selected((), [step(candidates, (), noise_n, ())])
-
-    monkeypatch.setattr(recipe, "_weighed", seen)
-    monkeypatch.setattr(recipe, "select", selected)
-    monkeypatch.setattr(recipe, "unseen", lambda candidates, present, powers: ())
-    runs = four_runs(coulomb, noise_n=0.1)
-    diagnose(Rig(), runs, law="coulomb", policy=with_number("most_looks", most))
-    assert len(looks) == most
-    assert len(rounds_of) == most + 1
-    # A round of selection has nothing that another fitted.
-    assert len({id(c) for c in rounds_of}) == most + 1
-
-
-@pytest.mark.parametrize("most", [1, DEFAULT.most_shifts])
-def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks: list[int] = []
-
-    def always(
-        problem: Problem, near: object, look: int, chance: float, one: bool, jumps: bool
-    ) -> Lateness:
-        looks.append(look)
-        assert chance == DEFAULT.deviation_chance
-        return Lateness((3e-3, 6e-3, 9e-3, 12e-3), 0.0, 3e-3)
-
-    monkeypatch.setattr(late_channels, "lateness", always)
-    # What is made up here is not in the runs: asked of them, it would not be found.
-    monkeypatch.setattr(late_channels, "_all_alike", lambda _, found: found)
-    problem = linear()
-    near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
-    found = late_channels.on_time(problem, near, with_number("most_shifts", most), 1e9)
-    assert looks == list(range(most))
-    assert found is not None
-    late = [f.size for f in found.more_findings]
-    np.testing.assert_allclose(late, most * 3e-3 * np.arange(1, 5))
 
 
 # ---- the whole way ----------------------------------------------------------------------------

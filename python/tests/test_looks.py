@@ -1,0 +1,66 @@
+"""How often the recording is looked at again: as often as the policy says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from jbf import Rig, diagnose
+from jbf.diagnosis import late_channels, recipe
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.rounds import Selected, step
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.lateness import Lateness
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from policy_gates import linear
+
+
+@pytest.mark.parametrize("most", [2, DEFAULT.most_looks])
+def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks, rounds_of = [], []
+
+    def seen(candidates: Candidates, present: tuple[str, ...]) -> Campaign:
+        looks.append(candidates.campaign)
+        return candidates.campaign
+
+    def selected(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
+        rounds_of.append(candidates)
+        assert start is None
+        return Selected((), [step(candidates, (), noise_n, ())])
+
+    monkeypatch.setattr(recipe, "_weighed", seen)
+    monkeypatch.setattr(recipe, "select", selected)
+    monkeypatch.setattr(recipe, "unseen", lambda candidates, present, powers: ())
+    runs = four_runs(coulomb, noise_n=0.1)
+    diagnose(Rig(), runs, law="coulomb", policy=replace(DEFAULT, most_looks=most))
+    assert len(looks) == most
+    assert len(rounds_of) == most + 1
+    # A round of selection has nothing that another fitted.
+    assert len({id(c) for c in rounds_of}) == most + 1
+
+
+@pytest.mark.parametrize("most", [1, DEFAULT.most_shifts])
+def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[int] = []
+
+    def always(
+        problem: Problem, near: object, look: int, chance: float, one: bool, jumps: bool
+    ) -> Lateness:
+        looks.append(look)
+        assert chance == DEFAULT.deviation_chance
+        return Lateness((3e-3, 6e-3, 9e-3, 12e-3), 0.0, 3e-3)
+
+    monkeypatch.setattr(late_channels, "lateness", always)
+    # What is made up here is not in the runs: asked of them, it would not be found.
+    monkeypatch.setattr(late_channels, "_all_alike", lambda _, found: found)
+    problem = linear()
+    near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
+    found = late_channels.on_time(problem, near, replace(DEFAULT, most_shifts=most), 1e9)
+    assert looks == list(range(most))
+    assert found is not None
+    late = [f.size for f in found.more_findings]
+    np.testing.assert_allclose(late, most * 3e-3 * np.arange(1, 5))

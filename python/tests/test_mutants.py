@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import tomlkit
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = ROOT / "benches" / "mutants"
@@ -46,6 +47,17 @@ def tried(tree: Path, *tables: str) -> subprocess.CompletedProcess[str]:
     (folder / "own.toml").write_text("\n".join(tables))
     command = [sys.executable, str(BENCH), "--tables", str(folder), "--root", str(tree)]
     return subprocess.run(command, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("table", sorted(BENCH.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_fault_stands_where_the_code_is_now(table: Path) -> None:
+    faults = tomlkit.parse(table.read_text(encoding="utf-8")).unwrap()["mutant"]
+    assert faults
+    gone = [f["what"] for f in faults if (ROOT / f["file"]).read_text("utf-8").count(f["old"]) != 1]
+    assert gone == []
+    named = [f["test"].split() if isinstance(f["test"], str) else f["test"] for f in faults]
+    tests = {word for words in named for word in words if word.endswith(".py")}
+    assert [name for name in sorted(tests) if not (ROOT / name).exists()] == []
 
 
 def test_a_fault_that_a_test_notices(tree: Path) -> None:

@@ -48,7 +48,7 @@ def test_a_sample_beside_a_jump_counts_by_what_is_in_doubt_there(noise_n: float)
     every = np.ones(len(t))
     samples = Samples(("a",), (0.02,), (every > 0.0,), (every,))
     prepared = cast(Prepared, SimpleNamespace(friction_n=read))
-    found = samples_beside_jumps(samples, [prepared], [jumped])
+    found = samples_beside_jumps(samples, [prepared], [jumped], ["time_delay"])
     beside = np.zeros(len(t), dtype=bool)
     beside[[249, 250]] = True
     np.testing.assert_array_equal(found.counted[0], ~beside)

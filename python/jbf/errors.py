@@ -138,8 +138,8 @@ class Unfinished(InputError):
             best = f"the best so far is {model}, RMS {fit.rms_n:.3g} {unit}, not finished"
         super().__init__(
             problem=f"no answer from these runs in {steps:.1g} steps of the model; {best}",
-            mend="take a law without memory, such as stribeck, or records with samples closer "
-            "together",
+            mend="check that times are in seconds, or take a law without memory, such as stribeck, "
+            "or records with samples closer together",
             file=file,
         )
 

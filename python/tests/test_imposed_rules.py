@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf import Model, Rig, Run
+from jbf.records.motion import imposed
 from jbf.records.motion.imposed import impose
 from jbf.records.motion.rests import backward_beside_rest
 
@@ -87,3 +88,14 @@ def test_what_sets_out_does_not_slow_down() -> None:
     # A speed that is there at once, held with noise on its slope, sets out in any case.
     held = np.where(rest, 0.0, 0.1)
     assert not backward_beside_rest(rest, t, held, np.where(rest, 0.0, -0.1)).any()
+
+
+def test_an_imposed_motion_has_no_sign_where_it_goes_backward(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    t = np.arange(0.0, 6.0, 0.01)
+    v = 0.1 * np.clip(t - 2.0, 0.0, 1.0)
+    run = Run.from_arrays(t, v)
+    assert impose(run, None).sign_known[210]
+    monkeypatch.setattr(imposed, "backward_beside_rest", lambda rest, *_: np.arange(600) == 210)
+    assert not impose(run, None).sign_known[210]

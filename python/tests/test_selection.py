@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
@@ -143,6 +144,19 @@ def test_runs_left_out_have_a_veto(gain: float, share: float, outcome: str) -> N
     words = "largest evidence" if outcome == "added" else "predicts left-out runs no better"
     assert words in found.trials[0].reason
     assert found.unconfirmed == (set() if outcome == "added" else {"sensor_lag"})
+
+
+@pytest.mark.parametrize(("left_n", "outcome"), [(3.7, "added"), (3.8, "rejected")])
+def test_runs_that_are_mostly_better_are_no_excuse_for_one_far_worse(
+    left_n: float, outcome: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def by_run(candidates: MadeUp, effects: Sequence[str], *, apart: bool = False) -> Any:
+        return np.array([2.0, 2.0, 6.0] if effects else [3.0, 3.0, 3.0])
+
+    monkeypatch.setattr(MadeUp, "left_out_by_run", by_run)
+    left_out = {frozenset[str](): 3.0, frozenset(["sensor_lag"]): left_n}
+    found = tried(made({"sensor_lag": PRICE + 200.0}, left_out=left_out))
+    assert outcomes(found)["sensor_lag"] == outcome
 
 
 def test_after_a_veto_the_next_one_leads() -> None:

@@ -8,14 +8,17 @@ from pathlib import Path
 import jbf
 import numpy as np
 import pytest
+from by_hand import coulomb, four_runs
 from campaigns import campaign
 from jbf.cli import main
+from jbf.diagnosis import recipe
 from jbf.diagnosis import which_law as laws
 from jbf.errors import Unfinished
 from jbf.estimation import work
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.estimation.work import Work
+from jbf.reporting.diagnosis_text import diagnosis_report
 
 
 def test_steps_are_counted_to_the_end() -> None:
@@ -60,6 +63,7 @@ def test_a_diagnosis_without_end_is_ended_with_what_it_has(
     with pytest.raises(Unfinished, match="the best so far is journal") as ended:
         jbf.diagnose(rig, runs)
     assert "\n" not in str(ended.value)
+    assert "check that times are in seconds" in str(ended.value)
     assert ended.value.fit.rms_n > truth["noise_n"]
     assert np.all(np.isfinite(list(ended.value.fit.model.values)))
     again = pickle.loads(pickle.dumps(ended.value))
@@ -111,3 +115,13 @@ def test_a_law_that_takes_too_long_is_not_compared_and_named(
     monkeypatch.setattr(laws, "LAW_SHARE", 0.0)
     with pytest.raises(Unfinished, match="nothing is fitted yet"):
         laws.which_law(prepared, "journal", jbf.Policy())
+
+
+def test_a_diagnosis_tells_which_laws_were_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = (laws.LawTried("coulomb", 2, 0.1, True),)
+    refused = {"law lugre": "takes too long"}
+    monkeypatch.setattr(recipe, "which_law", lambda *_: (tried, refused))
+    found = jbf.diagnose(jbf.Rig(), four_runs(coulomb, noise_n=0.1), law="auto")
+    assert found.model.law == "coulomb"
+    assert found.to_dict()["not_tried"]["law lugre"] == "takes too long"
+    assert "law lugre: takes too long" in diagnosis_report(found)

@@ -149,11 +149,18 @@ class MadeUp:
     def idle(self, solution: Solution) -> tuple[str, ...]:
         return solution.effects if frozenset(solution.effects) in self.nulls else ()
 
-    def left_out_rms(self, effects: Sequence[str], *, apart: bool = False) -> float:
+    def only_witnesses(self, effects: Sequence[str]) -> frozenset[int]:
+        return frozenset()
+
+    def left_out_rms(
+        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
+    ) -> float:
         here = frozenset(effects)
         return self.left_out.get(here, self.converge(effects).rms_n)
 
-    def left_out_by_run(self, effects: Sequence[str], *, apart: bool = False) -> Any:
+    def left_out_by_run(
+        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
+    ) -> Any:
         return np.array([self.left_out_rms(effects)])
 
     def fitted(self, effects: Iterable[str]) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from campaigns import campaign
 from jbf import InputError, bootstrap, fit
-from jbf.estimation.bootstrap import recorded_again
+from jbf.estimation.bootstrap import read_again, recorded_again
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import Noise
 from jbf.records.motion.roughness import noise_of
@@ -45,6 +45,7 @@ def test_a_ringing_drive_says_that_its_errors_are_none() -> None:
 def test_a_simulated_record_has_the_instruments_of_the_measured_one() -> None:
     rig, runs, _ = campaign(5)
     prepared = Campaign.prepare(rig, runs).prepared[0]
+    prepared = replace(prepared, friction_n=np.zeros(len(runs[0])))
     assert runs[0].angle_rad is not None
     noise = Noise(memory_s=0.3, colour=0.5)
     random = np.random.default_rng(2)
@@ -67,6 +68,17 @@ def test_a_simulated_record_has_the_instruments_of_the_measured_one() -> None:
     lost = recorded_again(replace(prepared, friction_n=holes), zero, noise, 0.5, random)
     assert lost.friction_n is not None
     assert np.flatnonzero(np.isnan(lost.friction_n)).tolist() == [7]
+
+
+def test_a_force_of_unknown_sign_stays_as_it_was_read() -> None:
+    rig, runs, _ = campaign(5)
+    prepared = Campaign.prepare(rig, runs).prepared[0]
+    unknown = ~prepared.motion.sign_known
+    assert 0 < np.count_nonzero(unknown) < 0.1 * len(unknown)
+    again = read_again(prepared, np.full(len(unknown), 99.0), np.random.default_rng(1))
+    assert again.friction_n is not None
+    np.testing.assert_array_equal(again.friction_n[unknown], prepared.friction_n[unknown])
+    assert set(again.friction_n[~unknown]) == {99.0}
 
 
 def test_what_was_held_stays_held() -> None:

@@ -8,11 +8,11 @@ from typing import cast
 import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.confirmation import left_out_confirms
 from jbf.diagnosis.evidence import evidence
 from jbf.diagnosis.ledger import Step, Trial
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import select
-from jbf.diagnosis.selection import left_out_confirms
 from jbf.diagnosis.standing import as_it_ended
 from jbf.diagnosis.verdict import name_stands, verdict
 from jbf.estimation.likelihood import independent_share, likelihood_gain

@@ -10,10 +10,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from by_hand import Array, coulomb, four_runs, one_way
-from jbf import Parameter, Rig, Run, forget_effect, register_effect
+from jbf import Parameter, Rig, Run, diagnose, forget_effect, register_effect
 from jbf.estimation import left_out as left_out_module
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import _straight, left_out_rms
+from jbf.estimation.left_out import _straight, halves_left_out, left_out_rms, only_witnesses
 from jbf.estimation.minimum import minimum, search
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -42,19 +42,73 @@ def left_out(runs: list[Run], *effects: str) -> tuple[float, Problem, Array]:
     return left_out_rms(problem, solution), problem, solution.values
 
 
-@pytest.mark.usefixtures("own_effect")
-def test_what_only_the_left_out_run_knows_does_not_leak_into_its_prediction() -> None:
+def first_is_pushed(others: float = 0.0) -> list[Run]:
+    """Four runs, the first of them pushed, and the others by so small a share of it."""
     runs = []
     for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
-        push = np.sign(np.sin(9.0 * run.time_s)) if i == 0 else np.zeros(len(run))
+        push = np.sign(np.sin(9.0 * run.time_s)) * (1.0 if i == 0 else others)
         force = np.asarray(run.friction_n) + PUSH_N * push
         runs.append(replace(run, friction_n=force, extra={"push": push}))
-    found, problem, values = left_out(runs, "pushed")
+    return runs
+
+
+@pytest.mark.usefixtures("own_effect")
+@pytest.mark.parametrize("others", [0.0, 1e-3])
+def test_what_only_the_left_out_run_knows_does_not_leak_into_its_prediction(others: float) -> None:
+    found, problem, values = left_out(first_is_pushed(others), "pushed")
     assert values[problem.names.index("pushed.k_n")] == pytest.approx(PUSH_N, rel=0.01)
-    # Without the first run nobody knows of a push: its prediction misses all of it.
+    # Without the first run nobody knows of a push: its prediction misses all of it. A thousandth
+    # of it tells nothing (0.1 N of noise are 5 N of push in these runs): a fit to that would miss
+    # by what noise makes of it.
     missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
     assert missed > 10.0 * NOISE_N
     assert found == pytest.approx(missed, rel=0.02)
+
+
+@pytest.mark.usefixtures("own_effect")
+def test_half_of_the_only_witness_tells_what_the_other_half_does() -> None:
+    problem = Problem(Campaign.prepare(Rig(), first_is_pushed()), "coulomb", "journal", ("pushed",))
+    solution = minimum(problem, [{}])
+    assert only_witnesses(problem, solution) == {0}
+    left = halves_left_out(problem, solution, 0)
+    assert len(left) == np.count_nonzero(solution.samples.counted[0])
+    assert np.std(left) == pytest.approx(NOISE_N, rel=0.1)
+
+
+@pytest.mark.usefixtures("own_effect")
+def test_a_half_that_was_left_out_drives_nothing() -> None:
+    # The push is three times as large in the second half: each half is missed by the difference.
+    first, *others = first_is_pushed()
+    more = np.where(first.time_s > 5.0, 3.0, 1.0) * first.extra["push"]
+    force = np.asarray(first.friction_n) + PUSH_N * (more - first.extra["push"])
+    problem = Problem(
+        Campaign.prepare(Rig(), [replace(first, friction_n=force), *others]),
+        "coulomb",
+        "journal",
+        ("pushed",),
+    )
+    left = halves_left_out(problem, minimum(problem, [{}]), 0)
+    assert np.std(left) == pytest.approx(2.0 * PUSH_N, rel=0.02)
+
+
+@pytest.mark.usefixtures("own_effect")
+def test_where_several_runs_tell_of_all_there_is_no_only_witness() -> None:
+    problem = Problem(
+        Campaign.prepare(Rig(), first_is_pushed(1.0)), "coulomb", "journal", ("pushed",)
+    )
+    assert not only_witnesses(problem, minimum(problem, [{}]))
+    alone = Problem(
+        Campaign.prepare(Rig(), first_is_pushed()[:1]), "coulomb", "journal", ("pushed",)
+    )
+    assert not only_witnesses(alone, minimum(alone, [{}]))
+
+
+@pytest.mark.usefixtures("own_effect")
+def test_an_effect_that_only_one_run_shows_is_confirmed_by_its_halves() -> None:
+    found = diagnose(Rig(), first_is_pushed(), law="coulomb")
+    assert found.effects == ("pushed",)
+    (reason,) = (t.reason for t in found.steps[0].trials if t.outcome == "added")
+    assert "left-out runs and halves of a 0.09" in reason
 
 
 def test_the_halves_of_a_single_run_take_turns() -> None:

@@ -14,6 +14,7 @@ from jbf import Limits, Rig, diagnose
 from jbf.diagnosis import Policy, late_channels
 from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.confirmation import left_out_confirms
 from jbf.diagnosis.constancy import Disagreement
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
@@ -21,7 +22,6 @@ from jbf.diagnosis.rounds import select
 from jbf.diagnosis.selection import (
     Ranked,
     _leaves_more,
-    left_out_confirms,
     try_candidates,
     weights,
 )

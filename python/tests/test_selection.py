@@ -150,7 +150,7 @@ def test_runs_left_out_have_a_veto(gain: float, share: float, outcome: str) -> N
 def test_runs_that_are_mostly_better_are_no_excuse_for_one_far_worse(
     left_n: float, outcome: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def by_run(candidates: MadeUp, effects: Sequence[str], *, apart: bool = False) -> Any:
+    def by_run(candidates: MadeUp, effects: Sequence[str], **how: Any) -> Any:
         return np.array([2.0, 2.0, 6.0] if effects else [3.0, 3.0, 3.0])
 
     monkeypatch.setattr(MadeUp, "left_out_by_run", by_run)

@@ -7,7 +7,7 @@ once, and everything that asks for it later shares the answer.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -22,7 +22,7 @@ from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
-from jbf.estimation.left_out import left_out_by_run
+from jbf.estimation.left_out import halves_left_out, left_out_by_run, only_witnesses
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import search_peaks, settle
 from jbf.estimation.problem import Problem
@@ -66,8 +66,10 @@ class Fitted:
     peaks_searched
         True once its other peaks were looked for.
     left_out
-        Sums of squares, N^2, and samples by the run that was left out of the fit; True for those
+        A sum of squares, N^2, and samples by the run that was left out of the fit; True for those
         apart from what the runs are known to deviate by.
+    halves
+        The same of a run whose halves were.
     """
 
     problem: Problem
@@ -79,7 +81,8 @@ class Fitted:
     least: float = np.inf
     promised: float = np.inf
     peaks_searched: bool = False
-    left_out: dict[bool, tuple[Array, Array]] = field(default_factory=dict)
+    left_out: dict[bool, list[tuple[float, int]]] = field(default_factory=dict)
+    halves: dict[tuple[bool, int], tuple[float, int]] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The solution so far."""
@@ -90,7 +93,7 @@ class Fitted:
         """Take a better solution of the same problem; what followed from the other is void."""
         if better is not self.solution:
             self.solution = better
-            self.left_out = {}
+            self.left_out, self.halves = {}, {}
 
     def named_values(self) -> dict[str, float]:
         """Parameter name to value."""
@@ -324,28 +327,42 @@ class Candidates:
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
-    def left_out_rms(self, effects: Sequence[str], *, apart: bool = False) -> float:
+    def only_witnesses(self, effects: Sequence[str]) -> frozenset[int]:
+        """The runs that alone tell of one of the parameters."""
+        return only_witnesses(self.fitted(effects).problem, self.converge(effects))
+
+    def left_out_rms(
+        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
+    ) -> float:
         """RMS over runs left out of the fit one at a time, N; or `apart` from what the runs are
-        known to deviate by."""
-        square, count = self._left_out(effects, apart)
+        known to deviate by; of some runs, `halved`, the halves in turns."""
+        square, count = self._left_out(effects, apart, halved)
         return float(np.sqrt(np.sum(square) / max(np.sum(count), 1)))
 
-    def left_out_by_run(self, effects: Sequence[str], *, apart: bool = False) -> Array:
+    def left_out_by_run(
+        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
+    ) -> Array:
         """The same of each run, N."""
-        square, count = self._left_out(effects, apart)
+        square, count = self._left_out(effects, apart, halved)
         return np.sqrt(square / np.maximum(count, 1))
 
-    def _left_out(self, effects: Sequence[str], apart: bool) -> tuple[Array, Array]:
+    def _left_out(
+        self, effects: Sequence[str], apart: bool, halved: Collection[int]
+    ) -> tuple[Array, Array]:
         """Sums of squares, N^2, and samples, by the run that was left out."""
         solution, fitted = self.converge(effects), self.fitted(effects)
+        problem, known = fitted.problem, fitted.left_out
         which = apart and solution.samples.between is not None
-        if which not in fitted.left_out:
-            left = left_out_by_run(fitted.problem, solution, apart=which)
-            fitted.left_out[which] = (
-                np.array([float(e @ e) for e in left]),
-                np.array([float(len(e)) for e in left]),
-            )
-        return fitted.left_out[which]
+        if which not in known:
+            known[which] = [_told(e) for e in left_out_by_run(problem, solution, apart=which)]
+        told = list(known[which])
+        for run in halved:
+            if (which, run) not in fitted.halves:
+                errors = halves_left_out(problem, solution, run, apart=which)
+                fitted.halves[which, run] = _told(errors)
+            told[run] = fitted.halves[which, run]
+        square, count = np.array(told, dtype=float).reshape(-1, 2).T
+        return square, count
 
     def _values_of(self, near: Solution) -> dict[str, float]:
         names = self.fitted(near.effects).problem.names
@@ -364,3 +381,8 @@ class Candidates:
         """Report progress."""
         if self.progress is not None:
             self.progress(message, done, total)
+
+
+def _told(errors: Array) -> tuple[float, int]:
+    """A sum of squares, N^2, and of how many."""
+    return float(errors @ errors), len(errors)

@@ -15,6 +15,7 @@ import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
+from jbf.diagnosis.confirmation import LeftOut
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
@@ -54,31 +55,6 @@ class Round:
     unconfirmed: frozenset[str] = frozenset()
 
 
-def left_out_confirms(
-    evidence: float, gained_share: float, better: float, policy: Policy, times: float = 1.0
-) -> bool:
-    """Do runs left out confirm what a candidate gains where it is fitted?
-
-    Any gain will do where the evidence is strong, or one in most of the runs: one run alone may
-    hold the rests, or the reversals, that an effect needs, and without it no fit knows how large
-    the effect is.
-
-    Parameters
-    ----------
-    gained_share
-        Gain in mean square on left-out runs, as a share of that in the fit.
-    better
-        Share of the runs that are predicted better.
-    times
-        RMS on left-out runs, over that without the candidate.
-    """
-    if times > policy.left_out_worse:
-        return False
-    if evidence <= policy.weak:
-        return gained_share > policy.least_left_out_gain
-    return gained_share > 0.0 or better >= policy.least_better_runs
-
-
 def try_candidates(candidates: Candidates, present: Names, *, every: bool = False) -> Round:
     """Fit every candidate beside the effects present, and say which should be added.
 
@@ -93,11 +69,6 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
     leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
     bare = base.rms_n
-    before = (
-        candidates.left_out_rms(present, apart=True)
-        if ranked and ranked[0].evidence > 0
-        else np.nan
-    )
     least = min((r.solution.rms_n for r in ranked if r.evidence > 0), default=bare)
     for found in sorted(ranked, key=lambda r: _leaves_more(r, least, policy)):
         name, gain = found.effect, found.evidence
@@ -111,22 +82,18 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
             outcome = "rejected"
             reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"
         elif gain > 0 and leader is None:
-            after = candidates.left_out_rms((*present, name), apart=True)
-            gained = (before**2 - after**2) / max(bare**2 - rms**2, 1e-300)
-            runs = [candidates.left_out_by_run(e, apart=True) for e in (present, (*present, name))]
-            better = float(np.mean(runs[1] < runs[0]))
-            times = after / max(before, 1e-300)
+            out = LeftOut.of(candidates, present, name)
             alone = evidence_alone(candidates, found.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"
-            elif left_out_confirms(gain, gained, better, policy, times):
+            elif out.confirms(gain, bare**2 - rms**2, policy):
                 if _found_its_way(candidates, present, name, base):
                     return try_candidates(candidates, present)
                 leader, best = name, gain
-                outcome, reason = "added", f"largest evidence; left-out runs {after:.4g} {unit}"
+                outcome, reason = "added", f"largest evidence; {out.said(unit)}"
             else:
                 outcome = "rejected"
-                reason = f"fits better but predicts left-out runs no better ({after:.4g} {unit})"
+                reason = f"fits better but predicts left-out runs no better ({out.said(unit)})"
                 unconfirmed.add(name)
         elif gain > 0 and _leaves_more(found, least, policy):
             outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"

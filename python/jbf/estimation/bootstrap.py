@@ -167,11 +167,14 @@ def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generato
     """The run with this reading of its friction, and its motion as its instruments would show it
     once more.
 
-    A column that is not believed tells nothing, and stays as it was: to be left aside again.
+    A column that is not believed tells nothing, and stays as it was: to be left aside again. So
+    does a force whose sign nobody knows: the motion read once more may know it, and a model that
+    took it for the other one had recorded a bad sample there.
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
-    friction = np.where(np.isfinite(prepared.friction_n), friction_n, np.nan)
+    read = prepared.friction_n
+    friction = np.where(np.isfinite(read) & motion.sign_known, friction_n, read)
     # The recorded errors of the speed with other signs: as large as they were, where they were.
     off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
+from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
@@ -55,8 +56,8 @@ def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False
         for models to be compared, since no model predicts those.
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
-    value): what only the left-out run could know must not leak into its prediction. With one run
-    there is nothing to leave out, and the halves of the run take turns.
+    value) and is held there: what only the left-out run could know must not leak into its
+    prediction. With one run there is nothing to leave out, and the halves of the run take turns.
     """
     samples = solution.samples
     count = len(problem.campaign.prepared)
@@ -71,6 +72,54 @@ def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False
             residuals = samples.only(group).without_deviations(residuals, solution.noise)
         left |= {i: r[samples.counted[i]] for i, r in zip(group, residuals, strict=True)}
     return [left[i] for i in range(count)]
+
+
+def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
+    """Runs without which the others say nothing of some parameter: no fit to those can predict
+    what it does there, but a fit that has half of the run can."""
+    count = len(problem.campaign.prepared)
+    if count == 1:
+        return frozenset()
+    known = _known(solution)
+    return frozenset(
+        i
+        for i in range(count)
+        if _unknown(known, known[[k for k in range(count) if k != i]].sum(axis=0)).any()
+    )
+
+
+def halves_left_out(
+    problem: Problem, solution: Solution, run: int, *, apart: bool = False
+) -> Array:
+    """The same of one run (`only_witnesses`) whose halves take turns in having had no part in the
+    fit, beside all of the others."""
+    samples, known = solution.samples, _known(solution)
+    every = [np.ones(len(c), dtype=bool) for c in samples.counted]
+    found = np.zeros(len(every[run]))
+    others = known.sum(axis=0) - known[run]
+    first = np.arange(len(found)) < len(found) // 2
+    for half in (first, ~first):
+        kept = samples.within([*every[:run], ~half, *every[run + 1 :]])
+        own = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
+        held = _held(problem, _unknown(known, others + own))
+        part = _of(problem, problem.campaign, held)
+        values = _fitted(part, kept, _at(problem, solution, held), solution)
+        found[half] = problem.residuals(values, [run])[0][half]
+    if apart:
+        found = samples.only([run]).without_deviations([found], solution.noise)[0]
+    return found[samples.counted[run]]
+
+
+def _known(solution: Solution) -> Array:
+    """Sums of squares of the derivatives at the samples that count, shape (runs, k)."""
+    pairs = zip(solution.jacobian, solution.samples.counted, strict=True)
+    return np.array([np.sum(jacobian[counted] ** 2, axis=0) for jacobian, counted in pairs])
+
+
+def _unknown(known: Array, rest: Array) -> npt.NDArray[np.bool_]:
+    """Of which parameters that rest of what is known says nothing, shape (k,)."""
+    unknown: npt.NDArray[np.bool_] = rest < INSENSITIVE * known.sum(axis=0)
+    return unknown
 
 
 @dataclass(frozen=True)
@@ -93,16 +142,14 @@ class _Told:
 
     @classmethod
     def of(cls, problem: Problem, solution: Solution) -> _Told:
-        known, factors, innovations = [], [], []
+        factors, innovations = [], []
         for i in range(len(problem.campaign.prepared)):
             jacobian, residual = solution.jacobian[i], solution.residuals[i]
-            counted = solution.samples.counted[i]
-            known.append(np.sum(jacobian[counted] ** 2, axis=0))
             one = solution.samples.only([i])
             r, j = one.stacked([residual], [jacobian], solution.noise)
             factors.append(triangular(r, j))
             innovations.append(len(r))
-        return cls(np.array(known), factors, innovations)
+        return cls(_known(solution), factors, innovations)
 
     def step(self, rest: list[int]) -> tuple[Array, float]:
         """The Gauss-Newton step to the rest of the runs, and its square in units of what their
@@ -120,9 +167,10 @@ def _predicted(
     problem: Problem, solution: Solution, told: _Told, group: list[int], rest: list[int]
 ) -> list[Array]:
     """Residuals, N, of runs that had no part in the fit to the rest."""
-    start = _without_leak(problem, solution, told.known, rest)
+    held = _held(problem, _unknown(told.known, told.known[rest].sum(axis=0)))
+    start = _at(problem, solution, held)
     step: Array | None = None
-    if np.array_equal(start, solution.values):
+    if not held:
         way, square = told.step(rest)
         there = problem.encode(solution.values) + way
         step = problem.decode(there, solution.values)
@@ -133,13 +181,18 @@ def _predicted(
             residuals = problem.residuals(step, group)
             if _straight(solution, way, group, residuals):
                 return residuals
-    part = _of(problem, problem.campaign.only(rest))
+    part = _of(problem, problem.campaign.only(rest), held)
     kept = solution.samples.only(rest)
     if step is not None:
         # A law that misses the data badly is no place to extrapolate from.
         start = min((step, start), key=lambda v: part.square(v, kept))
-    values = search(part, kept, start, solution.noise, EVALUATIONS).values
-    return problem.residuals(values, group)
+    return problem.residuals(_fitted(part, kept, start, solution), group)
+
+
+def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> Array:
+    if not part.open:
+        return start
+    return search(part, kept, start, solution.noise, EVALUATIONS).values
 
 
 def _straight(solution: Solution, way: Array, group: list[int], residuals: list[Array]) -> bool:
@@ -161,22 +214,26 @@ def _groups(names: list[str]) -> list[list[int]]:
     return [by_name[k::MOST_FITS] for k in range(min(MOST_FITS, len(names)))]
 
 
-def _of(problem: Problem, campaign: Campaign) -> Problem:
-    """The same problem on other runs."""
-    return Problem(campaign, problem.law, problem.clock, problem.effects, problem.fixed)
+def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
+    """The same problem on other runs, with more parameters held."""
+    fixed = {**problem.fixed, **held}
+    return Problem(campaign, problem.law, problem.clock, problem.effects, fixed)
 
 
-def _without_leak(problem: Problem, solution: Solution, known: Array, rest: list[int]) -> Array:
-    """The whole solution, less what only runs other than the rest know."""
-    values: Array = solution.values.copy()
-    whole = known.sum(axis=0)
-    pages = list(problem.parameters.values())
-    for k, i in enumerate(problem.open):
-        page = pages[i]
-        if known[rest, k].sum() < INSENSITIVE * whole[k]:
-            null = page.null if page.null is not None and np.isfinite(page.null) else None
-            values[i] = page.starts[0] if null is None else null
-    return values
+def _held(problem: Problem, unknown: npt.NDArray[np.bool_]) -> dict[str, float]:
+    """The parameters of which nothing is known, at their null or where a search starts."""
+    held = {}
+    for i in np.asarray(problem.open)[unknown]:
+        page = problem.parameters[problem.names[i]]
+        null = page.null if page.null is not None and np.isfinite(page.null) else None
+        held[problem.names[i]] = page.starts[0] if null is None else null
+    return held
+
+
+def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
+    """The whole solution, less what only runs that were left out know."""
+    known = zip(problem.names, solution.values.tolist(), strict=True)
+    return np.array([held.get(name, value) for name, value in known])
 
 
 def _halves(problem: Problem, solution: Solution) -> list[Array]:

@@ -9,11 +9,13 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import REMEMBERED, settled_campaign, unsettled
+from jbf.estimation.film_start import REMEMBERED, settled_again, settled_campaign, unsettled
 from jbf.estimation.minimum import minimum
+from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 
 NOISE_N = 0.05
@@ -139,6 +141,41 @@ def test_runs_that_began_as_the_model_does_are_told_nothing_of() -> None:
     # Set aside all the same: no record tells that it was so.
     assert settled.more_findings == ()
     assert settled.samples.count < sum(len(r) for r in runs)
+
+
+def with_memory(campaign: Campaign, factor: float, *more: str) -> tuple[Problem, Solution]:
+    """A model whose film follows at so many times the rate, and more effects at their start."""
+    problem = Problem(campaign, "journal", "journal", ("film_memory", *more))
+    values = problem.starts({"film_memory.factor": factor})[0]
+    return problem, problem.solution(values, campaign.samples, WHITE)
+
+
+def test_what_a_slower_film_remembers_is_set_aside_once_that_is_known() -> None:
+    runs = [recorded(motion("a", None), RESTED, 0), recorded(motion("b", 2.0), MOVED, 1)]
+    campaign = settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
+    again = settled_again(*with_memory(campaign, 0.3))
+    assert again is not None
+    for before, after in zip(campaign.samples.counted, again.samples.counted, strict=True):
+        gone = np.flatnonzero(before & ~after)
+        # A stretch that comes next behind what was gone already.
+        assert len(gone) > 20
+        assert not before[gone[0] - 1]
+        assert not after[gone[0] : gone[-1]].any()
+        assert not (after & ~before).any()
+    # It is enough.
+    assert settled_again(*with_memory(again, 0.3)) is None
+    # Effects behind the film have no part in it: wear from before the run is theirs to tell.
+    worn = settled_again(*with_memory(campaign, 0.3, "wear_in"))
+    assert worn is not None
+    assert worn.samples.count == again.samples.count
+
+
+def test_a_film_that_is_as_fast_as_the_bare_laws_sets_no_more_aside() -> None:
+    runs = [recorded(motion("a", None), RESTED, 0), recorded(motion("b", 2.0), MOVED, 1)]
+    campaign = settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
+    assert settled_again(*with_memory(campaign, 1.0)) is None
+    bare = Problem(campaign, "journal", "journal", ())
+    assert settled_again(bare, minimum(bare, [{}])) is None
 
 
 def test_a_law_in_newtons_remembers_nothing() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from by_hand import coulomb, four_runs
 from jbf import Rig, diagnose
-from jbf.diagnosis import late_channels, recipe
+from jbf.diagnosis import late_channels, recipe, rounds
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import Selected, step
@@ -16,6 +16,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.lateness import Lateness
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
 from policy_gates import linear
 
 
@@ -41,6 +42,29 @@ def test_so_many_times_selection_begins_anew(most: int, monkeypatch: pytest.Monk
     assert len(rounds_of) == most + 1
     # A round of selection has nothing that another fitted.
     assert len({id(c) for c in rounds_of}) == most + 1
+
+
+def test_once_an_effect_is_in_the_films_beginning_is_judged_by_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + a, noise_n=0.1)
+    campaigns: list[Campaign] = []
+
+    def first_half(problem: Problem, solution: Solution) -> Campaign | None:
+        campaigns.append(problem.campaign)
+        if not problem.effects or len({id(c) for c in campaigns}) > 1:
+            return None
+        return problem.campaign.without([r.time_s < 5.0 for r in runs])
+
+    monkeypatch.setattr(rounds, "settled_again", first_half)
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert found.effects == ("inertia_leak",)
+    # From the effects that were there, and nothing that was fitted to the other samples.
+    first, last = campaigns[0], campaigns[-1]
+    assert last.samples.count == pytest.approx(first.samples.count / 2, rel=0.02)
+    assert [s.effects for s in found.steps] == [(), ("inertia_leak",)]
+    assert found.steps[-1].trials
+    assert found.model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(1.0, rel=0.1)
 
 
 @pytest.mark.parametrize("most", [1, DEFAULT.most_shifts])

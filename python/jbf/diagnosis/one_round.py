@@ -17,7 +17,7 @@ from jbf.diagnosis.rounds import step
 from jbf.diagnosis.selection import try_candidates
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import settled_campaign
+from jbf.estimation.film_start import settled_again, settled_campaign
 from jbf.estimation.fit import Fit, fit
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
@@ -82,6 +82,9 @@ def one_round(
         fitted_as(fitted, comparison)
     candidates = Candidates(settled_campaign(campaign, law, clock), law, clock, policy, progress)
     try:
+        settled = settled_again(candidates.fitted(chosen).problem, candidates.converge(chosen))
+        if settled is not None:
+            candidates = Candidates(settled, law, clock, policy, progress, candidates)
         trials = try_candidates(candidates, chosen).trials
         if progress is not None:
             progress("how strong each would have to be", 0, 0)

@@ -129,7 +129,7 @@ def _diagnose(
     for _ in range(policy.most_looks):
         weighed = None
         again = _on_time(candidates, selected.present)
-        again = again or _without_bias(candidates, selected.present) or selected.differ
+        again = again or _without_bias(candidates, selected.present) or selected.again
         if again is None:
             again = weighed = _weighed(candidates, selected.present)
         if again is None:
@@ -138,8 +138,8 @@ def _diagnose(
         candidates.before = None
         candidates = Candidates(again, law, clock, policy, progress, candidates)
         before = _before(candidates)
-        # What differs from run to run was seen beside the effects: they stay if they are needed.
-        start = selected if again is selected.differ else None
+        # That was seen beside the effects: they stay if they are needed.
+        start = selected if again is selected.again else None
         selected = select(candidates, before.noise_n, start)
         if weighed is not None and _lost(last, candidates, was.present, selected.present):
             candidates, selected = last, was

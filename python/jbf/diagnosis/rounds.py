@@ -11,6 +11,7 @@ from jbf.diagnosis.late_channels import DELAY
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_start import settled_again
 from jbf.estimation.samples import least_weights
 
 
@@ -22,15 +23,16 @@ class Selected:
     ----------
     present, steps, refused
         The effects added, the ledger, and what was refused.
-    differ
-        The campaign with a deviation of its runs allowed for, where the data ask for that more than
-        for any effect.
+    again
+        The campaign as what was found so far shows it, where selection is to go on with that: with
+        a deviation of its runs allowed for, which the data ask for more than for any effect, or
+        without samples at which the film of the effects present is not settled.
     """
 
     present: Names
     steps: list[Step]
     refused: tuple[Remainder, ...] = ()
-    differ: Campaign | None = None
+    again: Campaign | None = None
 
 
 def select(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
@@ -44,11 +46,15 @@ def select(candidates: Candidates, noise_n: float, start: Selected | None = None
     while True:
         candidates.converge(present)
         candidates.reached.candidates, candidates.reached.present = candidates, present
+        settled = settled_again(candidates.fitted(present).problem, candidates.converge(present))
+        if settled is not None:
+            steps.append(step(candidates, present, noise_n, ()))
+            return Selected(present, steps, again=settled)
         found = try_candidates(candidates, present)
         steps.append(step(candidates, present, noise_n, found.trials))
         differ = _differ_more(candidates, present, found)
         if differ is not None:
-            return Selected(present, steps, differ=differ)
+            return Selected(present, steps, again=differ)
         if found.leader is None:
             return Selected(present, steps, _refused(candidates, present))
         if len(present) >= candidates.policy.most_effects:

@@ -21,7 +21,8 @@ from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.models.catalogue import find_law
+from jbf.estimation.solution import Solution
+from jbf.models.catalogue import find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.vocabulary import Clock
 from jbf.records.findings.finding import Finding
@@ -49,6 +50,8 @@ LONGER = 1.5
 """The film may be slower than this model's: what follows is set aside for so many times as long,"""
 FURTHER = 1.1
 """and a contact softer, whose way to bend the records tell better."""
+NO_MORE = 1e-3
+"""Share of the samples that is too few to begin again for."""
 
 
 def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
@@ -109,14 +112,39 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     check_film(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
+    return _settled(problem, near.values, near.residuals)
+
+
+def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
+    """The campaign without what a model with effects remembers of how its runs began, where those
+    make the film another one than the bare law's; None where no more of it counts.
+
+    A law that lacks its load, say, fits badly, and tells how soon its film forgets as badly.
+    """
+    film = [name for name in problem.effects if find_effect(name).stage == "film"]
+    if not film or not _remembers(problem.law):
+        return None
+    campaign = problem.campaign
+    less = Problem(campaign, problem.law, problem.clock, film)
+    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    values = np.array([known[name] for name in less.names])
+    found = _settled(less, values, solution.residuals)
+    gone = campaign.samples.count - found.samples.count
+    return found if gone > NO_MORE * campaign.samples.count else None
+
+
+def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
+    """The campaign without the samples at which a model remembers what no record tells."""
+    campaign = problem.campaign
     noise_n = noise_floor(campaign.prepared, campaign.samples)
-    masks = unsettled(problem, near.values, noise_n)
-    behind = behind_gaps(problem, near.values, REMEMBERED * noise_n)
+    masks = unsettled(problem, values, noise_n)
+    behind = behind_gaps(problem, values, REMEMBERED * noise_n)
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)
-    what = "film was not settled" if find_law(law).has_film else "contact was bent another way"
-    return kept.with_findings(_findings(campaign, near.residuals, masks, kept.samples, what))
+    film = find_law(problem.law).has_film
+    what = "film was not settled" if film else "contact was bent another way"
+    return kept.with_findings(_findings(campaign, residuals, masks, kept.samples, what))
 
 
 def _findings(

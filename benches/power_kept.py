@@ -14,7 +14,7 @@ import itertools
 import json
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
 from pathlib import Path
@@ -62,8 +62,8 @@ def with_effect(
     ]
 
 
-def campaign(seed: int) -> Iterator[dict[str, Any]]:
-    """Every effect that this campaign says something of, at both strengths."""
+def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
+    """Every effect that this campaign says something of, at both strengths; or some of them."""
     rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
     found = jbf.diagnose(rig, runs)
     if found.effects:
@@ -74,7 +74,7 @@ def campaign(seed: int) -> Iterator[dict[str, Any]]:
     for power in found.power:
         for kind, value in (("found", power.found_80), ("alone", power.alone_80)):
             draw = next(draws)
-            if value is None or power.always:
+            if value is None or power.always or power.effect not in (effects or [power.effect]):
                 continue
             yield answer(seed, kind, power, value, bare, runs, draw)
 
@@ -104,8 +104,8 @@ def answer(
     }
 
 
-def _all(seed: int) -> list[dict[str, Any]]:
-    return list(campaign(seed))
+def _all(seed: int, effects: Sequence[str] | None) -> list[dict[str, Any]]:
+    return list(campaign(seed, effects))
 
 
 def main() -> int:
@@ -114,6 +114,7 @@ def main() -> int:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=4, help="campaigns with nothing hidden; 4")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--effects", nargs="+", help="only these; all by default")
     parser.add_argument("--out", type=Path, help="JSON lines, one a diagnosis")
     asked = parser.parse_args()
     rows: list[dict[str, Any]] = []
@@ -122,7 +123,9 @@ def main() -> int:
     done = {int(row["key"].rsplit("/", 1)[1]) for row in rows}
     seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
     with ProcessPoolExecutor(asked.jobs) as pool:
-        for future in as_completed([pool.submit(_all, s) for s in seeds if s not in done]):
+        for future in as_completed(
+            [pool.submit(_all, s, asked.effects) for s in seeds if s not in done]
+        ):
             rows += future.result()
             if asked.out is not None:
                 with asked.out.open("a", encoding="utf-8") as file:

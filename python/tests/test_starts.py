@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from by_hand import coulomb
 from campaigns import campaign
+from jbf import Rig, Run, diagnose
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import scales
 from jbf.estimation.starts import (
@@ -55,6 +57,39 @@ def test_a_drive_starts_from_the_data_on_a_linear_axis_alone() -> None:
     name = "drive_compliance.k_n_m_rad"
     found = with_starts(pages, prepared(), in_newtons=True)
     assert found[name].starts == pages[name].starts
+
+
+def test_a_play_starts_as_shares_of_the_stroke_on_a_linear_axis_alone() -> None:
+    pages = parameters_of("coulomb", ("backlash",))
+    name = "backlash.gap_rad"
+    assert with_starts(pages, prepared(), in_newtons=True)[name].starts == pages[name].starts
+    for top in (0.02, 2.0):
+        t = np.arange(0.0, 20.0, 0.01)
+        v = top * np.sin(2.0 * t)
+        data = Campaign.prepare(Rig(), [Run.from_arrays(t, v, coulomb(t, v, v), name="axis")])
+        # From one end to the other it goes as far as twice its amplitude.
+        assert with_starts(pages, data, in_newtons=True)[name].starts == pytest.approx(
+            (1e-2 * top, 1e-3 * top, 1e-4 * top), rel=0.01
+        )
+
+
+@pytest.mark.parametrize("gap_m", [4e-5, 4e-4, 4e-3])
+def test_a_play_of_any_size_is_found_on_a_linear_axis(gap_m: float) -> None:
+    """Turning round, the axis slides without friction until the gap is crossed."""
+    runs = []
+    for k, (rate, pull) in enumerate([(0.5, 0.02), (0.8, 0.03), (1.1, 0.02), (0.6, 0.05)]):
+        t = np.arange(0.0, 30.0, 0.01)
+        v, path = pull * np.sin(rate * t), pull / rate * (1.0 - np.cos(rate * t))
+        turned = np.zeros(len(t))
+        for turn in np.arange(np.pi / rate, t[-1], np.pi / rate):
+            turned[t >= turn] = pull / rate * (1.0 - np.cos(rate * turn))
+        crossing = (np.abs(path - turned) < gap_m) & (t > np.pi / rate)
+        noise = 0.05 * np.random.default_rng(k).standard_normal(len(t))
+        force = np.where(crossing, 0.0, coulomb(t, v, v)) + noise
+        runs.append(Run.from_arrays(t, v, force, name=f"{k}"))
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert found.effects == ("backlash",)
+    assert found.model.parameters["backlash.gap_rad"].value == pytest.approx(gap_m, rel=0.1)
 
 
 def test_a_time_starts_within_a_usual_run() -> None:

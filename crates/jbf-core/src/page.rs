@@ -56,6 +56,8 @@ pub enum Start {
     StrokeMiddle,
     /// Half of that way.
     StrokeHalf,
+    /// On a linear axis: a play of a small share of a stroke.
+    DrivePlay,
     /// On a linear axis: a drive that gives by a small share of a stroke.
     DriveStiffness,
     /// On a linear axis: a drive that rings fast against a stroke.
@@ -87,6 +89,7 @@ impl Start {
             Start::CellCubic => "cell_cubic",
             Start::StrokeMiddle => "stroke_middle",
             Start::StrokeHalf => "stroke_half",
+            Start::DrivePlay => "drive_play",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",
             Start::DriveDamping => "drive_damping",

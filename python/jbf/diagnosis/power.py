@@ -18,13 +18,20 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize, special
+from scipy import optimize
 
+from jbf.diagnosis.alone import (
+    Change,
+    chance_apart,
+    chance_found,
+    left_apart,
+    times_alone,
+    worth,
+)
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
-from jbf.estimation.likelihood import spanned
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come
 
@@ -43,14 +50,11 @@ NEARLY_ALL = 0.97
 """Share of a gain from which on a noise that is described anew forgives nothing of it."""
 BEYOND = 1.2
 """Times the strength at which that is asked: where colour just earns its price, chance decides."""
-MOST = 9.0
-"""Square, in noises, from which on a sample tells no more: one that stands out alone is no evidence
-of a law but a bad sample, or an instant of reversal that nobody knows."""
+LOOKS_ALONE = 3
+"""Times that strengths are tried at which an effect that moves jumps would be told from another."""
 FURTHER = 2.0
 """Times the strength at which it is found at which a rival is looked at, too: its change has
 another shape there where it does not grow in proportion."""
-NEVER = 30.0
-"""Times the strength that shows an effect from which on two effects are one in these runs."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +74,8 @@ class Power:
     share_80
         By how much of the friction, RMS, it changes it there.
     alone_80
-        The value from which no other effect could stand in its place in 80 of 100; None where one
-        always could.
+        The value from which, in 80 of 100 such campaigns, it is found and no other effect could
+        stand in its place; None where one always could.
     like
         Effects that could stand in its place at `found_80`, those that need the most to part first.
     hidden
@@ -123,12 +127,7 @@ def power(
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
     seen = dict(zip(models, found, strict=True))
-    apart = _apart(seen)
-    return tuple(
-        _power(candidates, runs, models, seen[name], apart[name], name)
-        for name in models
-        if name in asked
-    )
+    return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
 
 
 @dataclass(frozen=True)
@@ -140,15 +139,13 @@ class _Seen:
     times
         Of each of `LEVELS`; nan where no strength is enough.
     change
-        Of the first, shape (n,): in units of the noise, apart from what the model makes up for.
-    ways
-        The same, what it changes when it is `FURTHER` stronger, and what the effect's own
-        parameters change there, shape (n, 2 + k).
+        Of the first; and when it is `FURTHER` stronger.
+    share
+        How much of the friction it changes, RMS.
     """
 
     times: tuple[float, ...]
-    change: Array
-    ways: Array
+    change: Change
     share: float
 
     @classmethod
@@ -163,10 +160,8 @@ class _Seen:
                 near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
                 found = _found(runs, model, [wanted / left for wanted in least], near)
         at = found[0] if np.isfinite(found[0]) else 1.0
-        changes = runs.change(model, at)
-        change = runs.shown(changes)[:, 0]
-        share = runs.samples.rms(changes) / max(runs.friction_n, 1e-300)
-        return cls(tuple(found), change, _ways(runs, model, at, change), share)
+        share = runs.samples.rms(runs.change(model, at)) / max(runs.friction_n, 1e-300)
+        return cls(tuple(found), _change(runs, model, at), share)
 
 
 def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0) -> list[float]:
@@ -193,7 +188,7 @@ def non_centrality(price: float, parameters: int, chance: float) -> float:
     """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
 
     def lacking(root: float) -> float:
-        return 1.0 - float(special.chndtr(price, parameters, root**2)) - chance
+        return chance_found(price, parameters, root**2) - chance
 
     top = np.sqrt(price) + 10.0
     return float(optimize.brentq(lacking, 1e-3, top)) ** 2
@@ -209,13 +204,13 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
     little, enough = 0.0, np.inf
     power, before = 2.0, None
     for _ in range(LOOKS):
-        worth = max(_worth(runs.shown(runs.change(model, times))), 1e-300)
-        if before is not None and worth != before[1] and times != before[0]:
+        told = max(worth(runs.shown(runs.change(model, times))), 1e-300)
+        if before is not None and told != before[1] and times != before[0]:
             # As it grew from the last strength to this one.
-            grown = np.log(worth / before[1]) / np.log(times / before[0])
+            grown = np.log(told / before[1]) / np.log(times / before[0])
             power = float(np.clip(grown, *POWERS))
-        before = (times, worth)
-        further = float(np.clip((wanted / worth) ** (1.0 / power), 1e-3, 30.0))
+        before = (times, told)
+        further = float(np.clip((wanted / told) ** (1.0 / power), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times * further
         # At a bound there is no more to be had.
@@ -232,64 +227,57 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
             times = float(np.sqrt(little * enough))
     if np.isfinite(enough):
         return enough
-    return times if worth > 0.5 * wanted else np.nan
+    return times if told > 0.5 * wanted else np.nan
 
 
-def _worth(left: Array) -> float:
-    """What is told by what is left of a change, in units of the noise."""
-    return float(np.sum(np.minimum(left**2, MOST)))
-
-
-def _ways(runs: RunsAtHand, model: Strength, times: float, change: Array) -> Array:
-    """What an effect changes, and what its parameters change, apart from what the model can."""
-    problem = model.problem.thinned
+def _change(runs: RunsAtHand, model: Strength, times: float) -> Change:
+    """What an effect changes, there and further on, and what its parameters change."""
+    problem, values = model.problem.thinned, model.values(times)
+    shares, now = runs.shares(model, times), runs.change(model, times)
     own = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
-    _, slopes = problem.linearise(model.values(times), by=own)
-    more = runs.shown(runs.change(model, FURTHER * times))
-    return np.column_stack([change, more, runs.shown(slopes)])
-
-
-def _apart(seen: dict[str, _Seen]) -> dict[str, dict[str, float]]:
-    """Of each effect what each other one cannot make up for, in units of the noise."""
-    apart: dict[str, dict[str, float]] = {name: {} for name in seen}
-    whole = [name for name, own in seen.items() if np.isfinite(own.times[0])]
-    if not whole:
-        return apart
-    changes = np.column_stack([seen[name].change for name in whole])
-    for other, rival in seen.items():
-        span = spanned(rival.ways)
-        left = changes - span @ (span.T @ changes)
-        for name, change in zip(whole, left.T, strict=True):
-            if name != other:
-                apart[name][other] = float(np.sqrt(_worth(change)))
-    return apart
+    _, slopes = problem.linearise(values, by=own)
+    if shares is not None:
+        slopes = [j * s[:, None] for j, s in zip(slopes, shares, strict=True)]
+    further = runs.change(model, FURTHER * times)
+    ways = [np.column_stack(parts) for parts in zip(now, further, slopes, strict=True)]
+    return Change(ways, shares, runs.shown(ways))
 
 
 def _power(
     candidates: Candidates,
     runs: RunsAtHand,
     models: dict[str, Strength],
-    own: _Seen,
-    apart: dict[str, float],
+    seen: dict[str, _Seen],
     name: str,
 ) -> Power:
-    """The power of one effect; `apart` is how far each other one leaves it."""
-    model = models[name]
+    """The power of one effect, beside what each other one changes."""
+    model, own = models[name], seen[name]
 
     def strength(times: float) -> float | None:
         return float(model.values(times)[model.which]) if np.isfinite(times) else None
 
-    alone: dict[str, float] = {}
+    most, like = np.inf, []
     if np.isfinite(own.times[0]):
-        tie, mine = candidates.policy.tie, price_of(candidates, _parameters(runs.base, model))
-        sure = float(special.ndtri(LEVELS[0]))
-        for other, left in apart.items():
-            dearer = mine - price_of(candidates, _parameters(runs.base, models[other]))
-            # The difference of two gains is normal, with four times its mean as variance.
-            needed = sure + np.sqrt(sure**2 + max(tie + dearer, 0.25 * tie))
-            alone[other] = needed / max(left, 1e-300)
-    like = sorted((other for other, more in alone.items() if more > 1.0), key=lambda o: -alone[o])
-    most = max([1.0, *alone.values()])
+        parameters, tie = _parameters(runs.base, model), candidates.policy.tie
+        price = price_of(candidates, parameters)
+        rivals: dict[str, tuple[float, float]] = {}
+        for other, rival in seen.items():
+            if other != name:
+                dearer = price - price_of(candidates, _parameters(runs.base, models[other]))
+                least = max(tie + dearer, 0.25 * tie)
+                rivals[other] = (left_apart(own.change, rival.change, runs), least)
+        told = {other: chance_apart(*rival) for other, rival in rivals.items()}
+        like = sorted((o for o, chance in told.items() if chance < LEVELS[0]), key=told.__getitem__)
+        found = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
+        most = times_alone(*found, rivals, LEVELS[0])
+        for _ in range(LOOKS_ALONE):
+            if not 1.0 + AGREES < most < np.inf:
+                break
+            before = most
+            rivals |= _further(runs, models, seen, name, most, {o: rivals[o][1] for o in like})
+            most = times_alone(*found, rivals, LEVELS[0])
+            if abs(np.log(most / before)) < AGREES:
+                break
     return Power(
         effect=name,
         parameter=model.page.name,
@@ -298,10 +286,32 @@ def _power(
         found_95=strength(own.times[1]),
         always=_weakest(model, own.times[0]),
         share_80=own.share if np.isfinite(own.times[0]) else None,
-        alone_80=strength(own.times[0] * most) if most < NEVER else None,
+        alone_80=strength(own.times[0] * most) if np.isfinite(most) else None,
         like=tuple(like),
         hidden=not own.times[0] <= 1.0,
     )
+
+
+def _further(
+    runs: RunsAtHand,
+    models: dict[str, Strength],
+    seen: dict[str, _Seen],
+    name: str,
+    times: float,
+    rivals: dict[str, float],
+) -> dict[str, tuple[float, float]]:
+    """What rivals leave of an effect that is so many times as strong, of what it is once, and by
+    how much it must gain more: of those that do not grow in proportion, since jumps move."""
+    own, again = seen[name], {}
+    there = _change(runs, models[name], times * own.times[0])
+    for other, least in rivals.items():
+        rival = seen[other]
+        if own.change.shares is None and rival.change.shares is None:
+            continue
+        at = rival.times[0] if np.isfinite(rival.times[0]) else 1.0
+        left = left_apart(there, _change(runs, models[other], times * at), runs)
+        again[other] = (left / times, least)
+    return again
 
 
 def _weakest(model: Strength, times: float) -> bool:

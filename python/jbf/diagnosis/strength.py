@@ -78,28 +78,36 @@ class RunsAtHand:
         moved = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(moved)[0])
         self.friction_n = self.samples.rms(self.now)
-        # The last of each effect.
-        self._last: dict[str, tuple[float, list[Array]]] = {}
+        # The last of each effect: at which strength, what it changes, and what samples count.
+        self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
 
     def change(self, model: Strength, times: float) -> list[Array]:
         """What an effect changes, N, one array a run; where its model has no weight, nothing."""
+        return self._at(model, times)[0]
+
+    def shares(self, model: Strength, times: float) -> list[Array] | None:
+        """By how much less than without it samples count with an effect that moves jumps, 0 to 1,
+        one array a run; None where it leaves them as they are."""
+        return self._at(model, times)[1]
+
+    def _at(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
         last = self._last.get(model.name)
         if last is None or last[0] != times:
-            last = self._last[model.name] = (times, self._change(model, times))
-        return last[1]
+            last = self._last[model.name] = (times, *self._changed(model, times))
+        return last[1:]
 
-    def _change(self, model: Strength, times: float) -> list[Array]:
+    def _changed(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
         problem = model.problem.thinned
         values = model.values(times)
         gaps = [a - b for a, b in zip(problem.predict(values), self.now, strict=True)]
         own = least_weights(problem.samples_at(values), self.samples)
         if own is self.samples:
-            return gaps
+            return gaps, None
         shares = [
             np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
             for a, b in zip(own.weight, self.samples.weight, strict=True)
         ]
-        return [gap * share for gap, share in zip(gaps, shares, strict=True)]
+        return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
 
     def shown(self, changes: Sequence[Array]) -> Array:
         """Of changes of the friction, one (n,) or (n, k) a run, what the model cannot make up for,

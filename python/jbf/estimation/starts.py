@@ -47,6 +47,7 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
 }
 """What a parameter's page says it is about the size of, to starting values, likeliest first."""
 LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
+    "drive_play": lambda s: tuple(share * s.stroke_m for share in (1e-2, 1e-3, 1e-4)),
     # A drive that gives by a hundredth or a thousandth of a stroke under the friction, and
     # swings well within the time of a stroke.
     "drive_stiffness": lambda s: tuple(

@@ -15,6 +15,7 @@
 use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{crossing, JournalMotion, Motion};
+use crate::page::Start;
 use crate::real::Real;
 
 /// A gap between the drive's flanks.
@@ -87,9 +88,11 @@ impl<T: Real> Effect<T> for Backlash<T> {
             "rad",
             "angle between the flanks",
             [0.0, 1.0],
-            &[0.0215, 0.0043],
+            // A gap that is crossed within a few samples is found from one as small only.
+            &[0.0215, 0.0043, 0.000_86],
         )
-        .null(0.0)])
+        .null(0.0)
+        .start(Start::DrivePlay)])
         .needs(&[Need::NoBristle]);
     const MOVES_JUMPS: bool = true;
     type State = State<T>;

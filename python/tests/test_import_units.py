@@ -13,7 +13,7 @@ from jbf.errors import InputError
 from jbf.importing.evaluation import converted, evaluate
 from jbf.importing.expression import parse_expression, references, written
 from jbf.importing.targets import wanted_unit
-from jbf.importing.units import parse_unit, unit_of_name
+from jbf.importing.units import ONE, parse_unit, unit_of_name
 
 # Definitions: SI brochure; international pound, inch and standard gravity.
 SIZES = {
@@ -78,6 +78,11 @@ def value(text: str, key: str) -> np.ndarray:
     return converted(evaluate(node, VALUES, UNITS), wanted_unit(key), key)
 
 
+FUNCTIONS = ["abs", "sign", "sqrt", "cos"]
+"""Not the one that is a column here."""
+BARE = {name: name for name in NAMES if name != "sin"}
+
+
 def trees() -> st.SearchStrategy[tuple[str, str]]:
     """An expression as ours, and the same as Python's."""
     leaf = st.one_of(
@@ -91,7 +96,9 @@ def trees() -> st.SearchStrategy[tuple[str, str]]:
         return st.one_of(
             pair.map(lambda p: (f"({p[0][0]} {p[1]} {p[2][0]})", f"({p[0][1]} {p[1]} {p[2][1]})")),
             inner.map(lambda p: (f"-{p[0]}", f"(-{p[1]})")),
-            inner.map(lambda p: (f"abs({p[0]})", f"abs({p[1]})")),
+            st.tuples(st.sampled_from(FUNCTIONS), inner).map(
+                lambda p: (f"{p[0]}({p[1][0]})", f"{p[0]}({p[1][1]})")
+            ),
         )
 
     return st.recursive(leaf, grow, max_leaves=8)
@@ -104,8 +111,42 @@ def test_an_expression_is_the_arithmetic_that_it_says(tree: tuple[str, str]) -> 
     ours, python = tree
     found = evaluate(parse_expression(ours, MEANT), VALUES, dict.fromkeys(NAMES, ""))
     with np.errstate(all="ignore"):
-        wanted = eval(python, {"v": VALUES, "abs": abs, "float64": np.float64})
+        functions = {name: getattr(np, name) for name in FUNCTIONS}
+        wanted = eval(python, {"v": VALUES, "float64": np.float64, **functions})
     np.testing.assert_array_equal(np.asarray(found.value), wanted)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "known"),
+    [
+        ("sin(30 [deg])", "", 0.5),
+        ("cos(60 [deg])", "", 0.5),
+        ("sin(0.25 [rev])", "", 1.0),
+        ("sqrt(4 [mm] / 1 [m])", "", np.sqrt(0.004)),
+        ("sign(-3 [kN])", "", -1.0),
+        ("abs(-3 [kN])", "N", 3000.0),
+        ("2 [kN] * sign(0.1 [mm])", "N", 2000.0),
+    ],
+)
+def test_functions_heed_units(text: str, unit: str, known: float) -> None:
+    found = evaluate(parse_expression(text, BARE), VALUES, UNITS)
+    wanted = parse_unit(unit) if unit else ONE
+    assert wanted is not None
+    assert float(converted(found, wanted, "x")) == pytest.approx(known)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("sin(3 [N])", "sin of N, which is no angle"),
+        ("cos(2 [rad] * 1 [rad])", "no angle"),
+        ("sqrt(4 [N])", "the root of N has no unit"),
+        ("abs(20 [C])", "has a zero of its own"),
+    ],
+)
+def test_functions_of_other_units_are_refused(text: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        evaluate(parse_expression(text, BARE), VALUES, UNITS)
 
 
 @given(st.text(max_size=40))

@@ -48,6 +48,15 @@ def test_a_chi_square_of_that_non_centrality_exceeds_the_price_so_often(
     assert np.mean(np.sum(drawn**2, axis=1) > 30.0) == pytest.approx(chance, abs=0.01)
 
 
+def test_a_gain_that_may_count_for_less_must_be_larger() -> None:
+    counts = (1.0, 0.9, 0.6, 0.4)
+    root = non_centrality(30.0, 1, 0.8, counts)
+    random = np.random.default_rng(1)
+    gains = (random.standard_normal(40_000) + np.sqrt(root)) ** 2 * random.choice(counts, 40_000)
+    assert np.mean(gains > 30.0) == pytest.approx(0.8, abs=0.01)
+    assert non_centrality(30.0, 1, 0.8, (0.5,)) == pytest.approx(non_centrality(60.0, 1, 0.8))
+
+
 def test_the_strength_of_a_mass_is_that_of_a_regression() -> None:
     """Beside dry and viscous friction a mass is a third column: its error is in every textbook."""
     some = runs()

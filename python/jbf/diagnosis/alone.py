@@ -88,9 +88,9 @@ def chance_apart(left: float, least: float) -> float:
     return float(special.ndtr((left**2 - least) / (2.0 * left)))
 
 
-def chance_found(price: float, parameters: int, non_centrality: float) -> float:
-    """The chance that a chi-square of that non-centrality exceeds a price."""
-    return 1.0 - float(special.chndtr(price, parameters, non_centrality))
+def chance_found(price: float | Array, parameters: int, non_centrality: float) -> Array:
+    """The chance that a chi-square of that non-centrality exceeds a price, or each of some."""
+    return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
 
 def times_alone(
@@ -116,7 +116,8 @@ def times_alone(
         told = min(
             (chance_apart(times * left, least) for left, least in rivals.values()), default=1.0
         )
-        return chance_found(price, parameters, times**2 * non_centrality) * told - chance
+        found = float(chance_found(price, parameters, times**2 * non_centrality))
+        return found * told - chance
 
     if lacking(1.0) >= 0.0:
         return 1.0

@@ -151,8 +151,9 @@ class _Seen:
     @classmethod
     def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Seen:
         price = price_of(candidates, _parameters(runs.base, model))
-        usual = runs.share(runs.shown(runs.change(model, 1.0))[:, 0])
-        least = [non_centrality(price, _parameters(runs.base, model), p) / usual for p in LEVELS]
+        counts = runs.counts(runs.shown(runs.change(model, 1.0))[:, 0])
+        parameters = _parameters(runs.base, model)
+        least = [non_centrality(price, parameters, p, counts) for p in LEVELS]
         found = _found(runs, model, least)
         if np.isfinite(found[1]):
             left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
@@ -184,13 +185,22 @@ def _parameters(base: Solution, model: Strength) -> int:
 
 
 @lru_cache(maxsize=64)
-def non_centrality(price: float, parameters: int, chance: float) -> float:
-    """The non-centrality with which a chi-square of so many parameters exceeds a price so often."""
+def non_centrality(
+    price: float, parameters: int, chance: float, counts: tuple[float, ...] = (1.0,)
+) -> float:
+    """The non-centrality with which a chi-square of so many parameters exceeds a price so often.
+
+    Parameters
+    ----------
+    counts
+        By how much it may count, 0 to 1, each as likely.
+    """
+    prices = price / np.array(counts)
 
     def lacking(root: float) -> float:
-        return chance_found(price, parameters, root**2) - chance
+        return float(np.mean(chance_found(prices, parameters, root**2))) - chance
 
-    top = np.sqrt(price) + 10.0
+    top = float(np.sqrt(np.max(prices))) + 10.0
     return float(optimize.brentq(lacking, 1e-3, top)) ** 2
 
 

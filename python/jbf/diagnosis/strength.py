@@ -143,18 +143,17 @@ class RunsAtHand:
         ]
         return float(np.clip(gains[1] / max(gains[0], 1e-300), 0.02, 1.0))
 
-    def share(self, change: Array) -> float:
-        """How much a gain in this direction counts on the whole, in noise as white as it can be:
-        its long-run variance is itself estimated, and never taken for less than white noise's."""
+    def counts(self, change: Array) -> tuple[float, ...]:
+        """By how much a gain in this direction may count, in noise as white as it can be: its
+        long-run variance is itself estimated, and never taken for less than white noise's."""
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]
         ways = np.split(change, ends)
         random = np.random.default_rng(DRAWS)
-        drawn = [
+        return tuple(
             1.0 / score_inflation(ways, np.split(noise, ends), self.samples.steps_s)
             for noise in random.standard_normal((DRAWS, len(change)))
-        ]
-        return float(np.mean(drawn))
+        )
 
 
 def strength_of(candidates: Candidates, present: Names, name: str) -> Strength | None:

@@ -72,6 +72,16 @@ def test_nothing_in_a_clean_motion(motion: str, sd: float, count_rad: float) -> 
 
 @pytest.mark.parametrize("motion", MOTIONS)
 @pytest.mark.parametrize("sd", [0.0, 1e-5, 2e-3])
+def test_nothing_where_rows_are_missing(motion: str, sd: float) -> None:
+    v, x = true(motion)
+    there = np.random.default_rng(8).permutation(len(TIME))[: int(0.9 * len(TIME))]
+    there.sort()
+    m = imposed(measured(v, 1, sd)[there], counted(x)[there], TIME[there])
+    assert "glitches" not in {f.kind for f in m.findings}
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("sd", [0.0, 1e-5, 2e-3])
 def test_nothing_in_a_speed_alone(motion: str, sd: float) -> None:
     assert imposed(measured(true(motion)[0], 2, sd), None).findings == ()
 
@@ -105,6 +115,39 @@ def test_a_glitch_of_the_path_is_left_out(motion: str, off_rad: float) -> None:
     assert np.count_nonzero(np.diff(np.sign(m.velocity_m_s[m.sign_known]))) == np.count_nonzero(
         np.diff(np.sign(before.velocity_m_s[before.sign_known]))
     )
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_of_two_glitches_side_by_side_both_are_left_out(motion: str) -> None:
+    """Seen from a larger one the smaller is single; where both are alike neither stands alone."""
+    v, x = true(motion)
+    speed, angle = measured(v, 4), counted(x)
+    before = imposed(speed, angle)
+    angle = angle.copy()
+    angle[[700, 701, 2001, 2002]] += [0.5, -0.2, 0.2, -0.5]
+    m = imposed(speed, angle)
+    found = only(m)
+    assert found.kind == "glitches"
+    assert found.words.startswith("4 single samples")
+    assert error(m, v) < 1.1 * error(before, v) + 1e-6
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("at", [999, 1002])
+@pytest.mark.parametrize("missing", [1, 2])
+def test_a_glitch_beside_missing_rows_is_left_out(motion: str, at: int, missing: int) -> None:
+    there = np.delete(np.arange(len(TIME)), np.arange(1000, 1000 + missing))
+    time, at = TIME[there], at if at < 1000 else 1000
+    v, x = true(motion)
+    speed, angle = measured(v, 4)[there], counted(x)[there]
+    before = imposed(speed, angle, time)
+    spoilt = angle.copy()
+    spoilt[at] -= 0.9
+    m = imposed(speed, spoilt, time)
+    (found,) = (f for f in m.findings if f.kind == "glitches")
+    assert found.words.startswith("1 single sample of")
+    assert f"{time[at]:.2f} s" in found.words
+    assert error(m, v[there]) < 1.1 * error(before, v[there]) + 1e-6
 
 
 @pytest.mark.parametrize("with_path", [True, False])

@@ -18,8 +18,9 @@ FAR = 8.0
 """Local standard deviations that a sample must be off,"""
 COUNTS = 3.0
 """and counts of the encoder, whose rounding is less than one and a half off a cubic,"""
-BESIDE = 0.55
-"""and so much of it, the other way, the samples beside: of a corner, or a step, it is half."""
+BESIDE = 0.825
+"""and the samples beside, the other way, so much of what it makes of them (two thirds at even
+steps): of a corner, or a step, they are three quarters of that."""
 JUMP = 0.4
 """and so much of the change of the speed from before to after, times a step."""
 CHANGES = 3.0
@@ -38,7 +39,14 @@ LEAST_SAMPLES = 60
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
     """The path without its glitches, each put where its neighbours say."""
     path = position.path_m
-    mask = _off(time, path, COUNTS * step_of(path))
+    least, mask = COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
+    while mask.sum() <= RARE * len(path):
+        # Two that stand side by side: without the one the other is single.
+        good = np.flatnonzero(~mask)
+        more = good[_off(time[good], path[good], least)]
+        if not len(more):
+            break
+        mask[more] = True
     if not 0 < mask.sum() <= RARE * len(path):
         return position, None
     mended = _between(time, path, mask)
@@ -86,12 +94,16 @@ def _off(time: Array, path: Array, least: float) -> Mask:
         return found
     t = np.stack([time[k : n - 4 + k] - time[2 : n - 2] for k in (0, 1, 3, 4)])
     y = np.stack([path[k : n - 4 + k] - path[2 : n - 2] for k in (0, 1, 3, 4)])
-    off = -np.sum(_weights(t) * y, axis=0)
+    weights = _weights(t)
+    off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
     far = size > np.maximum(FAR * _around(size) / 0.6745, least)
-    # Seen from a glitch's neighbours, they are two thirds as far off, the other way.
-    for beside in (np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:]):
-        far &= (-beside * off > BESIDE * size**2) & (np.abs(beside) < size)
+    # The cubics of its neighbours have its weight: they are off the other way by that share of it.
+    for beside, weight in (
+        (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
+        (np.pad(off, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
+    ):
+        far &= (-beside * off > BESIDE * weight * size**2) & (np.abs(beside) < size)
     # Where the speed itself jumps, the steps on both sides differ by three times that.
     far &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     found[2:-2] = far

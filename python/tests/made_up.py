@@ -165,7 +165,9 @@ class MadeUp:
 
     def fitted(self, effects: Iterable[str]) -> Any:
         names = [""] * (LAW + len(frozenset(effects)))
-        return SimpleNamespace(problem=SimpleNamespace(names=names, open=range(len(names))))
+        # None of them makes a film.
+        problem = SimpleNamespace(names=names, open=range(len(names)), effects=(), law="coulomb")
+        return SimpleNamespace(problem=problem)
 
     def one_more(self, effects: Iterable[str]) -> dict[str, Any]:
         here = frozenset(effects)

@@ -97,6 +97,14 @@ def test_a_pattern_of_very_many_bins_has_words() -> None:
     assert _words("run", runs, [1.0] * 80).startswith("all of run, one sign throughout")
 
 
+def test_a_pattern_in_two_of_ten_bins_is_not_one_of_all() -> None:
+    runs = [Bin(str(i)) for i in range(10)]
+    words = _words("run", runs, [2.0, 1.5, *[0.01] * 8])
+    assert words.startswith("one sign throughout: record minus model +1.8 N; most +2 N at run 0")
+    # Of nine in ten it is.
+    assert _words("run", runs, [2.0] * 9 + [0.01]).startswith("all of run, one sign")
+
+
 def test_samples_go_into_the_bin_of_their_motion(bare_fit: Fit, runs: list[Run]) -> None:
     comparison = compare(bare_fit.model, runs)
     for axis in all_axes(comparison.campaign, 0.055):

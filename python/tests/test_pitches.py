@@ -8,7 +8,7 @@ from jbf import Rig, Run
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import known_pitches, pitches
+from jbf.estimation.pitches import LEAST_PERIODS, known_pitches, longest_pitch, pitches
 from jbf.estimation.problem import Problem
 from jbf.records.drive import Drive
 
@@ -99,3 +99,12 @@ def test_a_way_that_holds_no_pitch_has_none() -> None:
     v = np.full(len(t), 0.01)
     run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)
     assert pitches(Campaign.prepare(Rig(), [run]), along=False) == ()
+
+
+def test_a_way_of_no_sample_that_counts_bounds_no_pitch() -> None:
+    t = np.arange(0.0, 20.0, STEP_S)
+    v = 0.05 * np.sin(t)
+    run = Run.from_arrays(t, v, 5.0 * np.sign(v), position_m=-0.05 * np.cos(t))
+    campaign = Campaign.prepare(Rig(), [run])
+    assert 0.0 < longest_pitch(campaign) <= 0.1 / LEAST_PERIODS
+    assert longest_pitch(campaign.without([np.ones(len(t), dtype=bool)])) == np.inf

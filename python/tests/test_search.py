@@ -158,6 +158,22 @@ def test_beside_a_smooth_noise_a_sharp_feature_counts_for_what_it_is(campaign: C
     assert coloured.gain >= white.gain
 
 
+def test_beside_a_slow_wave_a_mass_is_seen_by_its_innovations() -> None:
+    def wavy(t: Any, v: Any, a: Any) -> Any:
+        return coulomb(t, v, a) + 0.3 * a + 2.0 * np.sin(0.5 * t)
+
+    slow = Campaign.prepare(Rig(), four_runs(wavy, noise_n=0.1))
+    near = base(slow)
+    problem = Problem(slow, "coulomb", "journal", ("inertia_leak",))
+    plain, seen = (
+        Approach(problem, [{}]).look(Solution(**{**vars(near), "noise": noise}))
+        for noise in (WHITE, Noise(0.6, 0.95))
+    )
+    # By squares the wave hides it.
+    assert seen.gain > 3.0 * max(plain.gain, 1.0)
+    assert seen.promised > 3.0 * max(plain.promised, 1.0)
+
+
 @pytest.mark.parametrize(("effect", "met"), [("inertia_leak", True), ("drive_compliance", False)])
 def test_ways_that_meet_end_but_among_many_peaks(
     campaign: Campaign, monkeypatch: pytest.MonkeyPatch, effect: str, met: bool

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from by_hand import Array, coulomb
@@ -20,6 +22,7 @@ from jbf.diagnosis.power import non_centrality, power
 from jbf.diagnosis.strength import RunsAtHand
 from jbf.estimation.campaign import Campaign
 
+module = sys.modules["jbf.diagnosis.power"]
 PRICE, TIE, CHANCE, DRAWS = 30.0, 8.0, 0.8, 40_000
 
 
@@ -122,3 +125,14 @@ def test_where_instants_of_reversals_are_not_known_a_delay_and_a_lag_are_one() -
                 # Of a step of 20 ms.
                 assert own.alone_80 is not None
                 assert own.alone_80 < 2e-3
+
+
+def test_jumps_are_looked_at_where_two_effects_are_told_apart(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What moves them does not grow in proportion: from `found_80` on it is followed."""
+    names = ["time_delay", "sensor_lag"]
+    followed = {p.effect: p.alone_80 for p in power(swinging(1e-3), (), names)}
+    monkeypatch.setattr(module, "LOOKS_ALONE", 0)
+    straight = {p.effect: p.alone_80 for p in power(swinging(1e-3), (), names)}
+    assert any(followed[n] != pytest.approx(straight[n], rel=0.05) for n in names)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from jbf import Rig
+from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
@@ -68,6 +69,9 @@ class MadeUp:
         Gain once it was fitted from a richer model, too.
     left_out
         RMS over runs left out, N; that of the fit where nothing is said.
+    better
+        Share of the runs left out that a candidate predicts better; all or none where nothing is
+        said.
     nulls
         Sets of which each effect is left at its null.
     asked
@@ -84,6 +88,7 @@ class MadeUp:
     peaks: Mapping[Set, float] = field(default_factory=dict)
     from_richer: Mapping[Set, float] = field(default_factory=dict)
     left_out: Mapping[Set, float] = field(default_factory=dict)
+    better: float | None = None
     slopes: Mapping[Set, float] = field(default_factory=dict)
     nulls: Collection[Set] = ()
     smooth: int = 1
@@ -149,19 +154,16 @@ class MadeUp:
     def idle(self, solution: Solution) -> tuple[str, ...]:
         return solution.effects if frozenset(solution.effects) in self.nulls else ()
 
-    def only_witnesses(self, effects: Sequence[str]) -> frozenset[int]:
-        return frozenset()
-
-    def left_out_rms(
-        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
-    ) -> float:
+    def left_out_rms(self, effects: Sequence[str]) -> float:
         here = frozenset(effects)
         return self.left_out.get(here, self.converge(effects).rms_n)
 
-    def left_out_by_run(
-        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
-    ) -> Any:
-        return np.array([self.left_out_rms(effects)])
+    def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
+        before, after = (self.left_out_rms(effects) for effects in (present, (*present, name)))
+        fit = [self.converge(effects).rms_n for effects in (present, (*present, name))]
+        share = (before**2 - after**2) / (fit[0] ** 2 - fit[1] ** 2)
+        better = float(after < before) if self.better is None else self.better
+        return Confirmation(before, after, better, share)
 
     def fitted(self, effects: Iterable[str]) -> Any:
         names = [""] * (LAW + len(frozenset(effects)))
@@ -191,7 +193,8 @@ class MadeUp:
 
 def price(parameters: int, candidates: int) -> float:
     """What a gain of so many parameters must exceed: one in a hundred shared among candidates, 22
-    for what recordings do, and log n for each parameter beyond the first."""
+    for what recordings do, and log n for each parameter beyond the first, where the gain tells as
+    much of it as the samples could (an effect with many peaks)."""
     return float(stats.chi2.isf(0.01 / candidates, 1) + 22.0 + (parameters - 1) * np.log(N))
 
 

@@ -15,9 +15,10 @@ from jbf.diagnosis import candidates as module
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.approach import Look
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import LeftOut
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from made_up import BARE_N, solution
+from made_up import BARE_N, N, solution
 
 RING = "drive_compliance"
 
@@ -83,9 +84,12 @@ def fits(monkeypatch: pytest.MonkeyPatch) -> Fits:
     monkeypatch.setattr(module, "Approach", found.begin)
     # Solutions that are made up have no residual of the campaign's.
     monkeypatch.setattr(Candidates, "_least_square", lambda *_: np.inf)
-    monkeypatch.setattr(
-        module, "left_out_by_run", lambda problem, near, apart: [np.array([near.rms_n])]
-    )
+
+    def left_out(problem: Problem, near: Solution) -> list[LeftOut]:
+        every = np.ones(N, dtype=bool)
+        return [LeftOut((0,), (every,), np.ones(near.free, dtype=bool), tuple(near.residuals))]
+
+    monkeypatch.setattr(module, "left_out", left_out)
     return found
 
 
@@ -222,6 +226,9 @@ def test_the_score_test_promises_what_a_linear_effect_gains(campaign: Campaign) 
     # A jump that moves by less than a sample moves none: at their null these show nothing.
     assert every.score_test(["backlash"], bare) == np.inf
     assert every.score_test(["time_delay"], bare) == np.inf
+    # Of what rounds a jump the samples beside it tell most, and nothing at the null.
+    assert every.score_test(["sensor_lag"], bare) == np.inf
+    assert every.fitted(["sensor_lag"]).directions is not None
 
 
 def test_every_effect_is_tried_or_said_not_to_be(campaign: Campaign) -> None:

@@ -57,21 +57,21 @@ def test_the_ledger_says_how_each_addition_ended() -> None:
 
 
 @pytest.mark.parametrize(
-    ("strength", "share", "better", "confirmed"),
+    ("strength", "density", "share", "better", "confirmed"),
     [
-        (59.0, 0.51, 0.0, True),
-        (59.0, 0.49, 1.0, False),
-        (61.0, 0.01, 0.0, True),
-        (61.0, 0.0, 0.5, False),
-        (61.0, -9.0, 2.0 / 3.0, True),
+        (59.0, 0.51, -9.0, 0.0, True),
+        (59.0, 0.49, 1.0, 1.0, False),
+        (61.0, -1.0, 0.01, 0.0, True),
+        (61.0, 1.0, 0.0, 0.5, False),
+        (61.0, -1.0, -9.0, 2.0 / 3.0, True),
     ],
 )
 def test_what_left_out_runs_must_confirm(
-    strength: float, share: float, better: float, confirmed: bool
+    strength: float, density: float, share: float, better: float, confirmed: bool
 ) -> None:
-    assert left_out_confirms(strength, share, better, DEFAULT) == confirmed
+    assert left_out_confirms(strength, density, share, better, DEFAULT) == confirmed
     # Far worse as a whole is no confirmation, in however many runs it is better.
-    assert not left_out_confirms(strength, share, better, DEFAULT, 1.3)
+    assert not left_out_confirms(strength, density, share, better, DEFAULT, 1.3)
 
 
 # ---- evidence ---------------------------------------------------------------------------------
@@ -79,12 +79,13 @@ def test_what_left_out_runs_must_confirm(
 
 def test_evidence_of_made_up_models() -> None:
     candidates = cast(Candidates, MadeUp(["sensor_lag", "sensor_drift"], {}))
-    bare, one, two = solution((), 0.0), solution(("a",), 100.0), solution(("a", "b"), 150.0)
+    bare, one = solution((), 0.0), solution(("sensor_lag",), 100.0)
+    two = solution(("sensor_lag", "sensor_drift"), 150.0)
     assert likelihood_gain(one, bare) == pytest.approx(100.0)
     assert likelihood_gain(bare, two) == pytest.approx(-150.0)
     assert evidence(candidates, one, bare) == pytest.approx(100.0 - price(1, 2))
-    assert evidence(candidates, two, bare) == pytest.approx(150.0 - price(2, 2))
-    smooth = solution(("a",), 100.0, smooth=3)
+    assert evidence(candidates, two, bare) == pytest.approx(150.0 - price(1, 2) - np.log(150.0))
+    smooth = solution(("sensor_lag",), 100.0, smooth=3)
     assert evidence(candidates, smooth, bare) == pytest.approx(0.6 * 100.0 - price(1, 2), abs=0.5)
 
 

@@ -147,7 +147,7 @@ def test_beside_a_delay_the_score_of_another_effect_is_of_the_samples_that_count
     near = candidates.converge(["time_delay"])
     assert near.samples.count < candidates.campaign.samples.count
     # The ramps beside the jumps seem to ask for a lag, and would for anything.
-    for name in ("sensor_lag", "sensor_drift", "quadratic_drag"):
+    for name in ("sensor_offset", "sensor_drift", "quadratic_drag"):
         assert candidates.score_test(["time_delay", name], near) < 12.0
 
 

@@ -13,7 +13,13 @@ from by_hand import Array, coulomb, four_runs, one_way
 from jbf import Parameter, Rig, Run, diagnose, forget_effect, register_effect
 from jbf.estimation import left_out as left_out_module
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import _straight, halves_left_out, left_out_rms, only_witnesses
+from jbf.estimation.left_out import (
+    _straight,
+    errors_by_run,
+    halves_left_out,
+    left_out_rms,
+    only_witnesses,
+)
 from jbf.estimation.minimum import minimum, search
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -70,7 +76,7 @@ def test_half_of_the_only_witness_tells_what_the_other_half_does() -> None:
     problem = Problem(Campaign.prepare(Rig(), first_is_pushed()), "coulomb", "journal", ("pushed",))
     solution = minimum(problem, [{}])
     assert only_witnesses(problem, solution) == {0}
-    left = halves_left_out(problem, solution, 0)
+    left = errors_by_run(solution, halves_left_out(problem, solution, 0))[0]
     assert len(left) == np.count_nonzero(solution.samples.counted[0])
     assert np.std(left) == pytest.approx(NOISE_N, rel=0.1)
 
@@ -87,7 +93,8 @@ def test_a_half_that_was_left_out_drives_nothing() -> None:
         "journal",
         ("pushed",),
     )
-    left = halves_left_out(problem, minimum(problem, [{}]), 0)
+    solution = minimum(problem, [{}])
+    left = errors_by_run(solution, halves_left_out(problem, solution, 0))[0]
     assert np.std(left) == pytest.approx(2.0 * PUSH_N, rel=0.02)
 
 

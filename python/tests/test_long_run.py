@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from jbf.estimation.long_run import long_run_variance, score_inflation, score_square
+from jbf.estimation.long_run import (
+    BY_CHANCE,
+    long_run_variance,
+    score_inflation,
+    score_square,
+    sure_inflation,
+)
 from scipy import signal, stats
 
 N, STEP_S = 20000, 0.02
@@ -50,7 +56,43 @@ def test_a_score_that_comes_and_goes_is_worth_less() -> None:
     assert score_inflation(ways, slow, (STEP_S, STEP_S)) > 10.0
 
 
+def breakaways(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """A direction of pulses of five samples, a few seconds apart."""
+    way = np.zeros(400 * count)
+    for k in range(count):
+        way[400 * k + 200 : 400 * k + 205] = 1.0
+    return way
+
+
+@pytest.mark.parametrize("count", [2, 4, 40])
+def test_chance_in_a_few_windows_is_no_inflation(count: int) -> None:
+    random = np.random.default_rng(5)
+    way = breakaways(count)
+    found, sure = [], []
+    for _ in range(1000):
+        noise = random.standard_normal(len(way))
+        found.append(score_inflation([way], [noise], (STEP_S,)))
+        sure.append(sure_inflation([way], [noise], (STEP_S,)))
+    # What a few squares make by chance is a third of twice as much, and more.
+    assert count == 40 or np.quantile(found, 0.95) > 1.7
+    assert np.mean(np.array(sure) > 1.0) < 2.0 * BY_CHANCE
+
+
+def test_more_than_chance_stays_however_few_the_windows() -> None:
+    way = breakaways(4)
+    noise = np.random.default_rng(6).standard_normal(len(way))
+    loud = noise + 8.0 * way * np.repeat([1.0, -1.0, 1.0, -1.0], 400)
+    for ways, noises in (([way], [loud]), ([way[:800], way[800:]], [loud[:800], loud[800:]])):
+        steps = (STEP_S,) * len(ways)
+        whole = score_inflation(ways, noises, steps)
+        assert sure_inflation(ways, noises, steps) == whole > 10.0
+    slow = coloured(2, 0.98, 8000)
+    ways = [np.sin(0.05 * np.arange(8000))]
+    assert sure_inflation(ways, [slow], (STEP_S,)) == score_inflation(ways, [slow], (STEP_S,))
+
+
 def test_nothing_to_tell() -> None:
+    assert sure_inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0
     assert score_inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0
     assert score_inflation([np.ones(50)], [np.zeros(50)], (STEP_S,)) == 1.0
 

@@ -68,8 +68,7 @@ def test_the_strength_of_a_mass_is_that_of_a_regression() -> None:
     left = a - design @ np.linalg.lstsq(design, a, rcond=None)[0]
     for value, chance in ((found.found_80, 0.8), (found.found_95, 0.95)):
         wanted = np.sqrt(non_centrality(price_of(tried, 1), 1, chance)) * NOISE_N
-        # A tenth more: the long-run variance is estimated, and is never less than white noise's.
-        assert 1.0 < value * np.sqrt(left @ left) / wanted < 1.12
+        assert value * np.sqrt(left @ left) / wanted == pytest.approx(1.0, abs=0.03)
     assert found.unit == "kg"
     friction = np.concatenate([coulomb(run.time_s, run.velocity_m_s, v) for run in some[:1]])
     assert found.share_80 == pytest.approx(

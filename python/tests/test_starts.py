@@ -100,6 +100,21 @@ def test_a_time_starts_within_a_usual_run() -> None:
     assert all(0.05 * whole[0] < start < 0.5 * whole[-1] for start in starts)
 
 
+@pytest.mark.parametrize("step_s", [1e-3, 0.02, 1.5])
+def test_a_lateness_starts_from_what_a_sample_resolves(step_s: float) -> None:
+    time = step_s * np.arange(400)
+    velocity = np.sin(2.0 * np.pi * time / (100.0 * step_s))
+    run = Run.from_arrays(time, velocity, 5.0 * np.sign(velocity), name="slow")
+    for effect in ("time_delay", "sensor_lag"):
+        page = f"{effect}.tau_s"
+        pages = parameters_of("coulomb", (effect,))
+        starts = with_starts(pages, Campaign.prepare(Rig(), [run]), in_newtons=True)[page].starts
+        assert starts[0] == pytest.approx(0.27)
+        assert np.all(np.diff(np.log(starts)) > -1.2)
+        assert min(starts) <= 0.3 * step_s or len(starts) == 1
+        assert min(starts) > 0.08 * step_s
+
+
 def test_a_cells_errors_start_as_a_share_of_the_largest_force() -> None:
     """Of a watch and of a press alike, and whatever the law."""
     rig, runs, _ = campaign(7)

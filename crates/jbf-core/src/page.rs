@@ -56,6 +56,8 @@ pub enum Start {
     StrokeMiddle,
     /// Half of that way.
     StrokeHalf,
+    /// From what a sample resolves to what lasts a dozen of them, s.
+    Lateness,
     /// On a linear axis: a play of a small share of a stroke.
     DrivePlay,
     /// On a linear axis: a drive that gives by a small share of a stroke.
@@ -89,6 +91,7 @@ impl Start {
             Start::CellCubic => "cell_cubic",
             Start::StrokeMiddle => "stroke_middle",
             Start::StrokeHalf => "stroke_half",
+            Start::Lateness => "lateness",
             Start::DrivePlay => "drive_play",
             Start::DriveStiffness => "drive_stiffness",
             Start::DriveInertia => "drive_inertia",

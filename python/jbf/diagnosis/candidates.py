@@ -7,7 +7,7 @@ once, and everything that asks for it later shares the answer.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
@@ -22,7 +23,13 @@ from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
-from jbf.estimation.left_out import halves_left_out, left_out_by_run, only_witnesses
+from jbf.estimation.left_out import (
+    LeftOut,
+    errors_by_run,
+    halves_left_out,
+    left_out,
+    only_witnesses,
+)
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import search_peaks, settle
 from jbf.estimation.problem import Problem
@@ -57,6 +64,8 @@ class Fitted:
         likelihood; infinite where the null is out of a step's reach.
     directions
         Where its score was tested; until the level of the tests has been calibrated by them.
+    stepped
+        Where one step from its null leads: near a weak effect.
     approach, least
         A fit that was looked at only, and the sum of squares that it must come below to be
         followed.
@@ -66,10 +75,9 @@ class Fitted:
     peaks_searched
         True once its other peaks were looked for.
     left_out
-        A sum of squares, N^2, and samples by the run that was left out of the fit; True for those
-        apart from what the runs are known to deviate by.
+        Runs that were left out of the fit; empty until somebody asks.
     halves
-        The same of a run whose halves were.
+        The same of the halves of a run.
     """
 
     problem: Problem
@@ -77,12 +85,13 @@ class Fitted:
     solution: Solution | None = None
     score: float | None = None
     directions: Directions | None = None
+    stepped: Array | None = None
     approach: Approach | None = None
     least: float = np.inf
     promised: float = np.inf
     peaks_searched: bool = False
-    left_out: dict[bool, list[tuple[float, int]]] = field(default_factory=dict)
-    halves: dict[tuple[bool, int], tuple[float, int]] = field(default_factory=dict)
+    left_out: list[LeftOut] = field(default_factory=list)
+    halves: dict[int, list[LeftOut]] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The solution so far."""
@@ -93,7 +102,7 @@ class Fitted:
         """Take a better solution of the same problem; what followed from the other is void."""
         if better is not self.solution:
             self.solution = better
-            self.left_out, self.halves = {}, {}
+            self.left_out, self.halves = [], {}
 
     def named_values(self) -> dict[str, float]:
         """Parameter name to value."""
@@ -167,7 +176,7 @@ class Candidates:
 
         The gain in twice the log likelihood that one Gauss-Newton step promises from the effects'
         null, the law free to move with them; the largest from any start. Infinite of an effect
-        whose null is out of a step's reach, or that moves the instants of jumps.
+        whose null is out of a step's reach, or that moves or rounds jumps.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -185,7 +194,11 @@ class Candidates:
             else:
                 known = self._values_of(near)
                 starts = fitted.problem.starts({**known, **nulls})
-                fitted.score, fitted.directions = score_test(fitted.problem, starts, near, added)
+                told = score_test(fitted.problem, starts, near, added)
+                fitted.score, fitted.directions, fitted.stepped = told
+                # Nor of what rounds it: the samples beside it may tell more than all of the rest.
+                if any(find_effect(name).spreads_jumps for name in added):
+                    fitted.score = np.inf
         return fitted.score
 
     # ---- the level of the tests -------------------------------------------------------------
@@ -250,7 +263,7 @@ class Candidates:
             seeds = [known]
         each = near is not None and many_peaks(near.effects)
         fitted.least = self._least_square(near)
-        return Approach(fitted.problem, seeds, each=each)
+        return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
         """Rank several sets of effects, each from a smaller model's solution."""
@@ -327,42 +340,31 @@ class Candidates:
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
-    def only_witnesses(self, effects: Sequence[str]) -> frozenset[int]:
-        """The runs that alone tell of one of the parameters."""
-        return only_witnesses(self.fitted(effects).problem, self.converge(effects))
+    def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
+        """What one effect more does for runs left out. Of those that alone tell of a parameter the
+        halves are, in both fits."""
+        richer = (*present, name)
+        before, after = self.converge(present), self.converge(richer)
+        halved = sorted(only_witnesses(self.fitted(richer).problem, after))
+        left, richer_left = self.left_out(present, halved), self.left_out(richer, halved)
+        names = tuple(self.campaign.samples.runs[i] for i in halved)
+        return Confirmation.of(before, after, left, richer_left, names)
 
-    def left_out_rms(
-        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
-    ) -> float:
-        """RMS over runs left out of the fit one at a time, N; or `apart` from what the runs are
-        known to deviate by; of some runs, `halved`, the halves in turns."""
-        square, count = self._left_out(effects, apart, halved)
-        return float(np.sqrt(np.sum(square) / max(np.sum(count), 1)))
-
-    def left_out_by_run(
-        self, effects: Sequence[str], *, apart: bool = False, halved: Collection[int] = ()
-    ) -> Array:
-        """The same of each run, N."""
-        square, count = self._left_out(effects, apart, halved)
-        return np.sqrt(square / np.maximum(count, 1))
-
-    def _left_out(
-        self, effects: Sequence[str], apart: bool, halved: Collection[int]
-    ) -> tuple[Array, Array]:
-        """Sums of squares, N^2, and samples, by the run that was left out."""
+    def left_out(self, effects: Sequence[str], halved: Sequence[int] = ()) -> list[LeftOut]:
+        """Runs left out of the fit one at a time; of some, `halved`, the halves in turns."""
         solution, fitted = self.converge(effects), self.fitted(effects)
-        problem, known = fitted.problem, fitted.left_out
-        which = apart and solution.samples.between is not None
-        if which not in known:
-            known[which] = [_told(e) for e in left_out_by_run(problem, solution, apart=which)]
-        told = list(known[which])
-        for run in halved:
-            if (which, run) not in fitted.halves:
-                errors = halves_left_out(problem, solution, run, apart=which)
-                fitted.halves[which, run] = _told(errors)
-            told[run] = fitted.halves[which, run]
-        square, count = np.array(told, dtype=float).reshape(-1, 2).T
-        return square, count
+        if not fitted.left_out:
+            fitted.left_out = left_out(fitted.problem, solution)
+        for run in set(halved) - set(fitted.halves):
+            fitted.halves[run] = halves_left_out(fitted.problem, solution, run)
+        whole = [part.without(halved) for part in fitted.left_out]
+        return [p for p in whole if p.runs] + [p for i in halved for p in fitted.halves[i]]
+
+    def left_out_rms(self, effects: Sequence[str]) -> float:
+        """RMS over runs left out of the fit one at a time, N."""
+        parts = self.left_out(effects)
+        errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
+        return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 
     def _values_of(self, near: Solution) -> dict[str, float]:
         names = self.fitted(near.effects).problem.names
@@ -381,8 +383,3 @@ class Candidates:
         """Report progress."""
         if self.progress is not None:
             self.progress(message, done, total)
-
-
-def _told(errors: Array) -> tuple[float, int]:
-    """A sum of squares, N^2, and of how many."""
-    return float(errors @ errors), len(errors)

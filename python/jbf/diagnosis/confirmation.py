@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import Policy
+from jbf.estimation.left_out import LeftOut, errors_by_run
+from jbf.estimation.predictive import mean_square, surprise
+from jbf.estimation.samples import least_weights
+from jbf.estimation.solution import Solution
 
+Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class Confirmation:
     """What a candidate does for runs that were left out, beside the effects present.
 
     Attributes
@@ -23,6 +28,9 @@ class LeftOut:
         RMS without and with it, N.
     better
         Share of the runs that are predicted better.
+    density
+        What it adds to twice the log predictive density of what was left out, over what it adds
+        to twice the log likelihood in the fit.
     halved
         Runs that alone tell of it: their halves took turns in being left out, in both fits.
     """
@@ -30,34 +38,61 @@ class LeftOut:
     before_n: float
     after_n: float
     better: float
+    density: float
     halved: Names = ()
 
     @classmethod
-    def of(cls, candidates: Candidates, present: Names, name: str) -> LeftOut:
-        """By fits with the candidate and without it."""
-        richer = (*present, name)
-        halved = candidates.only_witnesses(richer)
-        before, after = (
-            candidates.left_out_rms(effects, apart=True, halved=halved)
-            for effects in (present, richer)
-        )
-        runs = [
-            candidates.left_out_by_run(effects, apart=True, halved=halved)
-            for effects in (present, richer)
+    def of(
+        cls,
+        simpler: Solution,
+        richer: Solution,
+        left: Sequence[LeftOut],
+        richer_left: Sequence[LeftOut],
+        halved: Names = (),
+    ) -> Confirmation:
+        """By fits without the candidate and with it, and by what was left out of each."""
+        # At the same samples: one that sets others aside beside its jumps predicts none of them.
+        counted = least_weights(simpler.samples, richer.samples).counted
+        errors = [
+            errors_by_run(simpler, left, apart=True, counted=counted),
+            errors_by_run(richer, richer_left, apart=True, counted=counted),
         ]
-        names = tuple(candidates.campaign.samples.runs[i] for i in sorted(halved))
-        return cls(before, after, float(np.mean(runs[1] < runs[0])), names)
+        before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
+        better = [_rms(errors[1][i]) < _rms(errors[0][i]) for i in errors[0]]
+        density = _density_share(simpler, richer, left, richer_left)
+        return cls(before_n, after_n, float(np.mean(better)), density, halved)
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
         """Whether they confirm it, who gains so much in mean square (N^2) where it is fitted."""
         share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
         times = self.after_n / max(self.before_n, 1e-300)
-        return left_out_confirms(evidence, share, self.better, policy, times)
+        return left_out_confirms(evidence, self.density, share, self.better, policy, times)
 
     def said(self, unit: str) -> str:
         """The error on what was left out."""
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
         return f"left-out {what} {self.after_n:.4g} {unit}"
+
+
+def _rms(errors: Array) -> float:
+    return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
+
+
+def _density_share(
+    simpler: Solution,
+    richer: Solution,
+    left: Sequence[LeftOut],
+    richer_left: Sequence[LeftOut],
+) -> float:
+    """Gain in the predictive density of what was left out, as a share of that in the fit; both of
+    the same samples, whitened alike."""
+    samples, noise = least_weights(simpler.samples, richer.samples), richer.noise
+    before, _ = mean_square(simpler, samples, noise)
+    after, count = mean_square(richer, samples, noise)
+    after = max(after, 1e-300)
+    gained = surprise(simpler, left, samples, noise, after)
+    gained -= surprise(richer, richer_left, samples, noise, after)
+    return gained / max(count * (before - after) / after, 1e-300)
 
 
 def _listed(names: Collection[str]) -> str:
@@ -66,16 +101,23 @@ def _listed(names: Collection[str]) -> str:
 
 
 def left_out_confirms(
-    evidence: float, gained_share: float, better: float, policy: Policy, times: float = 1.0
+    evidence: float,
+    density: float,
+    gained_share: float,
+    better: float,
+    policy: Policy,
+    times: float = 1.0,
 ) -> bool:
     """Do runs left out confirm what a candidate gains where it is fitted?
 
-    Any gain will do where the evidence is strong, or one in most of the runs: a few runs may hold
-    most of the rests, or the reversals, that an effect needs, and without them no fit knows well
-    how large the effect is.
+    Where the evidence is weak their predictive density must: of its errors those tell little which
+    the other runs could not know better, as where one run holds most of what tells the law's own
+    parameters. Where it is strong any gain will do, or one in most of the runs.
 
     Parameters
     ----------
+    density
+        Gain in twice the log predictive density, as a share of that in the fit's log likelihood.
     gained_share
         Gain in mean square on left-out runs, as a share of that in the fit.
     better
@@ -86,5 +128,5 @@ def left_out_confirms(
     if times > policy.left_out_worse:
         return False
     if evidence <= policy.weak:
-        return gained_share > policy.least_left_out_gain
+        return density > policy.least_left_out_gain
     return gained_share > 0.0 or better >= policy.least_better_runs

@@ -19,7 +19,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.long_run import score_inflation
+from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
@@ -96,7 +96,7 @@ def _share(after: Solution, before: Solution) -> float:
     """How much the gain counts, by the same measure as an effect's (`share_of_gain`)."""
     left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
     ways = [b - e for b, e in zip(was, left, strict=True)]
-    return min(effective_share(after), 1.0 / score_inflation(ways, left, after.samples.steps_s))
+    return min(effective_share(after), 1.0 / sure_inflation(ways, left, after.samples.steps_s))
 
 
 def _predicts_worse(problem: Problem, after: Solution, before: Solution, most: float) -> bool:

@@ -5,6 +5,10 @@ In twice the log likelihood.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+import numpy as np
+
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
@@ -13,14 +17,22 @@ from jbf.estimation.likelihood import (
     next_step_gain,
     share_of_gain,
 )
+from jbf.estimation.noise_at import noise_at
 from jbf.estimation.samples import least_weights
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 
-def price_of(candidates: Candidates, parameters: int) -> float:
-    """What so many parameters must gain in a campaign."""
-    return candidates.level.price(parameters, candidates.campaign.samples.count)
+def price_of(
+    candidates: Candidates, parameters: int, effects: Iterable[str] = (), gain: float = 0.0
+) -> float:
+    """What so many parameters must gain in a campaign (`Level.price`).
+
+    Of effects with many peaks more is known than their gain tells: they were searched for at as
+    many places as the samples tell apart.
+    """
+    gain = np.inf if many_peaks(effects) else gain
+    return candidates.level.price(parameters, candidates.campaign.samples.count, gain)
 
 
 def evidence(
@@ -43,7 +55,7 @@ def evidence(
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
-    return gain - price_of(candidates, richer.free - simpler.free)
+    return gain - price_of(candidates, richer.free - simpler.free, richer.effects, gain)
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
@@ -59,14 +71,15 @@ def evidence_alone(
     """Evidence for the richer of two models, the other fitted to the same samples.
 
     An effect that moves jumps sets the samples beside them aside, and with them what may have led
-    the model without it astray: that gain is not the effect's.
+    the model without it astray, or have made its noise look larger or smoother than it is: that
+    gain is not the effect's.
     """
     gain = evidence(candidates, richer, simpler, anywhere=anywhere)
     if richer.samples is simpler.samples or gain <= 0.0:
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
     values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
-    there = problem.solution(values, samples, simpler.noise)
+    there = problem.solution(values, samples, noise_at(problem, samples, values))
     return min(gain, evidence(candidates, richer, there, anywhere=anywhere))
 
 
@@ -84,9 +97,14 @@ def swap_cost(
     # As for evidence: where even the whole leaves a smooth error, samples count for less.
     share = effective_share(whole)
 
+    gained = share * likelihood_gain(whole, near)
+
+    def price(solution: Solution) -> float:
+        return price_of(candidates, solution.free, solution.effects, gained)
+
     def cost(solution: Solution) -> float:
         lost = share * likelihood_gain(whole, solution)
-        return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
+        return lost + price(solution) - price(whole)
 
     policy = candidates.policy
     score = candidates.score_test(effects, near)

@@ -29,8 +29,8 @@ from scipy import special
 from jbf.diagnosis.decoys import decoy_gains
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.blocks import Places, blocks_of
-from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
-from jbf.estimation.long_run import score_inflation
+from jbf.estimation.likelihood import effective_share, least_squares, promised_gain, score_gain
+from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples
@@ -100,11 +100,23 @@ class Level:
         """The same of white noise: what the level alone asks, shared among the candidates."""
         return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
 
-    def price(self, parameters: int, samples: int) -> float:
-        """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
+    def price(self, parameters: int, samples: int, gain: float = 0.0) -> float:
+        """What so many parameters must gain.
+
+        Each beyond the first costs the logarithm of how much is known of it (Schwarz 1978): not of
+        how many samples there are, but of the gain. It says how an effect looks, and of one that
+        hardly shows there is little to see; so the maximum over it of what noise gains rises too
+        (Davies 1987).
+
+        Parameters
+        ----------
+        gain
+            What was gained; at least what one parameter must gain is meant, and no more than the
+            samples could tell.
+        """
         more = max(parameters, 1) - 1
         least = max(self.critical, self.white + self.imperfection, self.worth)
-        return least + more * float(np.log(max(samples, 1)))
+        return least + more * float(np.log(max(min(max(gain, least), samples), 1.0)))
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -166,7 +178,7 @@ class Directions:
         ends = _ends(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
         parts = np.split(unit, ends)
-        more = [score_inflation(np.split(way, ends), parts, samples.steps_s) for way in ways.T]
+        more = [sure_inflation(np.split(way, ends), parts, samples.steps_s) for way in ways.T]
         counted = np.array([min(share, 1.0 / m) for m in more])
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
@@ -195,16 +207,17 @@ def _rows(near: Solution) -> tuple[Array, Array]:
 
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
-) -> tuple[float, Directions]:
+) -> tuple[float, Directions, Array]:
     """What the best of some starts, at each of which the model is a smaller one still, promises
-    (`score_gain`), and where the added effects show; of many long runs, in some."""
+    (`score_gain`), where the added effects show, and the values to which one step from there leads;
+    of many long runs, in some."""
     few = problem.thinned
     # What a smaller model sets aside beside its jumps would seem to ask for anything.
     samples = near.samples if few is problem else few.campaign.samples
     mine = np.array([few.names[i].split(".")[0] in added for i in few.open], dtype=bool)
     # At the null the rest of the model is as it was, and so are its derivatives.
     known = few is problem and near.free == np.count_nonzero(~mine)
-    best: tuple[float, Array, Array] | None = None
+    best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
         if known:
             own = [i for i, added_here in zip(few.open, mine, strict=True) if added_here]
@@ -218,10 +231,12 @@ def score_test(
         if few is not problem:
             gain = score_gain(problem, start, near)
         if best is None or gain > best[0]:
-            best = gain, r, j
+            best = gain, r, j, start
     assert best is not None
-    gain, r, j = best
-    return gain, Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
+    gain, r, j, start = best
+    there = few.decode(few.encode(start) + least_squares(j, r), start)
+    shown = Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
+    return gain, shown, there
 
 
 def _explained(ways: Array, target: Array) -> Array:

@@ -56,9 +56,9 @@ class Policy:
     )
     least_left_out_gain: float = _number(
         0.5,
-        "share of a candidate's gain in the fit that it must gain on left-out runs, where its "
-        "evidence is weak",
-        "chosen on simulated campaigns",
+        "share of what a candidate adds to the log likelihood that it must add to the log "
+        "predictive density of left-out runs, where its evidence is weak",
+        "of an effect that gains Z + 1 in a linear model (Z - 1) / (Z + 1) is left",
     )
     least_better_runs: float = _number(
         0.66,

@@ -15,7 +15,6 @@ import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
-from jbf.diagnosis.confirmation import LeftOut
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.policy import Policy
@@ -82,7 +81,7 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
             outcome = "rejected"
             reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"
         elif gain > 0 and leader is None:
-            out = LeftOut.of(candidates, present, name)
+            out = candidates.confirmation(present, name)
             alone = evidence_alone(candidates, found.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.long_run import score_inflation
+from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise import estimate_noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import least_weights
@@ -151,7 +151,7 @@ class RunsAtHand:
         ways = np.split(change, ends)
         random = np.random.default_rng(DRAWS)
         return tuple(
-            1.0 / score_inflation(ways, np.split(noise, ends), self.samples.steps_s)
+            1.0 / sure_inflation(ways, np.split(noise, ends), self.samples.steps_s)
             for noise in random.standard_normal((DRAWS, len(change)))
         )
 

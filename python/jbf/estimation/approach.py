@@ -65,21 +65,30 @@ class Approach:
         Known values by name; starting values fill each one up.
     each
         Follow the best of each seed, not the best of all.
+    stepped
+        One start more: where a step from a smaller model leads. Starting values suit a strong
+        effect, and may be on the far side of a hill from a weak one.
     """
 
     def __init__(
-        self, problem: Problem, seeds: Sequence[Mapping[str, float]], *, each: bool = False
+        self,
+        problem: Problem,
+        seeds: Sequence[Mapping[str, float]],
+        *,
+        each: bool = False,
+        stepped: Array | None = None,
     ) -> None:
         self.problem, self.few = problem, problem.thinned
         self._groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
         self._each = each
+        self._stepped = [] if stepped is None else [stepped]
         self._squares: dict[bytes, float] = {}
         self.visited = Visited()
 
     @cached_property
     def _nearest(self) -> Array:
-        """The best start from the first seed."""
-        return min(self._likely(self._groups[0]), key=self._square)
+        """The best start from the first seed, or from a smaller model."""
+        return min([*self._likely(self._groups[0]), *self._stepped], key=self._square)
 
     @cached_property
     def starts(self) -> list[Array]:
@@ -87,7 +96,8 @@ class Approach:
         groups = [self._likely(group) for group in self._groups]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
-        return sorted(itertools.chain.from_iterable(groups), key=self._square)
+        every = itertools.chain(*groups, self._stepped)
+        return sorted(every, key=self._square)
 
     def _likely(self, group: list[Array]) -> list[Array]:
         """Of many starts, those that predict one run better than most do."""

@@ -3,6 +3,7 @@ runs several at a time."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 EVALUATIONS = 12
 """A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
@@ -34,6 +36,38 @@ INSENSITIVE = 1e-4
 """Runs say nothing of a parameter where they hold less than this share of what is known of it."""
 
 
+@dataclass(frozen=True)
+class LeftOut:
+    """Samples that had no part in a fit, and what it leaves of their runs.
+
+    Attributes
+    ----------
+    runs
+        Which runs.
+    left
+        Which of their samples had no part, one mask a run.
+    told
+        Of which parameters the fitted samples tell; the others were held, shape (k,).
+    residuals
+        Record minus prediction, N, of the whole of each run.
+    """
+
+    runs: tuple[int, ...]
+    left: tuple[Mask, ...]
+    told: Mask
+    residuals: tuple[Array, ...]
+
+    def without(self, runs: Collection[int]) -> LeftOut:
+        """The same of the other runs."""
+        kept = [k for k, i in enumerate(self.runs) if i not in runs]
+        return LeftOut(
+            tuple(self.runs[k] for k in kept),
+            tuple(self.left[k] for k in kept),
+            self.told,
+            tuple(self.residuals[k] for k in kept),
+        )
+
+
 def left_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
     """RMS of `left_out_by_run`, N."""
     left = np.concatenate(left_out_by_run(problem, solution, apart=apart))
@@ -46,32 +80,59 @@ def left_out_residuals(problem: Problem, solution: Solution) -> Array:
 
 
 def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
-    """Residuals, N, at the samples that count of runs left out of the fit, one at a time or, of
-    more than `MOST_FITS`, in so many groups.
+    """`errors_by_run` of the runs left out of the fit (`left_out`)."""
+    return list(errors_by_run(solution, left_out(problem, solution), apart=apart).values())
+
+
+def errors_by_run(
+    solution: Solution,
+    parts: Sequence[LeftOut],
+    *,
+    apart: bool = False,
+    counted: Sequence[Mask] | None = None,
+) -> dict[int, Array]:
+    """Errors at the samples that count, N, by run.
 
     Parameters
     ----------
+    counted
+        Those that count where models are compared that set different ones aside.
     apart
         Less what a run's own deviations from the others explain, where runs are known to have them:
         for models to be compared, since no model predicts those.
+    """
+    samples = solution.samples
+    errors: dict[int, Array] = {}
+    for part in parts:
+        residuals: Sequence[Array] = part.residuals
+        if apart:
+            residuals = samples.only(part.runs).without_deviations(residuals, solution.noise)
+        for i, left, residual in zip(part.runs, part.left, residuals, strict=True):
+            own = errors.setdefault(i, np.zeros(len(residual)))
+            own[left] = residual[left]
+    counted = samples.counted if counted is None else counted
+    return {i: errors[i][counted[i]] for i in sorted(errors)}
+
+
+def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
+    """Runs left out of the fit, one at a time or, of more than `MOST_FITS`, in so many groups.
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
     value) and is held there: what only the left-out run could know must not leak into its
     prediction. With one run there is nothing to leave out, and the halves of the run take turns.
     """
-    samples = solution.samples
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
     told = _Told.of(problem, solution)
-    left: dict[int, Array] = {}
+    parts = []
     for group in _groups([p.run.name for p in problem.campaign.prepared]):
         rest = [k for k in range(count) if k not in group]
         residuals = _predicted(problem, solution, told, group, rest)
-        if apart:
-            residuals = samples.only(group).without_deviations(residuals, solution.noise)
-        left |= {i: r[samples.counted[i]] for i, r in zip(group, residuals, strict=True)}
-    return [left[i] for i in range(count)]
+        whole = tuple(np.ones(len(r), dtype=bool) for r in residuals)
+        unknown = _unknown(told.known, told.known[rest].sum(axis=0))
+        parts.append(LeftOut(tuple(group), whole, ~unknown, tuple(residuals)))
+    return parts
 
 
 def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
@@ -88,26 +149,24 @@ def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
     )
 
 
-def halves_left_out(
-    problem: Problem, solution: Solution, run: int, *, apart: bool = False
-) -> Array:
-    """The same of one run (`only_witnesses`) whose halves take turns in having had no part in the
-    fit, beside all of the others."""
+def halves_left_out(problem: Problem, solution: Solution, run: int) -> list[LeftOut]:
+    """The halves of one run (`only_witnesses`), which take turns in having had no part in the fit,
+    beside all of the others."""
     samples, known = solution.samples, _known(solution)
     every = [np.ones(len(c), dtype=bool) for c in samples.counted]
-    found = np.zeros(len(every[run]))
     others = known.sum(axis=0) - known[run]
-    first = np.arange(len(found)) < len(found) // 2
+    first = np.arange(len(every[run])) < len(every[run]) // 2
+    parts = []
     for half in (first, ~first):
         kept = samples.within([*every[:run], ~half, *every[run + 1 :]])
         own = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
-        held = _held(problem, _unknown(known, others + own))
+        unknown = _unknown(known, others + own)
+        held = _held(problem, unknown)
         part = _of(problem, problem.campaign, held)
         values = _fitted(part, kept, _at(problem, solution, held), solution)
-        found[half] = problem.residuals(values, [run])[0][half]
-    if apart:
-        found = samples.only([run]).without_deviations([found], solution.noise)[0]
-    return found[samples.counted[run]]
+        residuals = tuple(problem.residuals(values, [run]))
+        parts.append(LeftOut((run,), (half,), ~unknown, residuals))
+    return parts
 
 
 def _known(solution: Solution) -> Array:
@@ -116,9 +175,9 @@ def _known(solution: Solution) -> Array:
     return np.array([np.sum(jacobian[counted] ** 2, axis=0) for jacobian, counted in pairs])
 
 
-def _unknown(known: Array, rest: Array) -> npt.NDArray[np.bool_]:
+def _unknown(known: Array, rest: Array) -> Mask:
     """Of which parameters that rest of what is known says nothing, shape (k,)."""
-    unknown: npt.NDArray[np.bool_] = rest < INSENSITIVE * known.sum(axis=0)
+    unknown: Mask = rest < INSENSITIVE * known.sum(axis=0)
     return unknown
 
 
@@ -220,7 +279,7 @@ def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem
     return Problem(campaign, problem.law, problem.clock, problem.effects, fixed)
 
 
-def _held(problem: Problem, unknown: npt.NDArray[np.bool_]) -> dict[str, float]:
+def _held(problem: Problem, unknown: Mask) -> dict[str, float]:
     """The parameters of which nothing is known, at their null or where a search starts."""
     held = {}
     for i in np.asarray(problem.open)[unknown]:
@@ -236,11 +295,13 @@ def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
     return np.array([held.get(name, value) for name, value in known])
 
 
-def _halves(problem: Problem, solution: Solution) -> list[Array]:
+def _halves(problem: Problem, solution: Solution) -> list[LeftOut]:
     """Each half of a single run predicted from a fit to the other."""
-    residuals = []
-    first, second = solution.samples.halves()
-    for kept, left in ((first, second), (second, first)):
+    count = len(solution.samples.counted[0])
+    first = np.arange(count) < count // 2
+    parts = []
+    for half, kept in zip((~first, first), solution.samples.halves(), strict=True):
         values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
-        residuals.append(problem.residuals(values)[0][left.counted[0]])
-    return [np.concatenate(residuals)]
+        told = np.ones(solution.free, dtype=bool)
+        parts.append(LeftOut((0,), (half,), told, tuple(problem.residuals(values))))
+    return parts

@@ -9,9 +9,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.long_run import score_inflation
+from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise import LONGEST_MEMORY_S, Noise
 from jbf.estimation.problem import Problem
+from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples, least_weights
 from jbf.estimation.solution import Solution
 
@@ -58,7 +59,7 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
         )
         left.append(own)
         ways.append(before - own)
-    return min(share, 1.0 / score_inflation(ways, left, samples.steps_s))
+    return min(share, 1.0 / sure_inflation(ways, left, samples.steps_s))
 
 
 def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:
@@ -105,6 +106,16 @@ def promised_gain(r: Array, j: Array, count: int) -> float:
     """The same from rows of a likelihood of so many innovations: residual, derivatives."""
     left = max(unexplained_square(j, r), 1e-300)
     return count * float(np.log(max(float(r @ r), 1e-300) / left))
+
+
+def least_squares(design: Array, target: Array) -> Array:
+    """The shortest step along a design's columns, each of unit length, that explains a target
+    best."""
+    size = np.linalg.norm(design, axis=0)
+    size[size <= 0.0] = 1.0
+    left, axes = triangular(target, design / size)
+    step, *_ = np.linalg.lstsq(axes, left, rcond=INDEPENDENT)
+    return np.asarray(step / size)
 
 
 def unexplained(design: Array, target: Array) -> Array:

@@ -23,7 +23,7 @@ LEAST_WINDOWS = 8
 LEAST_RUNS = 3
 """Fewer runs have no scatter."""
 BY_CHANCE = 0.01
-"""Probability of a scatter of the runs that is taken for chance."""
+"""Probability of a scatter of runs or of windows that is taken for chance."""
 
 
 def score_square(directions: Array, innovations: Array, step_s: float) -> float:
@@ -68,6 +68,24 @@ def score_inflation(
         for d, e, step in zip(directions, innovations, steps_s, strict=True)
     )
     return max(found / (square * white), 1.0)
+
+
+def sure_inflation(
+    directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
+) -> float:
+    """The same where it is more than chance: a direction of a few breakaways has few windows, and
+    the mean square of a few numbers is no variance."""
+    ratio = score_inflation(directions, innovations, steps_s)
+    square = sum(float(np.sum(d**2)) for d in directions)
+    if ratio <= 1.0 or square <= 0.0:
+        return 1.0
+    # A sum of squares with unequal weights is worth so many equal ones (Satterthwaite 1946).
+    spread = sum(
+        float(long_run_variance(d[:, None] ** 2, step)[0, 0])
+        for d, step in zip(directions, steps_s, strict=True)
+    )
+    windows = square**2 / spread
+    return ratio if special.chdtrc(windows, windows * ratio) <= BY_CHANCE else 1.0
 
 
 def between_runs(

@@ -78,6 +78,13 @@ def _reference_temperature(campaign: Campaign) -> Starts:
     return (float(np.round(np.mean(means))),) if means else ()
 
 
+def _lateness(campaign: Campaign) -> Starts:
+    """From 0.3 s down to what a sample resolves of a jump, s."""
+    longest, step = 0.27, float(np.median([p.step_s for p in campaign.prepared]))
+    count = int(np.ceil(np.log(max(longest / (0.25 * step), 1.0)) / np.log(3.0)))
+    return tuple(longest / 3.0**k for k in range(count + 1))
+
+
 def _largest_n(campaign: Campaign) -> float:
     """The largest force on record but for a hundredth of the samples, N."""
     every = np.concatenate([p.friction_n[np.isfinite(p.friction_n)] for p in campaign.prepared])
@@ -94,6 +101,7 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
     "reference_temperature": _reference_temperature,
+    "lateness": _lateness,
     "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
     "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
 }

@@ -5,6 +5,7 @@
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
+use crate::page::Start;
 use crate::real::Real;
 use crate::relaxation::relax;
 
@@ -23,7 +24,9 @@ impl<T: Real> Effect<T> for SensorLag<T> {
             "one pole; a steep filter delays more than it rounds; a pure delay is another effect",
         )
         .parameters(&[
-            Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3]).null(0.0),
+            Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3])
+                .null(0.0)
+                .start(Start::Lateness),
         ]);
     const SPREADS_JUMPS: bool = true;
     /// The reading, N.

@@ -11,6 +11,7 @@ use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::delay_line::DelayLine;
 use crate::error::ParameterError;
 use crate::motion::Motion;
+use crate::page::Start;
 use crate::real::Real;
 
 /// Pure delay of the friction record against the motion record.
@@ -42,7 +43,8 @@ impl<T: Real> Effect<T> for TimeDelay<T> {
             [0.0, 2.0],
             &[0.025, 0.085, 0.235],
         )
-        .null(0.0)]);
+        .null(0.0)
+        .start(Start::Lateness)]);
     const MOVES_JUMPS: bool = true;
     type State = State<T>;
 

@@ -193,8 +193,7 @@ class MadeUp:
 
 def price(parameters: int, candidates: int) -> float:
     """What a gain of so many parameters must exceed: one in a hundred shared among candidates, 22
-    for what recordings do, and log n for each parameter beyond the first, where the gain tells as
-    much of it as the samples could (an effect with many peaks)."""
+    for what recordings do, and log n for each parameter beyond the first."""
     return float(stats.chi2.isf(0.01 / candidates, 1) + 22.0 + (parameters - 1) * np.log(N))
 
 

@@ -177,30 +177,3 @@ def test_what_the_residual_shows_counts_towards_what_recordings_do() -> None:
         asked = max(critical, white + DEFAULT.imperfection)
         assert rough.price(1, 10_000) == pytest.approx(asked)
         assert rough.to_dict()["white"] == white
-
-
-@pytest.mark.parametrize(
-    ("gain", "told"),
-    [(0.0, 33.0), (30.0, 33.0), (500.0, 500.0), (9999.0, 2000.0), (np.inf, 2000.0)],
-)
-def test_parameters_beyond_the_first_cost_what_a_gain_tells_of_them(
-    gain: float, told: float
-) -> None:
-    shared = replace(level(), imperfection=33.0 - level().white)
-    assert shared.price(1, 2000, gain) == pytest.approx(33.0)
-    assert shared.price(4, 2000, gain) == pytest.approx(33.0 + 3.0 * np.log(told))
-
-
-def test_noise_alone_seldom_gains_what_a_shape_unknown_at_the_null_is_asked_for() -> None:
-    """The largest gain over the time constant of a decay (Davies 1987), against its price without
-    what is asked for recordings."""
-    random = np.random.default_rng(3)
-    time = np.linspace(0.0, 1.0, 400)
-    shapes = np.array([np.exp(-time / tau) for tau in np.geomspace(0.01, 10.0, 60)])
-    shapes /= np.linalg.norm(shapes, axis=1)[:, None]
-    gains = np.max((random.standard_normal((40_000, 400)) @ shapes.T) ** 2, axis=1)
-    alone = replace(level(), chance=1e-3, false_alarms=1e-3 * CANDIDATES, imperfection=0.0)
-    above = np.mean(gains > alone.price(2, 400))
-    assert above < 1.5e-3
-    # Priced as one parameter it would not be.
-    assert np.mean(gains > alone.price(1, 400)) > 2.0e-3

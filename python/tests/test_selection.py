@@ -114,6 +114,23 @@ def test_an_effect_that_another_leaves_at_its_null_is_taken_out() -> None:
     assert left == ("inertia_leak",)
 
 
+def test_what_comes_in_anothers_place_may_make_a_third_needless() -> None:
+    # A law with a bend and a ringing drive stood in for one loss in the cell.
+    names = ["sensor_offset", "inertia_leak", "sensor_hysteresis"]
+    gains = {
+        "sensor_offset": 200.0,
+        "inertia_leak": 100.0,
+        "sensor_offset inertia_leak": 400.0,
+        "sensor_hysteresis": 900.0,
+        "sensor_offset sensor_hysteresis": 901.0,
+        # A search that is caught in a valley.
+        "inertia_leak sensor_hysteresis": 300.0,
+    }
+    made_up = made(gains, names=names)
+    found = reconsider(cast(Candidates, made_up), ("sensor_offset", "inertia_leak"))
+    assert found == ("sensor_hysteresis",)
+
+
 # ---- runs left out ----------------------------------------------------------------------------
 
 

@@ -5,10 +5,6 @@ In twice the log likelihood.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-import numpy as np
-
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
@@ -23,16 +19,9 @@ from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 
-def price_of(
-    candidates: Candidates, parameters: int, effects: Iterable[str] = (), gain: float = 0.0
-) -> float:
-    """What so many parameters must gain in a campaign (`Level.price`).
-
-    Of effects with many peaks more is known than their gain tells: they were searched for at as
-    many places as the samples tell apart.
-    """
-    gain = np.inf if many_peaks(effects) else gain
-    return candidates.level.price(parameters, candidates.campaign.samples.count, gain)
+def price_of(candidates: Candidates, parameters: int) -> float:
+    """What so many parameters must gain in a campaign."""
+    return candidates.level.price(parameters, candidates.campaign.samples.count)
 
 
 def evidence(
@@ -55,7 +44,7 @@ def evidence(
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
-    return gain - price_of(candidates, richer.free - simpler.free, richer.effects, gain)
+    return gain - price_of(candidates, richer.free - simpler.free)
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
@@ -97,14 +86,9 @@ def swap_cost(
     # As for evidence: where even the whole leaves a smooth error, samples count for less.
     share = effective_share(whole)
 
-    gained = share * likelihood_gain(whole, near)
-
-    def price(solution: Solution) -> float:
-        return price_of(candidates, solution.free, solution.effects, gained)
-
     def cost(solution: Solution) -> float:
         lost = share * likelihood_gain(whole, solution)
-        return lost + price(solution) - price(whole)
+        return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
 
     policy = candidates.policy
     score = candidates.score_test(effects, near)

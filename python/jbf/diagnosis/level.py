@@ -100,23 +100,11 @@ class Level:
         """The same of white noise: what the level alone asks, shared among the candidates."""
         return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
 
-    def price(self, parameters: int, samples: int, gain: float = 0.0) -> float:
-        """What so many parameters must gain.
-
-        Each beyond the first costs the logarithm of how much is known of it (Schwarz 1978): not of
-        how many samples there are, but of the gain. It says how an effect looks, and of one that
-        hardly shows there is little to see; so the maximum over it of what noise gains rises too
-        (Davies 1987).
-
-        Parameters
-        ----------
-        gain
-            What was gained; at least what one parameter must gain is meant, and no more than the
-            samples could tell.
-        """
+    def price(self, parameters: int, samples: int) -> float:
+        """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
         more = max(parameters, 1) - 1
         least = max(self.critical, self.white + self.imperfection, self.worth)
-        return least + more * float(np.log(max(min(max(gain, least), samples), 1.0)))
+        return least + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

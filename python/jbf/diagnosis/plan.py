@@ -144,9 +144,7 @@ def plan(
     effects = _effects(candidates, model)
     told = [_told(candidates, model, effects, run, noise_n) for _, run in motions]
     own = len(candidates.fitted(model.effects).problem.open)
-    prices = np.array(
-        [price_of(candidates, max(len(e.problem.open) - own, 1), [e.name]) for e in effects]
-    )
+    prices = np.array([price_of(candidates, max(len(e.problem.open) - own, 1)) for e in effects])
     chosen = _chosen(told, own, prices, count)
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)

@@ -150,7 +150,7 @@ class _Seen:
 
     @classmethod
     def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Seen:
-        price = price_of(candidates, _parameters(runs.base, model), [model.name])
+        price = price_of(candidates, _parameters(runs.base, model))
         counts = runs.counts(runs.shown(runs.change(model, 1.0))[:, 0])
         parameters = _parameters(runs.base, model)
         least = [non_centrality(price, parameters, p, counts) for p in LEVELS]
@@ -269,13 +269,11 @@ def _power(
     most, like = np.inf, []
     if np.isfinite(own.times[0]):
         parameters, tie = _parameters(runs.base, model), candidates.policy.tie
-        price = price_of(candidates, parameters, [name])
+        price = price_of(candidates, parameters)
         rivals: dict[str, tuple[float, float]] = {}
         for other, rival in seen.items():
             if other != name:
-                dearer = price - price_of(
-                    candidates, _parameters(runs.base, models[other]), [other]
-                )
+                dearer = price - price_of(candidates, _parameters(runs.base, models[other]))
                 least = max(tie + dearer, 0.25 * tie)
                 rivals[other] = (left_apart(own.change, rival.change, runs), least)
         told = {other: chance_apart(*rival) for other, rival in rivals.items()}

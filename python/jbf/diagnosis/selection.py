@@ -202,13 +202,22 @@ def still_needed(candidates: Candidates, present: Names) -> Names:
 def reconsider(
     candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
 ) -> Names:
-    """Take out effects that are no longer needed; exchange those that another replaces better.
+    """Take out effects that are no longer needed; exchange those that another replaces better;
+    until nothing changes: what comes in another's place may make more of them needless.
 
     Parameters
     ----------
     unconfirmed
         Effects that runs left out have just spoken against: none of them comes in by the back door.
     """
+    seen = [present]
+    while (current := _questioned(candidates, seen[-1], unconfirmed)) not in seen:
+        seen.append(current)
+    return current
+
+
+def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
+    """Each of the effects in turn."""
     current = present
     for name in present:
         if len(current) < 2 or name not in current or not may_go(name, current):

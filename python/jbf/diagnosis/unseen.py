@@ -64,7 +64,7 @@ def propose_to_see(
     base = Rival(candidates.fitted(present))
     richer = {name: _with_usual(candidates, present, name) for name in hidden}
     prices = {
-        name: price_of(candidates, len(problem.open) - base.solution.free, problem.effects)
+        name: price_of(candidates, len(problem.open) - base.solution.free)
         for name, (problem, _) in richer.items()
     }
     best: tuple[float, float] = (0.0, 0.0)

@@ -59,10 +59,12 @@ def test_it_is_the_density_of_a_gaussian_prediction(weights: bool) -> None:
 def test_a_parameter_that_was_held_makes_no_prediction_uncertain() -> None:
     rng = np.random.default_rng(5)
     solution = solved(rng)
-    errors = rng.standard_normal(COUNTS[1])
-    part = whole(1, errors, (True, False, True))
-    found = surprise(solution, [part], solution.samples, WHITE, VARIANCE)
-    assert found == pytest.approx(gaussian(solution, 1, errors, [0, 2]), rel=1e-9)
+    errors = [rng.standard_normal(n) for n in COUNTS]
+    parts = [whole(0, errors[0]), whole(1, errors[1], (True, False, True)), whole(2, errors[2])]
+    found = surprise(solution, parts, solution.samples, WHITE, VARIANCE)
+    told = ([0, 1, 2], [0, 2], [0, 1, 2])
+    wanted = sum(gaussian(solution, i, errors[i], told[i]) for i in range(3))
+    assert found == pytest.approx(wanted, rel=1e-9)
 
 
 def test_an_error_along_what_the_others_do_not_know_tells_little() -> None:
@@ -74,8 +76,9 @@ def test_an_error_along_what_the_others_do_not_know_tells_little() -> None:
     along = solution.jacobian[0][:, 2] / np.linalg.norm(solution.jacobian[0][:, 2])
     across = np.linalg.qr(np.column_stack([solution.jacobian[0], rng.standard_normal(30)]))[0][:, 3]
     size = 10.0 * np.sqrt(VARIANCE)
+    rest = [whole(i, np.zeros(COUNTS[i])) for i in (1, 2)]
     base, one, other = (
-        surprise(solution, [whole(0, size * way)], solution.samples, WHITE, VARIANCE)
+        surprise(solution, [whole(0, size * way), *rest], solution.samples, WHITE, VARIANCE)
         for way in (np.zeros(30), along, across)
     )
     assert other - base == pytest.approx(100.0, rel=0.01)
@@ -87,31 +90,35 @@ def test_an_error_along_what_the_others_do_not_know_tells_little() -> None:
 def test_half_of_a_run_is_predicted_from_the_other_half_too() -> None:
     rng = np.random.default_rng(7)
     solution = solved(rng)
-    errors = rng.standard_normal(COUNTS[0])
-    first = np.arange(COUNTS[0]) < 15
-    part = LeftOut((0,), (first,), np.ones(3, dtype=bool), (errors,))
-    found = surprise(solution, [part], solution.samples, WHITE, VARIANCE)
+    errors = [rng.standard_normal(n) for n in COUNTS]
+    told, first = np.ones(3, dtype=bool), np.arange(COUNTS[0]) < 15
+    halves = [LeftOut((0,), (half,), told, (errors[0],)) for half in (first, ~first)]
+    parts = [*halves, whole(1, errors[1]), whole(2, errors[2])]
+    found = surprise(solution, parts, solution.samples, WHITE, VARIANCE)
     j = np.concatenate([solution.jacobian[i] for i in range(3)])
     size = np.linalg.norm(j, axis=0)
-    own = solution.jacobian[0][first] / size
-    known = (j / size).T @ (j / size) - own.T @ own + INSENSITIVE * np.eye(3)
-    spread = VARIANCE * (np.eye(15) + own @ np.linalg.solve(known, own.T))
-    density = stats.multivariate_normal(cov=spread).logpdf(errors[first])
-    wanted = -2.0 * density - 15 * np.log(2.0 * np.pi * VARIANCE)
+    wanted = sum(gaussian(solution, i, errors[i], [0, 1, 2]) for i in (1, 2))
+    for half in (first, ~first):
+        own = solution.jacobian[0][half] / size
+        known = (j / size).T @ (j / size) - own.T @ own + INSENSITIVE * np.eye(3)
+        spread = VARIANCE * (np.eye(15) + own @ np.linalg.solve(known, own.T))
+        density = stats.multivariate_normal(cov=spread).logpdf(errors[0][half])
+        wanted += -2.0 * density - 15 * np.log(2.0 * np.pi * VARIANCE)
     assert found == pytest.approx(wanted, rel=1e-9)
 
 
 def test_coloured_errors_are_whitened_first() -> None:
     rng = np.random.default_rng(8)
     solution, noise = solved(rng), Noise(0.3, 0.6)
-    errors = rng.standard_normal(COUNTS[2])
-    found = surprise(solution, [whole(2, errors)], solution.samples, noise, VARIANCE)
+    errors = [rng.standard_normal(n) for n in COUNTS]
+    parts = [whole(i, e) for i, e in enumerate(errors)]
+    found = surprise(solution, parts, solution.samples, noise, VARIANCE)
     white = [noise.innovations(np.asarray(j), 0.1) for j in solution.jacobian]
     same = Solution(
         (), np.zeros(3), solution.residuals, white, WHITE, 0.0, True, "", solution.samples
     )
-    left = whole(2, noise.innovations(errors, 0.1))
-    assert found == pytest.approx(surprise(same, [left], same.samples, WHITE, VARIANCE), rel=1e-9)
+    left = [whole(i, noise.innovations(e, 0.1)) for i, e in enumerate(errors)]
+    assert found == pytest.approx(surprise(same, left, same.samples, WHITE, VARIANCE), rel=1e-9)
     square, count = mean_square(solution, solution.samples, noise)
     own = np.concatenate([noise.innovations(r, 0.1) for r in solution.residuals])
     assert (square, count) == (pytest.approx(np.mean(own**2)), sum(COUNTS))

@@ -9,6 +9,7 @@ determinant of its covariance (Geisser & Eddy 1979; Bjornstad 1990).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 
 def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[float, int]:
@@ -26,6 +28,27 @@ def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[flo
     empty = [np.zeros((len(r), 0)) for r in solution.residuals]
     r, _ = samples.stacked(solution.residuals, empty, noise)
     return float(r @ r) / max(len(r), 1), len(r)
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """What samples that were left out say: the squares of their errors, what those have of each
+    derivative, and the derivatives' own products; in few numbers of many rows."""
+
+    square: float
+    pull: Array
+    products: Array
+    told: Mask
+
+    @classmethod
+    def of(cls, part: LeftOut, solution: Solution, samples: Samples, noise: Noise) -> _Rows:
+        own = [solution.jacobian[i] for i in part.runs]
+        e, j = samples.only(part.runs).stacked(part.residuals, own, noise)
+        # Cut after the whitening: a half's first innovation knows the sample before it.
+        weight = [samples.weight[i] > 0.0 for i in part.runs]
+        left = np.concatenate([m[w] for m, w in zip(part.left, weight, strict=True)])
+        e, j = e[left], j[left]
+        return cls(float(e @ e), j.T @ e, j.T @ j, part.told)
 
 
 def surprise(
@@ -41,39 +64,28 @@ def surprise(
     Parameters
     ----------
     parts
-        What was left out of fits near the solution, whose derivatives are taken.
+        What was left out of fits near the solution, whose derivatives are taken; each sample in one
+        of them.
     samples, noise
         The weight of each sample, and what whitens residuals: those of all models compared.
     variance
         Of the innovations, N^2.
     """
-    own = [solution.jacobian[i] for i in range(len(solution.residuals))]
-    _, j = samples.stacked(solution.residuals, own, noise)
-    size = np.linalg.norm(j, axis=0)
+    rows = [_Rows.of(part, solution, samples, noise) for part in parts]
+    whole = np.sum([own.products for own in rows], axis=0)
+    size = np.sqrt(np.diag(whole))
     size[size <= 0.0] = 1.0
-    whole = (j / size).T @ (j / size)
-    return sum(_of(part, own, size, whole, samples, noise, variance) for part in parts)
+    return sum(_of(own, whole, size, variance) for own in rows)
 
 
-def _of(
-    part: LeftOut,
-    jacobian: Sequence[Array],
-    size: Array,
-    whole: Array,
-    samples: Samples,
-    noise: Noise,
-    variance: float,
-) -> float:
-    # The mask cuts after the whitening: a half's first innovation knows the sample before it.
-    e, j = samples.only(part.runs).stacked(part.residuals, [jacobian[i] for i in part.runs], noise)
-    weight = [samples.weight[i] > 0.0 for i in part.runs]
-    left = np.concatenate([m[w] for m, w in zip(part.left, weight, strict=True)])
-    e, j = e[left], (j / size)[left][:, part.told]
-    # What nobody knows is known to a hundred times its error in the end.
-    known = whole[np.ix_(part.told, part.told)] + INSENSITIVE * np.eye(int(part.told.sum()))
-    before = known - j.T @ j
-    pull = j.T @ e
-    square = float(e @ e - pull @ np.linalg.solve(known, pull))
+def _of(rows: _Rows, whole: Array, size: Array, variance: float) -> float:
+    told = rows.told
+    scale = np.outer(size[told], size[told])
+    # What nobody else knows is known to a hundred times its error in the end.
+    known = whole[np.ix_(told, told)] / scale + INSENSITIVE * np.eye(len(scale))
+    before = known - rows.products[np.ix_(told, told)] / scale
+    pull = rows.pull[told] / size[told]
+    square = rows.square - float(pull @ np.linalg.solve(known, pull))
     _, after_det = np.linalg.slogdet(known)
     _, before_det = np.linalg.slogdet(before)
     return square / variance + float(after_det - before_det)

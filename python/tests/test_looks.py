@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from by_hand import coulomb, four_runs
 from jbf import Rig, diagnose
-from jbf.diagnosis import late_channels, recipe, rounds
+from jbf.diagnosis import late_channels, one_round, recipe, rounds
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import Selected, step
@@ -65,6 +65,28 @@ def test_once_an_effect_is_in_the_films_beginning_is_judged_by_it(
     assert [s.effects for s in found.steps] == [(), ("inertia_leak",)]
     assert found.steps[-1].trials
     assert found.model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_round_by_hand_judges_the_films_beginning_by_its_effects_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The first half has a force more that no law knows.
+    runs = [
+        replace(r, friction_n=r.friction_n + np.where(r.time_s < 5.0, 3.0, 0.0) * np.sin(r.time_s))
+        for r in four_runs(lambda t, v, a: coulomb(t, v, a) + a, noise_n=0.1)
+    ]
+
+    def first_half(problem: Problem, solution: Solution) -> Campaign:
+        assert problem.effects == solution.effects == ("inertia_leak",)
+        return problem.campaign.without([r.time_s < 5.0 for r in runs])
+
+    monkeypatch.setattr(one_round, "settled_again", first_half)
+    found = one_round.one_round(Rig(), runs, ["inertia_leak"], law="coulomb")
+    assert found.step.effects == ("inertia_leak",)
+    assert found.step.holdout_rms_n == pytest.approx(0.1, rel=0.05)
+    monkeypatch.setattr(one_round, "settled_again", lambda problem, solution: None)
+    found = one_round.one_round(Rig(), runs, ["inertia_leak"], law="coulomb")
+    assert found.step.holdout_rms_n > 0.5
 
 
 @pytest.mark.parametrize("most", [1, DEFAULT.most_shifts])

@@ -83,24 +83,30 @@ class Approach:
         self._each = each
         self._stepped = [] if stepped is None else [stepped]
         self._squares: dict[bytes, float] = {}
+        self._kept: dict[int, list[Array]] = {}
         self.visited = Visited()
 
     @cached_property
     def _nearest(self) -> Array:
         """The best start from the first seed, or from a smaller model."""
-        return min([*self._likely(self._groups[0]), *self._stepped], key=self._square)
+        return min([*self._likely(0), *self._stepped], key=self._square)
 
     @cached_property
     def starts(self) -> list[Array]:
         """Where to start from, best first."""
-        groups = [self._likely(group) for group in self._groups]
+        groups = [self._likely(k) for k in range(len(self._groups))]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
         every = itertools.chain(*groups, self._stepped)
         return sorted(every, key=self._square)
 
-    def _likely(self, group: list[Array]) -> list[Array]:
-        """Of many starts, those that predict one run better than most do."""
+    def _likely(self, k: int) -> list[Array]:
+        """Of many starts of a seed, those that predict one run better than most do."""
+        if k not in self._kept:
+            self._kept[k] = self._likeliest(self._groups[k])
+        return self._kept[k]
+
+    def _likeliest(self, group: list[Array]) -> list[Array]:
         few = self.few
         runs = few.campaign.prepared
         if len(group) <= MANY or len(runs) < 2:

@@ -78,14 +78,17 @@ def test_chance_in_a_few_windows_is_no_inflation(count: int) -> None:
     assert np.mean(np.array(sure) > 1.0) < 2.0 * BY_CHANCE
 
 
-def test_more_than_chance_stays_however_few_the_windows() -> None:
+@pytest.mark.parametrize("scale", [1e-120, 1.0, 1e120])
+def test_more_than_chance_stays_however_few_the_windows(scale: float) -> None:
     way = breakaways(4)
     noise = np.random.default_rng(6).standard_normal(len(way))
     loud = noise + 8.0 * way * np.repeat([1.0, -1.0, 1.0, -1.0], 400)
     for ways, noises in (([way], [loud]), ([way[:800], way[800:]], [loud[:800], loud[800:]])):
         steps = (STEP_S,) * len(ways)
         whole = score_inflation(ways, noises, steps)
-        assert sure_inflation(ways, noises, steps) == whole > 10.0
+        found = sure_inflation([scale * w for w in ways], noises, steps)
+        assert found == pytest.approx(whole)
+        assert whole > 10.0
     slow = coloured(2, 0.98, 8000)
     ways = [np.sin(0.05 * np.arange(8000))]
     assert sure_inflation(ways, [slow], (STEP_S,)) == score_inflation(ways, [slow], (STEP_S,))

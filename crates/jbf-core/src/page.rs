@@ -56,7 +56,7 @@ pub enum Start {
     StrokeMiddle,
     /// Half of that way.
     StrokeHalf,
-    /// From what a sample resolves to what lasts a dozen of them, s.
+    /// At the catalogue's values, and down to what a sample resolves.
     Lateness,
     /// On a linear axis: a play of a small share of a stroke.
     DrivePlay,

@@ -76,9 +76,12 @@ def sure_inflation(
     """The same where it is more than chance: a direction of a few breakaways has few windows, and
     the mean square of a few numbers is no variance."""
     ratio = score_inflation(directions, innovations, steps_s)
-    square = sum(float(np.sum(d**2)) for d in directions)
-    if ratio <= 1.0 or square <= 0.0:
+    # Of a direction far above no noise at all the fourth powers would overflow.
+    largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
+    if ratio <= 1.0 or largest <= 0.0:
         return 1.0
+    directions = [d / largest for d in directions]
+    square = sum(float(np.sum(d**2)) for d in directions)
     # A sum of squares with unequal weights is worth so many equal ones (Satterthwaite 1946).
     spread = sum(
         float(long_run_variance(d[:, None] ** 2, step)[0, 0])

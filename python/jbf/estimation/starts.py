@@ -78,13 +78,6 @@ def _reference_temperature(campaign: Campaign) -> Starts:
     return (float(np.round(np.mean(means))),) if means else ()
 
 
-def _lateness(campaign: Campaign) -> Starts:
-    """From 0.3 s down to what a sample resolves of a jump, s."""
-    longest, step = 0.27, float(np.median([p.step_s for p in campaign.prepared]))
-    count = int(np.ceil(np.log(max(longest / (0.25 * step), 1.0)) / np.log(3.0)))
-    return tuple(longest / 3.0**k for k in range(count + 1))
-
-
 def _largest_n(campaign: Campaign) -> float:
     """The largest force on record but for a hundredth of the samples, N."""
     every = np.concatenate([p.friction_n[np.isfinite(p.friction_n)] for p in campaign.prepared])
@@ -101,13 +94,23 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
 """What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
     "reference_temperature": _reference_temperature,
-    "lateness": _lateness,
     "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
     "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
 }
 """What does not ask whether the law's parameters are newtons: the records are."""
 
 
+def _down_to_a_sample(page: Parameter, campaign: Campaign) -> Starts:
+    """The catalogue's, and by thirds down to what a sample resolves of a jump, s."""
+    least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
+    count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
+    return (*page.starts, *(least / 3.0**k for k in range(1, count + 1)))
+
+
+RULES_BESIDE_THE_CATALOGUE: dict[str, Callable[[Parameter, Campaign], Starts]] = {
+    "lateness": _down_to_a_sample,
+}
+"""What goes on from the catalogue's values."""
 PITCHES = ("pitch", "ripple_pitch")
 
 
@@ -155,5 +158,7 @@ def with_starts(
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
         if page.start in RULES_OF_ANY_LAW:
             page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
+        if page.start in RULES_BESIDE_THE_CATALOGUE:
+            page = _inside(page, RULES_BESIDE_THE_CATALOGUE[page.start](page, campaign))
         found[name] = page
     return found

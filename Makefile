@@ -24,7 +24,7 @@ $(shell rm -f $(BUILT))
 endif
 
 .PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
-	sbom coverage licences publish-check wheel wheel-test reproducible lowest clean
+	sbom coverage licences publish-check wheel wheel-test reproducible lowest free-threaded clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
@@ -50,6 +50,7 @@ help:
 	@echo "make wheel-test  that wheel in a new environment: first diagnosis, tests against what is installed"
 	@echo "make reproducible  builds both again in another folder: the same bytes?"
 	@echo "make lowest  that wheel with the oldest versions that pyproject.toml allows"
+	@echo "make free-threaded PYTHON=python3.14t  tests in four threads at once, without the interpreter lock"
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    builds the extension and the jbf command into $(VENV)"
@@ -234,6 +235,17 @@ lowest: $(MADE)
 	$(VENV)/bin/python release/lowest.py dist
 
 # Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
+# Needs a free-threaded interpreter: PYTHON=python3.14t. Each test of some files in four threads at once.
+FREE := target/free-threaded
+free-threaded:
+	@$(PYTHON) -c 'import sys; sys.exit(sys._is_gil_enabled())' 2>/dev/null || \
+		{ echo "SKIPPED: $(PYTHON) has an interpreter lock; PYTHON=python3.14t names one without"; exit 0; }; \
+	$(PYTHON) -m venv $(FREE) && \
+	$(FREE)/bin/pip install --quiet --disable-pip-version-check pytest pytest-run-parallel hypothesis . && \
+	$(FREE)/bin/python -m pytest -q python/tests/test_parallel_calls.py && \
+	$(FREE)/bin/python -m pytest -q --parallel-threads=4 $(addprefix python/tests/test_, trajectory.py \
+		batch.py model.py left_out.py predictive.py level.py)
+
 firmware: $(BUILT)
 	$(VENV)/bin/python examples/firmware/report.py
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -111,3 +112,18 @@ def test_runs_that_are_predicted_worse_and_better_are_counted() -> None:
     assert found.before_n == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-12)
     assert found.better in [k / RUNS for k in range(RUNS + 1)]
     assert not found.halved
+
+
+def test_models_are_compared_at_the_samples_that_both_leave() -> None:
+    # What the richer one sets aside beside its jumps the simpler one predicts badly.
+    law, own, noise = campaigns(15, 1)[0]
+    wild = [np.where(np.arange(COUNT) < 20, 30.0, 0.0) + e for e in noise]
+    fewer = replace(SAMPLES, counted=(np.arange(COUNT) >= 20,) * RUNS)
+    before, left = fitted(law, wild)
+    after, richer_left = fitted(
+        [np.column_stack(both) for both in zip(law, own, strict=True)], wild
+    )
+    found = Confirmation.of(before, replace(after, samples=fewer), left, richer_left)
+    alike = Confirmation.of(before, after, left, richer_left)
+    assert found.before_n < 0.7 * alike.before_n
+    assert found.after_n == pytest.approx(found.before_n, rel=0.15)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
+import sysconfig
 from concurrent.futures import ThreadPoolExecutor
 
 import jbf
@@ -37,3 +40,14 @@ def test_one_model_predicts_on_many_threads(campaigns: list[list[jbf.Run]]) -> N
     with ThreadPoolExecutor(THREADS) as pool:
         found = list(pool.map(model.predict, runs))
     assert [f.tobytes() for f in found] == [model.predict(run).tobytes() for run in runs]
+
+
+@pytest.mark.skipif(
+    not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="this interpreter has a lock"
+)
+def test_the_extension_brings_no_lock_back() -> None:
+    # In a process of its own: some other library of the tests may ask for one.
+    asked = "import sys, jbf; jbf.effects(); print(sys._is_gil_enabled())"
+    told = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == "False"
+    assert "lock" not in told.stderr

@@ -15,7 +15,7 @@ from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone
 from jbf.diagnosis.selection import Round, reconsider, try_candidates, weights
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
-from jbf.estimation.noise import WHITE
+from jbf.estimation.noise import WHITE, Noise
 from made_up import BARE_N, SAMPLES, MadeUp, N, price, sets
 
 FOUR = ["sensor_offset", "sensor_drift", "sensor_lag", "inertia_leak"]
@@ -373,6 +373,10 @@ def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
     richer = replace(richer, residuals=right.residuals, noise=WHITE, cost=cost)
     assert evidence(candidates, richer, astray) > 60.0
     assert evidence_alone(candidates, richer, astray) < 0.0
+    # Nor is what a noise costs that was described with those samples in it.
+    smooth = problem.solution(right.values, right.samples, Noise(0.5, 0.9))
+    assert evidence(candidates, richer, smooth) > 60.0
+    assert evidence_alone(candidates, richer, smooth) < 0.0
     # On the same samples the two are one.
     whole = astray.samples.cost(right.residuals, WHITE)
     same = replace(richer, samples=astray.samples, cost=whole)

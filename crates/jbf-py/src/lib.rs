@@ -18,9 +18,9 @@ mod trajectory;
 
 use pyo3::prelude::*;
 
-/// The extension module `jbf._core`. It has not been run without the interpreter lock yet: on an
-/// interpreter that can do without, importing it brings the lock back.
-#[pymodule(gil_used = true)]
+/// The extension module `jbf._core`. Its classes do not change once they are made: it asks for no
+/// interpreter lock.
+#[pymodule(gil_used = false)]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;

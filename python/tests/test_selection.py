@@ -159,6 +159,8 @@ def test_runs_left_out_have_a_veto(gain: float, share: float, outcome: str) -> N
     assert (found.leader == "sensor_lag") == (outcome == "added")
     words = "largest evidence" if outcome == "added" else "predicts left-out runs no better"
     assert words in found.trials[0].reason
+    lacking = f"{share:.0%} of the gain in their log density"
+    assert (lacking in found.trials[0].reason) == (outcome == "rejected")
     assert found.unconfirmed == (set() if outcome == "added" else {"sensor_lag"})
 
 

@@ -73,6 +73,10 @@ class Confirmation:
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
         return f"left-out {what} {self.after_n:.4g} {unit}"
 
+    def lacking(self, unit: str) -> str:
+        """The same, and what their density has of the gain."""
+        return f"{self.said(unit)}, {self.density:.0%} of the gain in their log density"
+
 
 def _rms(errors: Array) -> float:
     return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0

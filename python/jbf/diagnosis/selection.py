@@ -92,7 +92,7 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
                 outcome, reason = "added", f"largest evidence; {out.said(unit)}"
             else:
                 outcome = "rejected"
-                reason = f"fits better but predicts left-out runs no better ({out.said(unit)})"
+                reason = f"fits better but predicts left-out runs no better ({out.lacking(unit)})"
                 unconfirmed.add(name)
         elif gain > 0 and _leaves_more(found, least, policy):
             outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"

@@ -9,7 +9,7 @@ import jbf
 import pytest
 from jbf import Fit, Rig, Run
 from jbf.cli import main
-from jbf.diagnosis import rounds
+from jbf.diagnosis import one_round, rounds
 from jbf.errors import Stopped
 from jbf.estimation.problem import Problem
 
@@ -73,6 +73,18 @@ def test_an_interrupted_diagnosis_has_the_model_of_its_round(
         jbf.diagnose(rig, runs)
     assert first.value.fit.model.effects == ()
     assert first.value.fit.rms_n == pytest.approx(bare_fit.rms_n, rel=0.05)
+
+
+def test_an_interrupted_round_by_hand_has_its_model(
+    monkeypatch: pytest.MonkeyPatch, rig: Rig, runs: list[Run]
+) -> None:
+    def interrupted(*_: object) -> object:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(one_round, "try_candidates", interrupted)
+    with pytest.raises(Stopped) as stopped:
+        one_round.one_round(rig, runs, ["coulomb_drag"])
+    assert stopped.value.fit.model.effects == ("coulomb_drag",)
 
 
 def test_the_command_writes_the_best_and_says_so(

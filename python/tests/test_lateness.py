@@ -22,7 +22,7 @@ from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from made_up import MadeUp, sets
+from made_up import MadeUp, sets, solution
 
 CHANCE = DEFAULT.deviation_chance
 NOISE_N = 0.03
@@ -323,3 +323,9 @@ def test_what_runs_that_differ_are_all_late_besides_is_found() -> None:
         late_channels._moved(problem, late_s, 0.0), whole.solution, late_s, 0.0
     )
     np.testing.assert_allclose(late_channels._all_alike(problem, right).late_s, late_s, atol=1.2e-3)
+
+
+@pytest.mark.parametrize(("gain", "counts"), [(6.7, False), (7.1, True)])
+def test_a_lateness_gains_by_schwarzs_criterion(gain: float, counts: bool) -> None:
+    # One run of a thousand samples: log 1000 = 6.91.
+    assert late_channels._gains(solution((), 0.0), solution((), gain)) == counts

@@ -119,6 +119,11 @@ def test_a_search_finds_its_way_on_some_of_many_runs(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(rows, "MOST_SEARCHED", 1000)
     some = every_so_many([100] * 50, [f"{49 - k:02}" for k in range(50)])
     assert some == list(range(9, 50, 10))
+    # From twice as many runs as they would be apart.
+    names = [f"{k}" for k in range(10)]
+    assert every_so_many([200] * 10, names) == [0, 4, 8]
+    assert every_so_many([250] * 8, names[:8]) == [0, 4]
+    assert every_so_many([280] * 7, names[:7]) == list(range(7))
     # A few long runs are all taken.
     assert every_so_many([5000, 5000], ["a", "b"]) == [0, 1]
     monkeypatch.setattr(rows, "MOST_SEARCHED", 8000)

@@ -14,6 +14,7 @@ from jbf import Rig, Run, diagnose
 from jbf.diagnosis import recipe, standing
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import Disagreement, disagreement
+from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.rounds import Selected, step
 from jbf.diagnosis.standing import best_predicting, confounders
 from jbf.estimation.campaign import Campaign
@@ -100,6 +101,22 @@ def test_a_name_costs_twenty_times_the_disagreement(
     made_up = MadeUp([OFFSET], sets({"": 0.0, OFFSET: gain}))
     monkeypatch.setattr(standing, "disagreement", lambda problem, whole, name: own)
     assert confounders(cast(Candidates, made_up), (OFFSET,)) == (() if stays else (OFFSET,))
+
+
+@pytest.mark.parametrize(
+    ("gain", "share", "stays"),
+    [(80.0, 0.4, False), (80.0, 0.05, True), (100.0, 0.4, True), (88.0, 0.4, False)],
+)
+def test_weak_evidence_makes_no_name_beside_more_than_it_explains(
+    gain: float, share: float, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # 29 of it is the price; a gain of 80 in a thousand samples is 7.7 % of the mean square.
+    agreed = Disagreement(0.0, 4, {})
+    monkeypatch.setattr(standing, "disagreement", lambda problem, whole, name: agreed)
+    made_up = cast(Candidates, MadeUp([OFFSET], sets({"": 0.0, OFFSET: gain})))
+    remains = (Remainder("time", "", 0.01), Remainder("stroke", "", share))
+    assert confounders(made_up, (OFFSET,), remains) == (() if stays else (OFFSET,))
+    assert confounders(made_up, (OFFSET,)) == ()
 
 
 def test_of_smooth_residuals_a_gain_is_worth_less(monkeypatch: pytest.MonkeyPatch) -> None:

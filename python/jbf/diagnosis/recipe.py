@@ -148,7 +148,7 @@ def _diagnose(
     campaign = candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
-    doubted = confounders(candidates, present) if remains else ()
+    doubted = confounders(candidates, present, remains) if remains else ()
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
     if doubted and not _remainder(candidates, named):

@@ -2,8 +2,9 @@
 predicts best.
 
 A name rests on its own evidence: bursts, tones or a cell that is not straight beside it take
-nothing from it. What a confounder stands in for differs from run to run, and so do the parameters
-that the runs ask of it: that takes its name, not its place in the model where it helps to predict.
+nothing from it, unless that is weak and they are larger. What a confounder stands in for differs
+from run to run, and so do the parameters that the runs ask of it: that takes its name, not its
+place in the model where it helps to predict.
 """
 
 from __future__ import annotations
@@ -13,24 +14,35 @@ from dataclasses import replace
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import disagreement
-from jbf.diagnosis.ledger import Step, Trial
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.verdict import name_stands
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 
 Names = tuple[str, ...]
 
 
-def confounders(candidates: Candidates, present: Names) -> Names:
-    """The effects whose own parameters the runs do not agree on."""
+def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
+    """The effects whose own parameters the runs do not agree on; and those of weak evidence that
+    explain less than the largest of what remains does: to a part of that they may be a likeness.
+
+    Parameters
+    ----------
+    remains
+        What stands above the noise beside the effects present.
+    """
     whole, problem = candidates.converge(present), candidates.fitted(present).problem
-    share = effective_share(whole)
+    share, policy = effective_share(whole), candidates.policy
+    largest = max((r.share for r in remains), default=0.0)
     found = []
     for name in present:
-        rest = tuple(e for e in present if e != name)
-        gain = likelihood_gain(whole, candidates.converge(rest)) * share
+        rest = candidates.converge(tuple(e for e in present if e != name))
+        gain = likelihood_gain(whole, rest) * share
         own = disagreement(problem, whole, name)
-        beyond = own.gain - own.degrees if own.beyond_chance(candidates.policy) else None
-        if not name_stands(gain, beyond, candidates.policy):
+        beyond = own.gain - own.degrees if own.beyond_chance(policy) else None
+        explained = 1.0 - (whole.rms_n / rest.rms_n) ** 2
+        weak = gain - price_of(candidates, whole.free - rest.free) <= policy.weak
+        if (weak and explained < largest) or not name_stands(gain, beyond, policy):
             found.append(name)
     return tuple(found)
 
@@ -43,7 +55,9 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
     return present if whole < less else named
 
 
-CONFOUNDER = "the runs disagree on its parameters: it stands in for something else"
+CONFOUNDER = (
+    "it stands in for something else: the runs disagree on it, or more remains than it explains"
+)
 REPLACED = "added, and not needed beside what came later"
 
 

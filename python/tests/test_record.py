@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pickle
 import random
-import time
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 
 import numpy as np
 import pytest
@@ -329,17 +330,29 @@ def test_an_error_travels_between_processes() -> None:
     assert (again.row, again.column, again.key) == (3, "load_n", None)
 
 
-def test_reading_is_quick(write: Write) -> None:
-    path = write(HEADER, *(f"{0.02 * i:.3f},5.42412,0.000271,-0.4962,104.0" for i in range(6301)))
+def test_a_cell_costs_no_call_of_its_own(write: Write) -> None:
+    """Columns are read as arrays; what is done line by line is to find where lines end.
 
-    def best_s(read: Callable[[], object]) -> float:
-        def once() -> float:
-            start_s = time.process_time()
-            read()
-            return time.process_time() - start_s
+    Seconds are `benches/reading.py`'s.
+    """
 
-        return min(once() for _ in range(5))
+    def calls(rows: int) -> int:
+        path = write(
+            HEADER, *ROWS[:1], *(f"{i}.0,5.4,0.0003,-0.4962,104.0" for i in range(1, rows))
+        )
+        count = 0
 
-    # Beside numpy's reader of nothing but numbers, in the same run: a machine may be slow.
-    numbers = best_s(lambda: np.loadtxt(path, delimiter=",", skiprows=1))
-    assert best_s(lambda: read_run(path)) < 6.0 * numbers
+        def counted(_frame: FrameType, event: str, _argument: object) -> None:
+            nonlocal count
+            count += event in ("call", "c_call")
+
+        before = sys.getprofile()
+        sys.setprofile(counted)
+        try:
+            read_run(path)
+        finally:
+            sys.setprofile(before)
+        return count
+
+    few, many = 1000, 6000
+    assert 0 < calls(many) - calls(few) <= 3 * (many - few)

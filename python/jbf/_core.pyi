@@ -64,6 +64,7 @@ class EffectPage(TypedDict):
     peaks: str | None
     longest_step_s: float
     further_of: str | None
+    unknown_start: bool
     rust_place: str
     rust_type: str
     parameters: list[ParameterPage]

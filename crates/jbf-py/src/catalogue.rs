@@ -52,6 +52,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("peaks", peaks(info.name))?;
         d.set_item("longest_step_s", info.longest_step_s)?;
         d.set_item("further_of", info.further_of)?;
+        d.set_item("unknown_start", info.unknown_start)?;
         let (place, type_name) = type_names(info.name).unzip();
         d.set_item("rust_place", place)?;
         d.set_item("rust_type", type_name)?;

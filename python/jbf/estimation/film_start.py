@@ -1,14 +1,14 @@
 """How long a record remembers the state in which it began.
 
-A film, and a contact that bends, begin a run in a state that no record tells. It is forgotten as
-the shaft moves. How soon, the model says: two runs of it that begin in opposite states differ by
-what is still remembered. Until that has sunk into the noise the samples say nothing of the
-friction's laws, and are set aside.
+A film, a contact that bends, and a cell with play begin a run in a state that no record tells. It
+is forgotten as the shaft moves, or as the force turns round. How soon, the model says: runs of it
+that begin in opposite states differ by what is still remembered. Until that has sunk into the noise
+the samples say nothing of the friction's laws, and are set aside.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -45,7 +45,7 @@ BEFORE_S = 6.0
 SPEEDS = (1e-3, 0.1, 1.0)
 """Their speeds, as shares of the run's top speed: where a film was,"""
 WAYS = (-1.0, 1.0)
-"""and where a contact bends, which may have slid either way."""
+"""and where a contact bends or a cell has play, which the force may have reached either way."""
 LONGER = 1.5
 """The film may be slower than this model's: what follows is set aside for so many times as long,"""
 FURTHER = 1.1
@@ -66,11 +66,12 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
     """
     prepared = problem.campaign.prepared
     law = find_law(problem.law)
-    if not _remembers(problem.law):
+    shares = _imagined(problem.law, problem.effects)
+    if not shares:
         return [np.zeros(len(p.run), dtype=bool) for p in prepared]
     # The fit's own motion has starts between samples, these have not: it would differ at each stop.
     begun = []
-    for share in SPEEDS if law.has_film else WAYS:
+    for share in shares:
         motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
         begun.append(problem.chain.predict(values, motions))
     found = []
@@ -93,10 +94,11 @@ def _remembering(p: Prepared, apart: Mask, longer: float, most: float) -> Mask:
     return mask if mask.mean() < most else np.zeros(len(apart), dtype=bool)
 
 
-def _remembers(law: str) -> bool:
-    """Whether a law has a film, or bends before it slides."""
+def _imagined(law: str, effects: Iterable[str]) -> tuple[float, ...]:
+    """Speeds before a run, of which each leaves another state behind; none where nothing lasts."""
     page = find_law(law)
-    return page.has_film or page.has_bristle
+    either_way = page.has_bristle or any(find_effect(name).unknown_start for name in effects)
+    return (SPEEDS if page.has_film else ()) + (WAYS if either_way else ())
 
 
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
@@ -107,7 +109,7 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     InputError
         A film is too fast for these records.
     """
-    if not _remembers(law):
+    if not _imagined(law, ()):
         return campaign
     check_film(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
@@ -117,15 +119,17 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
 
 def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
     """The campaign without what a model with effects remembers of how its runs began, where those
-    make the film another one than the bare law's; None where no more of it counts.
+    make the film another one than the bare law's, or begin in a state of their own; None where no
+    more of it counts.
 
     A law that lacks its load, say, fits badly, and tells how soon its film forgets as badly.
     """
-    film = [name for name in problem.effects if find_effect(name).stage == "film"]
-    if not film or not _remembers(problem.law):
+    pages = [find_effect(name) for name in problem.effects]
+    lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
+    if not lasting or not _imagined(problem.law, lasting):
         return None
     campaign = problem.campaign
-    less = Problem(campaign, problem.law, problem.clock, film)
+    less = Problem(campaign, problem.law, problem.clock, lasting)
     known = dict(zip(problem.names, solution.values.tolist(), strict=True))
     values = np.array([known[name] for name in less.names])
     found = _settled(less, values, solution.residuals)
@@ -142,9 +146,17 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)
-    film = find_law(problem.law).has_film
-    what = "film was not settled" if film else "contact was bent another way"
+    what = _what(problem.law, problem.effects)
     return kept.with_findings(_findings(campaign, residuals, masks, kept.samples, what))
+
+
+def _what(law: str, effects: Iterable[str]) -> str:
+    """What was another thing than a model would have it as a run began."""
+    page = find_law(law)
+    cell = any(find_effect(name).unknown_start for name in effects)
+    if page.has_film:
+        return "film, or the cell in its play, was not settled" if cell else "film was not settled"
+    return "contact was bent another way" if page.has_bristle else "cell was elsewhere in its play"
 
 
 def _findings(

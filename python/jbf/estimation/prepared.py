@@ -22,6 +22,7 @@ from jbf.records.findings.own_clock import own_clock
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import find_slow_temperature
+from jbf.records.findings.steps import find_steps
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require, run_on
@@ -88,7 +89,9 @@ class Prepared:
             motion = motion.at(instants, native.time_s)
             run = run.at(native.time_s, native.values)
             of_readings = examine_readings(run, motion.velocity_m_s)
-            examined = Examined((*examined.findings, *of_readings.findings), of_readings.usable)
+            steps = find_steps(run, of_readings.usable, drawn=True)
+            found = (*examined.findings, *of_readings.findings, *steps)
+            examined = Examined(found, of_readings.usable)
         if np.all(motion.resting) or not np.any(motion.sign_known):
             raise InputError(
                 file=run.path or run.name,

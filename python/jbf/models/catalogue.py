@@ -93,7 +93,8 @@ class Effect:
     it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
     instants at which friction jumps, `spreads_jumps` where what is read of a jump lasts; `peaks` is
     the parameter along which a likelihood has many peaks, None for most; `further_of` the effect of
-    which this is a further one, None for most.
+    which this is a further one, None for most; `unknown_start` is true where a run's first sample
+    does not tell the state in which it begins, and time does not let that be forgotten.
     `rust_place` and `rust_type` are the names of its types in the core, empty
     of an effect of one's own; `columns` are those that such an effect asks for.
     """
@@ -113,6 +114,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     columns: tuple[str, ...] = ()
     further_of: str | None = None
+    unknown_start: bool = False
     rust_place: str = ""
     rust_type: str = ""
 

@@ -64,6 +64,9 @@ pub struct Info {
     pub transmitted: bool,
     /// The effect of which this is a further one: without that beside it, it is that one.
     pub further_of: Option<&'static str>,
+    /// True where a run's first sample does not tell the state in which it begins, and no time lets
+    /// that be forgotten: only a turn of what acts on it does.
+    pub unknown_start: bool,
 }
 
 impl Info {
@@ -81,6 +84,7 @@ impl Info {
             longest_step_s: 0.02,
             transmitted: false,
             further_of: None,
+            unknown_start: false,
         }
     }
 
@@ -135,6 +139,12 @@ impl Info {
     /// A further one of the effect of that name.
     pub const fn further(mut self, of: &'static str) -> Self {
         self.further_of = Some(of);
+        self
+    }
+
+    /// A state that the first sample does not tell, and that lasts.
+    pub const fn unknown_start(mut self) -> Self {
+        self.unknown_start = true;
         self
     }
 

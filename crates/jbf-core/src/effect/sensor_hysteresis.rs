@@ -73,8 +73,10 @@ impl<T: Real> Effect<T> for SensorHysteresis<T> {
         .source("Krasnosel'skii & Pokrovskii 1989; Visintin 1994; VDI/VDE 2638 (hysteresis)")
         .limits(
             "one gap, the same at every force: branches that part slowly, or the more the larger \
-                 the force, are another form; each run begins in the middle of the gap",
+                 the force, are another form; each run begins in the middle of the gap, wherever \
+                 it was: a fit sets aside what remembers that",
         )
+        .unknown_start()
         .parameters(&[Parameter::new(
             "w_n",
             "N",

@@ -19,9 +19,10 @@ Mask = npt.NDArray[np.bool_]
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     """Standard deviation of the noise on the friction record, N, from the data alone.
 
-    The white part comes from third differences of the record. A coloured part hides from
-    differences; it shows where the same motion comes again a period later and where the shaft
-    rests, so the larger of the estimates stands where it is clearly larger.
+    The white part comes from third differences of the record, and is at least what a converter's
+    steps leave (Widrow 1956): in coarse ones most readings are those before them. A coloured part
+    hides from differences; it shows where the same motion comes again a period later and where the
+    shaft rests, so the larger of the estimates stands where it is clearly larger.
     """
     floor, seen = _white(prepared, samples), _seen(prepared, samples)
     if seen is None:
@@ -37,9 +38,11 @@ def most_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
 
 
 def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
-    """The white part, N, from third differences."""
-    pairs = zip(prepared, samples.counted, strict=True)
-    squares = [noise_of(p.friction_n[counted]) ** 2 for p, counted in pairs]
+    """The white part, N, from third differences, and from the steps of a converter."""
+    squares = [
+        max(noise_of(p.friction_n[counted]) ** 2, p.converter_step_n**2 / 12.0)
+        for p, counted in zip(prepared, samples.counted, strict=True)
+    ]
     return float(np.sqrt(np.average(squares, weights=[int(c.sum()) for c in samples.counted])))
 
 

@@ -81,6 +81,25 @@ def test_a_run_is_compared_at_its_readings() -> None:
     np.testing.assert_allclose(prepared.motion.velocity_m_s, 0.1 * np.sin(0.3 * at), atol=1e-5)
 
 
+@pytest.mark.parametrize("rate_hz", [13.76, 31.7])
+@pytest.mark.parametrize("step_n", [0.5, 1.5, 0.0])
+def test_readings_behind_lines_come_in_steps(step_n: float, rate_hz: float) -> None:
+    """Known to the digits of the file, their levels are no more exactly one."""
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = 1.2 * force(ticks, 12)
+    if step_n:
+        read = step_n * np.round(read / step_n)
+    drawn = np.round(np.interp(TIME, ticks, read), 4)
+    run = Run.from_arrays(TIME, 0.1 * np.sin(0.3 * TIME), drawn, name="slow")
+    found = Prepared.of(Rig(), run).examined.findings
+    assert [f.kind for f in found if f.kind != "saturation"] == (
+        ["interpolated", "steps"] if step_n else ["interpolated"]
+    )
+    assert [f.size for f in found if f.kind == "steps"] == (
+        [pytest.approx(step_n, rel=1e-3)] if step_n else []
+    )
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("keep", [0.0, 0.95, 1.0])
 def test_noise_of_any_memory_is_no_polygon(seed: int, keep: float) -> None:

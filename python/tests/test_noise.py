@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -61,6 +63,20 @@ def test_the_floor_of_a_record(is_coloured: bool, whole: float) -> None:
         floor = noise_floor(prepared.prepared, prepared.samples)
         ratios.append(floor / truth["noise_n"])
     assert np.mean(ratios) == pytest.approx(whole, rel=0.06)
+
+
+@pytest.mark.parametrize("over_noise", [1.0, 2.0, 4.0])
+def test_the_floor_of_readings_in_steps_counts_what_steps_leave(over_noise: float) -> None:
+    """The error of an even share of a step is the noise's, too (Widrow 1956); of coarse steps most
+    third differences are zero, and the rest whole ones."""
+    for seed in (6, 7):
+        rig, runs, truth = campaign(seed)
+        step = over_noise * truth["noise_n"]
+        coarse = [replace(run, friction_n=step * np.round(run.friction_n / step)) for run in runs]
+        prepared = Campaign.prepare(rig, coarse)
+        whole = np.hypot(truth["noise_n"], step / np.sqrt(12.0))
+        floor = noise_floor(prepared.prepared, prepared.samples)
+        assert floor == pytest.approx(whole, rel=0.15)
 
 
 def test_the_period_of_a_repeated_motion() -> None:

@@ -39,11 +39,25 @@ def most_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
 
 def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
     """The white part, N, from third differences, and from the steps of a converter."""
-    squares = [
-        max(noise_of(p.friction_n[counted]) ** 2, p.converter_step_n**2 / 12.0)
-        for p, counted in zip(prepared, samples.counted, strict=True)
-    ]
+    squares = []
+    for p, counted in zip(prepared, samples.counted, strict=True):
+        values, added = _dithered(p)
+        # Steps that are coarse beside the noise are repeated, and leave no less for that.
+        squares.append(max(noise_of(values[counted]) ** 2 - added, added))
     return float(np.sqrt(np.average(squares, weights=[int(c.sum()) for c in samples.counted])))
+
+
+def _dithered(p: Prepared) -> tuple[Array, float]:
+    """Readings with an even spread of their converter's step added, N, and its variance, N^2.
+
+    Medians of what comes in steps are a step, or none; with dither they are those of the noise
+    (Wannamaker et al. 2000). Without steps nothing is added.
+    """
+    step = p.converter_step_n
+    if step == 0.0:
+        return p.friction_n, 0.0
+    even = np.random.default_rng(0).uniform(-0.5 * step, 0.5 * step, len(p.friction_n))
+    return p.friction_n + even, step**2 / 12.0
 
 
 def _seen(prepared: Sequence[Prepared], samples: Samples) -> float | None:
@@ -84,7 +98,7 @@ def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
     if shift is None:
         return 0.0, 0
     # The first period still carries the start of the film.
-    values, begin = prepared.friction_n, shift // 2
+    (values, added), begin = _dithered(prepared), shift // 2
     gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
     ok = counted[begin + shift :] & counted[begin:-shift]
     gap = gap[ok]
@@ -95,4 +109,4 @@ def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
     size = max(len(gap) // 12, 25)
     blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
     spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
-    return float(np.median(spread) ** 2), len(gap)
+    return max(float(np.median(spread) ** 2) - added, added), len(gap)

@@ -100,6 +100,43 @@ def test_readings_behind_lines_come_in_steps(step_n: float, rate_hz: float) -> N
     )
 
 
+@pytest.mark.parametrize("rate_hz", [9.2, 30.4])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_lines_that_stood_still_in_between_are_lines(seed: int, rate_hz: float) -> None:
+    """A logger that repeats its last sample for a while, of a force drawn as lines before."""
+    fine = 0.005 * np.arange(8000)
+    ticks = np.arange(-0.3 / rate_hz, fine[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    drawn = np.round(np.interp(fine, ticks, force(ticks, seed)), 4)
+    for first, count in ((1000, 40), (2500, 113), (6100, 60)):
+        drawn[first : first + count] = drawn[first]
+    run = Run.from_arrays(fine, 0.1 * np.sin(0.3 * fine), drawn, name="slow")
+    prepared = Prepared.of(Rig(), run)
+    found = {f.kind: f for f in prepared.examined.findings}
+    assert {"interpolated", "held_samples"} <= set(found)
+    assert found["interpolated"].size == pytest.approx(rate_hz, rel=1e-5)
+    at = prepared.run.time_s
+    which = np.round((at - ticks[0]) * rate_hz).astype(int)
+    np.testing.assert_allclose(at, ticks[which], atol=1e-3 / rate_hz)
+    # Beside a stretch that stood still a corner is told by few samples; within it by none.
+    off = np.abs(prepared.friction_n - force(ticks, seed)[which])
+    assert np.quantile(off, 0.95) < 2e-3
+    assert not ((at > 12.5 + 1.0 / rate_hz) & (at < 13.06 - 1.0 / rate_hz)).any()
+
+
+@pytest.mark.parametrize("rate_hz", [9.2, 17.0])
+def test_coarse_steps_that_lie_flat_for_long_are_seen_where_they_bend(rate_hz: float) -> None:
+    """A shaft at rest for most of a run: three looks may all see a straight line."""
+    fine = 0.005 * np.arange(4000)
+    ticks = np.arange(-0.3 / rate_hz, fine[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    moving = (ticks > 4.0) & (ticks < 7.0)
+    noise = 0.2 * np.random.default_rng(4).standard_normal(len(ticks))
+    read = np.where(moving, 12.0 * np.sin(2.1 * ticks), 0.3) + noise
+    drawn = np.round(np.interp(fine, ticks, 1.5 * np.round(read / 1.5)), 4)
+    native = find_native(fine, drawn)
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-5)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("keep", [0.0, 0.95, 1.0])
 def test_noise_of_any_memory_is_no_polygon(seed: int, keep: float) -> None:

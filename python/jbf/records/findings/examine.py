@@ -53,6 +53,11 @@ def examine(run: Run, velocity_m_s: Array | None = None) -> Examined:
     native = find_native(run.time_s, run.friction_n)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
+    held, still = find_held(run, np.zeros(len(run), dtype=bool))
+    native = find_native(run.time_s[~still], run.friction_n[~still]) if held else None
+    if native is not None:
+        # A line that stood still in between is one all the same.
+        return Examined((_interpolated(run, native), *held), np.ones(len(run), dtype=bool), native)
     native = find_repeated(run.time_s, run.friction_n)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.findings.digits import last_digit
 from jbf.records.findings.interpolated import Native, is_smooth
 
 Array = npt.NDArray[np.float64]
@@ -30,7 +31,7 @@ def find_filled_in(time: Array, values: Array) -> Native | None:
         return None
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     off = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
-    digit = _digit(values)
+    digit = last_digit(values)
     # Of equal samples nobody knows whether they were read: a held channel is another finding.
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * digit
     line = (off <= 2.0 * digit) & ~level
@@ -51,16 +52,3 @@ def find_filled_in(time: Array, values: Array) -> Native | None:
     if read.sum() * LONGEST < len(time) or is_smooth(values[read]):
         return None
     return Native(time[read], values[read], float(np.median(np.diff(time[read]))))
-
-
-def _digit(values: Array) -> float:
-    """The last decimal digit that samples are written with; of binary numbers their rounding."""
-    top = float(np.max(np.abs(values)))
-    if top == 0.0:
-        return 0.0
-    first = int(np.floor(np.log10(top)))
-    for place in range(first, first - 9, -1):
-        scaled = values / 10.0**place
-        if np.max(np.abs(scaled - np.round(scaled))) < 1e-6:
-            return float(10.0**place)
-    return 1e-9 * top

@@ -13,7 +13,10 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg
+
+from jbf.records.findings.digits import last_digit
+from jbf.records.findings.polygon import lefts, polygon, sharpened
+from jbf.records.findings.steps import step_of
 
 Array = npt.NDArray[np.float64]
 
@@ -25,7 +28,7 @@ to be tested by."""
 SHORT = np.exp(np.arange(np.log(1.05), np.log(1.3), 0.0005))
 """Periods looked for there, in samples."""
 LOOKS = 3
-"""First looks, along the record."""
+"""First looks along the record, and as many where it bends most: coarse steps are flat for long."""
 PERIODS = np.exp(
     np.concatenate(
         [np.arange(np.log(1.2), np.log(8.0), 0.005), np.arange(np.log(8.0), np.log(25.0), 0.02)]
@@ -44,16 +47,16 @@ LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
 """Phases, in periods off the best, at which a polygon must leave more, and the share of that which
 the best may leave."""
-IN_VAIN = 4
-"""Halvings of a search after which it has come nearer, or does not."""
+FEW = 3.0
+"""Times the roughness of usual bends that a window with a few larger ones may have."""
+DIGITS, NEARLY = 3.0, 0.05
+"""Times what rounding to the last digit leaves, and the share of the noise that this may be."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
 """Share of the whole range below which noise is none: that of digits, and of the search."""
 SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
-AT_ONCE = 2**13
-"""Samples of polygons that are solved at once."""
 EVEN = 1e-3
 """Samples are evenly spaced where they are off an even grid by less than this share of a step."""
 MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
@@ -76,19 +79,53 @@ def find_native(time: Array, values: Array) -> Native | None:
     if n < 2 * WINDOW or _as_rough_as_noise(values) or is_smooth(values):
         return None
     step = float(np.median(np.diff(time)))
-    for first in np.linspace(0, n - WINDOW, LOOKS).astype(int).tolist():
+    rounding = max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values))
+    for first in _where_to_look(values, rounding):
         part = slice(first, first + WINDOW)
         t, y = time[part], values[part]
-        noise = float(np.sqrt(np.mean(np.diff(y, 2) ** 2) / 6.0))
-        if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * WINDOW * step:
+        noise = _noise(y, rounding)
+        if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
             continue
         for found in _first_look(t, y, step, noise):
-            period, phase = _sharpened(t, y, *found)
-            if _polygon(t, y, period, phase)[0] < EXACT * noise:
+            period, phase = sharpened(t, y, *found)
+            if polygon(t, y, period, phase)[0] < _exact(values, noise):
                 native = _whole(time, values, first, WINDOW, period, phase, noise)
                 if native is not None:
                     return native
     return _of_short_period(time, values, step)
+
+
+def _noise(values: Array, rounding: float) -> float:
+    """How rough a window is, as the noise of readings would be; zero of a straight line.
+
+    Not more for one large jump, nor less for stretches without any bend.
+    """
+    bends = np.abs(np.diff(values, 2))
+    rms = float(np.sqrt(np.mean(bends**2) / 6.0))
+    if rms <= rounding:
+        return 0.0
+    usual = float(np.median(bends[bends > rounding])) / 0.6745 / np.sqrt(6.0)
+    return float(min(rms, FEW * usual))
+
+
+def _exact(values: Array, noise: float) -> float:
+    """What a polygon may leave: next to nothing, or what rounding to the last digit does."""
+    digits = DIGITS * last_digit(values) / np.sqrt(12.0)
+    return float(max(EXACT * noise, min(digits, NEARLY * noise)))
+
+
+def _where_to_look(values: Array, rounding: float) -> list[int]:
+    """Where windows of a first look begin: along the record, and where it bends most often."""
+    last = len(values) - WINDOW
+    bends = np.abs(np.diff(values, 2)) > rounding
+    # Of the window that begins at each sample.
+    often = np.convolve(bends, np.ones(WINDOW - 2), "valid")[: last + 1]
+    found = np.linspace(0, last, LOOKS).astype(int).tolist()
+    for _ in range(LOOKS):
+        busiest = int(np.argmax(often))
+        found.append(busiest)
+        often[max(busiest - WINDOW, 0) : busiest + WINDOW] = -1.0
+    return list(dict.fromkeys(found))
 
 
 def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
@@ -104,15 +141,15 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
         return None
     periods = np.repeat(SHORT * step, len(PHASES))
     phases = np.tile(PHASES, len(SHORT)) * periods
-    lefts = _lefts(t, y, periods, phases)
+    each = lefts(t, y, periods, phases)
     # Through a curve that a filter has made smooth any such polygon goes nearly.
-    usual = float(np.median(lefts))
-    best = np.argsort(lefts, kind="stable")[:FOLLOWED]
-    for left, period, phase in np.stack([lefts, periods, phases])[:, best].T.tolist():
+    usual = float(np.median(each))
+    best = np.argsort(each, kind="stable")[:FOLLOWED]
+    for left, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
         if left > LIKELY_SHORT * noise:
             break
-        period, phase = _sharpened(t, y, period, phase)
-        if _polygon(t, y, period, phase)[0] < EXACT * min(noise, usual):
+        period, phase = sharpened(t, y, period, phase)
+        if polygon(t, y, period, phase)[0] < _exact(values, min(noise, usual)):
             native = _whole(time, values, first, LONGER, period, phase, noise)
             if native is not None:
                 return native
@@ -151,8 +188,9 @@ def _whole(
         begin = max(min(first - length // 2, n - length), 0)
         phase += origin - time[begin]
         part = slice(begin, begin + length)
-        period, phase = _sharpened(time[part], values[part], period, phase)
+        period, phase = sharpened(time[part], values[part], period, phase)
     period, phase = _longest(time, values, period, phase, noise)
+    period, phase = sharpened(time, values, period, phase, near=True)
     return _whole_of(time, values, period, phase, noise)
 
 
@@ -163,32 +201,37 @@ def _longest(
     fit as well, and are not readings."""
     for times in (17, 13, 11, 7, 5, 3, 2):
         for k in range(times):
-            left, _, _ = _polygon(time, values, times * period, phase + k * period)
-            if left < EXACT * noise:
-                return _longest(time, values, times * period, phase + k * period, noise)
+            longer = (times * period, phase + k * period)
+            left, _, _ = polygon(time, values, *longer)
+            if left < NEARLY * noise:
+                # So many times the error of a period that was good enough.
+                longer = sharpened(time, values, *longer, near=True)
+                left, _, _ = polygon(time, values, *longer)
+            if left < _exact(values, noise):
+                return _longest(time, values, *longer, noise)
     return period, phase
 
 
 def _whole_of(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> Native | None:
-    left, knots, corners = _polygon(time, values, period, phase)
+    left, knots, corners = polygon(time, values, period, phase)
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
-    if left > EXACT * noise or inside.sum() > MOST_CORNERS * len(time):
+    if left > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
         return None
     # Through a record that a filter has made smooth, a polygon of any phase goes nearly.
-    elsewhere = [_polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
+    elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
     if left > CLEARLY * min(elsewhere):
         return None
     read = corners[inside]
+    native = Native(knots[inside], read, period)
+    if step_of(read, drawn=True) > 0.0:
+        return native
     # Corners on a curve, or on a plateau, are of a record without noise; those nearly as close as
     # samples go through any curve.
     curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
-    if is_smooth(read, curved) or np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(
-        read
-    ):
-        return None
-    return Native(knots[inside], read, period)
+    flat = np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read)
+    return None if flat or is_smooth(read, curved) else native
 
 
 def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
@@ -262,71 +305,3 @@ def _looks(place: Array) -> _Looks:
 def _even_looks(n: int) -> _Looks:
     """The same for evenly spaced samples, kept: nearly every record's are."""
     return _looks(np.arange(n, dtype=np.float64))
-
-
-def _polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
-    """What the best polygon leaves (RMS a degree of freedom), and its corners: instants, values."""
-    left, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
-    knots = time[0] + phase + period * (first[0] + np.arange(len(corners)))
-    return float(left[0]), knots, corners
-
-
-def _lefts(time: Array, values: Array, period: Array, phase: Array) -> Array:
-    """What the best polygons of several periods and phases leave, shape (m,)."""
-    at_once = max(AT_ONCE // len(time), 1)
-    parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
-    return np.concatenate([_solved(time, values, period[p], phase[p])[0] for p in parts])
-
-
-def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
-    """What the best polygons leave, shape (m,), all their corners in a row, and each one's first.
-
-    Each is a tridiagonal system; in a row they are one, no two of them coupled.
-    """
-    place = (time - time[0] - phase[:, None]) / period[:, None]
-    whole = np.floor(place)
-    share = (place - whole).ravel()
-    low = whole.astype(np.intp)
-    first = low[:, 0].copy()
-    count = low[:, -1] - first + 2
-    offset = np.cumsum(count) - count
-    at = (low + (offset - first)[:, None]).ravel()
-    total = int(count.sum())
-    level = values[0]
-    y = np.tile(values - level, len(period))
-    rest = 1.0 - share
-    diagonal = np.bincount(at, rest**2, total) + np.bincount(at + 1, share**2, total)
-    beside = np.bincount(at, rest * share, total)
-    right = np.bincount(at, rest * y, total) + np.bincount(at + 1, share * y, total)
-    # A corner that no sample is near (a gap, an end) is not known.
-    band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
-    corners = linalg.solveh_banded(band, right, overwrite_ab=True, overwrite_b=True)
-    gap = (y - rest * corners[at] - share * corners[at + 1]).reshape(place.shape)
-    free = len(time) - np.add.reduceat((diagonal > 1e-6).astype(np.intp), offset)
-    corners = np.where(diagonal > 1e-3, corners + level, np.nan)
-    left: Array = np.sqrt(np.sum(gap**2, axis=1) / np.maximum(free, 1))
-    return left, corners, first
-
-
-def _sharpened(time: Array, values: Array, period: float, phase: float) -> tuple[float, float]:
-    """Period and phase that fit best near those given, to a fraction of the stretch."""
-    length = float(time[-1] - time[0])
-    reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
-    best = (np.inf, period, phase)
-    steps = np.linspace(-1.0, 1.0, 5)
-    first = np.inf
-    for k in range(9):
-        periods = np.repeat(best[1] + reach_period * steps, len(steps))
-        phases = np.tile(best[2] + reach_phase * steps, len(steps))
-        left = _lefts(time, values, periods, phases)
-        least = int(np.argmin(left))
-        if left[least] < best[0]:
-            best = (float(left[least]), float(periods[least]), float(phases[least]))
-        if k == 0:
-            first = best[0]
-        # What a true polygon leaves falls with every halving, in proportion.
-        if k == IN_VAIN and best[0] > 0.5 * first:
-            break
-        reach_period *= 0.5
-        reach_phase *= 0.5
-    return best[1], best[2]

@@ -1,0 +1,93 @@
+"""Polygons with corners evenly spaced in time: what one leaves of samples, and the best near it.
+
+Corners are whatever fits best: samples are linear in them, so only period and phase are searched.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+Array = npt.NDArray[np.float64]
+
+USUAL_HALVINGS, MOST_HALVINGS = 9, 14
+"""Halvings of a search, and as many more as it goes on to come nearer,"""
+IN_VAIN = 4
+"""and those after which it has come nearer, or does not."""
+AT_ONCE = 2**13
+"""Samples of polygons that are solved at once."""
+
+
+def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
+    """What the best polygon leaves (RMS a degree of freedom), and its corners: instants, values."""
+    left, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
+    knots = time[0] + phase + period * (first[0] + np.arange(len(corners)))
+    return float(left[0]), knots, corners
+
+
+def lefts(time: Array, values: Array, period: Array, phase: Array) -> Array:
+    """What the best polygons of several periods and phases leave, shape (m,)."""
+    at_once = max(AT_ONCE // len(time), 1)
+    parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
+    return np.concatenate([_solved(time, values, period[p], phase[p])[0] for p in parts])
+
+
+def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
+    """What the best polygons leave, shape (m,), all their corners in a row, and each one's first.
+
+    Each is a tridiagonal system; in a row they are one, no two of them coupled.
+    """
+    place = (time - time[0] - phase[:, None]) / period[:, None]
+    whole = np.floor(place)
+    share = (place - whole).ravel()
+    low = whole.astype(np.intp)
+    first = low[:, 0].copy()
+    count = low[:, -1] - first + 2
+    offset = np.cumsum(count) - count
+    at = (low + (offset - first)[:, None]).ravel()
+    total = int(count.sum())
+    level = values[0]
+    y = np.tile(values - level, len(period))
+    rest = 1.0 - share
+    diagonal = np.bincount(at, rest**2, total) + np.bincount(at + 1, share**2, total)
+    beside = np.bincount(at, rest * share, total)
+    right = np.bincount(at, rest * y, total) + np.bincount(at + 1, share * y, total)
+    # A corner that no sample is near (a gap, an end) is not known.
+    band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
+    corners = linalg.solveh_banded(band, right, overwrite_ab=True, overwrite_b=True)
+    gap = (y - rest * corners[at] - share * corners[at + 1]).reshape(place.shape)
+    free = len(time) - np.add.reduceat((diagonal > 1e-6).astype(np.intp), offset)
+    corners = np.where(diagonal > 1e-3, corners + level, np.nan)
+    left: Array = np.sqrt(np.sum(gap**2, axis=1) / np.maximum(free, 1))
+    return left, corners, first
+
+
+def sharpened(
+    time: Array, values: Array, period: float, phase: float, *, near: bool = False
+) -> tuple[float, float]:
+    """Period and phase that fit best near those given, to a fraction of the stretch; `near` where
+    those given are known to be right, and little is to be gained at first."""
+    length = float(time[-1] - time[0])
+    reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
+    best = (np.inf, period, phase)
+    steps = np.linspace(-1.0, 1.0, 5)
+    first = np.inf
+    for k in range(MOST_HALVINGS):
+        before = best[0]
+        periods = np.repeat(best[1] + reach_period * steps, len(steps))
+        phases = np.tile(best[2] + reach_phase * steps, len(steps))
+        left = lefts(time, values, periods, phases)
+        least = int(np.argmin(left))
+        if left[least] < best[0]:
+            best = (float(left[least]), float(periods[least]), float(phases[least]))
+        if k == 0:
+            first = best[0]
+        # What a true polygon leaves falls with every halving, in proportion.
+        if k == IN_VAIN and best[0] > 0.5 * first and not near:
+            break
+        if k >= USUAL_HALVINGS and best[0] > 0.9 * before:
+            break
+        reach_period *= 0.5
+        reach_phase *= 0.5
+    return best[1], best[2]

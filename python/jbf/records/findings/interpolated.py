@@ -29,6 +29,8 @@ SHORT = np.exp(np.arange(np.log(1.05), np.log(1.3), 0.0005))
 """Periods looked for there, in samples."""
 LOOKS = 3
 """First looks along the record, and as many where it bends most: coarse steps are flat for long."""
+MOST_BENDS = 0.5
+"""Share of the samples at which a record bends from which on it does so everywhere."""
 PERIODS = np.exp(
     np.concatenate(
         [np.arange(np.log(1.2), np.log(8.0), 0.005), np.arange(np.log(8.0), np.log(25.0), 0.02)]
@@ -118,14 +120,16 @@ def _where_to_look(values: Array, rounding: float) -> list[int]:
     """Where windows of a first look begin: along the record, and where it bends most often."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
+    along = np.linspace(0, last, LOOKS).astype(int).tolist()
+    if bends.mean() > MOST_BENDS:
+        return along
     # Of the window that begins at each sample.
     often = np.convolve(bends, np.ones(WINDOW - 2), "valid")[: last + 1]
-    found = np.linspace(0, last, LOOKS).astype(int).tolist()
     for _ in range(LOOKS):
         busiest = int(np.argmax(often))
-        found.append(busiest)
+        along.append(busiest)
         often[max(busiest - WINDOW, 0) : busiest + WINDOW] = -1.0
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(along))
 
 
 def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
@@ -190,6 +194,8 @@ def _whole(
         part = slice(begin, begin + length)
         period, phase = sharpened(time[part], values[part], period, phase)
     period, phase = _longest(time, values, period, phase, noise)
+    if _whole_of(time, values, period, phase, noise) is None:
+        return None
     period, phase = sharpened(time, values, period, phase, near=True)
     return _whole_of(time, values, period, phase, noise)
 

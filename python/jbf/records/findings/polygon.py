@@ -73,7 +73,7 @@ def sharpened(
     best = (np.inf, period, phase)
     steps = np.linspace(-1.0, 1.0, 5)
     first = np.inf
-    for k in range(MOST_HALVINGS):
+    for k in range(MOST_HALVINGS if near else USUAL_HALVINGS):
         before = best[0]
         periods = np.repeat(best[1] + reach_period * steps, len(steps))
         phases = np.tile(best[2] + reach_phase * steps, len(steps))

@@ -52,6 +52,23 @@ def test_readings_that_were_repeated_are_recovered(rate_hz: float) -> None:
     np.testing.assert_allclose(native.time_s, ticks[which], atol=0.25 * 0.02)
 
 
+@pytest.mark.parametrize("rate_hz", [6.3, 9.7, 17.0, 23.0])
+@pytest.mark.parametrize("step_n", [0.8, 2.5])
+def test_repeated_readings_in_coarse_steps_are_recovered(step_n: float, rate_hz: float) -> None:
+    """Of two equal readings nothing tells the second, but the clock of all the others."""
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = step_n * np.round(1.7 * force(ticks, 6, 0.4) / step_n)
+    assert np.mean(np.diff(read) == 0.0) > 0.1
+    last = np.searchsorted(ticks, TIME, side="right") - 1
+    native = find_repeated(TIME, read[last])
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=3e-4)
+    which = np.round((native.time_s - ticks[0]) * rate_hz).astype(int)
+    np.testing.assert_array_equal(np.diff(which), 1)
+    np.testing.assert_array_equal(native.values, read[which])
+    np.testing.assert_allclose(native.time_s, ticks[which], atol=0.5 * 0.02)
+
+
 @pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
 @pytest.mark.parametrize("omega", [0.02, 0.3, 3.0])
 def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omega: float) -> None:

@@ -120,7 +120,7 @@ def _where_to_look(values: Array, rounding: float) -> list[int]:
     """Where windows of a first look begin: along the record, and where it bends most often."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
-    along = np.linspace(0, last, LOOKS).astype(int).tolist()
+    along: list[int] = np.linspace(0, last, LOOKS).astype(int).tolist()
     if bends.mean() > MOST_BENDS:
         return along
     # Of the window that begins at each sample.

@@ -39,7 +39,7 @@ help:
 	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
 	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
 	@echo "make coverage  lines of python/jbf that no fast test runs, file by file (pytest-cov)"
-	@echo "make fuzz    bred input to every property of jbf-properties, a minute each (nightly, cargo-fuzz)"
+	@echo "make fuzz    bred input to every property of jbf-properties, a minute each or FOR=seconds (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
 	@echo "make supply  licences, sources and known faults of every dependency; the workflows (cargo-deny, pip-audit, zizmor)"
@@ -137,10 +137,11 @@ mutation: $(BUILT)
 coverage: $(BUILT)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal --cov=jbf --cov-report=term-missing:skip-covered
 
-# Needs nightly Rust and cargo-fuzz.
+# Needs nightly Rust and cargo-fuzz. Begins with the inputs that were bred before; FOR=seconds a target.
 fuzz:
-	cd crates/jbf-core && for target in $$(cargo +nightly fuzz list); do \
-		cargo +nightly fuzz run $$target -- -max_total_time=60 -timeout=60 || exit 1; done
+	cd crates/jbf-core && mkdir -p fuzz/corpus && tar -xJf fuzz/corpus.tar.xz -C fuzz/corpus && \
+		for target in $$(cargo +nightly fuzz list); do \
+		cargo +nightly fuzz run $$target -- -max_total_time=$(or $(FOR),60) -timeout=60 || exit 1; done
 
 # Needs nightly Rust with miri. What it can run in minutes: an interpreter is a thousand times slower.
 # It knows no assembly, so it plays a processor for which `libm` has none.

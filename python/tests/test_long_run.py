@@ -94,6 +94,16 @@ def test_more_than_chance_stays_however_few_the_windows(scale: float) -> None:
     assert sure_inflation(ways, [slow], (STEP_S,)) == score_inflation(ways, [slow], (STEP_S,))
 
 
+@pytest.mark.parametrize("scale", [1e-250, 1e-3, 1e3, 1e250])
+def test_how_long_a_direction_is_does_not_matter(scale: float) -> None:
+    random = np.random.default_rng(8)
+    way, noise = np.sin(0.01 * np.arange(4000)), np.cumsum(random.standard_normal(4000)) / 30.0
+    for inflation in (score_inflation, sure_inflation):
+        usual = inflation([way], [noise], (STEP_S,))
+        assert usual > 2.0
+        assert inflation([scale * way], [noise], (STEP_S,)) == pytest.approx(usual, rel=1e-9)
+
+
 def test_nothing_to_tell() -> None:
     assert sure_inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0
     assert score_inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0

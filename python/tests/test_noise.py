@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from campaigns import campaign
+from jbf import Rig, Run
 from jbf._core import first_order_filter
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
@@ -77,6 +78,18 @@ def test_the_floor_of_readings_in_steps_counts_what_steps_leave(over_noise: floa
         whole = np.hypot(truth["noise_n"], step / np.sqrt(12.0))
         floor = noise_floor(prepared.prepared, prepared.samples)
         assert floor == pytest.approx(whole, rel=0.15)
+
+
+def test_steps_far_above_the_noise_are_the_floor() -> None:
+    """Nearly all third differences are zero."""
+    t = 0.02 * np.arange(6000)
+    v = 0.1 * np.sin(0.05 * t)
+    force = 150.0 * v + 0.02 * np.random.default_rng(3).standard_normal(len(t))
+    run = Run.from_arrays(t, v, 2.0 * np.round(force / 2.0), position_m=np.cumsum(v) * 0.02)
+    prepared = Campaign.prepare(Rig(), [run])
+    assert np.mean(np.diff(run.friction_n) == 0.0) > 0.9
+    floor = noise_floor(prepared.prepared, prepared.samples)
+    assert floor == pytest.approx(2.0 / np.sqrt(12.0), rel=1e-3)
 
 
 def test_the_period_of_a_repeated_motion() -> None:

@@ -21,6 +21,9 @@ FAILED_ONCE = {
     910015: "a law that leaves nothing divided by a noise of zero",
     920034: "derivatives without bound in a run to be proposed",
     920025: "the same, of a run to be proposed",
+    940246: "squares of a change far above no noise overflowed",
+    940439: "a run of which no sample counts had an RMS of NaN",
+    940508: "a direction far above no noise had no long-run variance",
 }
 
 

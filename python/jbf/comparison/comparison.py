@@ -27,7 +27,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RunComparison:
-    """One run against the model."""
+    """One run against the model: its RMS over so many samples; 0 N where none of it counts."""
 
     name: str
     rms_n: float
@@ -104,7 +104,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     runs = tuple(
         RunComparison(
             p.run.name,
-            float(np.sqrt(np.mean(r[counted] ** 2))),
+            float(np.sqrt(np.mean(r[counted] ** 2))) if counted.any() else 0.0,
             int(counted.sum()),
         )
         for p, r, counted in zip(campaign.prepared, residuals, samples.counted, strict=True)

@@ -33,7 +33,8 @@ of a law but a bad sample, or an instant of reversal that nobody knows."""
 
 def worth(left: Array) -> float:
     """What is told by what is left of a change, in units of the noise."""
-    return float(np.sum(np.minimum(left**2, MOST)))
+    # Of what stands far above no noise at all the square would overflow.
+    return float(np.sum(np.minimum(np.abs(left), np.sqrt(MOST)) ** 2))
 
 
 @dataclass(frozen=True, eq=False)

@@ -57,6 +57,11 @@ def score_inflation(
     directions, innovations
         One array a run, shape (n,); of any length.
     """
+    # Of a direction far above no noise at all the squares would overflow.
+    largest = max((float(np.max(np.abs(d), initial=0.0)) for d in directions), default=0.0)
+    if not 0.0 < largest < np.inf:
+        return 1.0
+    directions = [d / largest for d in directions]
     square = sum(float(np.sum(d**2)) for d in directions)
     white = _white(innovations)
     if square <= 0.0 or white <= 0.0:
@@ -76,10 +81,9 @@ def sure_inflation(
     """The same where it is more than chance: a direction of a few breakaways has few windows, and
     the mean square of a few numbers is no variance."""
     ratio = score_inflation(directions, innovations, steps_s)
-    # Of a direction far above no noise at all the fourth powers would overflow.
-    largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
-    if ratio <= 1.0 or largest <= 0.0:
+    if ratio <= 1.0:
         return 1.0
+    largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
     directions = [d / largest for d in directions]
     square = sum(float(np.sum(d**2)) for d in directions)
     # A sum of squares with unequal weights is worth so many equal ones (Satterthwaite 1946).

@@ -169,6 +169,19 @@ def test_the_keyboard_reaches_everything_is_seen_and_is_caught_nowhere(tmp_path:
         assert said.complaints == []
 
 
+SLOW_FILES = """() => {
+  const plain = window.fetch;
+  window.fetch = async (...asked) => {
+    const found = await plain(...asked);
+    if (String(asked[0]).includes("/api/files")) {
+      await new Promise((done) => setTimeout(done, 1000));
+      setTimeout(() => { document.body.dataset.filesCame = ""; }, 300);
+    }
+    return found;
+  };
+}"""
+
+
 def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
     """Decimal commas, milliseconds, millimetres; a slide with 12 N of dry friction and a mass."""
     folder = tmp_path / "bench"
@@ -198,11 +211,15 @@ def test_a_strangers_recordings_by_what_the_screen_says(tmp_path: Path) -> None:
                 "([at, was, same]) => (document.querySelector(at).innerText === was) === same",
                 arg=["tr:has([data-key='is-Force [N]']) td.n", right, unit == "N"],
             )
+        page.evaluate(SLOW_FILES)
         by_keyboard(page, "import")
         page.wait_for_selector("text=log0/rig.toml is open, with 2 runs")
         # A handle by the keys: a tenth of the run is left out.
         page.wait_for_selector("[data-drawn] [data-key=trim-0]")
         page.focus("[data-key=trim-0]")
+        # The list of files that comes late does not take the keys away.
+        page.wait_for_selector("body[data-files-came]")
+        assert page.evaluate("() => document.activeElement.dataset.key") == "trim-0"
         for _ in range(2):
             page.keyboard.press("Shift+ArrowRight")
         # News that comes before the handle has come to rest does not put it back.

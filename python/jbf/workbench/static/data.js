@@ -22,6 +22,8 @@ export class DataRoom {
   looked() { this.draw(); }
 
   async list() {
+    // Once there are runs they come first; at once: what is moved later loses the keys.
+    if (this.page.state.runs.length > 0 && this.place.lastChild !== this.shelf) this.place.append(this.raw, this.shelf);
     let found;
     try { found = await get("files"); } catch (error) { this.page.say(error.message); return; }
     const { state } = this.page, some = state.runs.length > 0;
@@ -33,8 +35,6 @@ export class DataRoom {
       ondrop: (e) => { e.preventDefault(); drop.classList.remove("over"); this.take(e.dataTransfer.files); } },
     h("b", {}, "Your own recording: "), "drop it here, or choose it: ", input);
     const campaigns = found.campaigns.filter((c) => c.rig !== state.rig);
-    // Once there are runs they come first.
-    if (some) this.place.append(this.raw, this.shelf);
     put(this.files,
       h("p", { class: "faint" }, state.folder, state.rig ? ` · open: ${state.rig}` : ""),
       h("div", { class: "two" },

@@ -11,9 +11,10 @@ import numpy.typing as npt
 import pytest
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import REMEMBERED, settled_again
+from jbf.estimation.initial_state import REMEMBERED
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.run_start import settled_again
 from jbf.models.catalogue import effects, find_effect
 
 Array = npt.NDArray[np.float64]
@@ -103,6 +104,28 @@ def test_a_diagnosis_names_the_play_and_nothing_besides(branch: float) -> None:
     assert width.stderr is not None
     assert width.value == pytest.approx(HALF_WIDTH_N, abs=4.0 * width.stderr)
     assert found.steps[-1].rms_n == pytest.approx(NOISE_N, rel=0.05)
+
+
+def test_a_run_whose_force_never_turns_goes_whole_where_others_remain() -> None:
+    steady = run("steady", 0.0, 1.0, -1.0, 9)
+    campaign = Campaign.prepare(Rig(), [*runs(-1.0), steady])
+    problem = Problem(campaign, "coulomb", "journal", ("sensor_hysteresis",))
+    truth = posed(-1.0)[1]
+    settled = settled_again(problem, problem.solution(truth, campaign.samples, WHITE))
+    assert settled is not None
+    *others, last = (int(kept.sum()) for kept in settled.samples.counted)
+    assert last == 0
+    assert min(others) > 1000
+    found = jbf.diagnose(Rig(), [*runs(-1.0), steady], law="coulomb")
+    assert (found.verdict, found.effects) == ("missing", ("sensor_hysteresis",))
+    assert found.fit.parameters["sensor_hysteresis.w_n"].value == pytest.approx(0.6, rel=0.02)
+
+
+def test_where_hardly_a_force_turns_the_runs_stay() -> None:
+    campaign = Campaign.prepare(Rig(), [run(f"steady {k}", 0.0, 1.0, -1.0, k) for k in range(3)])
+    problem = Problem(campaign, "coulomb", "journal", ("sensor_hysteresis",))
+    truth = posed(-1.0)[1]
+    assert settled_again(problem, problem.solution(truth, campaign.samples, WHITE)) is None
 
 
 def test_without_play_nothing_is_set_aside_of_a_law_that_forgets() -> None:

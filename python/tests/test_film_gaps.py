@@ -10,9 +10,9 @@ from by_hand import Array
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import _gaps, behind_gaps
-from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
+from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 
 LEAST_N = 0.02

@@ -58,9 +58,9 @@ class Confirmation:
             errors_by_run(richer, richer_left, apart=True, counted=counted),
         ]
         before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
-        better = [_rms(errors[1][i]) < _rms(errors[0][i]) for i in errors[0]]
+        better = [_rms(errors[1][i]) < _rms(own) for i, own in errors[0].items() if len(own)]
         density = _density_share(simpler, richer, left, richer_left)
-        return cls(before_n, after_n, float(np.mean(better)), density, halved)
+        return cls(before_n, after_n, float(np.mean(better or [False])), density, halved)
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
         """Whether they confirm it, who gains so much in mean square (N^2) where it is fitted."""

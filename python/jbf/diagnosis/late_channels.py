@@ -11,11 +11,11 @@ import numpy.typing as npt
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.lateness import Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
+from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution

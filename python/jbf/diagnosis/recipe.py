@@ -27,8 +27,8 @@ from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.fit import finish
+from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO, Clock

@@ -11,7 +11,7 @@ from jbf.diagnosis.late_channels import DELAY
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import settled_again
+from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
 
 

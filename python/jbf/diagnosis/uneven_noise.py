@@ -25,6 +25,9 @@ the samples: 1.17 of a median of independent ones (Rousseeuw & Croux 1993); thes
 
 
 def robust_size(values: Array) -> float:
+    """A standard deviation from the median; zero of none, as of a run that was set aside."""
+    if not len(values):
+        return 0.0
     return float(np.median(np.abs(values))) / 0.6745
 
 

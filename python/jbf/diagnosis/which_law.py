@@ -20,8 +20,8 @@ from jbf.diagnosis.policy import Policy
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
-from jbf.estimation.film_start import settled_campaign
 from jbf.estimation.left_out import left_out_by_run
+from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock

@@ -51,7 +51,7 @@ class BetweenRuns:
         share = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None]
 
         def white(values: Array) -> Array:
-            columns = values.reshape(len(values), -1)
+            columns = values if values.ndim == 2 else values[:, None]
             left: Array = columns - u @ (share * (u.T @ columns))
             return left.reshape(values.shape)
 

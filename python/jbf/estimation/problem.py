@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.initial_state import begins_anywhere, memories, remembering
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps, spreads_jumps
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
@@ -204,14 +205,26 @@ class Problem:
         they are known."""
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
-        if not (moves_jumps(effects) or spreads_jumps(effects)):
+        begins = begins_anywhere(effects)
+        if not (moves_jumps(effects) or spreads_jumps(effects) or begins):
             return samples
         prepared = self.campaign.prepared
         if lines is None:
             predicted = self.predict(values)
         else:
             predicted = [p.friction_n - r for p, r in zip(prepared, lines[0], strict=True)]
+        if begins:
+            left = [p.friction_n - f for p, f in zip(prepared, predicted, strict=True)]
+            samples = self._settled(samples, values, samples.rms(left))
         return samples_beside_jumps(samples, prepared, predicted, effects)
+
+    def _settled(self, samples: Samples, values: Array, noise_n: float) -> Samples:
+        """Those of them that do not remember how their run began."""
+        prepared = self.campaign.prepared
+        for memory in memories(self.law, self.effects):
+            masks = remembering(self.chain, values, prepared, memory, noise_n)
+            samples = samples.within([~mask for mask in masks])
+        return samples
 
     def solution(
         self,

@@ -9,11 +9,12 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_start import REMEMBERED, settled_again, settled_campaign, unsettled
+from jbf.estimation.initial_state import REMEMBERED
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
+from jbf.estimation.run_start import settled_again, settled_campaign, unsettled
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion

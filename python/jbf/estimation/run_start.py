@@ -1,10 +1,5 @@
-"""How long a record remembers the state in which it began.
-
-A film, a contact that bends, and a cell with play begin a run in a state that no record tells. It
-is forgotten as the shaft moves, or as the force turns round. How soon, the model says: runs of it
-that begin in opposite states differ by what is still remembered. Until that has sunk into the noise
-the samples say nothing of the friction's laws, and are set aside.
-"""
+"""Samples at the start of a run that say nothing of the friction's laws: they still remember in
+which state it began (`initial_state`), and are set aside for every model of the campaign."""
 
 from __future__ import annotations
 
@@ -17,39 +12,22 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import behind_gaps
 from jbf.estimation.film_rate import check_film
+from jbf.estimation.initial_state import REMEMBERED, begins_anywhere, memories, remembering
 from jbf.estimation.noise_floor import noise_floor
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
-from jbf.models.chain import core_motion
 from jbf.models.vocabulary import Clock
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-REMEMBERED = 0.2
-"""Share of the noise below which a difference is forgotten."""
-MOST_OF_A_RUN = 0.5
-"""A run that never forgets its beginning is taken as it is: one of a film,"""
-MOST_OF_A_STROKE = 0.75
-"""and one of a contact, which may be a single stroke, half of it to bend."""
 OFF = 2.0
 """Times the usual residual from which on a beginning is worth a word."""
 RANKING_EVALUATIONS = 8
 """Steps of a fit that is good enough to tell how fast the film is."""
-BEFORE_S = 6.0
-"""How long the imagined motions before a run last."""
-SPEEDS = (1e-3, 0.1, 1.0)
-"""Their speeds, as shares of the run's top speed: where a film was,"""
-WAYS = (-1.0, 1.0)
-"""and where a contact bends or a cell has play, which the force may have reached either way."""
-LONGER = 1.5
-"""The film may be slower than this model's: what follows is set aside for so many times as long,"""
-FURTHER = 1.1
-"""and a contact softer, whose way to bend the records tell better."""
 NO_MORE = 1e-3
 """Share of the samples that is too few to begin again for."""
 
@@ -65,40 +43,11 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
         Noise on the friction, N.
     """
     prepared = problem.campaign.prepared
-    law = find_law(problem.law)
-    shares = _imagined(problem.law, problem.effects)
-    if not shares:
-        return [np.zeros(len(p.run), dtype=bool) for p in prepared]
-    # The fit's own motion has starts between samples, these have not: it would differ at each stop.
-    begun = []
-    for share in shares:
-        motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
-        begun.append(problem.chain.predict(values, motions))
-    found = []
-    for p, ways in zip(prepared, zip(*begun, strict=True), strict=True):
-        spread = np.ptp(np.array(ways), axis=0)
-        limits = (LONGER, MOST_OF_A_RUN) if law.has_film else (FURTHER, MOST_OF_A_STROKE)
-        found.append(_remembering(p, spread > REMEMBERED * noise_n, *limits))
+    found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
+    for memory in memories(problem.law, problem.effects):
+        more = remembering(problem.chain, values, prepared, memory, noise_n)
+        found = [before | mask for before, mask in zip(found, more, strict=True)]
     return found
-
-
-def _remembering(p: Prepared, apart: Mask, longer: float, most: float) -> Mask:
-    """The first stretch of motion in which two beginnings are apart, made longer for safety."""
-    index = np.flatnonzero(apart)
-    if not len(index):
-        return np.zeros(len(apart), dtype=bool)
-    time = p.run.time_s
-    until = time[index[0]] + longer * (time[index[-1]] - time[index[0]])
-    # What lies before the motion (a rest) does not depend on the start.
-    mask: Mask = (time >= time[index[0]]) & (time <= until)
-    return mask if mask.mean() < most else np.zeros(len(apart), dtype=bool)
-
-
-def _imagined(law: str, effects: Iterable[str]) -> tuple[float, ...]:
-    """Speeds before a run, of which each leaves another state behind; none where nothing lasts."""
-    page = find_law(law)
-    either_way = page.has_bristle or any(find_effect(name).unknown_start for name in effects)
-    return (SPEEDS if page.has_film else ()) + (WAYS if either_way else ())
 
 
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
@@ -109,7 +58,7 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     InputError
         A film is too fast for these records.
     """
-    if not _imagined(law, ()):
+    if not memories(law, ()):
         return campaign
     check_film(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
@@ -126,7 +75,7 @@ def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
     """
     pages = [find_effect(name) for name in problem.effects]
     lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
-    if not lasting or not _imagined(problem.law, lasting):
+    if not lasting or not memories(problem.law, lasting):
         return None
     campaign = problem.campaign
     less = Problem(campaign, problem.law, problem.clock, lasting)
@@ -153,7 +102,7 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
 def _what(law: str, effects: Iterable[str]) -> str:
     """What was another thing than a model would have it as a run began."""
     page = find_law(law)
-    cell = any(find_effect(name).unknown_start for name in effects)
+    cell = begins_anywhere(effects)
     if page.has_film:
         return "film, or the cell in its play, was not settled" if cell else "film was not settled"
     return "contact was bent another way" if page.has_bristle else "cell was elsewhere in its play"

@@ -9,6 +9,7 @@ import jbf
 import numpy as np
 import numpy.typing as npt
 import pytest
+from campaigns import campaign as simulated
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.initial_state import REMEMBERED
@@ -126,6 +127,14 @@ def test_where_hardly_a_force_turns_the_runs_stay() -> None:
     problem = Problem(campaign, "coulomb", "journal", ("sensor_hysteresis",))
     truth = posed(-1.0)[1]
     assert settled_again(problem, problem.solution(truth, campaign.samples, WHITE)) is None
+
+
+def test_a_wide_play_is_found_whatever_its_score_at_no_play() -> None:
+    """There the law makes up for it, and a step from none promises less than chance would."""
+    rig, these, truth = simulated(7952012, ("sensor_hysteresis",), strength=1.5)
+    found = jbf.diagnose(rig, these)
+    assert (found.verdict, found.effects) == ("missing", ("sensor_hysteresis",))
+    assert found.steps[-1].rms_n < 1.03 * truth["noise_n"]
 
 
 def test_without_play_nothing_is_set_aside_of_a_law_that_forgets() -> None:

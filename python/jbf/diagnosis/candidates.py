@@ -23,6 +23,8 @@ from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
+from jbf.estimation.initial_state import begins_anywhere
+from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.left_out import (
     LeftOut,
     errors_by_run,
@@ -197,7 +199,8 @@ class Candidates:
                 told = score_test(fitted.problem, starts, near, added)
                 fitted.score, fitted.directions, fitted.stepped = told
                 # Nor of what rounds it: the samples beside it may tell more than all of the rest.
-                if any(find_effect(name).spreads_jumps for name in added):
+                # Nor of what begins anywhere: most of what it explains, it explains far from there.
+                if spreads_jumps(added) or begins_anywhere(added):
                     fitted.score = np.inf
         return fitted.score
 

@@ -129,6 +129,15 @@ def test_where_hardly_a_force_turns_the_runs_stay() -> None:
     assert settled_again(problem, problem.solution(truth, campaign.samples, WHITE)) is None
 
 
+def test_a_model_with_play_leaves_what_remembers_its_start_and_no_model_without() -> None:
+    problem, values = posed(1.0)
+    every = problem.campaign.samples
+    gone = [w & ~c for w, c in zip(every.counted, problem.samples_at(values).counted, strict=True)]
+    assert all(8.0 < 0.02 * int(g.sum()) < 30.0 for g in gone)
+    values[problem.names.index("sensor_hysteresis.w_n")] = 0.0
+    assert problem.samples_at(values) is every
+
+
 def test_a_wide_play_is_found_whatever_its_score_at_no_play() -> None:
     """There the law makes up for it, and a step from none promises less than chance would."""
     rig, these, truth = simulated(7952012, ("sensor_hysteresis",), strength=1.5)

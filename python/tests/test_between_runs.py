@@ -136,3 +136,10 @@ def test_the_likelihood_is_of_the_correlated_normal_density(noise: Noise) -> Non
     assert samples.cost(residuals, noise) == pytest.approx(count * np.log(square / count))
     swapped = samples.only([1, 0]).cost(residuals[::-1], noise)
     assert swapped == pytest.approx(samples.cost(residuals, noise), rel=1e-12)
+
+
+def test_a_run_that_was_set_aside_whole_has_nothing_to_whiten() -> None:
+    between = BetweenRuns(("zero",), (np.ones((5, 1)),), 0.1)
+    nothing = [np.zeros(0), np.zeros((0, 2))]
+    white = between.whitened(0, nothing, np.zeros(5), 0.02, WHITE)
+    assert [w.shape for w in white] == [(0,), (0, 2)]

@@ -5,6 +5,7 @@ Friction is Coulomb's on motions that never turn round, so a model is a matrix o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 from by_hand import Array, Friction, coulomb, four_runs, wandering
 from jbf import Diagnosis, Rig, Run, diagnose, effects
 from jbf.diagnosis import Trial
+from jbf.diagnosis.candidates import Candidates
+from jbf.estimation.solution import Solution
 from jbf.reporting.words import verdict_sentence
 from scipy import stats
 
@@ -30,6 +33,9 @@ def diagnosed(hidden: str) -> tuple[Diagnosis, list[Run]]:
     def weak_mass(t: Array, v: Array, a: Array) -> Array:
         return coulomb(t, v, a) + 0.06 * a
 
+    def mass(t: Array, v: Array, a: Array) -> Array:
+        return coulomb(t, v, a) + 3.0 * a
+
     def lag(t: Array, v: Array, a: Array) -> Array:
         # To first order in the time, a lag and a delay are the same.
         return coulomb(t, v, a) - 0.005 * 20.0 * a
@@ -43,6 +49,7 @@ def diagnosed(hidden: str) -> tuple[Diagnosis, list[Run]]:
     plans: dict[str, tuple[Friction, float]] = {
         "nothing": (coulomb, NOISE_N),
         "weak mass": (weak_mass, NOISE_N),
+        "mass": (mass, NOISE_N),
         "lag": (lag, 0.05),
         "small tone": (small_tone, 0.3),
         "large tone": (large_tone, 0.3),
@@ -140,6 +147,25 @@ def test_the_leader_says_what_it_predicts_of_runs_left_out() -> None:
     leader = trial(d, "inertia_leak")
     assert leader.outcome == "added"
     assert float(leader.reason.split()[-2]) == pytest.approx(Textbook(runs).held_out(3), rel=1e-3)
+
+
+@pytest.mark.parametrize("hidden", ["mass", "nothing"])
+def test_before_anything_is_left_unexplained_every_candidate_is_fitted(
+    hidden: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A mass whose score says nothing of it, as that of a strong effect may."""
+    known, runs = diagnosed(hidden)
+    asked: list[str] = []
+
+    def silent(self: Candidates, effects: Sequence[str], near: Solution) -> float:
+        asked.extend(effects)
+        return 0.0
+
+    monkeypatch.setattr(Candidates, "score_test", silent)
+    d = diagnose(Rig(), runs, law="coulomb")
+    assert "inertia_leak" in asked
+    assert (d.verdict, d.effects) == (known.verdict, known.effects)
+    assert [s.effects for s in d.steps] == [s.effects for s in known.steps]
 
 
 def test_what_helps_in_one_run_only_is_not_added() -> None:

@@ -11,7 +11,7 @@ import pytest
 from by_hand import coulomb
 from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone
+from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone, swap_cost
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
 from jbf.estimation.noise import WHITE, Noise
@@ -42,6 +42,12 @@ def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
     richer = replace(richer, residuals=right.residuals, noise=WHITE, cost=cost)
     assert evidence(candidates, richer, astray) > 60.0
     assert evidence_alone(candidates, richer, astray) < 0.0
+    # Nor does it come in another's place by that.
+    there = candidates.fitted(("time_delay",))
+    there.solution, there.score = richer, np.inf
+    rival = candidates.converge(("sensor_offset",))
+    lost = swap_cost(candidates, ("time_delay",), replace(rival, residuals=right.residuals), astray)
+    assert lost > 60.0
     # Nor is what a noise costs that was described with those samples in it.
     smooth = problem.solution(right.values, right.samples, Noise(0.5, 0.9))
     assert evidence(candidates, richer, smooth) > 60.0

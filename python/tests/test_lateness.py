@@ -16,7 +16,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.late_channels import on_time
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.lateness import Lateness, lateness
+from jbf.estimation.lateness import Lateness, _clock, _Place, lateness
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.prepared import Prepared
@@ -226,31 +226,129 @@ def test_one_clock_is_believed_where_it_leaves_as_little(
     assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
 
 
-def test_of_runs_that_differ_one_clock_says_what_the_drift_makes() -> None:
+def test_runs_that_start_late_by_times_of_their_own_have_no_one_clock() -> None:
     drift = 4e-4
     middle = 0.5 * drift * LASTS_S
     there = fitted(campaign([middle + late for late in DIFFER_S], drift))
     by_run, clock = (lateness(*there, 0, CHANCE, one) for one in (False, True))
     assert by_run is not None
     np.testing.assert_allclose(by_run.late_s, middle + np.array(DIFFER_S), atol=2e-3)
-    assert clock is not None
-    assert clock.spread_s == 0.0
-    np.testing.assert_allclose(clock.late_s, 0.5 * clock.drift * LASTS_S, rtol=1e-9)
+    assert clock is None
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 30e-3])
+def test_one_clock_shows_in_how_late_longer_runs_are(delay_s: float) -> None:
+    """Within no run does the lateness show to grow; in the middle of a longer one it is larger."""
+    lasts_s, drift = np.array([10.0, 20.0, 40.0, 80.0]), -3e-4
+    whole = [_Place(0.5 * drift * t + delay_s, 1e-7) for t in lasts_s.tolist()]
+    unknown = [_Place(0.0, np.inf)] * 4
+    for growing in (unknown, [_Place(drift, 1e-10)] * 4):
+        found = _clock(whole, growing, lasts_s, delay_s > 0.0)
+        assert found is not None
+        assert found[0] == pytest.approx(drift)
+        assert found[1] < 1e-6
+    # Without a delay in the model one that all share is the clock's, or speaks against it.
+    if delay_s > 0.0:
+        against = _clock(whole, unknown, lasts_s, False)
+        assert against is not None
+        assert against[1] > 1e-3
+    # Of runs that last alike, or of one, nobody can tell a delay from a drift.
+    assert _clock(whole, unknown, np.full(4, 20.0), True) is None
+    assert _clock(whole[:1], unknown[:1], lasts_s[:1], False) is None
+
+
+def test_one_clock_leaves_a_delay_to_the_instrument() -> None:
+    """Runs that are all late by 15 ms, and later by a clock that drifts."""
+    drift, delay_s = 5e-4, 15e-3
+    late = [0.5 * drift * LASTS_S + delay_s] * 4
+    problem, solution = fitted(campaign(late, drift), DELAY)
+    again = on_time(problem, solution, DEFAULT)
+    assert again is not None
+    assert {f.kind for f in again.more_findings} == {"drifting_clock"}
+    np.testing.assert_allclose([f.size for f in again.more_findings], drift, rtol=0.05)
+    there, delayed = fitted(again, DELAY)
+    known = dict(zip(there.names, delayed.values.tolist(), strict=True))
+    assert known["time_delay.tau_s"] == pytest.approx(delay_s, rel=0.03)
+    assert delayed.rms_n == pytest.approx(NOISE_N, rel=0.1)
 
 
 @pytest.mark.parametrize(("effects", "more"), [(DELAY, 1.0), (("sensor_lag",), DEFAULT.no_worse)])
 def test_one_delay_of_all_runs_must_be_beaten_outright(
     effects: tuple[str, ...], more: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[float | None] = []
+    asked: list[tuple[Solution | None, float]] = []
 
-    def never(problem: object, near: object, policy: object, rms_n: float | None = None) -> None:
-        asked.append(rms_n)
+    def never(
+        problem: object, near: object, _: object, richer: Solution | None = None, much: float = 0.0
+    ) -> None:
+        asked.append((richer, much))
 
     monkeypatch.setattr(recipe, "on_time", never)
     candidates = MadeUp(list(effects), sets({"": 0.0, effects[0]: 500.0}))
     assert recipe._on_time(cast(Candidates, candidates), effects) is None
-    assert asked == [None, more * candidates.converge(effects).rms_n]
+    assert [much for _, much in asked] == [0.0, more]
+    assert asked[0][0] is None
+    assert asked[1][0] is not None
+    assert asked[1][0].rms_n == candidates.converge(effects).rms_n
+
+
+@pytest.mark.parametrize("clocks", [True, False])
+def test_a_drift_seen_once_runs_are_on_time_moves_no_middle(
+    clocks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A first look tells how late each run is, and not that it grows; a second one tells that, and
+    what one clock would have made of the middles: that is known by then."""
+    drift = 1e-3
+    middle = 0.5 * drift * LASTS_S
+    truly = np.full(4, middle) + (0.0 if clocks else np.array(DIFFER_S))
+
+    def in_turn(
+        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool, jumps: bool
+    ) -> Lateness | None:
+        looks = (Lateness(tuple(truly.tolist()), 0.0, 5e-3), Lateness((middle,) * 4, drift, 0.0))
+        return looks[look] if look < len(looks) else None
+
+    monkeypatch.setattr(late_channels, "lateness", in_turn)
+    again = on_time(*fitted(campaign(truly.tolist(), drift)), DEFAULT)
+    assert again is not None
+    middles = [float(f.words.split(": ")[1].split()[0]) for f in again.more_findings]
+    np.testing.assert_allclose(middles, 1e3 * truly, atol=0.2)
+    assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+
+
+# ---- compared with another model ---------------------------------------------------------------
+
+
+def shifted(late_s: Sequence[float]) -> late_channels._Shifted:
+    """As if runs had been shifted to where they are still late by so much."""
+    problem, solution = fitted(campaign(late_s))
+    return late_channels._Shifted(problem.campaign, solution, np.zeros(4), 0.0)
+
+
+def test_samples_beside_jumps_decide_nothing_where_the_other_model_leaves_them() -> None:
+    """A jump within a sample makes an error of newtons; a model with a delay sets such aside."""
+    found = shifted((0.6e-3,) * 4)
+    delayed = fitted(found.campaign, DELAY)[1]
+    assert found.solution.rms_n > 5.0 * delayed.rms_n
+    before, left = late_channels._errors_n(found, delayed, np.inf)
+    assert before == pytest.approx(delayed.rms_n)
+    assert left < 1.2 * delayed.rms_n
+    same = late_channels._errors_n(found, found.solution, np.inf)
+    assert same == pytest.approx((found.solution.rms_n,) * 2)
+
+
+def test_a_few_errors_far_out_decide_nothing() -> None:
+    """Noise a tenth larger in one of two, the same outliers in both."""
+    random = np.random.default_rng(4)
+    small, far = random.standard_normal(20000), np.zeros(20000)
+    far[::200] = 30.0
+    alike = np.hypot(*(np.std(x) for x in (small, far))), np.hypot(1.1, np.std(far))
+    assert alike[1] < 1.03 * alike[0]
+    sizes = [late_channels._clipped_rms(k * small + far, 3.5) for k in (1.0, 1.1)]
+    assert sizes[1] == pytest.approx(1.1 * sizes[0], rel=0.01)
+    whole = late_channels._clipped_rms(small + far, np.inf)
+    assert whole == pytest.approx(alike[0], rel=0.02)
+    assert late_channels._clipped_rms(np.zeros(0), 3.5) == 0.0
 
 
 # ---- the shift ---------------------------------------------------------------------------------
@@ -328,4 +426,6 @@ def test_what_runs_that_differ_are_all_late_besides_is_found() -> None:
 @pytest.mark.parametrize(("gain", "counts"), [(6.7, False), (7.1, True)])
 def test_a_lateness_gains_by_schwarzs_criterion(gain: float, counts: bool) -> None:
     # One run of a thousand samples: log 1000 = 6.91.
-    assert late_channels._gains(solution((), 0.0), solution((), gain)) == counts
+    before, after = solution((), 0.0), solution((), gain)
+    there = late_channels._Shifted(cast(Campaign, None), after, np.zeros(1), 0.0)
+    assert late_channels._gains(before.rms_n, after.rms_n, there) == counts

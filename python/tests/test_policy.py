@@ -163,7 +163,7 @@ def apart(policy: Policy) -> object:
     near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(late_channels, "lateness", lambda *_: late)
-        found = late_channels.on_time(problem, near, replace(policy, most_shifts=1), 1e9)
+        found = late_channels.on_time(problem, near, replace(policy, most_shifts=1), near, 1e9)
     return found is None
 
 

@@ -329,6 +329,14 @@ def test_a_single_effect_is_not_questioned() -> None:
     assert thought_over(candidates, "sensor_lag") == ("sensor_lag",)
 
 
+def test_at_last_candidates_are_fitted_whatever_their_scores() -> None:
+    """A strong effect whose score at its null is that of no effect."""
+    gains = sets({"": 0.0, "sensor_lag": 300.0})
+    candidates = MadeUp(FOUR, gains, scores={frozenset(["sensor_lag"]): 0.0})
+    assert try_candidates(cast(Candidates, candidates), (), "shown").leader is None
+    assert try_candidates(cast(Candidates, candidates), (), "all").leader == "sensor_lag"
+
+
 # ---- whose gain it is -------------------------------------------------------------------------
 
 

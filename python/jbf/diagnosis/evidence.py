@@ -112,4 +112,4 @@ def swap_cost(
         return float("inf")
     # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples that
     # it leaves.
-    return cost(solution if evidence(candidates, solution, near) > 0.0 else near)
+    return cost(solution if evidence_alone(candidates, solution, near) > 0.0 else near)

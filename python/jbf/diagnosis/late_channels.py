@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.uneven_noise import noise_sizes
+from jbf.diagnosis.uneven_noise import noise_sizes, robust_size
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.lateness import Lateness, lateness
+from jbf.estimation.jumps import samples_beside_jumps
+from jbf.estimation.lateness import CLIPPED, DELAY, Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -24,18 +25,25 @@ from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
-DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
 """So much too little runs are shifted where it is asked what all are late besides, or a step."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
+CLOCK_LOOKS = 3
+"""Times as many looks for one clock: a law that gave way to a drift lets go of it by and by,"""
+SETTLED = 0.02
+"""until a look changes it by no more than this share."""
 MOST_LATE = 0.5
 """Share of a run that its force may be late by."""
 
 
 def on_time(
-    problem: Problem, solution: Solution, policy: Policy, rms_n: float | None = None
+    problem: Problem,
+    solution: Solution,
+    policy: Policy,
+    richer: Solution | None = None,
+    more: float = 1.0,
 ) -> Campaign | None:
     """The campaign with each run's force where it belongs; None where it is there already.
 
@@ -43,29 +51,34 @@ def on_time(
 
     Parameters
     ----------
-    rms_n
-        What the model may leave on runs that were shifted, N; less than this one leaves, and by
-        more than chance, where not given.
+    richer
+        A model that shifted runs may do without: of what it leaves, they may leave `more` times as
+        much. Where not given, they must leave less than this one does, by more than chance.
     """
     if any(f.kind in ("late_channel", "drifting_clock") for f in problem.campaign.more_findings):
         return None
     found = _shifted(problem, solution, policy)
     if found is None:
         found = _shifted(problem, solution, policy, at_jumps=True)
-    if found is not None and found.drift != 0.0:
+    if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
         simpler = _shifted(problem, solution, policy, one_clock=True)
         # One clock says more simply what a lateness of each run does.
-        if simpler is not None and not _gains(simpler.solution, found.solution):
+        if simpler is not None and not _gains(simpler.solution.rms_n, found.solution.rms_n, found):
             found = simpler
     if found is None:
         return None
-    worth_it = _gains(solution, found.solution) if rms_n is None else found.solution.rms_n <= rms_n
+    if richer is None:
+        worth_it = _gains(*_errors_n(found, solution, np.inf), found)
+    else:
+        # Another model may fit worse all along, and its few errors far out be the same.
+        before_n, left_n = _errors_n(found, richer, CLIPPED)
+        worth_it = left_n <= more * before_n
     if not worth_it:
         return None
     found = _all_alike(problem, found)
     campaign, late_s = found.campaign, found.late_s
     apart = np.abs(late_s - np.median(late_s))
-    if (rms_n is not None or problem.campaign.samples.between is not None) and float(
+    if (richer is not None or problem.campaign.samples.between is not None) and float(
         np.median(apart)
     ) < policy.late_apart * campaign.prepared[0].step_s:
         # On their way they seemed to differ; where they end, most do not: a delay of all, or what
@@ -99,21 +112,31 @@ def _shifted(
     campaign = problem.campaign
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
-    for look in range(policy.most_shifts):
+    durations_s = np.array([p.run.duration_s for p in campaign.prepared])
+    looks = policy.most_shifts * (CLOCK_LOOKS if one_clock else 1)
+    for look in range(looks):
         found = lateness(problem, solution, look, policy.deviation_chance, one_clock, at_jumps)
         if look == 0 and found is not None:
             found = _by_any_weights(problem, solution, policy, found, one_clock, at_jumps)
         if found is None:
             break
-        # Where runs differ in it, a delay that they share is the recording's as well.
+        # Where runs differ in it, a delay that they share is the recording's as well; beside one
+        # clock it stays the instrument's.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
         shared = known.get(f"{DELAY}.tau_s", 0.0) if found.spread_s > 0.0 else 0.0
         later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
+        if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
+            # In the middle they are on time by now, unless their clock is to say how late.
+            later_s = 0.5 * drifted * durations_s if one_clock else late_s
         if not _beside_its_motion(first, later_s, drifted):
             break
+        on_its_way = abs(found.drift) > SETTLED * abs(drifted)
         late_s, drift = later_s, drifted
         campaign = _moved(first, late_s, drift)
-        problem, solution = _refitted(problem, campaign, known, solution)
+        effects = problem.effects if one_clock else _without_delay(problem.effects)
+        problem, solution = _refitted(problem, campaign, effects, known, solution)
+        if one_clock and not on_its_way:
+            break
     return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
 
 
@@ -131,7 +154,7 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
     ahead_s = max(AHEAD_S, float(np.median(steps)))
     late_s = found.late_s - ahead_s
     campaign = _moved(problem, late_s, 0.0)
-    effects = [name for name in problem.effects if name != DELAY]
+    effects = _without_delay(problem.effects)
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
     last = Problem(found.campaign, problem.law, problem.clock, effects)
     known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
@@ -144,7 +167,7 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
         return found
     campaign = _moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
-    _, solution = _refitted(problem, campaign, near, found.solution)
+    _, solution = _refitted(problem, campaign, effects, near, found.solution)
     if solution.rms_n >= found.solution.rms_n:
         return found
     return _Shifted(campaign, solution, late_s, 0.0)
@@ -167,13 +190,33 @@ def _moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
     )
 
 
-def _gains(simpler: Solution, shifted: Solution) -> bool:
+def _gains(before_n: float, after_n: float, shifted: _Shifted) -> bool:
     """Whether a lateness of each run gains more than so many parameters, by Schwarz's criterion."""
-    samples = shifted.samples
-    share = min(independent_share(shifted.residuals, samples.steps_s), 1.0)
+    samples = shifted.solution.samples
+    share = min(independent_share(shifted.solution.residuals, samples.steps_s), 1.0)
     count = samples.count * share
-    gain = 2.0 * count * np.log(simpler.rms_n / shifted.rms_n)
+    gain = 2.0 * count * np.log(before_n / after_n)
     return bool(gain > len(samples.runs) * np.log(count))
+
+
+def _errors_n(shifted: _Shifted, other: Solution, clipped: float) -> tuple[float, float]:
+    """What another model leaves of runs as they were, and what the shifted ones leave, N RMS.
+
+    Where the other sets aside the samples beside jumps, so they are here: those alone could decide.
+    Errors count no more than at `clipped` standard deviations.
+    """
+    here = shifted.solution
+    forces = [
+        p.friction_n - r for p, r in zip(shifted.campaign.prepared, here.residuals, strict=True)
+    ]
+    aside = samples_beside_jumps(here.samples, shifted.campaign.prepared, forces, other.effects)
+    before, left = other.samples.flat(other.residuals), aside.flat(here.residuals)
+    return _clipped_rms(before, clipped), _clipped_rms(left, clipped)
+
+
+def _clipped_rms(errors: Array, clipped: float) -> float:
+    most = clipped * robust_size(errors) if np.isfinite(clipped) else np.inf
+    return float(np.sqrt(np.mean(np.clip(errors, -most, most) ** 2))) if len(errors) else 0.0
 
 
 def _by_any_weights(
@@ -200,11 +243,18 @@ def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
     return settled_campaign(whole, problem.law, problem.clock)
 
 
+def _without_delay(effects: Names) -> Names:
+    return tuple(name for name in effects if name != DELAY)
+
+
 def _refitted(
-    problem: Problem, campaign: Campaign, known: dict[str, float], near: Solution
+    problem: Problem,
+    campaign: Campaign,
+    effects: Names,
+    known: dict[str, float],
+    near: Solution,
 ) -> tuple[Problem, Solution]:
-    """The model without a delay of its own, a few steps on, on runs that were shifted."""
-    effects = [name for name in problem.effects if name != DELAY]
+    """A law with effects, a few steps on, on runs that were shifted."""
     again = Problem(campaign, problem.law, problem.clock, effects)
     start = np.array([known[name] for name in again.names])
     samples = again.samples_at(start)

@@ -11,7 +11,7 @@ from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
+from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
@@ -28,6 +28,7 @@ from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
+from jbf.estimation.lateness import DELAY
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
@@ -133,7 +134,14 @@ def _diagnose(
         if again is None:
             again = weighed = _weighed(candidates, selected.present)
         if again is None:
-            break
+            if not _remainder(candidates, selected.present):
+                break
+            # Of a strong effect the score at its null may show nothing: before anything is left
+            # unexplained, every candidate is fitted.
+            was, selected = selected, select(candidates, before.noise_n, selected, "all")
+            if selected.present == was.present and selected.again is None:
+                break
+            continue
         last, was = candidates, selected
         candidates.before = None
         candidates = Candidates(again, law, clock, policy, progress, candidates)
@@ -210,8 +218,7 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
         simpler, near = candidates.fitted(rest).problem, candidates.converge(rest)
         # One delay of all runs is simpler than one of each: there the shifts must leave less.
         more = 1.0 if bought == (DELAY,) else candidates.policy.no_worse
-        most = more * solution.rms_n
-        shifted = on_time(simpler, near, candidates.policy, most)
+        shifted = on_time(simpler, near, candidates.policy, solution, more)
     return shifted
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.evidence import evidence_alone, price_of
-from jbf.diagnosis.late_channels import DELAY
 from jbf.diagnosis.ledger import Remainder, Step, Trial
-from jbf.diagnosis.selection import Names, Round, reconsider, still_needed, try_candidates
+from jbf.diagnosis.selection import Follow, Names, Round, reconsider, still_needed, try_candidates
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.lateness import DELAY
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
 
@@ -35,8 +35,14 @@ class Selected:
     again: Campaign | None = None
 
 
-def select(candidates: Candidates, noise_n: float, start: Selected | None = None) -> Selected:
-    """Rounds until no candidate leads, from the law alone or from effects that were there."""
+def select(
+    candidates: Candidates,
+    noise_n: float,
+    start: Selected | None = None,
+    follow: Follow = "promising",
+) -> Selected:
+    """Rounds until no candidate leads, from the law alone or from effects that were there; in the
+    first of them `follow` says which candidates are fitted."""
     present: Names = ()
     steps: list[Step] = []
     if start is not None and start.present:
@@ -50,7 +56,8 @@ def select(candidates: Candidates, noise_n: float, start: Selected | None = None
         if settled is not None:
             steps.append(step(candidates, present, noise_n, ()))
             return Selected(present, steps, again=settled)
-        found = try_candidates(candidates, present)
+        found = try_candidates(candidates, present, follow)
+        follow = "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
         differ = _differ_more(candidates, present, found)
         if differ is not None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy import special
@@ -23,6 +24,7 @@ from jbf.estimation.solution import Solution
 from jbf.models.catalogue import may_come, may_go
 
 Names = tuple[str, ...]
+Follow = Literal["promising", "shown", "all"]
 
 AHEAD = 3
 """Candidates that gained most at a first look, of which one may lead."""
@@ -54,17 +56,18 @@ class Round:
     unconfirmed: frozenset[str] = frozenset()
 
 
-def try_candidates(candidates: Candidates, present: Names, *, every: bool = False) -> Round:
+def try_candidates(candidates: Candidates, present: Names, follow: Follow = "promising") -> Round:
     """Fit every candidate beside the effects present, and say which should be added.
 
     Parameters
     ----------
-    every
-        Follow those, too, that promise far less than the leader.
+    follow
+        The candidates that are fitted: those that could lead by a first look, those that show in
+        their score test, or all of them: of a strong effect the score at its null may say nothing.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
-    ranked = _rank(candidates, present, base, every)
+    ranked = _rank(candidates, present, base, follow)
     leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
     bare = base.rms_n
@@ -87,7 +90,7 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"
             elif out.confirms(gain, bare**2 - rms**2, policy):
                 if _found_its_way(candidates, present, name, base):
-                    return try_candidates(candidates, present)
+                    return try_candidates(candidates, present, follow)
                 leader, best = name, gain
                 outcome, reason = "added", f"largest evidence; {out.said(unit)}"
             else:
@@ -105,7 +108,7 @@ def try_candidates(candidates: Candidates, present: Names, *, every: bool = Fals
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:
         # What it was left behind for does not lead.
-        return try_candidates(candidates, present, every=True)
+        return try_candidates(candidates, present, "shown")
     ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
 
@@ -122,7 +125,7 @@ def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:
     return found.solution.rms_n > policy.leader_rms * least_n
 
 
-def _rank(candidates: Candidates, present: Names, base: Solution, every: bool) -> list[Ranked]:
+def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
     """Every candidate beside the effects present, most evidence first; those that could lead have
     converged."""
     policy = candidates.policy
@@ -133,9 +136,9 @@ def _rank(candidates: Candidates, present: Names, base: Solution, every: bool) -
     candidates.calibrate(present)
     least = policy.least_score * price_of(candidates, 1)
     # Of a smooth error a sample tells less, and anything gains a little.
-    shown = [name for name in rivals if scores[name] * share > least]
+    shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
-    behind = {} if every else _left_behind(candidates, present, shown, base)
+    behind = _left_behind(candidates, present, shown, base) if follow == "promising" else {}
     followed = [name for name in shown if name not in behind]
     candidates.rank_all([(*present, name) for name in followed], base)
     for name in followed:

@@ -35,6 +35,7 @@ PARTS = 3
 """Parts of a run that tell whether its lateness grows."""
 LEAST_SAMPLES = 60
 """Samples of a part that can tell it."""
+DELAY = "time_delay"
 OUTSIDE = 0.01
 """Likelihood at the ends of the range from which on the lateness may lie outside."""
 RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
@@ -92,8 +93,8 @@ def lateness(
     chance
         Probability at which runs that differ, or grow later alike, are chance.
     one_clock
-        Whether runs that grow later alike were on time when they began: what they seem to differ
-        by in the middle is then the drift's, seen through parts that tell more than others.
+        Whether all runs were read by one clock, started with each: then the longer ones are later
+        in their middles, beside a delay that all share where the model has one.
     at_jumps
         Whether the samples beside reversals are asked, too: they tell a lateness of less than a
         sample where friction is smooth over time, and tell it in steps.
@@ -105,6 +106,12 @@ def lateness(
     for squares, time in _scans(problem, solution, grid, 0.0 if at_jumps else reach):
         whole.append(place(grid, squares.sum(axis=1), squares.shape[1]))
         drifts.append(_drift(grid, squares, time, place))
+    runs = problem.campaign.prepared
+    if one_clock:
+        lasts_s = np.array([p.run.duration_s for p in runs])
+        clock = _clock(whole, drifts, lasts_s, DELAY in problem.effects)
+        # That there is one has been told once.
+        return _by_clock(clock, lasts_s, chance if look == 0 else 1.0)
     by_run, drift = _spread(whole), _common(drifts)
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
@@ -115,14 +122,19 @@ def lateness(
             return None
         return Lateness(tuple(early[0] for _ in whole), 0.0, 0.0)
     share = drift[0] if drift is not None and grows else 0.0
-    if by_run is None or not differ or (grows and one_clock):
+    if by_run is None or not differ:
         # One clock, started with each run.
-        runs = problem.campaign.prepared
         return Lateness(tuple(0.5 * share * p.run.duration_s for p in runs), share, 0.0)
     known = [w for w in whole if np.isfinite(w.variance)]
     usual = float(np.average([w.value for w in known], weights=[1.0 / w.variance for w in known]))
     late = tuple(w.value if np.isfinite(w.variance) else usual for w in whole)
     return Lateness(late, share, by_run[0])
+
+
+def _by_clock(drift: tuple[float, float] | None, lasts_s: Array, chance: float) -> Lateness | None:
+    if drift is None or drift[1] > chance:
+        return None
+    return Lateness(tuple((0.5 * drift[0] * lasts_s).tolist()), drift[0], 0.0)
 
 
 def _scans(
@@ -251,6 +263,28 @@ def _spread(places: list[_Place]) -> tuple[float, float] | None:
     precisions = 1.0 / np.array([p.variance for p in known])
     sd, chance, _ = spread_between(values, precisions)
     return (sd, chance) if sd > 0.0 else None
+
+
+def _clock(
+    whole: list[_Place], drifts: list[_Place], lasts_s: Array, delayed: bool
+) -> tuple[float, float] | None:
+    """The drift of one clock by how runs grow later and by how late they are in their middles, and
+    the probability of so much by chance; `delayed` where the model has a delay that may be off."""
+    ones = np.ones(len(whole))
+    rows = np.vstack([np.stack([0.5 * lasts_s, ones], 1), np.stack([ones, 0.0 * ones], 1)])
+    places = [*whole, *drifts]
+    known = np.array([np.isfinite(p.variance) for p in places])
+    rows = rows[known, : 2 if delayed else 1]
+    if len(rows) <= rows.shape[1]:
+        return None
+    weight = np.array([p.variance for p in places])[known] ** -0.5
+    x, y = rows * weight[:, None], np.array([p.value for p in places])[known] * weight
+    fitted, _, rank, _ = np.linalg.lstsq(x, y, rcond=None)
+    if rank < x.shape[1]:
+        return None
+    spread = float(np.sum((y - x @ fitted) ** 2)) / (len(y) - x.shape[1])
+    variance = float(np.linalg.inv(x.T @ x)[0, 0]) * max(spread, 1.0)
+    return float(fitted[0]), float(special.chdtrc(1, fitted[0] ** 2 / variance))
 
 
 def _common(drifts: list[_Place]) -> tuple[float, float] | None:

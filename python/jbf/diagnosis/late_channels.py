@@ -63,7 +63,7 @@ def on_time(
     if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
         simpler = _shifted(problem, solution, policy, one_clock=True)
         # One clock says more simply what a lateness of each run does.
-        if simpler is not None and not _gains(simpler.solution.rms_n, found.solution.rms_n, found):
+        if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
             found = simpler
     if found is None:
         return None

@@ -213,9 +213,9 @@ def test_one_clock_is_believed_where_it_leaves_as_little(
     wrong = np.full(4, middle) + (np.array(DIFFER_S) if right else 0.0)
 
     def two_ways(
-        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool, jumps: bool
+        problem: Problem, near: Solution, look: int, chance: float, clocks: str, jumps: bool
     ) -> Lateness | None:
-        late = truly if one_clock == right else wrong
+        late = truly if (clocks != "by run") == right else wrong
         return Lateness(tuple(late.tolist()), drift, 0.0) if look == 0 else None
 
     monkeypatch.setattr(late_channels, "lateness", two_ways)
@@ -230,7 +230,7 @@ def test_runs_that_start_late_by_times_of_their_own_have_no_one_clock() -> None:
     drift = 4e-4
     middle = 0.5 * drift * LASTS_S
     there = fitted(campaign([middle + late for late in DIFFER_S], drift))
-    by_run, clock = (lateness(*there, 0, CHANCE, one) for one in (False, True))
+    by_run, clock = (lateness(*there, 0, CHANCE, c) for c in ("by run", "one"))
     assert by_run is not None
     np.testing.assert_allclose(by_run.late_s, middle + np.array(DIFFER_S), atol=2e-3)
     assert clock is None
@@ -247,7 +247,7 @@ def test_one_clock_shows_in_how_late_longer_runs_are(delay_s: float) -> None:
         assert found is not None
         assert found[0] == pytest.approx(drift)
         assert found[1] < 1e-6
-    # Without a delay in the model one that all share is the clock's, or speaks against it.
+    # Not allowed for, a time that all share is the clock's, or speaks against it.
     if delay_s > 0.0:
         against = _clock(whole, unknown, lasts_s, False)
         assert against is not None
@@ -255,6 +255,7 @@ def test_one_clock_shows_in_how_late_longer_runs_are(delay_s: float) -> None:
     # Of runs that last alike, or of one, nobody can tell a delay from a drift.
     assert _clock(whole, unknown, np.full(4, 20.0), True) is None
     assert _clock(whole[:1], unknown[:1], lasts_s[:1], False) is None
+    assert _clock(unknown, unknown, lasts_s, False) is None
 
 
 def test_one_clock_leaves_a_delay_to_the_instrument() -> None:
@@ -303,7 +304,7 @@ def test_a_drift_seen_once_runs_are_on_time_moves_no_middle(
     truly = np.full(4, middle) + (0.0 if clocks else np.array(DIFFER_S))
 
     def in_turn(
-        problem: Problem, near: Solution, look: int, chance: float, one_clock: bool, jumps: bool
+        problem: Problem, near: Solution, look: int, chance: float, clocks: str, jumps: bool
     ) -> Lateness | None:
         looks = (Lateness(tuple(truly.tolist()), 0.0, 5e-3), Lateness((middle,) * 4, drift, 0.0))
         return looks[look] if look < len(looks) else None

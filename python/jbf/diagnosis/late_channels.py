@@ -12,7 +12,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_size
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import samples_beside_jumps
-from jbf.estimation.lateness import CLIPPED, DELAY, Lateness, lateness
+from jbf.estimation.lateness import CLIPPED, Clocks, Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -25,6 +25,7 @@ from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
+DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
 """So much too little runs are shifted where it is asked what all are late besides, or a step."""
@@ -61,7 +62,7 @@ def on_time(
     if found is None:
         found = _shifted(problem, solution, policy, at_jumps=True)
     if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
-        simpler = _shifted(problem, solution, policy, one_clock=True)
+        simpler = _by_one_clock(problem, solution, policy)
         # One clock says more simply what a lateness of each run does.
         if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
             found = simpler
@@ -105,7 +106,7 @@ def _shifted(
     problem: Problem,
     solution: Solution,
     policy: Policy,
-    one_clock: bool = False,
+    clocks: Clocks = "by run",
     at_jumps: bool = False,
 ) -> _Shifted | None:
     """The runs shifted by their lateness until there is none; None where there was none."""
@@ -113,11 +114,12 @@ def _shifted(
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     durations_s = np.array([p.run.duration_s for p in campaign.prepared])
+    one_clock = clocks != "by run"
     looks = policy.most_shifts * (CLOCK_LOOKS if one_clock else 1)
     for look in range(looks):
-        found = lateness(problem, solution, look, policy.deviation_chance, one_clock, at_jumps)
+        found = lateness(problem, solution, look, policy.deviation_chance, clocks, at_jumps)
         if look == 0 and found is not None:
-            found = _by_any_weights(problem, solution, policy, found, one_clock, at_jumps)
+            found = _by_any_weights(problem, solution, policy, found, clocks, at_jumps)
         if found is None:
             break
         # Where runs differ in it, a delay that they share is the recording's as well; beside one
@@ -138,6 +140,12 @@ def _shifted(
         if one_clock and not on_its_way:
             break
     return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
+
+
+def _by_one_clock(problem: Problem, solution: Solution, policy: Policy) -> _Shifted | None:
+    """The runs shifted as one clock has it, beside what all share or not: whichever leaves less."""
+    ways = [_shifted(problem, solution, policy, c) for c in ("one", "one, offset")]
+    return min((w for w in ways if w), key=lambda way: way.solution.rms_n, default=None)
 
 
 def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
@@ -224,7 +232,7 @@ def _by_any_weights(
     solution: Solution,
     policy: Policy,
     plain: Lateness,
-    one_clock: bool,
+    clocks: Clocks,
     at_jumps: bool,
 ) -> Lateness | None:
     """The lateness where noise that is larger in places counts less; None where the runs do not
@@ -234,7 +242,7 @@ def _by_any_weights(
         return plain
     ones = [np.ones(len(s)) for s in sizes]
     even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
-    return lateness(problem, even, 0, policy.deviation_chance, one_clock, at_jumps)
+    return lateness(problem, even, 0, policy.deviation_chance, clocks, at_jumps)
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:

@@ -11,7 +11,7 @@ from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.late_channels import bought_by_lateness, on_time
+from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
@@ -28,7 +28,6 @@ from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.lateness import DELAY
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +36,6 @@ PARTS = 3
 """Parts of a run that tell whether its lateness grows."""
 LEAST_SAMPLES = 60
 """Samples of a part that can tell it."""
-DELAY = "time_delay"
 OUTSIDE = 0.01
 """Likelihood at the ends of the range from which on the lateness may lie outside."""
 RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
@@ -69,6 +69,8 @@ class _Place:
     variance: float
 
 
+Clocks = Literal["by run", "one", "one, offset"]
+"""By which clocks forces were read."""
 Tell = Callable[[Array, Array, int], _Place]
 """Where the squares of so many samples are least over a grid."""
 
@@ -78,7 +80,7 @@ def lateness(
     solution: Solution,
     look: int,
     chance: float,
-    one_clock: bool = False,
+    clocks: Clocks = "by run",
     at_jumps: bool = False,
 ) -> Lateness | None:
     """How the lateness of the runs differs; None where it does not beyond chance.
@@ -92,9 +94,10 @@ def lateness(
         0 at first; 1 where the runs were shifted before.
     chance
         Probability at which runs that differ, or grow later alike, are chance.
-    one_clock
-        Whether all runs were read by one clock, started with each: then the longer ones are later
-        in their middles, beside a delay that all share where the model has one.
+    clocks
+        `by run`: each run is late by its own time. Or all were read by one clock that was started
+        with each (`one`): then longer runs are later in their middles; or they are so beside what
+        all share (`one, offset`), which a law may have taken for its own memory.
     at_jumps
         Whether the samples beside reversals are asked, too: they tell a lateness of less than a
         sample where friction is smooth over time, and tell it in steps.
@@ -107,9 +110,9 @@ def lateness(
         whole.append(place(grid, squares.sum(axis=1), squares.shape[1]))
         drifts.append(_drift(grid, squares, time, place))
     runs = problem.campaign.prepared
-    if one_clock:
+    if clocks != "by run":
         lasts_s = np.array([p.run.duration_s for p in runs])
-        clock = _clock(whole, drifts, lasts_s, DELAY in problem.effects)
+        clock = _clock(whole, drifts, lasts_s, clocks == "one, offset")
         # That there is one has been told once.
         return _by_clock(clock, lasts_s, chance if look == 0 else 1.0)
     by_run, drift = _spread(whole), _common(drifts)
@@ -266,25 +269,23 @@ def _spread(places: list[_Place]) -> tuple[float, float] | None:
 
 
 def _clock(
-    whole: list[_Place], drifts: list[_Place], lasts_s: Array, delayed: bool
+    whole: list[_Place], drifts: list[_Place], lasts_s: Array, offset: bool
 ) -> tuple[float, float] | None:
     """The drift of one clock by how runs grow later and by how late they are in their middles, and
-    the probability of so much by chance; `delayed` where the model has a delay that may be off."""
-    ones = np.ones(len(whole))
+    the probability of so much by chance; `offset` where they may all be late by a time besides."""
+    columns, ones = 2 if offset else 1, np.ones(len(whole))
     rows = np.vstack([np.stack([0.5 * lasts_s, ones], 1), np.stack([ones, 0.0 * ones], 1)])
     places = [*whole, *drifts]
     known = np.array([np.isfinite(p.variance) for p in places])
-    rows = rows[known, : 2 if delayed else 1]
-    if len(rows) <= rows.shape[1]:
+    variance = np.array([p.variance for p in places])[known]
+    x = rows[known, :columns] / np.sqrt(variance)[:, None]
+    y = np.array([p.value for p in places])[known] / np.sqrt(variance)
+    if len(y) <= columns or np.linalg.matrix_rank(x) < columns:
         return None
-    weight = np.array([p.variance for p in places])[known] ** -0.5
-    x, y = rows * weight[:, None], np.array([p.value for p in places])[known] * weight
-    fitted, _, rank, _ = np.linalg.lstsq(x, y, rcond=None)
-    if rank < x.shape[1]:
-        return None
-    spread = float(np.sum((y - x @ fitted) ** 2)) / (len(y) - x.shape[1])
-    variance = float(np.linalg.inv(x.T @ x)[0, 0]) * max(spread, 1.0)
-    return float(fitted[0]), float(special.chdtrc(1, fitted[0] ** 2 / variance))
+    fitted = np.linalg.lstsq(x, y, rcond=None)[0]
+    spread = float(np.sum((y - x @ fitted) ** 2)) / (len(y) - columns)
+    square = float(fitted[0]) ** 2 / (float(np.linalg.inv(x.T @ x)[0, 0]) * max(spread, 1.0))
+    return float(fitted[0]), float(special.chdtrc(1, square))
 
 
 def _common(drifts: list[_Place]) -> tuple[float, float] | None:

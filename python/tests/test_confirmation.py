@@ -127,3 +127,12 @@ def test_models_are_compared_at_the_samples_that_both_leave() -> None:
     alike = Confirmation.of(before, after, left, richer_left)
     assert found.before_n < 0.7 * alike.before_n
     assert found.after_n == pytest.approx(found.before_n, rel=0.15)
+
+
+@pytest.mark.parametrize(("size_n", "worse"), [(0.01, 1.0), (0.01, 1.5), (100.0, 1.5)])
+def test_runs_left_out_that_are_predicted_worse_confirm_nothing(
+    size_n: float, worse: float
+) -> None:
+    """However small the force: as a share of the error without the effect."""
+    found = Confirmation(size_n, worse * size_n, 1.0, 1.0, ())
+    assert found.confirms(1e6, 1e-9, DEFAULT) == (worse < DEFAULT.left_out_worse)

@@ -164,6 +164,7 @@ def test_of_two_columns_one_is_read_and_the_other_named(tmp_path: Path) -> None:
 
 ROTARY_TORQUE = 'motion = "rotary"\nfriction = "torque"\n'
 LINEAR_FORCE = 'motion = "linear"\nfriction = "force"\n'
+LINEAR_TORQUE = 'motion = "linear"\nfriction = "torque"\npitch_m = 0.01\n'
 BAD_COLUMNS = [
     (ROTARY_TORQUE, "angle_rad,torque_n_m,friction_n", "column friction_n: does not go with"),
     (ROTARY_TORQUE, "angle_rad,torque_n_m,velocity_m_s", "give velocity_rad_s, or correct [drive]"),
@@ -173,6 +174,8 @@ BAD_COLUMNS = [
     (CURRENT, "current_a,temperature_c", "column velocity_rad_s: is missing"),
     (LINEAR_FORCE, "angle_rad,friction_n", "rename it to motor_angle_rad, else drop it"),
     (LINEAR_FORCE, "motor_speed_rpm,friction_n", "give [drive] its pitch_m"),
+    (LINEAR_TORQUE, "position_m,torque_n_m", "column torque_n_m: does not go with"),
+    (LINEAR_TORQUE, "position_m,torque_n_m", "rename it to motor_torque_n_m if it is the motor's"),
 ]
 
 

@@ -14,6 +14,7 @@ from jbf.control import TASKS, THESIS_BENCH, run, thesis_model
 from jbf.control.thesis_tables import Cell, Tables
 from jbf.diagnosis.check import Check, Rate
 from jbf.diagnosis.result import Diagnosis
+from jbf.diagnosis.which_law import LawTried
 from jbf.estimation.noise import Noise
 from jbf.models import catalogue
 from jbf.records.findings.finding import Finding
@@ -24,7 +25,7 @@ from jbf.reporting.control_tables_text import better_text
 from jbf.reporting.fit_text import noise_words
 from jbf.reporting.paragraphs import columns
 from jbf.reporting.tables import finding_rows
-from jbf.reporting.words import times, verdict_sentence
+from jbf.reporting.words import number, times, verdict_sentence
 
 
 def test_an_error_in_multiples_of_the_noise() -> None:
@@ -55,6 +56,29 @@ def test_what_remains_is_said_beside_what_is_missing(
     assert said.startswith(f"Missing: {' and '.join(effects)}. With" if effects else "Something")
     assert ("With them, the held-out error falls" in said) == (len(effects) == 2)
     assert ("With it, the held-out error falls" in said) == (len(effects) == 1)
+
+
+def test_another_law_is_said_beside_what_this_one_reaches(
+    make_diagnosis: Callable[[str], Diagnosis],
+) -> None:
+    d = make_diagnosis("missing")
+    first, last = d.steps[0].holdout_rms_n, d.steps[-1].holdout_rms_n
+    assert number(first) != number(last)
+    said = verdict_sentence(replace(d, simpler_law=LawTried("stribeck", 4, 0.123, False)))
+    assert f"stribeck, which needs no other friction beside it, predicts runs left out to within "\
+        f"0.123 N, {d.model.law} with all of this to {number(last)} N;" in said  # fmt: skip
+
+
+@pytest.mark.parametrize("tied", [True, False])
+def test_a_law_that_the_data_chose_is_said_with_those_that_predict_alike(
+    tied: bool, make_diagnosis: Callable[[str], Diagnosis]
+) -> None:
+    laws = (LawTried("coulomb", 2, 0.1, True), LawTried("stribeck", 4, 0.1, tied))
+    said = verdict_sentence(replace(make_diagnosis("adequate"), laws=laws))
+    if tied:
+        assert "the law coulomb, the simplest of those that predict alike (stribeck too)." in said
+    else:
+        assert "The data chose the law coulomb." in said
 
 
 def test_a_row_of_another_length_is_no_row_of_a_table() -> None:

@@ -52,6 +52,10 @@ def test_each_case_is_wrong_by_what_it_says(monkeypatch: pytest.MonkeyPatch) -> 
     assert of("motor gain 10 % larger", "input_rad_s2_v") == pytest.approx(1.1)
     assert of("motor gain 10 % smaller", "input_rad_s2_v") == pytest.approx(0.9)
     assert of("noise four times", "input_noise_v") == pytest.approx(4.0)
+    # What depends on the load shows under another one; all else is tried under the rig's.
+    hidden = {n.removeprefix("hidden "): c.load_factor for n, c in found.items() if "hidden" in n}
+    assert {n for n, factor in hidden.items() if factor == 1.5} == {"load_dependence"}
+    assert set(hidden.values()) == {1.0, 1.5}
     assert (found["load doubled"].load_factor, found["load halved"].load_factor) == (2.0, 0.5)
     assert base.rig.lubricant is not None
     for word, factor in (("doubled", 2.0), ("halved", 0.5)):

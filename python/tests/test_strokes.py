@@ -75,6 +75,36 @@ def test_each_stroke_its_own_level() -> None:
         assert 0.05 < found.share < 1.0
 
 
+def test_the_ratio_is_fishers_f() -> None:
+    """Between strokes of a run and between their halves, each with one degree less than strokes."""
+    problem, _, friction = _solved()
+    residuals = [n + a for n, a in zip(_noise(1), _levels(0.08, 1), strict=True)]
+    between, within, free = 0.0, 0.0, 0
+    for p, f, r in zip(problem.campaign.prepared, friction, residuals, strict=True):
+        counted = problem.campaign.samples.counted[problem.campaign.prepared.index(p)]
+        halves = []
+        for k in range(int(stroke_of(p).max()) + 1):
+            rows = np.flatnonzero((stroke_of(p) == k) & counted)
+            if len(rows) >= 16:
+                halves.append([(f[h] @ f[h], f[h] @ r[h]) for h in np.array_split(rows, 2)])
+        if len(halves) < 3:
+            continue
+        w, pull = np.moveaxis(np.array(halves), 2, 0)
+        slope = pull.sum(1) / w.sum(1)
+        between += float(np.cov(slope, aweights=w.sum(1), ddof=0) * w.sum())
+        apart, own = pull[:, 1] / w[:, 1] - pull[:, 0] / w[:, 0], w.prod(1) / w.sum(1)
+        within += float(np.cov(apart, aweights=own, ddof=0) * own.sum())
+        free += len(halves) - 1
+    assert free < 60
+    (found,) = _found(residuals)
+    told = re.search(r"\((\d+) times as much as within one", found.where)
+    assert told is not None
+    assert int(told[1]) == round(between / within)
+    share = (between - within) / sum(float(np.sum(r[c] ** 2)) for r, c in
+        zip(residuals, problem.campaign.samples.counted, strict=True))  # fmt: skip
+    assert found.share == pytest.approx(share)
+
+
 def test_what_is_alike_in_all_strokes_is_none() -> None:
     problem, _, friction = _solved()
     for seed in range(5):

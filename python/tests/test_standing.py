@@ -136,7 +136,9 @@ def test_a_diagnosis_takes_the_name_of_a_confounder(
     # A recording that is not asked what it did, and a tone so that structure remains.
     monkeypatch.setattr(recipe, "_weighed", lambda candidates, selected: None)
     monkeypatch.setattr(
-        recipe, "select", lambda c, n, s=None: Selected((OFFSET,), [step(c, (OFFSET,), n, ())])
+        recipe,
+        "select",
+        lambda c, n, s=None, follow="promising": Selected((OFFSET,), [step(c, (OFFSET,), n, ())]),
     )
     zeros = 2.0 + spread * np.array([1.0, -1.0, 0.8, -0.8])
     made = candidates(lambda i, t: zeros[i] + tone(t))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -430,3 +431,26 @@ def test_a_lateness_gains_by_schwarzs_criterion(gain: float, counts: bool) -> No
     before, after = solution((), 0.0), solution((), gain)
     there = late_channels._Shifted(cast(Campaign, None), after, np.zeros(1), 0.0)
     assert late_channels._gains(before.rms_n, after.rms_n, there) == counts
+
+
+@pytest.mark.parametrize("offset_n", [0.5, 2.0])
+def test_of_two_readings_of_one_clock_the_one_that_leaves_less_is_taken(
+    offset_n: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = {"one": 1.0, "one, offset": offset_n}
+
+    def way(problem: object, near: object, policy: object, clocks: str) -> SimpleNamespace:
+        return SimpleNamespace(solution=SimpleNamespace(rms_n=left[clocks]))
+
+    monkeypatch.setattr(late_channels, "_shifted", way)
+    found = late_channels._by_one_clock(*fitted(campaign((0.0,) * 4)), DEFAULT)
+    assert found is not None
+    assert found.solution.rms_n == min(left.values())
+
+
+def test_a_clock_that_was_told_once_is_told_again_by_any_change() -> None:
+    there = fitted(campaign((0.0,) * 4))
+    assert lateness(*there, 0, CHANCE, "one") is None
+    again = lateness(*there, 1, CHANCE, "one")
+    assert again is not None
+    assert abs(again.drift) < 1e-4

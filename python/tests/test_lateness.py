@@ -16,6 +16,7 @@ from jbf.diagnosis import late_channels, recipe
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.late_channels import on_time
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.shifted import Shifted, moved
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.lateness import Lateness, _clock, _Place, lateness
 from jbf.estimation.minimum import settle
@@ -150,7 +151,8 @@ def test_late_runs_are_shifted_to_where_they_belong() -> None:
     found = again.more_findings
     assert [f.kind for f in found] == ["late_channel"] * 4
     assert [f.run for f in found] == [p.run.name for p in again.prepared]
-    np.testing.assert_allclose([f.size for f in found], DIFFER_S, atol=0.4e-3)
+    # Samples that no reversal comes near tell it to 0.2 ms, one standard error.
+    np.testing.assert_allclose([f.size for f in found], DIFFER_S, atol=0.6e-3)
     assert [f.words.split()[5] for f in found] == ["late", "early", "late", "late"]
     # The law alone, without a delay, now fits to the noise, and nothing more is asked for.
     there = fitted(again)
@@ -321,10 +323,10 @@ def test_a_drift_seen_once_runs_are_on_time_moves_no_middle(
 # ---- compared with another model ---------------------------------------------------------------
 
 
-def shifted(late_s: Sequence[float]) -> late_channels._Shifted:
+def shifted(late_s: Sequence[float]) -> Shifted:
     """As if runs had been shifted to where they are still late by so much."""
     problem, solution = fitted(campaign(late_s))
-    return late_channels._Shifted(problem.campaign, solution, np.zeros(4), 0.0)
+    return Shifted(problem, solution, np.zeros(4), 0.0)
 
 
 def test_samples_beside_jumps_decide_nothing_where_the_other_model_leaves_them() -> None:
@@ -411,17 +413,13 @@ def test_what_runs_that_differ_are_all_late_besides_is_found() -> None:
     late_s = np.array([13e-3, 4e-3, 19e-3, 7e-3])
     problem, solution = fitted(campaign(late_s.tolist()))
     short = late_s - 6e-3
-    moved = late_channels._moved(problem, short, 0.0)
-    found = late_channels._Shifted(
-        moved, fitted(moved)[1], short, 0.0
-    )  # all of them 6 ms short of what they are
+    # All of them 6 ms short of what they are.
+    found = Shifted(*fitted(moved(problem, short, 0.0)), short, 0.0)
     whole = late_channels._all_alike(problem, found)
     np.testing.assert_allclose(whole.late_s, late_s, atol=1.2e-3)
     assert whole.solution.rms_n < found.solution.rms_n < solution.rms_n
     # Where nothing is left to find, what was found stays.
-    right = late_channels._Shifted(
-        late_channels._moved(problem, late_s, 0.0), whole.solution, late_s, 0.0
-    )
+    right = Shifted(*fitted(moved(problem, late_s, 0.0)), late_s, 0.0)
     np.testing.assert_allclose(late_channels._all_alike(problem, right).late_s, late_s, atol=1.2e-3)
 
 
@@ -429,7 +427,7 @@ def test_what_runs_that_differ_are_all_late_besides_is_found() -> None:
 def test_a_lateness_gains_by_schwarzs_criterion(gain: float, counts: bool) -> None:
     # One run of a thousand samples: log 1000 = 6.91.
     before, after = solution((), 0.0), solution((), gain)
-    there = late_channels._Shifted(cast(Campaign, None), after, np.zeros(1), 0.0)
+    there = Shifted(cast(Problem, None), after, np.zeros(1), 0.0)
     assert late_channels._gains(before.rms_n, after.rms_n, there) == counts
 
 

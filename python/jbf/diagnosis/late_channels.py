@@ -3,40 +3,43 @@ at the instants at which it was read."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.shifted import (
+    DELAY,
+    EVALUATIONS,
+    Names,
+    Shifted,
+    beside_its_motion,
+    jointly,
+    moved,
+    refitted,
+    without_delay,
+)
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_size
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.joint_lateness import lateness_step
 from jbf.estimation.jumps import samples_beside_jumps
 from jbf.estimation.lateness import CLIPPED, Clocks, Lateness, lateness
 from jbf.estimation.likelihood import independent_share
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
-from jbf.estimation.run_start import settled_campaign
-from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
-Names = tuple[str, ...]
-DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
 """So much too little runs are shifted where it is asked what all are late besides, or a step."""
-EVALUATIONS = 12
-"""Steps of a fit to runs that were shifted."""
 CLOCK_LOOKS = 3
 """Times as many looks for one clock: a law that gave way to a drift lets go of it by and by,"""
 SETTLED = 0.02
 """until a look changes it by no more than this share."""
-MOST_LATE = 0.5
-"""Share of a run that its force may be late by."""
 
 
 def on_time(
@@ -56,16 +59,10 @@ def on_time(
         A model that shifted runs may do without: of what it leaves, they may leave `more` times as
         much. Where not given, they must leave less than this one does, by more than chance.
     """
-    if any(f.kind in ("late_channel", "drifting_clock") for f in problem.campaign.more_findings):
+    told = {f.run: f for f in problem.campaign.more_findings if f.kind == "late_channel"}
+    if any(f.kind == "drifting_clock" for f in problem.campaign.more_findings):
         return None
-    found = _shifted(problem, solution, policy)
-    if found is None:
-        found = _shifted(problem, solution, policy, at_jumps=True)
-    if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
-        simpler = _by_one_clock(problem, solution, policy)
-        # One clock says more simply what a lateness of each run does.
-        if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
-            found = simpler
+    found = _sharper(problem, solution, policy) if told else _found(problem, solution, policy)
     if found is None:
         return None
     if richer is None:
@@ -76,30 +73,45 @@ def on_time(
         worth_it = left_n <= more * before_n
     if not worth_it:
         return None
-    found = _all_alike(problem, found)
-    campaign, late_s = found.campaign, found.late_s
+    before_s = [
+        told[p.run.name].size if p.run.name in told else 0.0 for p in problem.campaign.prepared
+    ]
+    late_s = found.late_s + np.array(before_s)
     apart = np.abs(late_s - np.median(late_s))
     if (richer is not None or problem.campaign.samples.between is not None) and float(
         np.median(apart)
-    ) < policy.late_apart * campaign.prepared[0].step_s:
+    ) < policy.late_apart * problem.campaign.prepared[0].step_s:
         # On their way they seemed to differ; where they end, most do not: a delay of all, or what
         # is left of runs that deviate otherwise.
         return None
     findings = [
         _finding(p.run.name, late, found.drift)
-        for p, late in zip(campaign.prepared, late_s.tolist(), strict=True)
+        for p, late in zip(found.campaign.prepared, late_s.tolist(), strict=True)
     ]
-    return campaign.with_findings(findings)
+    return found.campaign.with_findings(findings)
 
 
-@dataclass(frozen=True, eq=False)
-class _Shifted:
-    """Runs that were shifted, by how much, and the model on them."""
+def _found(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
+    """The runs shifted by their own lateness or as one clock has it; None where none is late."""
+    found = _shifted(problem, solution, policy)
+    if found is None:
+        found = _shifted(problem, solution, policy, at_jumps=True)
+    if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
+        simpler = _by_one_clock(problem, solution, policy)
+        # One clock says more simply what a lateness of each run does.
+        if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
+            found = simpler
+    return found
 
-    campaign: Campaign
-    solution: Solution
-    late_s: Array
-    drift: float
+
+def _sharper(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
+    """Runs that were shifted beside another model shifted once more, beside this one; None where it
+    asks for nothing more."""
+    if lateness_step(problem, solution).chance >= policy.deviation_chance:
+        return None
+    before = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+    found = jointly(problem, before)
+    return None if found is before else found
 
 
 def _shifted(
@@ -108,7 +120,7 @@ def _shifted(
     policy: Policy,
     clocks: Clocks = "by run",
     at_jumps: bool = False,
-) -> _Shifted | None:
+) -> Shifted | None:
     """The runs shifted by their lateness until there is none; None where there was none."""
     campaign = problem.campaign
     old, first = campaign, problem
@@ -130,39 +142,44 @@ def _shifted(
         if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
             # In the middle they are on time by now, unless their clock is to say how late.
             later_s = 0.5 * drifted * durations_s if one_clock else late_s
-        if not _beside_its_motion(first, later_s, drifted):
+        if not beside_its_motion(first, later_s, drifted):
             break
         on_its_way = abs(found.drift) > SETTLED * abs(drifted)
         late_s, drift = later_s, drifted
-        campaign = _moved(first, late_s, drift)
-        effects = problem.effects if one_clock else _without_delay(problem.effects)
-        problem, solution = _refitted(problem, campaign, effects, known, solution)
+        campaign = moved(first, late_s, drift)
+        effects = problem.effects if one_clock else without_delay(problem.effects)
+        problem, solution = refitted(problem, campaign, effects, known, solution)
         if one_clock and not on_its_way:
             break
-    return None if campaign is old else _Shifted(campaign, solution, late_s, drift)
+    if campaign is old:
+        return None
+    shifted = Shifted(problem, solution, late_s, drift)
+    if drift != 0.0:
+        # A clock of its own was right when it was started.
+        return shifted
+    if at_jumps or np.ptp(late_s) == 0.0:
+        return _all_alike(first, shifted)
+    return jointly(first, shifted)
 
 
-def _by_one_clock(problem: Problem, solution: Solution, policy: Policy) -> _Shifted | None:
+def _by_one_clock(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """The runs shifted as one clock has it, beside what all share or not: whichever leaves less."""
     ways = [_shifted(problem, solution, policy, c) for c in ("one", "one, offset")]
     return min((w for w in ways if w), key=lambda way: way.solution.rms_n, default=None)
 
 
-def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
+def _all_alike(problem: Problem, found: Shifted) -> Shifted:
     """The runs shifted by what all of them are late besides.
 
     A law takes a delay of all runs for its own memory, nearly: how late each is tells how they
     differ, and little of what they share. That is fitted together with the law, on runs shifted
     too little, so that none is early.
     """
-    if found.drift != 0.0:
-        # A clock of its own was right when it was started.
-        return found
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(AHEAD_S, float(np.median(steps)))
     late_s = found.late_s - ahead_s
-    campaign = _moved(problem, late_s, 0.0)
-    effects = _without_delay(problem.effects)
+    campaign = moved(problem, late_s, 0.0)
+    effects = without_delay(problem.effects)
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
     last = Problem(found.campaign, problem.law, problem.clock, effects)
     known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
@@ -171,34 +188,17 @@ def _all_alike(problem: Problem, found: _Shifted) -> _Shifted:
     values = search(late, samples, start, found.solution.noise, EVALUATIONS).values
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
     late_s = found.late_s + shared_s
-    if not _beside_its_motion(problem, late_s, 0.0):
+    if not beside_its_motion(problem, late_s, 0.0):
         return found
-    campaign = _moved(problem, late_s, 0.0)
+    campaign = moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
-    _, solution = _refitted(problem, campaign, effects, near, found.solution)
+    again, solution = refitted(problem, campaign, effects, near, found.solution)
     if solution.rms_n >= found.solution.rms_n:
         return found
-    return _Shifted(campaign, solution, late_s, 0.0)
+    return Shifted(again, solution, late_s, 0.0)
 
 
-def _beside_its_motion(problem: Problem, late_s: Array, drift: float) -> bool:
-    """Whether of each run most would still be compared with a motion: a lateness of whole runs is
-    none, it is what slopes of a force that does not follow the motion make of noise."""
-    return all(
-        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= MOST_LATE * p.run.duration_s
-        for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
-    )
-
-
-def _moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
-    """The campaign with each run's force compared so much earlier."""
-    prepared = problem.campaign.prepared
-    return _settled(
-        problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
-    )
-
-
-def _gains(before_n: float, after_n: float, shifted: _Shifted) -> bool:
+def _gains(before_n: float, after_n: float, shifted: Shifted) -> bool:
     """Whether a lateness of each run gains more than so many parameters, by Schwarz's criterion."""
     samples = shifted.solution.samples
     share = min(independent_share(shifted.solution.residuals, samples.steps_s), 1.0)
@@ -207,7 +207,7 @@ def _gains(before_n: float, after_n: float, shifted: _Shifted) -> bool:
     return bool(gain > len(samples.runs) * np.log(count))
 
 
-def _errors_n(shifted: _Shifted, other: Solution, clipped: float) -> tuple[float, float]:
+def _errors_n(shifted: Shifted, other: Solution, clipped: float) -> tuple[float, float]:
     """What another model leaves of runs as they were, and what the shifted ones leave, N RMS.
 
     Where the other sets aside the samples beside jumps, so they are here: those alone could decide.
@@ -243,32 +243,6 @@ def _by_any_weights(
     ones = [np.ones(len(s)) for s in sizes]
     even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
     return lateness(problem, even, 0, policy.deviation_chance, clocks, at_jumps)
-
-
-def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
-    old = problem.campaign
-    whole = replace(old, prepared=tuple(prepared), samples=Samples.of(prepared), more_findings=())
-    return settled_campaign(whole, problem.law, problem.clock)
-
-
-def _without_delay(effects: Names) -> Names:
-    return tuple(name for name in effects if name != DELAY)
-
-
-def _refitted(
-    problem: Problem,
-    campaign: Campaign,
-    effects: Names,
-    known: dict[str, float],
-    near: Solution,
-) -> tuple[Problem, Solution]:
-    """A law with effects, a few steps on, on runs that were shifted."""
-    again = Problem(campaign, problem.law, problem.clock, effects)
-    start = np.array([known[name] for name in again.names])
-    samples = again.samples_at(start)
-    end = search(again, samples, start, near.noise, EVALUATIONS)
-    solution = again.solution(end.values, samples, near.noise, end.converged, end.message)
-    return again, solution
 
 
 def _finding(run: str, late_s: float, drift: float) -> Finding:

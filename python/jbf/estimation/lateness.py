@@ -149,15 +149,15 @@ def _scans(
     recording of days all of them would fill a machine's memory.
     """
     samples, runs = solution.samples, problem.campaign.prepared
-    forces = [problem.chain.predict(solution.values, [_fine(p)])[0] for p in runs]
+    forces = [problem.chain.predict(solution.values, [fine_motion(p)])[0] for p in runs]
     slopes = []
     for p, force in zip(runs, forces, strict=True):
-        instants = _instants(p)
+        instants = instants_of(p)
         slopes.append(np.interp(p.run.time_s, instants, np.gradient(force, instants)))
     share = min(independent_share(_on_time(problem, solution, slopes), samples.steps_s), 1.0)
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
-        instants = _instants(p)
+        instants = instants_of(p)
         # A zero or a gain of the run's own is no lateness.
         read = p.friction_n - (solution.residuals[i] - left_over[i])
         # The same samples at every lateness: those no reversal comes nearer than the reach.
@@ -193,7 +193,7 @@ def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[
     return left
 
 
-def _instants(p: Prepared) -> Array:
+def instants_of(p: Prepared) -> Array:
     """Instants of a run close enough for a shift, s."""
     times = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
@@ -202,9 +202,9 @@ def _instants(p: Prepared) -> Array:
     return found
 
 
-def _fine(p: Prepared) -> Driven:
+def fine_motion(p: Prepared) -> Driven:
     """A run's motion there."""
-    instants = _instants(p)
+    instants = instants_of(p)
     run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction_n))
     return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
 

@@ -1,0 +1,134 @@
+"""Runs compared with the motion so much earlier, and the model on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.joint_lateness import LINEAR_S, lateness_step
+from jbf.estimation.noise import WHITE
+from jbf.estimation.noise_at import noise_at
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.run_start import settled_campaign
+from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+Names = tuple[str, ...]
+DELAY = "time_delay"
+EVALUATIONS = 12
+"""Steps of a fit to runs that were shifted."""
+MOST_LATE = 0.5
+"""Share of a run that its force may be late by."""
+STEPS = 10
+"""Steps of Gauss and Newton in the lateness of the runs and the model together, at most,"""
+SETTLED = 0.1
+"""until one is so small a share of its standard error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shifted:
+    """Runs that were shifted, by how much, and the model on them."""
+
+    problem: Problem
+    solution: Solution
+    late_s: Array
+    drift: float
+
+    @property
+    def campaign(self) -> Campaign:
+        """The runs as they were shifted."""
+        return self.problem.campaign
+
+
+def beside_its_motion(problem: Problem, late_s: Array, drift: float) -> bool:
+    """Whether of each run most would still be compared with a motion: a lateness of whole runs is
+    none, it is what slopes of a force that does not follow the motion make of noise."""
+    return all(
+        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= MOST_LATE * p.run.duration_s
+        for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
+    )
+
+
+def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
+    """The campaign with each run's force compared so much earlier."""
+    prepared = problem.campaign.prepared
+    return _settled(
+        problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
+    )
+
+
+def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
+    old = problem.campaign
+    whole = replace(old, prepared=tuple(prepared), samples=Samples.of(prepared), more_findings=())
+    return settled_campaign(whole, problem.law, problem.clock)
+
+
+def without_delay(effects: Names) -> Names:
+    return tuple(name for name in effects if name != DELAY)
+
+
+def refitted(
+    problem: Problem,
+    campaign: Campaign,
+    effects: Names,
+    known: dict[str, float],
+    near: Solution,
+) -> tuple[Problem, Solution]:
+    """A law with effects, a few steps on, on runs that were shifted."""
+    again = Problem(campaign, problem.law, problem.clock, effects)
+    start = np.array([known[name] for name in again.names])
+    samples = again.samples_at(start)
+    end = search(again, samples, start, near.noise, EVALUATIONS)
+    solution = again.solution(end.values, samples, near.noise, end.converged, end.message)
+    return again, solution
+
+
+def jointly(first: Problem, start: Shifted) -> Shifted:
+    """Runs shifted on, each by what its force is late beside the model that is fitted with it;
+    where that leaves no less, as they were.
+
+    Parameters
+    ----------
+    first
+        The runs that shifts are counted from.
+    start
+        The runs shifted by as much as is known.
+    """
+    # The error of late forces is smooth: taken for colour of the noise, it would be forgiven.
+    now = replace(start, solution=replace(start.solution, noise=WHITE))
+    white = True
+    for _ in range(STEPS):
+        step = lateness_step(now.problem, now.solution)
+        if step.square <= SETTLED**2 * np.sum(step.told):
+            if not white:
+                break
+            white = False
+            now = _coloured(now)
+            continue
+        # Where runs differ in it, a delay that they share is the recording's as well.
+        known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(f"{DELAY}.tau_s", 0.0)
+        late_s = now.late_s + later_s
+        late_s[~step.told] = step.mean_s(late_s)
+        if not beside_its_motion(first, late_s, start.drift):
+            break
+        campaign = moved(first, late_s, start.drift)
+        effects = without_delay(now.problem.effects)
+        problem, solution = refitted(now.problem, campaign, effects, known, now.solution)
+        now = Shifted(problem, solution, late_s, start.drift)
+    if white:
+        now = _coloured(now)
+    return now if now.solution.rms_n < start.solution.rms_n else start
+
+
+def _coloured(shifted: Shifted) -> Shifted:
+    """The same with the noise that is left by now."""
+    problem, values, samples = shifted.problem, shifted.solution.values, shifted.solution.samples
+    noise = noise_at(problem, samples, values)
+    return replace(shifted, solution=problem.solution(values, samples, noise))

@@ -1,0 +1,116 @@
+"""How late the force of each run is, estimated together with the model that tells it.
+
+A law gives way to a late force: on a search for where each run's squares are least it keeps what it
+has given, and moves on by and by. One step of Gauss and Newton in the lateness of every run and all
+parameters at once does not: what a parameter can say as well is no lateness, and the covariance
+tells how much of it that is (partitioned regression: Frisch & Waugh 1933).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage, special
+
+from jbf.estimation.lateness import fine_motion, instants_of
+from jbf.estimation.problem import Problem
+from jbf.estimation.rows import triangular
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+DELAY = "time_delay.tau_s"
+LINEAR_S = 8e-3
+"""A force changes as its slope says over a shift of so much; no sample nearer a reversal tells
+it."""
+RANK = 1e-10
+"""Share of the largest singular value below which a direction says nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class LatenessStep:
+    """By how much later forces are than they are compared.
+
+    Attributes
+    ----------
+    late_s
+        Of each run, s, shape (m,); zero of one that cannot tell it.
+    covariance_s2
+        Of those that can, s^2, as the residual's spread has it.
+    told
+        Which runs can, to within `LINEAR_S`, shape (m,).
+    """
+
+    late_s: Array
+    covariance_s2: Array
+    told: npt.NDArray[np.bool_]
+
+    @property
+    def square(self) -> float:
+        """Its square, in units of its covariance (Wald's statistic)."""
+        late = self.late_s[self.told]
+        return float(late @ np.linalg.lstsq(self.covariance_s2, late, rcond=RANK)[0])
+
+    @property
+    def chance(self) -> float:
+        """Probability of so much where every force is compared on time."""
+        count = int(np.sum(self.told))
+        return float(special.chdtrc(count, self.square)) if count else 1.0
+
+    def mean_s(self, late_s: Array) -> float:
+        """The mean lateness of the runs that tell theirs, by how surely they do, s."""
+        if not np.any(self.told):
+            return 0.0
+        return float(np.average(late_s[self.told], weights=1.0 / np.diag(self.covariance_s2)))
+
+
+def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
+    """A step of Gauss and Newton in each run's lateness and all parameters of the model, but for a
+    delay that all runs share: that is a part of each one's."""
+    runs = len(problem.campaign.prepared)
+    own = [k for k, i in enumerate(problem.open) if problem.names[i] != DELAY]
+    width = len(own)
+    rows, right, samples = [], [], 0
+    for i, (r, j, count) in enumerate(_rows(problem, solution, own)):
+        wide = np.zeros((len(r), width + runs))
+        wide[:, :width], wide[:, width + i] = j[:, :width], j[:, width]
+        rows.append(wide)
+        right.append(r)
+        samples += count
+    x, y = np.concatenate(rows), np.concatenate(right)
+    scale = np.sqrt(np.sum(x**2, axis=0))
+    told = scale[width:] > 0.0
+    scale[scale == 0.0] = 1.0
+    step, *_ = np.linalg.lstsq(x / scale, y, rcond=RANK)
+    left = y - x @ (step / scale)
+    inverse = np.linalg.pinv(x / scale, rcond=RANK)
+    covariance = float(left @ left) / max(samples, 1) * (inverse @ inverse.T)
+    covariance /= np.outer(scale, scale)
+    of_late = covariance[width:, width:]
+    told &= np.diag(of_late) < LINEAR_S**2
+    late = np.where(told, (step / scale)[width:], 0.0)
+    return LatenessStep(late, of_late[np.ix_(told, told)], told)
+
+
+def _rows(
+    problem: Problem, solution: Solution, by: Sequence[int]
+) -> Iterator[tuple[Array, Array, int]]:
+    """Of each run the innovations, their derivatives by these parameters and, last, by its
+    lateness, in few rows; and how many samples there were."""
+    samples = solution.samples
+    for i, p in enumerate(problem.campaign.prepared):
+        instants = instants_of(p)
+        force = problem.chain.predict(solution.values, [fine_motion(p)])[0]
+        slope = -np.interp(p.run.time_s, instants, np.gradient(force, instants))
+        apart = int(np.ceil(LINEAR_S / p.step_s))
+        far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=apart)
+        own = samples.only([i]).within([far])
+        derivatives = np.column_stack([solution.jacobian[i][:, by], slope])
+        r, j = own.stacked([solution.residuals[i]], [derivatives], solution.noise)
+        count = len(r)
+        # The residual stays a row of its own where it is longer than its derivatives.
+        r, j = triangular(r, j)
+        yield r, j, count

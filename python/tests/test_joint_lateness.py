@@ -1,0 +1,167 @@
+"""Each run's lateness and the law in one least-squares problem: against the normal equations by
+hand, and on runs that are late by times that are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import LAW, Array, coulomb
+from jbf import Rig, Run
+from jbf.diagnosis import late_channels
+from jbf.diagnosis.late_channels import on_time
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.shifted import Shifted, jointly, moved
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, lateness_step
+from jbf.estimation.minimum import settle
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from scipy import stats
+
+NOISE_N = 0.005
+T = np.arange(0.0, 20.01, 0.02)
+LATE_S = (24e-3, -6e-3, 31e-3, 9e-3)
+
+
+def motion(run: int, t: Array, swing: float = 0.05) -> Array:
+    """Never turns round; wanders at rates of the run's own, or stays at 0.1 m/s."""
+    rate = 3.0 + 0.4 * run
+    v: Array = 0.1 + swing * (0.6 * np.sin(rate * t) + 0.4 * np.sin(0.618 * rate * t + run))
+    return v
+
+
+def acceleration(run: int, t: Array) -> Array:
+    rate = 3.0 + 0.4 * run
+    slow = 0.618 * rate
+    a: Array = 0.05 * (0.6 * rate * np.cos(rate * t) + 0.4 * slow * np.cos(slow * t + run))
+    return a
+
+
+def campaign(
+    late_s: Sequence[float], *, seed: int = 0, still: int | None = None, noise_n: float = NOISE_N
+) -> Campaign:
+    """Coulomb's law at the instants at which its force was read; one run may keep its speed."""
+    random, runs = np.random.default_rng(seed), []
+    for i, late in enumerate(late_s):
+        swing = 0.0 if i == still else 0.05
+        v = motion(i, T - late, swing)
+        force = coulomb(T, v, v) + noise_n * random.standard_normal(len(T))
+        runs.append(Run.from_arrays(T, motion(i, T, swing), force, name=f"run {i}"))
+    return Campaign.prepare(Rig(), runs)
+
+
+def fitted(campaign: Campaign, effects: Sequence[str] = ()) -> tuple[Problem, Solution]:
+    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
+    known = {"F_s_n": 6.0, **LAW, "time_delay.tau_s": 0.01}
+    start = problem.starts({n: known[n] for n in problem.names})[0]
+    near = problem.solution(start, problem.samples_at(start), WHITE, False)
+    return problem, settle(problem, near)
+
+
+def as_it_is(problem: Problem, solution: Solution) -> Shifted:
+    return Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+
+
+def test_a_step_solves_the_normal_equations_of_lateness_and_law() -> None:
+    """Friction is F_c + F_v v: its derivatives are one, the speed, and -F_v times the acceleration;
+    of white noise the covariance is the textbook's."""
+    problem, solution = fitted(campaign((2e-3, -1e-3, 3e-3)))
+    found = lateness_step(problem, replace(solution, noise=WHITE))
+    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    rows, right = [], []
+    for i, residual in enumerate(solution.residuals):
+        keep = solution.samples.counted[i]
+        late = np.zeros((len(T), 3))
+        late[:, i] = -known["F_v_n_s_m"] * acceleration(i, T)
+        rows.append(np.column_stack([np.ones(len(T)), motion(i, T), late])[keep])
+        right.append(residual[keep])
+    x, y = np.concatenate(rows), np.concatenate(right)
+    wanted, square, *_ = np.linalg.lstsq(x, y, rcond=None)
+    covariance = float(square[0]) / len(y) * np.linalg.inv(x.T @ x)
+    assert found.told.all()
+    np.testing.assert_allclose(found.late_s, wanted[2:], atol=2e-5)
+    np.testing.assert_allclose(found.late_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
+    np.testing.assert_allclose(found.covariance_s2, covariance[2:, 2:], rtol=0.02, atol=1e-11)
+
+
+def test_of_runs_on_time_the_chance_is_even() -> None:
+    """Wald's test under its hypothesis: its probabilities are uniform (Kolmogorov & Smirnov)."""
+    chances = [lateness_step(*fitted(campaign((0.0,) * 3, seed=s))).chance for s in range(60)]
+    assert stats.kstest(chances, "uniform").pvalue > 0.02
+    late = lateness_step(*fitted(campaign((0.0, 0.0, 2e-3)))).chance
+    assert late < 1e-8
+
+
+def test_a_run_at_one_speed_tells_nothing_and_takes_the_others_mean() -> None:
+    step = lateness_step(*fitted(campaign((4e-3, 2e-3, 30e-3), still=2)))
+    assert step.told.tolist() == [True, True, False]
+    assert step.late_s[2] == 0.0
+    assert step.covariance_s2.shape == (2, 2)
+    variances = np.diag(step.covariance_s2)
+    wanted = np.average([5e-3, 1e-3], weights=1.0 / variances)
+    assert step.mean_s(np.array([5e-3, 1e-3, 7.0])) == pytest.approx(wanted)
+    found = jointly(*first_and(campaign((4e-3, 2e-3, 30e-3), still=2)))
+    assert 2e-3 < found.late_s[2] < 4e-3
+
+
+def first_and(campaign: Campaign) -> tuple[Problem, Shifted]:
+    problem, solution = fitted(campaign)
+    return problem, as_it_is(problem, solution)
+
+
+def test_where_no_run_tells_there_is_nothing_to_ask() -> None:
+    nothing = LatenessStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
+    assert nothing.chance == 1.0
+    assert nothing.mean_s(np.array([1.0, 2.0])) == 0.0
+    # Told worse than a step may go: of no use.
+    assert not np.any(lateness_step(*fitted(campaign((0.0, 0.0), noise_n=30.0))).told)
+
+
+@pytest.mark.parametrize("start_s", [(0.0,) * 4, (0.0, 20e-3, 0.0, 30e-3)])
+def test_runs_end_where_they_belong_wherever_they_begin(start_s: tuple[float, ...]) -> None:
+    """What all are late by is found with what they differ by, over several steps as they must be:
+    the largest is four times as late as a step goes."""
+    problem = fitted(campaign(LATE_S))[0]
+    late_s = np.array(start_s)
+    there = fitted(moved(problem, late_s, 0.0))
+    found = jointly(problem, Shifted(*there, late_s, 0.0))
+    assert max(LATE_S) > 3.0 * LINEAR_S
+    np.testing.assert_allclose(found.late_s, LATE_S, atol=4e-4)
+    assert found.solution.rms_n == pytest.approx(NOISE_N, rel=0.05)
+    assert found.campaign is found.problem.campaign
+
+
+def test_runs_on_time_stay() -> None:
+    for seed in range(4):
+        problem, before = first_and(campaign((0.0,) * 4, seed=seed))
+        assert np.max(np.abs(jointly(problem, before).late_s)) < 4e-4
+
+
+def test_a_delay_of_all_becomes_the_runs_lateness() -> None:
+    problem, solution = fitted(campaign(LATE_S), ("time_delay",))
+    found = jointly(problem, as_it_is(problem, solution))
+    assert found.problem.effects == ()
+    np.testing.assert_allclose(found.late_s, LATE_S, atol=4e-4)
+
+
+def test_a_lateness_told_beside_another_model_is_told_anew() -> None:
+    """Runs were shifted by what a wrong model said; what is told after is the whole."""
+    whole = campaign(LATE_S)
+    problem = fitted(whole)[0]
+    wrong = np.array(LATE_S) - np.array((3e-3, -2e-3, 1e-3, 0.0))
+    told = [
+        late_channels._finding(p.run.name, late, 0.0)
+        for p, late in zip(whole.prepared, wrong.tolist(), strict=True)
+    ]
+    before = moved(problem, wrong, 0.0).with_findings(told)
+    again = on_time(*fitted(before), DEFAULT)
+    assert again is not None
+    assert [f.kind for f in again.more_findings] == ["late_channel"] * 4
+    np.testing.assert_allclose([f.size for f in again.more_findings], LATE_S, atol=4e-4)
+    assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.05)
+    # And then there is nothing left to tell.
+    assert on_time(*fitted(again), DEFAULT) is None

@@ -99,11 +99,18 @@ def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campai
     allowed = allowing_for(campaign, differ)
     if found.leader is not None:
         # One number that says of all runs what each would say of itself.
-        leads = candidates.converge((*present, found.leader))
+        leads_n = candidates.converge((*present, found.leader)).rms_n
         apart = allowed.samples.without_deviations(solution.residuals, solution.noise)
-        if leads.rms_n <= policy.no_worse * solution.samples.rms(apart):
+        if _says_as_much(solution.rms_n, leads_n, solution.samples.rms(apart), policy.no_worse):
             return None
     return allowed
+
+
+def _says_as_much(before_n: float, effect_n: float, apart_n: float, most: float) -> bool:
+    """Whether an effect leaves as little as the deviations of the runs do, N RMS, and explains as
+    much of what both may: where that is little beside the noise, all leave as little."""
+    left, explained = effect_n**2 - apart_n**2, before_n**2 - apart_n**2
+    return effect_n <= most * apart_n and left <= (most**2 - 1.0) * max(explained, 0.0)
 
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:

@@ -143,6 +143,8 @@ def _clearest(
     if best is None:
         return None
     _, name, unit, sd, column = best
+    # By how much runs differ is no noise: it is not what their deviations are measured by.
+    sigma = robust_size(_within_runs(samples, solution, column))
     kind, words = _words(name, sd, unit)
     runs = ", ".join(samples.runs)
     finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
@@ -166,6 +168,17 @@ def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[
             found.append((name, "1", [j[:, by_name[name]] for j in solution.jacobian]))
     found.append(("gain", "1", problem.predict(solution.values)))
     return found
+
+
+def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
+    """Innovations of all runs less what each says of its own deviation along a column, N."""
+    left = []
+    columns = [c[:, None] for c in column]
+    for i in range(len(samples.runs)):
+        r, n = samples.stacked(solution.residuals, columns, solution.noise, [i])
+        size = float(n[:, 0] @ n[:, 0])
+        left.append(r - n[:, 0] * (float(n[:, 0] @ r) / size if size > 0.0 else 0.0))
+    return np.concatenate(left)
 
 
 def _spread(

@@ -66,7 +66,11 @@ def on_time(
     if found is None:
         return None
     if richer is None:
-        worth_it = _gains(*_errors_n(found, solution, np.inf), found)
+        worth_it = (
+            bool(told)
+            or _differ(found, policy)
+            or _gains(*_errors_n(found, solution, np.inf), found)
+        )
     else:
         # Another model may fit worse all along, and its few errors far out be the same.
         before_n, left_n = _errors_n(found, richer, CLIPPED)
@@ -93,7 +97,7 @@ def on_time(
 
 def _found(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """The runs shifted by their own lateness or as one clock has it; None where none is late."""
-    found = _shifted(problem, solution, policy)
+    found = _shifted(problem, solution, policy) or _differing(problem, solution, policy)
     if found is None:
         found = _shifted(problem, solution, policy, at_jumps=True)
     if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
@@ -102,6 +106,27 @@ def _found(problem: Problem, solution: Solution, policy: Policy) -> Shifted | No
         if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
             found = simpler
     return found
+
+
+def _differing(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
+    """The runs shifted by what differs in the lateness of each beside a model that has taken of it
+    what it could; None where that is no more than chance."""
+    on_time = np.zeros(len(problem.campaign.prepared))
+    step = lateness_step(problem, solution)
+    # Residuals are never quite as white as their innovations: ask for twice the chi-square.
+    if step.differ_chance(on_time, 0.5) >= policy.deviation_chance:
+        return None
+    before = Shifted(problem, solution, on_time, 0.0)
+    found = jointly(problem, before)
+    return None if found is before or not _differ(found, policy) else found
+
+
+def _differ(found: Shifted, policy: Policy) -> bool:
+    """Whether the lateness of runs that were shifted differs by more than chance."""
+    if found.drift != 0.0:
+        return False
+    step = lateness_step(found.problem, found.solution)
+    return step.differ_chance(found.late_s, 1.0) < policy.deviation_chance
 
 
 def _sharper(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from by_hand import Array, coulomb
 from jbf import Rig, Run, diagnose
-from jbf.diagnosis import deviations
+from jbf.diagnosis import deviations, rounds
 from jbf.diagnosis.deviations import deviation
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
@@ -82,6 +82,37 @@ def test_a_zero_of_its_own_is_found_and_must_gain_enough() -> None:
     assert volume > 0.02 * white
     assert deviation(problem, solution, samples, DEFAULT, 0.99 * found.gain) is not None
     assert deviation(problem, solution, samples, DEFAULT, 1.01 * found.gain) is None
+
+
+@pytest.mark.parametrize("zeros", [ZEROS, (-2.8, -1.3, -1.9, -2.4)])
+def test_by_how_much_runs_differ_is_no_noise(zeros: tuple[float, ...]) -> None:
+    """What deviations are measured by is the noise within runs, whatever differs between them."""
+    problem, solution = fitted(zeros)
+    found = deviation(problem, solution, problem.campaign.samples, DEFAULT)
+    assert found is not None
+    assert found.samples.between is not None
+    # The law makes a little of the zeros its own: less than they are by far.
+    assert found.samples.between.sigma_n == pytest.approx(NOISE_N, rel=0.35)
+
+
+@pytest.mark.parametrize(
+    ("before_n", "effect_n", "apart_n", "as_much"),
+    [
+        # Beside so much noise all leave as little: one explains less than four fifths.
+        (0.17665, 0.17557, 0.17529, False),
+        (0.17665, 0.17530, 0.17529, True),
+        # Of much, the effect explains nearly all, and leaves a little more, or too much.
+        (2.0, 1.029, 1.0, True),
+        (2.0, 1.031, 1.0, False),
+        # Where deviations explain nothing, an effect that explains something does as much.
+        (1.0, 0.99, 1.0, True),
+        (1.0, 1.01, 1.0, False),
+    ],
+)
+def test_an_effect_says_as_much_as_deviations_where_it_explains_as_much(
+    before_n: float, effect_n: float, apart_n: float, as_much: bool
+) -> None:
+    assert rounds._says_as_much(before_n, effect_n, apart_n, 1.03) == as_much
 
 
 def test_runs_that_agree_do_not_deviate() -> None:

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf import Run
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
-from jbf.records.findings.interpolated import find_native
+from jbf.records.findings.interpolated import Native, find_native, find_native_of
 from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.rig import Rig
 from scipy.signal import butter, filtfilt, lfilter
@@ -50,6 +51,18 @@ def test_readings_that_were_repeated_are_recovered(rate_hz: float) -> None:
     which = np.round(place).astype(int)
     np.testing.assert_array_equal(native.values, read[which])
     np.testing.assert_allclose(native.time_s, ticks[which], atol=0.25 * 0.02)
+
+
+@pytest.mark.parametrize("rate_hz", [9.3, 17.0, 23.0])
+def test_repeated_readings_at_an_end_of_the_range_are_recovered(rate_hz: float) -> None:
+    """One reading after another at the end: which is which, the clock of all the others tells."""
+    ticks = np.arange(-0.3 / rate_hz, TIME[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    read = np.clip(1.5 * force(ticks, 6), -np.inf, 30.0)
+    assert np.mean(read == 30.0) > 0.1
+    native = find_repeated(TIME, read[np.searchsorted(ticks, TIME, side="right") - 1])
+    assert native is not None
+    assert native.period_s == pytest.approx(1.0 / rate_hz, rel=1e-4)
+    np.testing.assert_array_equal(native.values, read[1:][: len(native.values)])
 
 
 @pytest.mark.parametrize("rate_hz", [6.3, 9.7, 17.0, 23.0])
@@ -115,6 +128,69 @@ def test_readings_behind_lines_come_in_steps(step_n: float, rate_hz: float) -> N
     assert [f.size for f in found if f.kind == "steps"] == (
         [pytest.approx(step_n, rel=1e-3)] if step_n else []
     )
+
+
+def slope(time: Array, seed: int) -> Array:
+    """A force that is at its ends for moments only, N."""
+    noise = 0.3 * np.random.default_rng(seed).standard_normal(len(time))
+    return 30.0 * np.sin(0.3 * time) + noise
+
+
+def test_lines_between_readings_at_an_end_of_the_range_are_at_that_end() -> None:
+    """Rounded to the digits of the file, corners are known a little worse than that."""
+    ticks = np.arange(-0.01, TIME[-1] + 0.08, 1.0 / 25.35)
+    read = np.clip(slope(ticks, 12), -28.0, 28.0)
+    drawn = np.round(np.interp(TIME, ticks, read), 4)
+    run = Run.from_arrays(TIME, 0.1 * np.sin(0.3 * TIME), drawn, name="slow")
+    prepared = Prepared.of(Rig(), run)
+    found = {f.kind: f for f in prepared.examined.findings}
+    assert set(found) == {"interpolated", "saturation"}
+    assert found["saturation"].size == 28.0
+    at_end = np.abs(prepared.friction_n) == 28.0
+    assert np.mean(at_end) == pytest.approx(np.mean(np.abs(read) == 28.0), abs=0.005)
+    assert not np.any(prepared.examined.usable[at_end])
+
+
+def test_a_run_that_is_at_an_end_of_its_range_nearly_throughout_has_no_steps() -> None:
+    ticks = np.arange(-0.01, TIME[-1] + 0.08, 1.0 / 25.35)
+    read = np.clip(1.5 * force(ticks, 12), -30.0, 30.0)
+    drawn = np.round(np.interp(TIME, ticks, read), 4)
+    run = Run.from_arrays(TIME, 0.1 * np.sin(0.3 * TIME), drawn, name="slow")
+    prepared = Prepared.of(Rig(), run)
+    assert {f.kind for f in prepared.examined.findings} == {"interpolated", "saturation"}
+    assert np.mean(prepared.examined.usable) < 0.01
+
+
+@pytest.mark.parametrize("first", [23.4, 25.3512756])
+def test_a_run_that_does_not_tell_its_rate_takes_that_of_the_others(
+    first: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One logger reads all runs; one that has another rate, or none, keeps its own samples."""
+    rates = {"a": 25.3512756, "b": first, "c": 25.3512756, "own": 50.0}
+    runs, read = [], {}
+    for i, (name, rate) in enumerate(rates.items()):
+        ticks = np.arange(-0.003 * (i + 1), TIME[-1] + 2.0 / rate, 1.0 / rate)
+        read[name] = force(TIME if name == "own" else ticks, 20 + i)
+        lines = read[name] if name == "own" else np.interp(TIME, ticks, read[name])
+        v = 0.1 * np.sin((0.3 + 0.01 * i) * TIME)
+        runs.append(Run.from_arrays(TIME, v, lines, name=name))
+
+    def told(time: Array, values: Array) -> Native | None:
+        return None if np.array_equal(values, runs[1].friction_n) else find_native(time, values)
+
+    monkeypatch.setattr("jbf.records.findings.examine.find_native", told)
+    prepared = Campaign.prepare(Rig(), runs).prepared
+    same = first == rates["a"]
+    assert [p.drawn_at_hz > 0.0 for p in prepared] == [True, same, True, False]
+    assert len(prepared[3].friction_n) == len(TIME)
+    if same:
+        steps = [p.step_s for p in prepared[:3]]
+        np.testing.assert_allclose(steps, 1.0 / rates["a"], rtol=1e-5)
+        np.testing.assert_allclose(
+            prepared[1].friction_n[1:-1],
+            read["b"][2:-2][: len(prepared[1].friction_n) - 2],
+            atol=0.02,
+        )
 
 
 @pytest.mark.parametrize("rate_hz", [9.2, 30.4])
@@ -221,3 +297,11 @@ def test_a_slow_force_is_compared_with_all_of_a_fast_motion() -> None:
     np.testing.assert_allclose(at[core.kept], prepared.run.time_s, rtol=1e-12)
     speed = np.asarray(core.motion.columns["velocity_m_s"])
     assert np.max(np.abs(np.interp(t, at, speed) - v)) < 1e-3
+
+
+def test_a_known_rate_makes_no_lines_of_noise_nor_of_curves() -> None:
+    for seed in range(5):
+        assert find_native_of(TIME, force(TIME, seed), 1.0 / 25.35) is None
+    assert find_native_of(TIME, 20.0 * np.sin(0.3 * TIME), 1.0 / 25.35) is None
+    assert find_native_of(TIME, np.ones(len(TIME)), 1.0 / 25.35) is None
+    assert find_native_of(TIME[:60], force(TIME[:60], 1), 1.0 / 25.35) is None

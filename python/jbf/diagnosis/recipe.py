@@ -11,7 +11,7 @@ from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.late_channels import DELAY, bought_by_lateness, on_time
+from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
@@ -21,6 +21,7 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import select, step
 from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.selection import Names, weights
+from jbf.diagnosis.shifted import DELAY
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict

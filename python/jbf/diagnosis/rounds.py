@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.evidence import evidence_alone, price_of
-from jbf.diagnosis.late_channels import DELAY
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Follow, Names, Round, reconsider, still_needed, try_candidates
+from jbf.diagnosis.shifted import DELAY
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights

@@ -83,9 +83,12 @@ class Campaign:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
         again = copies(runs)
         prepared = tuple(
-            Prepared.of(rig, run).finding([repeated(run, runs[k]) for k in again if again[k] == i])
-            for i, run in enumerate(runs)
-            if i not in again
+            p.finding([repeated(p.run, runs[k]) for k in again if again[k] == i])
+            for i, p in zip(
+                (i for i in range(len(runs)) if i not in again),
+                _each(rig, [run for i, run in enumerate(runs) if i not in again]),
+                strict=True,
+            )
         )
         if not any(np.any(p.friction_n) for p in prepared):
             raise InputError(
@@ -217,3 +220,13 @@ def _span(load: Array) -> float:
     low, high = np.quantile(steady_load(load), [0.05, 0.95])
     noise = NOISE_SPAN * noise_of(load)
     return float(np.sqrt(max(float(high - low) ** 2 - noise**2, 0.0)))
+
+
+def _each(rig: Rig, runs: Sequence[Run]) -> list[Prepared]:
+    """The runs, each looked at anew where others tell at what rate their logger read the force."""
+    found = [Prepared.of(rig, run) for run in runs]
+    rates = {i: rate for i, p in enumerate(found) if (rate := p.drawn_at_hz) > 0.0}
+    if not rates or len(rates) == len(runs):
+        return found
+    period_s = 1.0 / float(np.median(list(rates.values())))
+    return [p if i in rates else Prepared.of(rig, runs[i], period_s) for i, p in enumerate(found)]

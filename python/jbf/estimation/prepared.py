@@ -56,13 +56,24 @@ class Prepared:
         return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
 
     @property
+    def drawn_at_hz(self) -> float:
+        """The rate at which the force was read, Hz, where lines were drawn between; else zero."""
+        drawn = (f for f in self.examined.findings if (f.kind, f.unit) == ("interpolated", "Hz"))
+        return max((f.size for f in drawn), default=0.0)
+
+    @property
     def motion_as_read(self) -> tuple[Array, ImposedMotion]:
         """The instants at which the motion was read, s, and the motion there."""
         return self.recorded or (self.run.time_s, self.motion)
 
     @classmethod
-    def of(cls, rig: Rig, run: Run) -> Prepared:
+    def of(cls, rig: Rig, run: Run, period_s: float | None = None) -> Prepared:
         """Estimate the motion of a run.
+
+        Parameters
+        ----------
+        period_s
+            At which other runs of the same logger read the force, where that is known.
 
         Raises
         ------
@@ -82,7 +93,7 @@ class Prepared:
             run = replace(run.select(there & moving), read={})
             motion = motion.at(instants, run.time_s)
         assert run.friction_n is not None
-        examined = examine(run, motion.velocity_m_s)
+        examined = examine(run, motion.velocity_m_s, period_s)
         if examined.native is not None:
             native = examined.native
             instants, motion = recorded = recorded or (run.time_s, motion)

@@ -12,7 +12,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
 from jbf.records.findings.held_samples import find_held
-from jbf.records.findings.interpolated import Native, find_native
+from jbf.records.findings.interpolated import Native, find_native, find_native_of
 from jbf.records.findings.saturation import find_saturation
 from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
@@ -39,18 +39,22 @@ class Examined:
     native: Native | None = None
 
 
-def examine(run: Run, velocity_m_s: Array | None = None) -> Examined:
+def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None = None) -> Examined:
     """Look for what loggers do to a record of friction.
 
     Parameters
     ----------
     velocity_m_s
         The speed that was imposed, where more is known of it than the record says.
+    period_s
+        At which other runs of the same logger read the force, where that is known.
     """
     velocity = run.velocity_m_s if velocity_m_s is None else velocity_m_s
     if run.friction_n is None:
         return Examined((), np.ones(len(run), dtype=bool))
     native = find_native(run.time_s, run.friction_n)
+    if native is None and period_s is not None:
+        native = find_native_of(run.time_s, run.friction_n, period_s)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
     held, still = find_held(run, np.zeros(len(run), dtype=bool))

@@ -53,6 +53,8 @@ FEW = 3.0
 """Times the roughness of usual bends that a window with a few larger ones may have."""
 DIGITS, NEARLY = 3.0, 0.05
 """Times what rounding to the last digit leaves, and the share of the noise that this may be."""
+ENDS = 20.0
+"""Last digits by which a corner may miss the end of the range at which it was read."""
 FAR, ROUGH = 13, 0.93
 """Samples apart, and a ratio of bends, by which a record is as rough as noise."""
 ROUNDING = 1e-7
@@ -95,6 +97,18 @@ def find_native(time: Array, values: Array) -> Native | None:
                 if native is not None:
                     return native
     return _of_short_period(time, values, step)
+
+
+def find_native_of(time: Array, values: Array, period_s: float) -> Native | None:
+    """The same where the period is known: another run of the same logger told it."""
+    if len(time) < 2 * WINDOW or is_smooth(values):
+        return None
+    noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
+    if noise == 0.0:
+        return None
+    ways = [sharpened(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
+    best = min(ways, key=lambda way: polygon(time, values, *way)[0])
+    return _whole_of(time, values, *best, noise)
 
 
 def _noise(values: Array, rounding: float) -> float:
@@ -229,7 +243,7 @@ def _whole_of(
     elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
     if left > CLEARLY * min(elsewhere):
         return None
-    read = corners[inside]
+    read = _at_ends(corners[inside], values)
     native = Native(knots[inside], read, period)
     if step_of(read, drawn=True) > 0.0:
         return native
@@ -238,6 +252,14 @@ def _whole_of(
     curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
     flat = np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read)
     return None if flat or is_smooth(read, curved) else native
+
+
+def _at_ends(read: Array, values: Array) -> Array:
+    """Corners that stand at an end of the range, to what digits leave of them, at that end."""
+    near = max(ENDS * last_digit(values), ROUNDING * float(np.ptp(values)))
+    for end in (float(np.min(values)), float(np.max(values))):
+        read = np.where(np.abs(read - end) < near, end, read)
+    return read
 
 
 def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:

@@ -2,7 +2,8 @@
 
 The first sample of each row is a reading, made since the sample before. Over a record, the beat of
 the two clocks tells when to a fraction of a sample. A converter with coarse steps may read the same
-twice: then some rows are as long as two readings, or more.
+twice, and one at the end of its range does for long: then some rows are as long as two readings, or
+more.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.interpolated import Native
-from jbf.records.findings.steps import step_of
 
 Array = npt.NDArray[np.float64]
 
@@ -40,7 +40,8 @@ def find_repeated(time: Array, values: Array) -> Native | None:
         return None
     begins = time[first]
     native = _of_clock(time, values, begins, np.arange(rows), step)
-    if native is None and step_of(values) > 0.0:
+    if native is None:
+        # Where readings are equal, in coarse steps or at the end of a range, rows are missing.
         count = _readings_before(begins / step)
         native = None if count is None else _of_clock(time, values, begins, count, step)
     return native

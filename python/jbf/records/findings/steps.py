@@ -33,6 +33,8 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     drawn
         They are the corners of a record drawn as lines, known to the digits of its file.
     """
+    if len(values) < FEWEST_LEVELS:
+        return 0.0
     levels = _near_levels(values) if drawn else np.unique(values)
     if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0

@@ -66,26 +66,72 @@ def as_it_is(problem: Problem, solution: Solution) -> Shifted:
     return Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
 
 
-def test_a_step_solves_the_normal_equations_of_lateness_and_law() -> None:
-    """Friction is F_c + F_v v: its derivatives are one, the speed, and -F_v times the acceleration;
-    of white noise the covariance is the textbook's."""
-    problem, solution = fitted(campaign((2e-3, -1e-3, 3e-3)))
-    found = lateness_step(problem, replace(solution, noise=WHITE))
-    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
-    rows, right = [], []
-    for i, residual in enumerate(solution.residuals):
+def by_hand(
+    problem: Problem, solution: Solution, accelerations: Sequence[Array]
+) -> tuple[Array, Array]:
+    """Lateness and its covariance by the normal equations: friction is F_c + F_v v, so its
+    derivatives are one, the speed, and -F_v times the acceleration."""
+    viscous = dict(zip(problem.names, solution.values.tolist(), strict=True))["F_v_n_s_m"]
+    rows, right, runs = [], [], len(accelerations)
+    for i, (residual, a) in enumerate(zip(solution.residuals, accelerations, strict=True)):
         keep = solution.samples.counted[i]
-        late = np.zeros((len(T), 3))
-        late[:, i] = -known["F_v_n_s_m"] * acceleration(i, T)
-        rows.append(np.column_stack([np.ones(len(T)), motion(i, T), late])[keep])
+        late = np.zeros((len(a), runs))
+        late[:, i] = -viscous * a
+        speed = problem.campaign.prepared[i].motion.velocity_m_s
+        rows.append(np.column_stack([np.ones(len(a)), speed, late])[keep])
         right.append(residual[keep])
     x, y = np.concatenate(rows), np.concatenate(right)
-    wanted, square, *_ = np.linalg.lstsq(x, y, rcond=None)
-    covariance = float(square[0]) / len(y) * np.linalg.inv(x.T @ x)
+    found, *_ = np.linalg.lstsq(x, y, rcond=None)
+    left = y - x @ found
+    return found[2:], (float(left @ left) / len(y) * np.linalg.inv(x.T @ x))[2:, 2:]
+
+
+def white(problem: Problem, solution: Solution) -> LatenessStep:
+    return lateness_step(problem, replace(solution, noise=WHITE))
+
+
+def test_a_step_solves_the_normal_equations_of_lateness_and_law() -> None:
+    there = fitted(campaign((2e-3, -1e-3, 3e-3)))
+    found = white(*there)
+    wanted, covariance = by_hand(*there, [acceleration(i, T) for i in range(3)])
     assert found.told.all()
-    np.testing.assert_allclose(found.late_s, wanted[2:], atol=2e-5)
+    np.testing.assert_allclose(found.late_s, wanted, atol=2e-5)
     np.testing.assert_allclose(found.late_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
-    np.testing.assert_allclose(found.covariance_s2, covariance[2:, 2:], rtol=0.02, atol=1e-11)
+    np.testing.assert_allclose(found.covariance_s2, covariance, rtol=0.02, atol=1e-11)
+
+
+def test_what_a_law_can_say_as_well_is_no_lateness() -> None:
+    """Speeds that rise nearly evenly: a force that is late is a little less of dry friction."""
+    runs, random = [], np.random.default_rng(3)
+    for i, late in enumerate((6e-3, 2e-3, 4e-3)):
+        rate = 0.5 + 0.1 * i
+
+        def speed(t: Array, rate: float = rate) -> Array:
+            v: Array = 0.05 + 0.02 * t + 0.02 * np.sin(rate * t)
+            return v
+
+        v = speed(T - late)
+        force = coulomb(T, v, v) + NOISE_N * random.standard_normal(len(T))
+        runs.append(Run.from_arrays(T, speed(T), force, name=f"run {i}"))
+    there = fitted(Campaign.prepare(Rig(), runs))
+    found = white(*there)
+    rises = [0.02 + 0.02 * (0.5 + 0.1 * i) * np.cos((0.5 + 0.1 * i) * T) for i in range(3)]
+    wanted, covariance = by_hand(*there, rises)
+    np.testing.assert_allclose(found.late_s, wanted, atol=0.1 * np.sqrt(covariance[0, 0]))
+    np.testing.assert_allclose(found.covariance_s2, covariance, rtol=0.02)
+    # What they have in common is all but the law's: as good as nothing is known of it.
+    assert np.min(np.diag(covariance)) > 5.0 * np.var(NOISE_N / (20.0 * rises[0])) / len(T)
+    assert covariance[0, 1] > 0.5 * covariance[0, 0]
+
+
+def test_beside_a_delay_each_run_is_as_late_as_it_is_beside_that() -> None:
+    """A delay of all runs is a part of each one's: what is known of either is known of both."""
+    problem, solution = fitted(campaign((12e-3, 9e-3, 13e-3)), ("time_delay",))
+    found = white(problem, solution)
+    delay_s = dict(zip(problem.names, solution.values.tolist(), strict=True))["time_delay.tau_s"]
+    np.testing.assert_allclose(found.late_s + delay_s, (12e-3, 9e-3, 13e-3), atol=4e-4)
+    alone = white(*fitted(campaign((0.0,) * 3)))
+    np.testing.assert_allclose(np.diag(found.covariance_s2), np.diag(alone.covariance_s2), rtol=0.1)
 
 
 def test_of_runs_on_time_the_chance_is_even() -> None:

@@ -89,7 +89,7 @@ def test_path_and_speed_that_agree_or_are_no_multiples_have_no_factor() -> None:
 def test_a_factor_that_changes_is_none() -> None:
     """A ratio that grows has a middle half; a narrow one is a factor all the same."""
     speed = 0.0 * TIME + 0.1
-    for grows, there in ((4.0, False), (0.5, True)):
+    for grows, there in ((8.0, False), (0.5, True)):
         path = 0.1 * (2.0 * TIME + 0.5 * grows * TIME**2 / TIME[-1])
         assert (factor_between(TIME, path, speed) is not None) == there
         assert (way_per_unit(TIME, path, speed) is not None) == there

@@ -15,6 +15,7 @@ from jbf.records.findings.interpolated import (
     _longest,
     _looks,
     _noise,
+    _of_short_period,
     _where_to_look,
     _whole_of,
     find_native,
@@ -43,6 +44,7 @@ def drawn(period: float = PERIOD, phase: float = PHASE, time: Any = TIME) -> tup
 
 
 VALUES, TICKS, READ = drawn()
+_, TICKS_FINE, READ_FINE = drawn(1.083 * 0.02, 0.4 * 0.02)
 
 
 def least_squares(time: Any, values: Any, period: float, phase: float) -> float:
@@ -235,6 +237,23 @@ def test_a_record_that_is_short_or_its_own_has_no_readings_behind_it() -> None:
     assert found.period_s == pytest.approx(PERIOD, rel=1e-4)
     for own in (NOISE[:N], np.sin(TIME), TIME):
         assert find_native(TIME, own) is None
+
+
+@pytest.mark.parametrize(("samples", "there"), [(479, False), (480, True), (600, True)])
+def test_a_channel_that_is_hardly_slower_is_looked_for_in_a_longer_window(
+    samples: int, there: bool
+) -> None:
+    """In the middle of a record of at least twice its length."""
+    time = TIME[:samples]
+    values, _, _ = drawn(1.083 * 0.02, 0.4 * 0.02, time)
+    found = _of_short_period(time, values, 0.02)
+    assert (found is not None) == there
+    if found is not None:
+        assert found.period_s == pytest.approx(1.083 * 0.02, rel=1e-5)
+        # It bends in the middle third alone.
+        quiet = np.where(np.abs(TICKS_FINE - 6.0) < 2.0, READ_FINE, 3.0)
+        middle = np.interp(TIME, TICKS_FINE, quiet)
+        assert _of_short_period(TIME, middle, 0.02) is not None
 
 
 def repeated(period: float = 2.7, rows: int = 200, phase: float = 0.4) -> tuple[Any, Any, Any]:

@@ -284,3 +284,51 @@ def test_repeats_of_a_rest_are_its_news() -> None:
     moving[:10] = True
     run = Run.from_arrays(0.1 * np.arange(61), np.ones(61))
     assert np.flatnonzero(_of_rests(run, same, moving)).tolist() == [20, 21, 22, 23, 24]
+
+
+def test_a_path_that_is_finer_than_any_encoder_is_as_good_as_its_noise() -> None:
+    """Where the smallest change on record is chance; its motion is smoothed accordingly."""
+    noise = 2e-5 * np.random.default_rng(7).standard_normal(N)
+    rough = impose(run_of(path=path_of(TIME) + noise), None)
+    smooth = impose(run_of(), None)
+    np.testing.assert_allclose(rough.velocity_m_s, speed_of(TIME), atol=4e-4)
+    assert np.median(rough.velocity_error_m_s) > 1.1 * np.median(smooth.velocity_error_m_s)
+    # Were the smallest change believed, every sample of the path would be taken to its digit.
+    assert np.std(rough.angle_rad - path_of(TIME)) < 1.5e-5
+
+
+def test_noise_that_comes_and_goes_makes_errors_that_do() -> None:
+    """Thrice as large and more, for long enough."""
+    loud = np.where((TIME > 3.0) & (TIME < 6.0), 10.0, 1.0)
+    noise = 1e-4 * np.random.default_rng(8).standard_normal(N)
+    m = impose(Run.from_arrays(TIME, speed_of(TIME) + loud * noise), None)
+    inside, outside = (TIME > 3.6) & (TIME < 5.4), TIME < 2.0
+    ratio = np.median(m.velocity_error_m_s[inside]) / np.median(m.velocity_error_m_s[outside])
+    assert 5.0 < ratio < 15.0
+
+
+def test_a_first_way_that_the_path_alone_tells_is_known_where_it_has_gone() -> None:
+    """Three standard errors of the path, which is one count."""
+    speed = np.where((TIME > 2.0) & (TIME < 4.0), 0.0, 0.1 * np.minimum(np.abs(TIME - 4.0), 1.0))
+    path = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * DT)))
+    coarse = 1e-4 * np.round(path / 1e-4)
+    m = impose(Run.from_arrays(TIME, position_m=coarse), None)
+    assert m.resting[250:380].all()
+    first = int(np.flatnonzero(~m.resting & (TIME > 3.0))[0])
+    gone = np.abs(coarse - coarse[first - 1]) > GONE * 1e-4 / np.sqrt(12.0)
+    unsure = np.arange(first, first + int(np.argmax(gone[first:])))
+    assert not m.sign_known[unsure].any()
+    assert m.sign_known[500:].all()
+
+
+def test_a_run_that_begins_in_a_hum_begins_at_rest() -> None:
+    """Whatever the sign of its first sample."""
+    for sign in (1.0, -1.0):
+        speed = np.where(np.arange(N) < 3, 1e-5 * sign * np.array([1.0, -1.0] * (N // 2)), 0.1)
+        path = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * DT)))
+        m = impose(run_of(speed + 0.0, path), None)
+        assert m.velocity_m_s[0] == 0.0
+        assert not m.sign_known[0]
+    moving = impose(run_of(), None)
+    assert moving.sign_known[0]
+    assert moving.velocity_m_s[0] == pytest.approx(float(speed_of(0.0)), abs=4e-4)

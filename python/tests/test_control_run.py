@@ -10,8 +10,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from jbf import InputError, Model, Rig, Run
-from jbf.control import TASKS, THESIS_BENCH, Coulomb, NoCompensation, Result, Task, thesis_model
+from jbf.control import TASKS, THESIS_BENCH, Coulomb, NoCompensation, Task, thesis_model
 from jbf.control.motion import follow
+from jbf.control.run import Result
 from jbf.control.settings import Settings
 from jbf.control.task import RECORDED
 

@@ -65,12 +65,13 @@ def test_a_contradiction_spoils_three_samples_to_each_side() -> None:
 
 def test_what_is_usual_or_rare_noise_is_no_contradiction() -> None:
     """Ten times the usual gap, or the error that noise makes; in a hundredth of the gaps."""
-    usual = 1e-6 / 0.6745
-    for times, there in ((9.0, False), (12.0, True)):
-        assert contradictions({100: times * usual}).any() == there
-        assert contradictions({100: times * np.sqrt(2.0) * 1e-5}, sd_path=1e-5).any() == there
-        sd_speed = 1e-5 / np.sqrt(0.5) / DT
-        assert contradictions({100: times * 1e-5}, sd_speed=sd_speed).any() == there
+    own = 1e-6
+    sd_speed = 1e-5 / np.sqrt(0.5) / DT
+    for times, there in ((9.6, False), (10.4, True)):
+        assert contradictions({100: times * own / 0.6745 - own}).any() == there
+        by_path = times * np.sqrt(2.0) * 1e-5 - own
+        assert contradictions({100: by_path}, sd_path=1e-5).any() == there
+        assert contradictions({100: times * 1e-5 - own}, sd_speed=sd_speed).any() == there
     three = {100 + 30 * k: 1e-3 for k in range(3)}
     assert contradictions(three).any()
     assert not contradictions({100 + 30 * k: 1e-3 for k in range(4)}).any()
@@ -123,6 +124,15 @@ def test_a_speed_that_was_measured_is_no_difference() -> None:
     small[0] = 1.0
     assert derived_speed("a", TIME, path, small) is None
     assert derived_speed("a", TIME, 0.0 * path, 0.0 * path) is None
+
+
+@pytest.mark.parametrize(("moves", "there"), [(49, False), (50, True)])
+def test_fifty_samples_in_motion_tell_where_a_speed_is_from(moves: int, there: bool) -> None:
+    """Of a record that is at rest for nearly as long."""
+    coarse = np.zeros(90)
+    coarse[20 : 20 + moves] = 1e-2 * (1.0 + np.arange(moves) % 3)
+    path = np.concatenate(([0.0], np.cumsum(coarse[1:] * DT)))
+    assert (derived_speed("a", TIME[:90], path, coarse) is not None) == there
 
 
 def test_a_speed_of_the_path_is_not_late() -> None:

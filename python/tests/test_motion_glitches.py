@@ -73,6 +73,41 @@ def test_a_path_without_a_glitch_is_the_same_path() -> None:
     assert path_with({}, bent)[1] is None
 
 
+@pytest.mark.parametrize(("counts", "there"), [(2.9, False), (3.1, True)])
+def test_a_glitch_is_three_counts_of_the_encoder_or_more(counts: float, there: bool) -> None:
+    """On a line that is known exactly."""
+    line = STEP * np.arange(1000.0)
+    assert (path_with({500: counts * STEP}, line)[1] is not None) == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(7.8, False), (8.2, True)])
+def test_a_glitch_is_eight_local_standard_deviations_or_more(times: float, there: bool) -> None:
+    """Of a path that is off to and fro: its cubics are off by eight thirds of that, everywhere."""
+    off = 1e-4
+    wave = 1e-3 * np.arange(1000.0) + off * np.where(np.arange(1000) % 2, -1.0, 1.0)
+    usual = 8.0 / 3.0 * off
+    size = times * usual / 0.6745 - usual
+    assert (path_with({500: size}, wave)[1] is not None) == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(2.9, False), (3.1, True)])
+def test_a_glitch_of_a_speed_is_three_usual_changes_or_more(times: float, there: bool) -> None:
+    """Of a speed that grows by as much from sample to sample, but for a little noise."""
+    ramp = 0.1 * TIME + 1e-6 * np.random.default_rng(4).standard_normal(1000)
+    ramp[500] += times * 0.1 * DT + 0.1 * DT
+    assert (mend_speed("a", TIME, ramp, None)[1] is not None) == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(7.8, False), (8.2, True)])
+def test_a_glitch_of_a_speed_is_eight_of_its_noises_or_more(times: float, there: bool) -> None:
+    """A speed whose bends are of one size throughout tells its noise exactly."""
+    # Steps of 0, +b, 0, -b: every bend is b.
+    bend = 1e-3
+    speed = bend * np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
+    speed[502] += times * bend / 0.6745 / np.sqrt(6.0)
+    assert (mend_speed("a", TIME, speed, None)[1] is not None) == there
+
+
 def test_glitches_are_rare() -> None:
     """Two in a hundred samples; more is noise. Nor is a short record asked."""
     twenty = {40 + 45 * k: 1e-2 for k in range(20)}

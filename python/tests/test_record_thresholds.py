@@ -1,0 +1,184 @@
+"""Thresholds and sizes of what is found in a record, to a few percent: records that alternate have
+noise of a known size, to the digit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf.records.findings.glitches import glitches
+from jbf.records.findings.interpolated import PERIODS, PHASES, SHORT
+from jbf.records.findings.pushing import _with_way
+from jbf.records.findings.saturation import saturated
+from jbf.records.findings.slow_channel import LONGEST, SHORTEST, _readings_before
+from jbf.records.motion.compared import Compared
+from jbf.records.motion.jitter import shaken_path, uneven_stamps
+from jbf.records.motion.lateness import _lateness
+from jbf.records.motion.ratio import _middle
+
+DT = 0.01
+EVERY: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
+STAIRS: Any = np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
+"""Every bend is one."""
+NOISE: Any = np.random.default_rng(1).standard_normal(1200)
+
+
+@pytest.mark.parametrize("size", [1.2e-4, 1e-3])
+def test_stamps_that_alternate_are_off_by_their_size(size: float) -> None:
+    """Fourth differences of them are sixteen times that; of white noise, the root of 70."""
+    found = uneven_stamps("a", DT * np.arange(1000) + size * EVERY)
+    assert found is not None
+    assert found.size == pytest.approx(16.0 * size / 0.6745 / np.sqrt(70.0))
+
+
+@pytest.mark.parametrize(("share", "there"), [(0.97, False), (1.03, True)])
+def test_stamps_are_off_by_a_hundredth_of_a_step_or_more(share: float, there: bool) -> None:
+    """Less is not worth a word."""
+    size = share * 0.01 * DT * 0.6745 * np.sqrt(70.0) / 16.0
+    assert (uneven_stamps("a", DT * np.arange(1000) + size * EVERY) is not None) == there
+
+
+def shaken(late_s: float, *, slow_noise: float = 0.0, levels: Any = (0.1, 0.45, 1.0)) -> Any:
+    """A path at three speeds that was read to and fro off its stamps."""
+    speed = np.repeat(np.array(levels), 300)
+    path: Any = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * DT)))
+    off = late_s * speed * EVERY[:900] + slow_noise * EVERY[:900]
+    return shaken_path("a", DT * np.arange(900), path + off, speed), path + off
+
+
+def test_a_path_that_alternates_was_read_off_its_stamps_by_so_much() -> None:
+    """Fifth differences are 32 times that; of white noise, the root of 252. What it is where the
+    shaft is slow is taken off."""
+    late = 2e-3
+    for slow_noise in (0.0, 5e-5):
+        found, path = shaken(late, slow_noise=slow_noise)
+        assert found is not None
+        unit = 32.0 / 0.6745 / np.sqrt(252.0)
+        floor = np.min(np.abs(np.diff(path))) / np.sqrt(12.0)
+        slow = max(unit * (0.1 * late + slow_noise), floor)
+        fast = unit * (late + slow_noise)
+        assert found.size == pytest.approx(np.sqrt(fast**2 - slow**2), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("levels", "there"),
+    [((0.1, 0.45, 1.0), True), ((0.1, 0.1, 1.0), False),
+     ((0.1, 0.28, 1.0), False), ((0.1, 0.55, 0.55), False), ((0.1, 0.62, 1.0), False)],
+)  # fmt: skip
+def test_a_path_is_asked_at_half_and_at_full_speed(levels: Any, there: bool) -> None:
+    """From 0.3 to 0.6 of the top, and beyond."""
+    assert (shaken(2e-3, levels=levels)[0] is not None) == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(7.8, False), (8.2, True)])
+def test_a_reading_sticks_out_by_eight_of_its_noises(times: float, there: bool) -> None:
+    """Bends are the root of six times white noise."""
+    values = STAIRS.copy()
+    values[502] += times / 0.6745 / np.sqrt(6.0)
+    assert glitches(values).any() == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(6.2, False), (6.6, True)])
+def test_where_it_is_quiet_eight_tenths_of_the_usual_noise_count(times: float, there: bool) -> None:
+    """Beside readings that stand still there is none."""
+    values = np.concatenate((STAIRS[:400], 1e-3 * STAIRS[:200], STAIRS[:400]))
+    values[502] += times / 0.6745 / np.sqrt(6.0)
+    assert glitches(values).any() == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(2.9, False), (3.1, True)])
+def test_a_reading_sticks_out_by_three_usual_changes(times: float, there: bool) -> None:
+    """Of a force that grows by one from sample to sample."""
+    values = np.arange(1000.0) + 1e-6 * NOISE[:1000]
+    values[500] += 1.0 + times
+    assert glitches(values).any() == there
+
+
+def left_out(x: Any, y: Any, parts: int = 12) -> tuple[Any, Any]:
+    """Coefficients by least squares, and the error of each from parts left out in turn."""
+    part = np.arange(len(y)) * parts // len(y)
+    whole = np.linalg.lstsq(x, y, rcond=None)[0]
+    each = [np.linalg.lstsq(x[part != k], y[part != k], rcond=None)[0] for k in range(parts)]
+    return whole, np.std(each, axis=0) * np.sqrt(parts - 1)
+
+
+def test_errors_are_those_of_a_dozen_parts_left_out() -> None:
+    """Of the force that turns with the motion, and of how late a speed is."""
+    way = np.where(np.arange(1200) % 100 < 50, 1.0, -1.0)
+    x = np.stack([way, np.ones(1200), np.sin(0.1 * np.arange(1200))], axis=1)
+    y = 2.0 * way + 5.0 + NOISE
+    found, error = _with_way(x, y)
+    wanted, errors = left_out(x, y)
+    assert found == pytest.approx(wanted[0])
+    assert error == pytest.approx(errors[0])
+    v, a = np.sin(0.03 * np.arange(1200)), np.cos(0.05 * np.arange(1200))
+    seen = 0.97 * v - 0.02 * a + 0.1 * NOISE
+    late, error = _lateness(Compared(v, seen, a, 0.0))
+    wanted, errors = left_out(np.stack([v, a], axis=1), seen)
+    assert late == pytest.approx(-wanted[1])
+    assert error == pytest.approx(errors[1])
+
+
+@pytest.mark.parametrize(("alike", "told"), [(0.88, True), (0.92, False)])
+def test_a_speed_and_an_acceleration_that_are_alike_tell_no_lateness(
+    alike: float, told: bool
+) -> None:
+    """Nine tenths of one another, of either sign."""
+    v = np.where(np.arange(1200) % 2, 1.0, -1.0)
+    other = np.where(np.arange(1200) % 4 < 2, 1.0, -1.0)
+    for sign in (1.0, -1.0):
+        a = sign * (alike * v + np.sqrt(1.0 - alike**2) * other)
+        found = _lateness(Compared(v, v - 0.01 * a, a, 0.0))
+        assert np.isfinite(found[1]) == told
+        assert found[0] == (pytest.approx(0.01) if told else 0.0)
+
+
+def test_the_middle_ratio_and_its_spread_are_those_of_fast_motion() -> None:
+    """Half the range of its middle half, and what a count makes of a usual speed."""
+    fast = np.repeat([1.0, -2.0], 30)
+    ratios = np.tile([1.0, 2.0, 3.0, 4.0, 5.0], 12)
+    slow = np.full(40, 0.25)
+    by_speed = np.concatenate((fast, slow))
+    by_path = np.concatenate((fast * ratios, 99.0 * slow))
+    middle, spread = _middle(Compared(by_path, by_speed, by_speed, 0.3))
+    assert middle == 3.0
+    assert spread == pytest.approx(1.0 + 0.3 / 1.5)
+    few = np.concatenate((np.ones(19), np.full(2, 0.1)))
+    assert _middle(Compared(few, few, few, 0.0)) == (1.0, np.inf)
+    enough = np.concatenate((np.ones(20), np.full(2, 0.1)))
+    assert _middle(Compared(enough, enough, enough, 0.0)) == (1.0, 0.0)
+
+
+def test_periods_are_looked_for_from_a_sample_to_twenty_five() -> None:
+    """Closely where a window has many of them; all phases a tenth of a period apart."""
+    assert PERIODS[0] == pytest.approx(1.2)
+    assert 24.5 < PERIODS[-1] < 25.0
+    apart = np.diff(np.log(PERIODS))
+    assert apart[PERIODS[1:] < 8.0].max() == pytest.approx(0.005)
+    assert apart[PERIODS[:-1] > 8.0].max() == pytest.approx(0.02)
+    assert apart.min() > 0.0
+    np.testing.assert_allclose(PHASES, np.arange(10) / 10.0)
+    assert SHORT[0] == pytest.approx(1.05)
+    assert 1.299 < SHORT[-1] < 1.3
+    np.testing.assert_allclose(np.diff(np.log(SHORT)), 0.0005)
+
+
+@pytest.mark.parametrize(
+    ("period", "there"), [(1.9, False), (2.2, True), (17.3, True), (57.3, True), (63.0, False)]
+)
+def test_clocks_of_two_to_sixty_samples_are_looked_for(period: float, there: bool) -> None:
+    """Where some of their readings are equal."""
+    assert (SHORTEST, LONGEST) == (2.0, 60.0)
+    numbers = np.flatnonzero(np.arange(160) % 5 != 3)
+    found = _readings_before(np.ceil(0.3 + period * numbers))
+    assert (found is not None and np.array_equal(found, numbers)) == there
+
+
+@pytest.mark.parametrize(("count", "there"), [(4, False), (5, True)])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_five_readings_at_one_extreme_are_its_end(count: int, there: bool, way: float) -> None:
+    """Either end; fewer are a noise's."""
+    values = 10.0 * np.sin(0.01 * np.arange(1200)) + 0.3 * NOISE
+    values[100 : 100 + 40 * count : 40] = way * 20.0
+    assert (saturated(values)[1] == [way * 20.0]) == there

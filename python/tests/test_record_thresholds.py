@@ -18,6 +18,7 @@ from jbf.records.motion.lateness import _lateness
 from jbf.records.motion.ratio import _middle
 
 DT = 0.01
+TIME: Any = DT * np.arange(900)
 EVERY: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
 STAIRS: Any = np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
 """Every bend is one."""
@@ -41,10 +42,10 @@ def test_stamps_are_off_by_a_hundredth_of_a_step_or_more(share: float, there: bo
 
 def shaken(late_s: float, *, slow_noise: float = 0.0, levels: Any = (0.1, 0.45, 1.0)) -> Any:
     """A path at three speeds that was read to and fro off its stamps."""
-    speed = np.repeat(np.array(levels), 300)
+    speed: Any = np.repeat(np.array(levels), 300)
     path: Any = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * DT)))
     off = late_s * speed * EVERY[:900] + slow_noise * EVERY[:900]
-    return shaken_path("a", DT * np.arange(900), path + off, speed), path + off
+    return shaken_path("a", TIME, path + off, speed), path + off
 
 
 def test_a_path_that_alternates_was_read_off_its_stamps_by_so_much() -> None:

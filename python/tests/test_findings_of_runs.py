@@ -156,3 +156,34 @@ def test_the_force_that_turns_with_the_motion_has_the_error_of_parts_left_out() 
     push, error = _with_way(x, 2.0 * way + 5.0 + NOISE)
     assert error == pytest.approx(1.0 / np.sqrt(N), rel=0.5)
     assert abs(push - 2.0) < 4.0 * error
+
+
+def at_the_edge(samples: int, times: float, *, by_error: bool) -> Any:
+    """A force that pushes by so many times the least that is told."""
+    v = SPEED[:samples]
+    m = motion_of(v)
+    way = np.sign(v)
+    x = np.stack([way, np.ones(samples), m.acceleration_m_s2, m.angle_rad], axis=1)
+    force = NOISE[:samples]
+    moves = np.abs(v) > 0.02 * np.max(np.abs(v))
+    x, force = x[moves], force[moves]
+    part = np.arange(len(force)) * 12 // len(force)
+    push = np.linalg.lstsq(x, force, rcond=None)[0][0]
+    each = [np.linalg.lstsq(x[part != k], force[part != k], rcond=None)[0][0] for k in range(12)]
+    error = float(np.std(each)) * np.sqrt(11.0)
+    more = 0.0
+    for _ in range(60):
+        # So much that it pushes by the limit, which the push itself widens.
+        limit = max(8.0 * error, 0.3 * float(np.std(force + more * x[:, 0])))
+        more = -times * limit - push
+    assert (8.0 * error > 0.3 * float(np.std(force + more * x[:, 0]))) == by_error
+    whole = np.zeros(samples)
+    whole[moves] = force + more * x[:, 0]
+    return find_pushing(run_of(whole, v), m, np.ones(samples, dtype=bool))
+
+
+@pytest.mark.parametrize(("times", "there"), [(0.98, False), (1.02, True)])
+def test_the_least_push_that_is_told(times: float, there: bool) -> None:
+    """Eight standard errors, or three tenths of the force's own swing, whichever is more."""
+    assert (at_the_edge(300, times, by_error=True) != []) == there
+    assert (at_the_edge(2000, times, by_error=False) != []) == there

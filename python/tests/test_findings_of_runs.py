@@ -164,7 +164,9 @@ def at_the_edge(samples: int, times: float, *, by_error: bool) -> Any:
     m = motion_of(v)
     way = np.sign(v)
     x = np.stack([way, np.ones(samples), m.acceleration_m_s2, m.angle_rad], axis=1)
-    force = NOISE[:samples]
+    # A mass swings a force and makes it no less sure.
+    mass = 0.0 if by_error else m.acceleration_m_s2 / np.std(m.acceleration_m_s2)
+    force = (1.0 if by_error else 0.1) * NOISE[:samples] + mass
     moves = np.abs(v) > 0.02 * np.max(np.abs(v))
     x, force = x[moves], force[moves]
     part = np.arange(len(force)) * 12 // len(force)

@@ -11,11 +11,22 @@ from jbf.records.findings.glitches import glitches
 from jbf.records.findings.interpolated import PERIODS, PHASES, SHORT
 from jbf.records.findings.pushing import _with_way
 from jbf.records.findings.saturation import saturated
-from jbf.records.findings.slow_channel import LONGEST, SHORTEST, _readings_before
+from jbf.records.findings.slow_channel import (
+    LONGEST,
+    SHORTEST,
+    _readings_before,
+    find_repeated,
+)
+from jbf.records.findings.steps import step_of
+from jbf.records.motion import lateness
 from jbf.records.motion.compared import Compared
+from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from jbf.records.motion.lateness import _lateness
+from jbf.records.motion.position import Position
 from jbf.records.motion.ratio import _middle
+from jbf.records.motion.roughness import local_noise
+from jbf.records.motion.speed_zero import speed_zero
 
 DT = 0.01
 TIME: Any = DT * np.arange(900)
@@ -40,11 +51,17 @@ def test_stamps_are_off_by_a_hundredth_of_a_step_or_more(share: float, there: bo
     assert (uneven_stamps("a", DT * np.arange(1000) + size * EVERY) is not None) == there
 
 
-def shaken(late_s: float, *, slow_noise: float = 0.0, levels: Any = (0.1, 0.45, 1.0)) -> Any:
-    """A path at three speeds that was read to and fro off its stamps."""
+def shaken(
+    late_s: float,
+    *,
+    slow_noise: float = 0.0,
+    levels: Any = (0.1, 0.45, 1.0),
+    times: Any = (1.0, 1.0, 1.0),
+) -> Any:
+    """A path at three speeds that was read to and fro off its stamps, at each by so many times."""
     speed: Any = np.repeat(np.array(levels), 300)
     path: Any = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * DT)))
-    off = late_s * speed * EVERY[:900] + slow_noise * EVERY[:900]
+    off = (late_s * np.repeat(np.array(times), 300) * speed + slow_noise) * EVERY[:900]
     return shaken_path("a", TIME, path + off, speed), path + off
 
 
@@ -70,6 +87,21 @@ def test_a_path_that_alternates_was_read_off_its_stamps_by_so_much() -> None:
 def test_a_path_is_asked_at_half_and_at_full_speed(levels: Any, there: bool) -> None:
     """From 0.3 to 0.6 of the top, and beyond."""
     assert (shaken(2e-3, levels=levels)[0] is not None) == there
+
+
+@pytest.mark.parametrize(("share", "there"), [(0.072, True), (0.078, False)])
+def test_noise_at_speed_is_thrice_what_it_is_where_the_shaft_is_slow(
+    share: float, there: bool
+) -> None:
+    """At half speed 0.45 + s of it, at a tenth 0.1 + s: thrice as much up to s = 0.075."""
+    assert (shaken(2e-3, slow_noise=share * 2e-3)[0] is not None) == there
+
+
+@pytest.mark.parametrize(("times", "there"), [(1.57, True), (1.63, False), (0.64, True),
+                                              (0.61, False)])  # fmt: skip
+def test_jitter_is_one_at_all_speeds(times: float, there: bool) -> None:
+    """To a factor of 1.6, either way."""
+    assert (shaken(2e-3, times=(0.0, times, 1.0))[0] is not None) == there
 
 
 @pytest.mark.parametrize(("times", "there"), [(7.8, False), (8.2, True)])
@@ -183,3 +215,121 @@ def test_five_readings_at_one_extreme_are_its_end(count: int, there: bool, way: 
     values = 10.0 * np.sin(0.01 * np.arange(1200)) + 0.3 * NOISE
     values[100 : 100 + 40 * count : 40] = way * 20.0
     assert (saturated(values)[1] == [way * 20.0]) == there
+
+
+def clocked(rows: int) -> Any:
+    """Rows of a slow clock, so many of them beginning within the record."""
+    begins = np.ceil(0.3 + 2.7 * np.arange(rows + 1)).astype(int)
+    values = np.repeat(NOISE[: rows + 1], np.diff(np.append(begins, begins[-1] + 2)))
+    return DT * np.arange(len(values)), values
+
+
+@pytest.mark.parametrize(("rows", "there"), [(39, False), (40, True)])
+def test_forty_rows_tell_a_clock(rows: int, there: bool) -> None:
+    """That begin after the first."""
+    assert (find_repeated(*clocked(rows)) is not None) == there
+
+
+def end_of(top: int, below: dict[int, int]) -> bool:
+    """Whether so many readings at an extreme are an end, with so many at levels next to it."""
+    values = 10.0 * np.sin(0.01 * np.arange(1200)) + 0.3 * NOISE
+    places = iter(range(50, 1200, 11))
+    for level in (1, 2, 3, 4):
+        for _ in range(below.get(level, 1)):
+            values[next(places)] = 20.0 - 0.1 * level
+    for _ in range(top):
+        values[next(places)] = 20.0
+    return saturated(values)[1] == [20.0]
+
+
+@pytest.mark.parametrize(
+    ("top", "below", "there"),
+    [
+        (5, {}, True),
+        (5, {1: 3}, False),
+        (6, {1: 3}, True),
+        (7, {2: 4}, False),
+        (8, {3: 4}, True),
+        (7, {3: 4}, False),
+        (5, {4: 12}, True),
+    ],
+)
+def test_an_end_has_twice_as_many_readings_as_the_next_three_levels(
+    top: int, below: dict[int, int], there: bool
+) -> None:
+    """Tails of a noise thin out; what lies further in may be anything."""
+    assert end_of(top, below) == there
+
+
+@pytest.mark.parametrize(("noise", "there"), [(0.3, False), (0.75, True)])
+def test_a_plateau_of_a_coarse_converter_is_no_end(noise: float, there: bool) -> None:
+    """Where its noise is less than six tenths of its step."""
+    values = np.round(np.clip(10.0 * np.sin(0.01 * np.arange(1200)) + noise * NOISE, -8.0, 8.0))
+    assert (saturated(values)[1] != []) == there
+
+
+@pytest.mark.parametrize(("apart", "step"), [(1.14, 1.0), (1.16, 0.0)])
+def test_levels_are_whole_steps_apart_but_for_crumbs(apart: float, step: float) -> None:
+    """A fifth of them off by so much: three hundredths of five steps are allowed."""
+    levels = np.cumsum(np.where(np.arange(40) % 5 == 4, apart, 1.0))
+    assert step_of(np.repeat(levels, 10)) == step
+
+
+@pytest.mark.parametrize(("share", "step"), [(0.08, 1.0), (0.12, 0.0)])
+def test_nine_of_ten_levels_are_whole_steps_apart(share: float, step: float) -> None:
+    """A few may be anywhere."""
+    levels = np.cumsum(np.where(np.arange(100) < 100 * share, 1.4, 1.0))
+    assert step_of(np.repeat(levels, 10)) == step
+
+
+@pytest.mark.parametrize(("times", "there"), [(5.9, False), (6.1, True)])
+def test_a_speed_is_late_by_six_of_its_errors(
+    times: float, there: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the windows that tell it most sharply."""
+    found = iter([(9.0, 9.0), (times * 0.01, 0.01), (5.0, 4.0)])
+    monkeypatch.setattr(lateness, "compared", lambda *_: [None, None, None])
+    monkeypatch.setattr(lateness, "_lateness", lambda _: next(found))
+    told = lateness.late_speed("a", TIME, TIME, TIME)
+    assert (told is not None) == there
+    assert told is None or told.size == pytest.approx(times * 0.01)
+
+
+@pytest.mark.parametrize(("times", "there"), [(2.9, False), (3.1, True)])
+def test_noise_is_uneven_where_it_is_thrice_the_usual(times: float, there: bool) -> None:
+    """Locally; else it is one number."""
+    loud = np.where((np.arange(1000) > 400) & (np.arange(1000) < 700), times, 1.0)
+    found = local_noise(loud * EVERY)
+    assert isinstance(found, np.ndarray) == there
+    if isinstance(found, np.ndarray):
+        unit = 8.0 / 0.6745 / np.sqrt(20.0)
+        assert found[550] == pytest.approx(times * unit)
+        assert found[100] == pytest.approx(unit)
+
+
+def standstill(zero: float, noise: float, still: int) -> bool:
+    """Whether a speed of so much, to and fro by so much, at a standstill has its zero off."""
+    at_rest = (np.arange(900) >= 300) & (np.arange(900) < 300 + still)
+    speed = np.where(at_rest, 0.0, 0.1)
+    path = np.cumsum(speed) * DT
+    read = np.where(at_rest, zero + noise * EVERY[:900], 0.1)
+    return speed_zero("a", TIME, path, read, 1e-7, "m/s")[2] is not None
+
+
+@pytest.mark.parametrize(("times", "there"), [(4.9, False), (5.1, True)])
+def test_a_zero_is_off_by_five_of_its_errors(times: float, there: bool) -> None:
+    """Of means over twenty samples each: neighbours are not independent."""
+    # The last sample in motion ends where the rest is.
+    error = 1e-4 / np.sqrt(201.0 / 20.0)
+    assert standstill(times * error, 1e-4, 200) == there
+
+
+@pytest.mark.parametrize(("counts", "there"), [(4.9, False), (5.1, True)])
+def test_a_path_is_held_while_the_shaft_moves_on_by_five_counts(counts: float, there: bool) -> None:
+    """Of the encoder."""
+    path = 1e-3 * np.arange(900.0)
+    path[101:105] = path[100]
+    path[0] = path[1] - 4e-3 / counts
+    position = Position(path, "position_m", "m", 1.0)
+    found = mend_held("a", TIME, position, np.full(900, 0.1))[1]
+    assert (found is not None) == there

@@ -55,7 +55,8 @@ def test_samples_that_lie_on_a_line_for_another_reason_stay() -> None:
     for values, there in ((FORCE, True), (np.sin(0.3 * TIME), False)):
         along = np.interp(TIME, TIME[~half], values[~half])
         assert (find_filled_in(TIME, along) is not None) == there
-    assert find_filled_in(TIME, FORCE) is None
+    for own in (FORCE, np.zeros(N), np.ones(N), TIME):
+        assert find_filled_in(TIME, own) is None
     uneven = np.sort(np.random.default_rng(5).uniform(0.0, 12.0, N))
     along = np.interp(uneven, uneven[~lost], FORCE[~lost])
     found = find_filled_in(uneven, along)

@@ -229,6 +229,53 @@ def test_a_load_of_nothing_but_noise_is_its_mean() -> None:
     assert find_noisy_load("a", None) == find_noisy_load("a", np.full(500, 1.0)) == []
 
 
+def of_powers(power: Any) -> Any:
+    """A load about 100 N whose periodogram is known."""
+    phases = np.random.default_rng(9).uniform(0.0, 2.0 * np.pi, len(power))
+    lines = np.sqrt(power) * np.exp(1j * phases)
+    wave = np.fft.irfft(np.concatenate(([0.0], lines, [0.0])), 2 * len(power) + 2)
+    return 100.0 + wave / np.ptp(wave)
+
+
+@pytest.mark.parametrize(("chance", "there"), [(1.03e-4, True), (0.97e-4, False)])
+def test_a_line_that_sticks_out_of_noise_is_no_noise(chance: float, there: bool) -> None:
+    """Fisher's test: a share g of the power has the chance m (1 - g)^(m - 1)."""
+    m = 249
+    g = 1.0 - (chance / m) ** (1.0 / (m - 1))
+    power = np.ones(m)
+    power[m // 2] = g * (m - 1) / (1.0 - g)
+    assert only_noise(of_powers(power)) == there
+
+
+@pytest.mark.parametrize(("chance", "there"), [(1.1e-4, True), (0.9e-4, False)])
+@pytest.mark.parametrize("way", [1, -1])
+def test_noise_has_its_power_evenly_from_slow_to_fast(chance: float, there: bool, way: int) -> None:
+    """Bartlett's test: a rise that is off by d has the chance 2 exp(-2 m d^2)."""
+    m = 300
+    off = np.sqrt(np.log(2.0 / chance) / (2.0 * m))
+    power = np.where(np.arange(m) < m // 2, 0.5 + off, 0.5 - off)[::way]
+    assert only_noise(of_powers(power)) == there
+
+
+def test_the_way_of_a_row_is_its_speed_for_as_long_as_it_lasts() -> None:
+    """Of rows that are unevenly apart those that go by two counts are in motion."""
+    steps = np.where(np.arange(400) % 2, 0.001, 0.1)
+    time = np.concatenate(([0.0], np.cumsum(steps)))
+    path = np.round(time, 12)
+    force = np.random.default_rng(10).standard_normal(401)
+    # Only the short ones repeat: in a thousandth of a second the drive goes by one count.
+    for k in range(1, 400, 2):
+        path[k + 1], force[k + 1] = path[k], force[k]
+    path += np.where(np.arange(401) == 400, 0.001, 0.0)
+    run = Run.from_arrays(time, np.ones(401), force, position_m=path)
+    assert repeated_rows(run) is None
+    longer = np.where(np.arange(400) % 2, 0.01, 0.1)
+    later = np.concatenate(([0.0], np.cumsum(longer)))
+    again = repeated_rows(Run.from_arrays(later, np.ones(401), force, position_m=path))
+    assert again is not None
+    assert np.flatnonzero(again).tolist()[:3] == [2, 4, 6]
+
+
 def asked(every: int, rows: int = N) -> Run:
     """A record of which each row of so many repeats the one before."""
     last = np.arange(rows)

@@ -233,6 +233,7 @@ def test_planned_runs_say_what_they_would_show(not_tried: dict[str, str]) -> Non
         "    sensor_offset  b_n 2.00 N        1.2 %        same  wear_in",
         "    sensor_lag     never",
     ]
+    assert lines[6].startswith("    (noise makes a name")
     said = " ".join(planned_report(planned).split())
     assert f"sensor_lag never ({level_words(LEVEL)})" in said
     tail = ["", "Not asked for: these runs cannot show", "    wear_in: nothing wears",

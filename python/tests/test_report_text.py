@@ -85,6 +85,7 @@ def test_a_diagnosis_tells_which_laws_were_tried_and_what_these_runs_would_show(
         "    effect      found from      of friction  alone from  else it could be",
         "    sensor_lag  tau_s 0.0100 s         10 %      0.0200",
     ]
+    assert lines[at + 3].startswith("    (noise makes a name")
     said = " ".join(diagnosis_report(told).split())
     assert f"({level_words(told.level)}) The error falling (N)" in said
     assert "What the recording did gaps: 3 rows are missing, in there (stepped over)" in said

@@ -139,7 +139,9 @@ def test_a_push_is_told_where_it_is_sure_and_no_small_share() -> None:
     assert pushes(-2.0, known=few) != []
     for forth, there in ((0.65, True), (0.85, False)):
         v = np.where(np.arange(N) < forth * N, 0.1, -0.1) + 0.02 * np.sin(9.0 * TIME)
-        assert (pushes(-2.0, v=v) != []) == there
+        told = pushes(-2.0, v=v)
+        assert (told != []) == there
+        assert all(f.size == pytest.approx(-2.0, abs=0.03) for f in told)
     # Slower than a fiftieth of the top a force need not be friction's.
     crawl = np.where(np.abs(SPEED) > 0.05, SPEED, 0.0015 * np.sign(SPEED))
     only = np.abs(SPEED) < 0.05

@@ -135,6 +135,20 @@ def test_fifty_samples_in_motion_tell_where_a_speed_is_from(moves: int, there: b
     assert (derived_speed("a", TIME[:90], path, coarse) is not None) == there
 
 
+@pytest.mark.parametrize(("share", "there"), [(0.098, False), (0.106, True)])
+def test_a_difference_that_is_smooth_is_as_good_as_a_measured_speed(
+    share: float, there: bool
+) -> None:
+    """Smoother than fifteen hundredths of a count in a sample: here changes of the way grow by one
+    count, more and less in turn, which makes noise of 4 / 0.6745 / sqrt(20) of what is more."""
+    bends = 1e-5 * (1.0 + share * np.where(np.arange(400) % 2, 1.0, -1.0))
+    ways = np.cumsum(bends)
+    path = np.cumsum(ways)
+    speed = np.concatenate(([0.0], np.diff(path) / DT))
+    assert 4.0 * share / 0.6745 / np.sqrt(20.0) == pytest.approx(0.15 * (1.0 - share), rel=0.05)
+    assert (derived_speed("a", TIME, path, speed) is not None) == there
+
+
 def test_a_speed_of_the_path_is_not_late() -> None:
     """Central differences."""
     found = centred_speed(TIME, TIME**2)

@@ -158,6 +158,15 @@ def test_a_speed_that_the_path_shares_is_none() -> None:
     assert speed_with(three | {700: 0.1})[1] is not None
 
 
+@pytest.mark.parametrize(("share", "there"), [(0.31, True), (0.36, False)])
+def test_a_path_that_shares_a_third_of_a_glitch_knows_of_it(share: float, there: bool) -> None:
+    """The speed must miss it by twice as much as the mended one does."""
+    slip = PATH.copy()
+    slip[200:] += 0.5 * share * 0.1 * DT
+    slip[201:] += 0.5 * share * 0.1 * DT
+    assert (speed_with({200: 0.1}, path=slip, noise=1e-6)[1] is not None) == there
+
+
 def test_what_is_no_glitch_of_a_speed() -> None:
     """Noise, a small change, a corner, a record without noise, a short one, or too many."""
     assert speed_with({})[1] is None

@@ -98,6 +98,25 @@ def test_a_run_of_arrays_needs_a_time_and_a_motion() -> None:
     )
 
 
+def test_a_run_of_channels_or_of_a_frame_knows_its_name_and_its_file() -> None:
+    """A column of which much is missing has a clock of its own."""
+    channels = {"velocity_m_s": (TIME, TIME), "own": (TIME[::2], TIME[::2])}
+    for path in (None, Path("f.csv")):
+        run = Run.from_channels(channels, name="c", path=path)
+        assert (run.name, run.path) == ("c", path)
+        assert set(run.read) == {"own"}
+        frame = {"time_s": TIME, "velocity_m_s": TIME, "friction_n": TIME, "own": 2.0 * TIME}
+        run = Run.from_frame(frame, name="d", path=path)
+        assert (run.name, run.path, run.read) == ("d", path, {})
+        np.testing.assert_array_equal(run.extra["own"], 2.0 * TIME)
+        assert run.friction_n is not None
+        frame["own"] = np.where(np.arange(N) < 10, np.nan, TIME)
+        run = Run.from_frame(frame, name="e", path=path)
+        assert (run.name, run.path, set(run.read)) == ("e", path, {"own"})
+    with pytest.raises(InputError, match="a, column load_n: sample 0: a load of"):
+        Run.from_channels({"velocity_m_s": (TIME, TIME), "load_n": (TIME, TIME)}, name="a")
+
+
 def test_a_speed_that_was_not_recorded_is_that_of_the_position() -> None:
     """By central differences; an angle alone tells none."""
     run = Run.from_arrays(TIME, position_m=TIME**2)

@@ -151,7 +151,8 @@ def test_a_converter_leaves_a_reading_where_it_is_by_chance() -> None:
         assert _by_steps(values) == pytest.approx(erf(0.5 / noise / np.sqrt(2.0)), rel=0.15)
     assert _by_steps(stuck()) == 0.0
     # Without noise next to all readings stay where they are.
-    assert _by_steps(np.round(np.linspace(-20.0, 20.0, N))) > 0.99
+    for step in (1e-6, 1.0, 1e6):
+        assert _by_steps(step * np.round(np.linspace(-20.0, 20.0, N))) > 0.99
 
 
 def test_what_is_said_of_a_force_that_stands_still() -> None:

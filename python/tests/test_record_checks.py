@@ -266,7 +266,8 @@ def test_columns_of_numbers_are_taken_and_others_left() -> None:
         {"a": [1, 2], "text": ["x", "y"], "nulls": np.array([1.5, None], dtype=object),
          "words": np.array(["x", None], dtype=object), "truth": [True, False],
          "dates": np.array(["2020-01-01"] * 2, dtype="datetime64[D]"),
-         "mixed": np.array([1.0, {}], dtype=object)},
+         "mixed": np.array([1.0, {}], dtype=object),
+         "ragged": np.array([[1.0], [1.0, 2.0]], dtype=object)},
         "r",
     )  # fmt: skip
     assert {n: v.dtype.kind for n, v in found.items()} == {"a": "f", "nulls": "f", "truth": "f"}

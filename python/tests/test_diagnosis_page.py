@@ -106,6 +106,9 @@ def test_a_round_tells_who_gained_and_names_who_did_not() -> None:
     assert [row[0] for row in last.rows] == ["inertia_leak"]
     assert first.picture[0] == "Evidence of each candidate"
     assert size_of(first.picture) == pytest.approx((10.0, ranking_height(d.steps[0])))
+    untried = replace(d.steps[0], trials=())
+    (only,) = content_of(replace(d, steps=(untried, second)))["rounds"]
+    assert only.beside == "bare law + sensor_offset"
     none = replace(d.steps[0], trials=(replace(TRIALS[3], evidence=0.0),))
     (only,) = content_of(replace(d, steps=(none, d.steps[1])))["rounds"]
     assert (only.picture, only.rows, only.nothing) == ("", [], "sensor_lag")

@@ -134,14 +134,15 @@ def test_what_is_a_column() -> None:
     """Numbers of any real kind, as float64 that nobody can write to, and a copy."""
     kinds: list[Any] = [np.uint8, np.float32, object]
     arrays = [np.array([1, 2], dtype=kind) for kind in kinds]
-    for values in ([1, 2], (True, False), *arrays, np.ma.masked_array([1.0], mask=[False])):
+    given: list[Any] = [[1, 2], (True, False), *arrays, np.ma.masked_array([1.0], mask=[False])]
+    for values in given:
         found = as_array(values, "c", "a")
         assert found.tolist() == [float(x) for x in values]
         assert found.dtype == np.float64
         assert not found.flags.writeable
-    given = np.zeros(3)
-    kept = frozen(given)
-    given[0] = 1.0
+    own = np.zeros(3)
+    kept = frozen(own)
+    own[0] = 1.0
     assert kept[0] == 0.0
     assert kept.flags.c_contiguous
     assert not kept.flags.writeable

@@ -92,6 +92,11 @@ def test_a_diagnosis_tells_which_laws_were_tried_and_what_these_runs_would_show(
     plain = diagnosis_report(replace(bare, not_tried={}))
     for heading in ("Which law", "What these runs", "What the recording did", "Not tried"):
         assert heading not in plain
+    first, last = bare.steps
+    later = replace(bare, steps=(replace(first, trials=()), replace(last, trials=first.trials)))
+    told_later = diagnosis_report(later)
+    assert "Candidates tried beside the bare law + sensor_offset" in told_later
+    assert "Candidates tried beside the bare law\n" not in told_later
     untried = replace(bare, steps=tuple(replace(s, trials=()) for s in bare.steps))
     assert "Candidates tried" not in diagnosis_report(untried)
 

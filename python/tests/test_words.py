@@ -173,6 +173,22 @@ def test_laws_that_tie_are_told_and_a_simpler_one_only_where_none_was_chosen() -
     )
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_sentences_are_of_the_first_and_of_the_last_step(count: int) -> None:
+    """However many there are between them."""
+    d = diagnosis_by_hand("missing")
+    steps = tuple(Step(("a",) * i, 1.0, 10.0 - i, 0.5 + 0.1 * i, ()) for i in range(count))
+    told = replace(d, steps=steps, simpler_law=LawTried("stribeck", 4, 1.0, False))
+    last, noise = 11.0 - count, 0.4 + 0.1 * count
+    said = verdict_sentence(told)
+    assert f"falls from 10.0 N to {last:.{1 if count == 1 else 2}f} N, " in said
+    assert f"{last / noise:.2f} times the noise of {noise:.3f} N." in said
+    assert f"coulomb with all of this to {last:.{1 if count == 1 else 2}f} N;" in said
+    doubted = replace(steps[-1], trials=(replace(REJECTED, effect="wear_in"),))
+    said = verdict_sentence(replace(told, steps=(*steps[:-1], doubted)))
+    assert f"{DOUBTED}wear_in." in said
+
+
 def test_each_step_of_a_ledger_is_called_by_what_it_brought() -> None:
     """The bare law, then what came, what went, or neither."""
     effects = [(), ("a",), ("a", "b", "c"), ("b", "c"), ("b", "c"), ("b", "d")]

@@ -9,9 +9,12 @@ import pytest
 from jbf.control import TASKS, THESIS_BENCH, run, thesis_model
 from jbf.control.robustness import Outcome
 from jbf.control.thesis_tables import Cell, Tables
+from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE
 from jbf.reporting.control_json import tables_dict
 from jbf.reporting.control_plots import plot_robustness, plot_tables
-from jbf.reporting.control_run_plot import plot_run_of_loop
+from jbf.reporting.control_run_plot import plot_run_of_loop, plot_runs
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 
 PRINTED = {"none": 0.4, "learning": 0.08, "coulomb": None, "observed": None}
 
@@ -73,6 +76,64 @@ def test_one_run_alone_names_its_axes() -> None:
         "Friction (V)",
         "Friction (V)",
     ]
+
+
+def test_each_column_has_its_colour_and_each_kind_of_mark_its_name() -> None:
+    """The thesis's diamonds once, ours by its true error; on a logarithmic scale."""
+    cells = {
+        ("position sine", column): Cell("position sine", column, 0.1, 1.0, printed, None, 0.5)
+        for column, printed in PRINTED.items()
+    }
+    figure = plot_tables(Tables(cells, thesis_model(), THESIS_BENCH))
+    (ax,) = figure.axes
+    colours = [to_hex(group[0].get_facecolor()) for group in ax.containers]
+    assert colours == [MEASURED, MODEL, BEFORE, NOISE]
+    (legend,) = figure.legends
+    said = [text.get_text() for text in legend.get_texts()]
+    names = ["none, bench", "thesis", "learning, bench", "coulomb, bench", "observed, true error"]
+    assert sorted(said) == sorted(names)
+    assert ax.get_yscale() == "log"
+    assert ax.get_title(loc="left") == "RMS error: bench (bars) and thesis (diamonds)"
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("", "rad or rad/s")
+    assert tuple(figure.get_size_inches()) == (10.0, 4.6)
+    given = Figure()
+    assert plot_tables(Tables(cells, thesis_model(), THESIS_BENCH), given) is given
+
+
+def test_a_ratio_of_one_is_marked_between_what_helps_and_what_harms() -> None:
+    """On a logarithmic scale; drawn on a figure that is given."""
+    outcomes = [Outcome("first", {"a": 0.2, "b": 0.9})]
+    figure = plot_robustness(outcomes)
+    (ax,) = figure.axes
+    (one,) = [line for line in ax.lines if line.get_marker() == "None"]
+    assert np.asarray(one.get_xdata()).tolist() == [1.0, 1.0]
+    assert ax.get_xscale() == "log"
+    assert ax.get_title(loc="left") == (
+        "Error with the observed compensator over that without; left of 1 it helps"
+    )
+    assert ax.get_xlabel() == "Ratio of true RMS errors, worst row marked"
+    colours = {line.get_marker(): line.get_color() for line in ax.lines}
+    assert (colours["o"], colours["D"]) == (MODEL, BEFORE)
+    assert tuple(figure.get_size_inches()) == (8.0, 7.0)
+    given = Figure()
+    assert plot_robustness(outcomes, given) is given
+
+
+def test_loops_stand_side_by_side_in_a_column_each() -> None:
+    """As wide as there are; the first has the names of the axes."""
+    loop = run(None, "none", replace(TASKS["velocity sine"], seconds=2.5))
+    for count in (1, 2, 3):
+        figure = plot_runs([loop] * count)
+        assert tuple(figure.get_size_inches()) == pytest.approx((4.2 * count, 12.5))
+        assert len(figure.axes) == 5 * count
+        assert [bool(ax.get_ylabel()) for ax in figure.axes[:count]] == [
+            i == 0 for i in range(count)
+        ]
+    given = Figure()
+    assert plot_runs([loop], given) is given
+    axes = plot_run_of_loop(loop)
+    assert tuple(axes[0].figure.get_size_inches()) == (7.0, 12.5)  # type: ignore[union-attr]
+    assert plot_run_of_loop(loop, axes) == axes
 
 
 def test_json_counts_the_cells_within_a_factor() -> None:

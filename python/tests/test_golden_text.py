@@ -13,7 +13,10 @@ from jbf.diagnosis import Remainder
 from jbf.diagnosis.ledger import Trial
 from jbf.records.counts import count_of
 from jbf.records.findings.gaps import find_gaps
+from jbf.reporting.comparison_text import comparison_report
 from jbf.reporting.diagnosis_page import diagnosis_page
+from jbf.reporting.diagnosis_text import diagnosis_report
+from jbf.reporting.fit_text import fit_report
 from jbf.reporting.words import verdict_sentence
 
 
@@ -23,7 +26,7 @@ def said(text: str) -> str:
 
 
 def test_the_report_of_a_fit() -> None:
-    assert fit_by_hand(["sensor_offset"], doubtful=("F_c_n",)).report() == said("""
+    assert fit_report(fit_by_hand(["sensor_offset"], doubtful=("F_c_n",))) == said("""
         [[Fit]]
             law                    = coulomb
             effects                = sensor_offset
@@ -56,7 +59,7 @@ def test_correlations_where_nothing_is_held() -> None:
 
 
 def test_the_summary_of_a_comparison() -> None:
-    assert comparison_by_hand(1.25, (1.0, 1.5)).summary() == said("""
+    assert comparison_report(comparison_by_hand(1.25, (1.0, 1.5))) == said("""
         RMS 1.25 N against a noise floor of 0.500 N: 2.50 times the noise
 
         Where it fails (share of the mean square)
@@ -70,7 +73,7 @@ def test_the_summary_of_a_comparison() -> None:
 
 
 def test_the_summary_of_a_diagnosis() -> None:
-    assert diagnosis_by_hand("missing").summary() == said("""
+    assert diagnosis_report(diagnosis_by_hand("missing")) == said("""
         Verdict: missing
           Missing: sensor_offset. With it, the held-out error falls from 2.75 N to 0.550 N, 1.10
           times the noise of 0.500 N.

@@ -97,7 +97,7 @@ class DriveColumns:
 
     def refuse_strangers(self, path: Path, row: int, header: Sequence[str]) -> None:
         """An InputError where a column of another kind of machine stands in the file."""
-        section = f"the rig's [drive] has motion = {self.drive.motion!r}".replace("'", '"')
+        section = f'the rig\'s [drive] has motion = "{self.drive.motion}"'
         for name, mend in _strangers(self).items():
             if name in header:
                 problem = f"does not go with the rig: {section}"

@@ -243,3 +243,46 @@ where
         Touch::At(root(0.0, beyond, 1e-6, inside))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Sine, Start};
+    use super::*;
+    use crate::law::journal::{Journal, Parameters};
+    use crate::{Bearing, Clock};
+
+    /// A step is sound up to three quarters of the gap to the edge, whatever its error is; one out
+    /// of the bearing is not, nor one that is no number.
+    #[test]
+    fn a_sound_step_leaves_a_quarter_of_the_gap() {
+        let law = Journal::new(
+            &Bearing::THESIS,
+            104.0,
+            &Parameters::TABLE_4_2,
+            Clock::Journal,
+        )
+        .expect("valid");
+        let motion = Sine::new(0.127, 1.0).expect("valid");
+        for eps in [0.2, 0.6, 0.99] {
+            let start = Start::default().with_eps(Some(eps)).with_phi_rad(0.0);
+            let mut way = Way::from_start(&law, &motion, &start, &[1.0], 1e-6, |_, _| ())
+                .expect("a tolerance");
+            let stretch = way.begin();
+            let asked = way.ask(&stretch);
+            let mut stages = asked.stages();
+            let ends = [
+                (0.0, true),
+                (0.74, true),
+                (0.76, false),
+                (1.2, false),
+                (-0.2, true),
+            ];
+            for (share, sound) in ends {
+                stages.end = [eps + share * (1.0 - eps), 0.0];
+                assert_eq!(way.tried(&asked, &stages).sound, sound, "{eps} {share}");
+            }
+            stages.end = [f64::NAN, 0.0];
+            assert!(!way.tried(&asked, &stages).sound);
+        }
+    }
+}

@@ -210,3 +210,52 @@ pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T
     let turn = swing - lag;
     [radial * x - turn * y, radial * y + turn * x]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::journal::Parameters;
+    use crate::{Bearing, Clock};
+
+    fn near(got: [f64; 2], wanted: [f64; 2]) {
+        let size = wanted.iter().fold(1e-9, |m: f64, w| m.max(w.abs()));
+        for (got, wanted) in got.iter().zip(wanted) {
+            assert!((got - wanted).abs() <= 1e-9 * size, "{got} {wanted}");
+        }
+    }
+
+    /// At the centre the load squeezes the film straight down, `eps' = (2/pi) Fb`; beyond the edge
+    /// a stage sees what holds at the edge in its direction.
+    #[test]
+    fn a_stage_sees_the_centre_and_the_edge() {
+        let law = Journal::<f64>::new(
+            &Bearing::THESIS,
+            104.0,
+            &Parameters::TABLE_4_2,
+            Clock::Journal,
+        )
+        .expect("valid");
+        let loaded = law.nominal();
+        let at = |from: [f64; 2]| Film {
+            law: &law,
+            loaded: &loaded,
+            from,
+            from_e2: from[0] * from[0] + from[1] * from[1],
+        };
+        for ub in [0.0, 0.7, 3.0] {
+            let wanted = [FRAC_2_PI * loaded.load_number, 0.0];
+            near(at([0.0, 0.0]).slope_at_start(&[0.0; 2], ub), wanted);
+            near(at([0.3, -0.4]).slope(&[-0.3, 0.4], ub), wanted);
+            let limit = <f64 as Real>::EPS_LIMIT * (1.0 - 1e-15);
+            for direction in [[1.0, 0.0], [0.6, 0.8], [-0.8, 0.6]] {
+                let edge = at(direction.map(|d| limit * d)).slope(&[0.0; 2], ub);
+                for beyond in [1.0, 1.5, 4.0] {
+                    let got = at(direction.map(|d| beyond * d)).slope(&[0.0; 2], ub);
+                    let size = edge[0].abs() + edge[1].abs();
+                    let apart = (got[0] - edge[0]).abs() + (got[1] - edge[1]).abs();
+                    assert!(apart <= 1e-3 * size, "{got:?} {edge:?}");
+                }
+            }
+        }
+    }
+}

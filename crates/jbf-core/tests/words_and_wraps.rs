@@ -1,0 +1,203 @@
+//! What no other test here asks of the core alone: names on its pages, a contact that does not
+//! bend, an instrument by itself, a table that wraps, and what was learned of viscous friction.
+
+mod common;
+
+use common::{bench, chain, chain_round, readings};
+use jbf_core::compensator::learning::Learned;
+use jbf_core::compensator::table::{Axis, Table};
+use jbf_core::compensator::{Compensator, Sense};
+use jbf_core::law::Law;
+use jbf_core::page::{Bound, Start};
+use jbf_core::run::read_force;
+use jbf_core::{Friction, Motion};
+
+/// Files and Python know them by these names, each by one of its own.
+#[test]
+fn places_to_start_from_have_the_names_that_files_know() {
+    let names = [
+        (Start::Catalogue, "catalogue"),
+        (Start::Kinetic, "kinetic"),
+        (Start::Breakaway, "breakaway"),
+        (Start::BreakawayExcess, "breakaway_excess"),
+        (Start::Viscous, "viscous"),
+        (Start::StribeckSpeed, "stribeck_speed"),
+        (Start::UsualSpeed, "usual_speed"),
+        (Start::Slowness, "slowness"),
+        (Start::Stiffness, "stiffness"),
+        (Start::Damping, "damping"),
+        (Start::Drag, "drag"),
+        (Start::Pitch, "pitch"),
+        (Start::RipplePitch, "ripple_pitch"),
+        (Start::RunTime, "run_time"),
+        (Start::ReferenceTemperature, "reference_temperature"),
+        (Start::CellPlay, "cell_play"),
+        (Start::CellCubic, "cell_cubic"),
+        (Start::StrokeMiddle, "stroke_middle"),
+        (Start::StrokeHalf, "stroke_half"),
+        (Start::Lateness, "lateness"),
+        (Start::DrivePlay, "drive_play"),
+        (Start::DriveStiffness, "drive_stiffness"),
+        (Start::DriveInertia, "drive_inertia"),
+        (Start::DriveDamping, "drive_damping"),
+    ];
+    for (start, name) in names {
+        assert_eq!(start.name(), name);
+    }
+    assert_eq!(Bound::Catalogue.name(), "catalogue");
+    assert_eq!(Bound::TransitionSpeed.name(), "transition_speed");
+}
+
+/// A law that says it has a bristle and lets it be rigid.
+#[derive(Clone, Copy, Debug)]
+struct Rigid(f64);
+
+impl Law<f64> for Rigid {
+    type State = ();
+
+    const HAS_BRISTLE: bool = true;
+
+    fn start(&self, _load_n: f64) {}
+
+    fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    fn set_load(&self, _state: &mut (), _load_n: f64) {}
+
+    fn friction(&self, _state: &(), _velocity_m_s: f64) -> Friction<f64> {
+        Friction {
+            jump: self.0,
+            smooth: 0.0,
+        }
+    }
+
+    fn advance(&self, _state: &mut (), _speed_m_s: [f64; 3], _rate: f64, _dt_s: f64) {}
+}
+
+/// A bristle that a law does not bend gives its level along the motion, and nothing at rest.
+#[test]
+fn a_bristle_that_does_not_bend_gives_the_level_along_the_motion() {
+    let speeds = [0.1, 0.2, 0.1, 0.0, 0.0, -0.1, -0.3, 0.0];
+    let got = readings(&chain_round(Rigid(0.2), &[]), 0.01, 7, |t| {
+        let mut motion = Motion::at_rest(100.0);
+        motion.time_s = t;
+        motion.velocity_m_s = speeds[(t / 0.01).round() as usize];
+        motion
+    });
+    for (speed, n) in speeds.iter().zip(&got) {
+        let direction = if *speed == 0.0 { 0.0 } else { speed.signum() };
+        assert!((n - 20.0 * direction).abs() < 1e-12, "{speed} m/s: {n} N");
+    }
+}
+
+/// What an instrument reads of a force, sample by sample.
+fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64> {
+    let mut out = Vec::new();
+    read_force(&chain::<f64>(effects).effects, time_s, force_n, |i, n| {
+        assert_eq!(i, out.len(), "samples come in order");
+        out.push(n);
+    });
+    out
+}
+
+/// A lag follows straight lines between samples as its differential equation does, however far
+/// apart they are: of a slope `s` it is late by `s tau (1 - exp(-t / tau))`.
+#[test]
+fn a_lag_alone_follows_straight_lines_between_samples() {
+    let tau_s = 0.1;
+    for step_s in [0.005, 0.05, 0.25] {
+        let time_s: Vec<f64> = (0..40).map(|i| 3.0 + step_s * f64::from(i)).collect();
+        let force_n: Vec<f64> = time_s.iter().map(|t| 2.0 + 5.0 * (t - 3.0)).collect();
+        let got = read(&[("sensor_lag", &[tau_s])], &time_s, &force_n);
+        for ((t, n), got) in time_s.iter().zip(&force_n).zip(&got) {
+            let late = 5.0 * tau_s * (1.0 - (-(t - 3.0) / tau_s).exp());
+            assert!(
+                (got - (n - late)).abs() < 2e-3,
+                "{step_s} {t}: {got} {}",
+                n - late
+            );
+        }
+    }
+}
+
+/// A zero that wanders counts its time from the first sample, whatever the clock says.
+#[test]
+fn a_drift_counts_from_the_first_sample() {
+    let time_s: Vec<f64> = (0..12).map(|i| 50.0 + 0.5 * f64::from(i)).collect();
+    let got = read(&[("sensor_drift", &[0.2])], &time_s, &[1.0; 12]);
+    for (t, got) in time_s.iter().zip(&got) {
+        assert!((got - (1.0 + 0.2 * (t - 50.0))).abs() < 1e-12, "{t}: {got}");
+    }
+}
+
+/// A table against the angle is one period: between its entries straight lines, the last one back
+/// to the first, the same any number of periods further or back.
+#[test]
+fn a_table_against_the_angle_repeats() {
+    let table = Table::new([1.0, 3.0, 2.0, 6.0], Axis::Angle, 0.5, 0.0).expect("a table");
+    let levels = [
+        (0.0, 1.0),
+        (0.25, 2.0),
+        (0.5, 3.0),
+        (1.0, 2.0),
+        (1.25, 4.0),
+        (1.5, 6.0),
+        (1.75, 3.5),
+    ];
+    for (angle, level) in levels {
+        for periods in [-3.0, -1.0, 0.0, 1.0, 7.0] {
+            let got: f64 = table.at(angle + 2.0 * periods);
+            assert!((got - level).abs() < 1e-12, "{angle} {periods}: {got}");
+        }
+    }
+}
+
+/// A table against the speed knows no sign, and holds its last entry beyond it.
+#[test]
+fn a_table_against_the_speed_ends() {
+    let table = Table::new([1.0, 3.0, 2.0], Axis::Speed, 0.5, 0.0).expect("a table");
+    let levels = [
+        (0.0, 1.0),
+        (0.25, 2.0),
+        (0.5, 3.0),
+        (0.75, 2.5),
+        (1.0, 2.0),
+        (9.0, 2.0),
+    ];
+    for (speed, level) in levels {
+        for sign in [1.0, -1.0] {
+            let got: f64 = table.at(sign * speed);
+            assert!((got - level).abs() < 1e-12, "{speed}: {got}");
+        }
+    }
+}
+
+/// The learned gamma scales viscous friction and nothing else: in proportion, and with none of it
+/// left what remains is dry.
+#[test]
+fn viscous_friction_is_in_proportion_to_the_gamma_that_was_learned() {
+    let sent = |gamma: f64, velocity_rad_s: f64| {
+        let learned = Learned {
+            gamma,
+            ..Learned::THESIS
+        };
+        let loop_ = bench::learning::<f64>(bench::Control::Velocity).resumed(learned);
+        let mut sense = Sense::default();
+        sense.velocity_rad_s = velocity_rad_s;
+        loop_.step(&mut loop_.start(), &sense).sum_v
+    };
+    for velocity in [0.5, 4.0, -4.0] {
+        let [one, two, three] = [33.0, 66.0, 99.0].map(|gamma| sent(gamma, velocity));
+        let viscous = two - one;
+        assert!(viscous * velocity > 0.0, "{velocity}: {viscous} V");
+        assert!((three - two - viscous).abs() < 1e-12 * three.abs());
+        // Asperities just touch where it begins: there is no dry friction yet.
+        assert!(
+            (one - viscous).abs() < 1e-9 * one.abs(),
+            "{velocity}: {one} V, {viscous} V"
+        );
+    }
+    let ratio = sent(33.0, 4.0) / sent(33.0, 0.5);
+    assert!((ratio - 8.0).abs() < 1e-9, "{ratio}");
+}

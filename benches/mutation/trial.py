@@ -6,6 +6,7 @@ import difflib
 import re
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -51,10 +52,14 @@ class Bench:
     copy: Copy
     sound: dict[str, bool] = field(default_factory=dict)
 
-    def pytest(self, tests: list[str], limit_s: float) -> tuple[int | None, str]:
-        """Exit code (None: out of time) and output of tests, in order, to the first failure."""
+    def pytest(
+        self, tests: list[str], limit_s: float, without: Sequence[str] = ()
+    ) -> tuple[int | None, str]:
+        """Exit code (None: out of time) and output of tests, in order, to the first failure;
+        without some that a file of them holds."""
         command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no"]
         command += ["-p", "no:cacheprovider", *tests]
+        command += [word for test in without for word in ("--deselect", test)]
         environment = self.copy.environment | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
         code, told, _ = run(command, self.copy.folder, environment, limit_s)
         return code, told
@@ -79,10 +84,11 @@ class Bench:
         trial.tests = len(tests)
         limit_s = 60.0 + 6.0 * chosen.seconds
         begun = time.monotonic()
+        struck_off: list[str] = []
         while tests:
             path.write_text(after, "utf-8")
             try:
-                code, told = self.pytest(tests, limit_s)
+                code, told = self.pytest(tests, limit_s, struck_off)
             finally:
                 path.write_text(before, "utf-8")
             found = FAILED.search(told)
@@ -92,11 +98,15 @@ class Bench:
                 raise RuntimeError(f"{fault.name}: its tests cannot be found\n{told[-800:]}")
             trial.word = "timeout" if code is None else "survived" if code == PASSED else "caught"
             # Tests that take as long anyway have noticed nothing.
-            if code is None and self.pytest(tests, limit_s)[0] is None:
+            if code is None and self.pytest(tests, limit_s, struck_off)[0] is None:
                 trial.word = "not reached"
             # A test that fails anyway is struck off, and the others are asked again.
-            if code == 1 and trial.by in tests and not self.is_sound(trial.by):
-                tests.remove(trial.by)
+            by = trial.by
+            if code == 1 and by is not None and by not in struck_off and not self.is_sound(by):
+                if by in tests:
+                    tests.remove(by)
+                else:
+                    struck_off.append(by)
                 trial.word, trial.by = "survived", None
                 continue
             break

@@ -95,6 +95,15 @@ def test_a_test_that_fails_anyway_notices_nothing(tree: Path) -> None:
     assert "| all | 0 | 3 | 0% | 0% to 71% |" in tried(tree, "--sample", "3").stdout
 
 
+def test_nor_does_it_as_one_of_a_file(tree: Path) -> None:
+    """By their imports files are asked, and one test of them may fail whatever the code is."""
+    (tree / "test_sums.py").write_text(TESTS + "\n\ndef test_no():\n    assert False\n")
+    done = tried(tree, "--sample", "9", "--tests", "test_sums.py")
+    assert done.returncode == 0, done.stderr
+    rows = map(json.loads, (tree.parent / "record.jsonl").read_text().splitlines())
+    assert sorted(row["word"] for row in rows) == ["caught", "caught", "survived"]
+
+
 def test_the_interval_is_clopper_and_pearsons(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its limits are the shares under which so few, or so many, have a chance of 2.5 %."""
     from scipy.stats import binom

@@ -49,7 +49,7 @@ _levels_n: dict[Hashable, float] = {}
 
 def _friction_level_n(model: Model) -> float:
     radius_m = 1.0 if model.rig.bearing is None else model.rig.bearing.radius_m
-    # A little more than one turn there and back.
+    # A little more than once there and back, over 17 mm: of a ripple, what it is there.
     time_s = np.arange(0.0, 11.0, 0.02)
     rate, top_m_s = 0.6, 0.005
     velocity = top_m_s * np.sin(rate * time_s)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -259,9 +260,7 @@ def test_a_hundred_samples_after_a_rest_are_an_axis(count: int, there: bool) -> 
         since = time[last + 1 :] - time[last]
         edges = np.quantile(since, [0.05, 0.1, 0.2, 0.4, 0.7]).tolist()
         ends = [-math.inf, *edges, math.inf]
-        assert [b.span for b in axis.bins[6:]] == [
-            pytest.approx(pair) for pair in zip(ends[:-1], ends[1:], strict=True)
-        ]
+        assert [b.span for b in axis.bins[6:]] == [pytest.approx(pair) for pair in pairwise(ends)]
         wanted = np.concatenate((np.full(last + 1, -1), 6 + np.digitize(since, edges)))
         assert np.array_equal(axis.places[0], wanted)
 

@@ -94,17 +94,21 @@ def test_even_noise_has_even_weights(unit: float) -> None:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_noise_that_grows_with_the_force_is_weighed_by_it(unit: float) -> None:
-    """A cell's 0.2 N and a tenth of the force: together as the root of their squares."""
-    sd = np.sqrt(0.2**2 + (0.1 * forces()) ** 2)
+    """A cell's 0.5 N and a tenth of the force: together as the root of their squares."""
+    sd = np.sqrt(0.5**2 + (0.1 * forces()) ** 2)
     force = [unit * forces(), -unit * forces()]
     shares, (found,) = sizes(unit * sd * noise(N, 1), unit * sd * noise(N, 2), force=force)
-    assert (found.kind, found.column, found.run) == ("noise_with_force", "friction_n", "a, b")
+    assert (found.kind, found.channel, found.run) == ("noise_with_force", "friction_n", "a, b")
     assert (found.unit, found.done) == ("1", "weighed")
     assert found.size == pytest.approx(0.1, rel=0.06)
     assert found.words == f"the noise grows with the force, by {100 * found.size:.2g} % of it"
     for share in shares:
         assert share == pytest.approx(sd.min() / sd, rel=0.12)
         assert share.max() == 1.0
+        # One over its square is the line through the squares, and one at the least force.
+        slope, level = np.polyfit(forces() ** 2, share**-2.0, 1)
+        assert slope * forces() ** 2 + level == pytest.approx(share**-2.0)
+        assert level / slope * found.size**2 == pytest.approx(0.25, rel=0.2)
 
 
 def test_noise_that_sinks_with_the_force_is_left_as_it_is() -> None:
@@ -143,7 +147,7 @@ def test_without_noise_there_is_nothing_to_weigh() -> None:
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
 def test_noise_that_differs_by_run_is_weighed_by_run(unit: float) -> None:
     shares, (found,) = sizes(unit * noise(N, 1), 3.0 * unit * noise(N, 2), unit * noise(N, 3))
-    assert (found.kind, found.column, found.run) == ("noise_by_run", "friction_n", "a, b, c")
+    assert (found.kind, found.channel, found.run) == ("noise_by_run", "friction_n", "a, b, c")
     assert found.size == pytest.approx(3.0, rel=0.08)
     assert found.words == f"the noise differs by run, up to {found.size:.2g} times"
     assert (found.unit, found.done) == ("1", "weighed")
@@ -215,7 +219,7 @@ def test_what_is_far_off_weighs_by_its_distance(unit: float) -> None:
     (weight,), (found,) = weights([tailed(20, unit=unit)])
     assert weight[:20] == pytest.approx(np.full(20, np.sqrt(HUBER / 10.0)))
     assert np.all(weight[20:] == 1.0)
-    assert (found.kind, found.column, found.run) == ("heavy_tails", "friction_n", "a")
+    assert (found.kind, found.channel, found.run) == ("heavy_tails", "friction_n", "a")
     assert (found.size, found.unit, found.done) == (0.02, "1", "weighed")
     assert found.words == "2 % of the noise is beyond four of its standard deviations"
 
@@ -236,11 +240,13 @@ def test_tails_are_so_many_times_those_of_a_normal(part: float, told: bool) -> N
 
 
 def test_what_is_as_large_as_its_own_noise_is_not_far_off() -> None:
-    """Innovations are taken over their sizes: three times as large in the second run."""
-    one, loud = tailed(3), 3.0 * tailed(0)
-    e = [one, loud]
-    assert weights([one, 5.0 * tailed(0)])[1][0].size > 0.0
-    assert weights(e, [np.ones(1000), np.full(1000, 1.0 / 3.0)])[1] == []
+    """Innovations are taken over their sizes: ten times as large in the second run."""
+    e = [tailed(0, 3000), 10.0 * tailed(0)]
+    (plain, far), (found,) = weights(e)
+    assert found.size == 0.25
+    assert np.all(plain == 1.0)
+    assert far == pytest.approx(np.full(1000, np.sqrt(HUBER / 6.745)))
+    assert weights(e, [np.ones(3000), np.full(1000, 0.1)])[1] == []
 
 
 def test_of_nothing_there_are_no_tails() -> None:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
-import dataclasses
 import inspect
 from types import ModuleType
+from typing import Any
 
 import pytest
 from jbf.comparison import axes, bins, comparison, over_speed, parts, patterns
@@ -192,7 +192,7 @@ ESTIMATION = (
     work,
 )
 MODULES = (*COMPARISON, *DIAGNOSIS, *ESTIMATION)
-CHANGING = {"Candidates", "Reached", "Visited", "Work"}
+CHANGING = {"Fitted", "Reached", "Visited", "Work"}
 """Books that are kept while a campaign is fitted: of these there is one, and it fills."""
 
 
@@ -200,8 +200,9 @@ CHANGING = {"Candidates", "Reached", "Visited", "Work"}
 def test_what_is_handed_on_cannot_be_changed(module: ModuleType) -> None:
     """A result that a caller changes would change under all that hold it."""
     for kind in vars(module).values():
-        if inspect.isclass(kind) and dataclasses.is_dataclass(kind):
-            assert kind.__dataclass_params__.frozen != (kind.__name__ in CHANGING), kind
+        if inspect.isclass(kind) and kind.__module__ == module.__name__:
+            held: Any = getattr(kind, "__dataclass_params__", None)
+            assert held is None or held.frozen != (kind.__name__ in CHANGING), kind
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))

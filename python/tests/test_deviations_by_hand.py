@@ -108,7 +108,7 @@ def test_a_run_that_does_not_know_it_is_left_out_and_three_must_know() -> None:
 def test_the_clearest_is_the_one_that_chance_makes_least_of() -> None:
     """Zeros of their own beside drifts that are less clear."""
     t = np.linspace(-4.0, 4.0, N)
-    levels, drifts = (0.6, -0.8, 0.2, 0.0), (0.1, -0.15, 0.2, -0.15)
+    levels, drifts = (1.8, -2.4, 0.6, 0.0), (0.1, 0.1, 0.1, -0.3)
     residuals = [quiet(i) + x + d * t for i, (x, d) in enumerate(zip(levels, drifts, strict=True))]
     problem, solution, samples = runs(residuals)
     found = _clearest(problem, solution, samples, 1e-4)

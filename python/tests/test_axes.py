@@ -243,6 +243,17 @@ def test_forces_of_few_values_are_few_bins() -> None:
     assert (axis.force_unit, filled.popitem()[1].unit) == ("N", "N")
 
 
+def test_before_the_first_reversal_there_is_no_way_since_one() -> None:
+    """A run that moves from its first sample has not turned round there."""
+    time = 0.02 * np.arange(600)
+    run = Run.from_arrays(time, np.where(time < 6.0, 0.1, -0.1), np.where(time < 6.0, 2.0, -2.0))
+    campaign = Campaign.prepare(Rig(), [run])
+    axis = next(a for a in all_axes(campaign, U_TR) if a.axis == "distance since a reversal")
+    turned = int(np.flatnonzero(campaign.prepared[0].motion.velocity_m_s < 0.0)[0])
+    assert np.all(axis.places[0][: turned + 1] == -1)
+    assert np.all(axis.places[0][turned + 1 :] >= 0)
+
+
 @pytest.mark.parametrize(("count", "there"), [(99, False), (100, True)])
 def test_a_hundred_samples_after_a_rest_are_an_axis(count: int, there: bool) -> None:
     """Counted from the last sample at rest; a run that sets out from rest has it at its start."""

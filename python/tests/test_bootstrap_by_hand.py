@@ -103,7 +103,7 @@ def prepared(**aside: bool) -> Any:
         TIME,
         0.05 + off,
         np.full(N, 7.0),
-        position_m=PATH + 1e-3 * off,
+        position_m=PATH + 0.2 * off,
         name="a",
     )
     motion = SimpleNamespace(

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jbf import Rig
 from jbf.estimation.samples import Samples
 
-Array = npt.NDArray[np.float64]
+Array = npt.NDArray[Any]
 
 
 def record(

@@ -139,6 +139,7 @@ def test_a_column_that_is_not_believed_stays_as_it_was() -> None:
     p = prepared(velocity_m_s=True, position_m=True)
     again = read_again(p, np.full(N, 3.0), np.random.default_rng(1))
     assert np.array_equal(again.velocity_m_s, p.run.velocity_m_s)
+    assert again.position_m is not None
     assert np.array_equal(again.position_m, p.run.position_m)
 
 

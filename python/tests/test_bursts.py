@@ -39,7 +39,7 @@ def runs(*e: Array) -> list[Any]:
 
 
 def told(
-    *e: Array, unit: float = 1.0, residuals: list[Array] | None = None, **policy: float
+    *e: Array, unit: float = 1.0, residuals: list[Array] | None = None, **policy: Any
 ) -> list[Remainder]:
     prepared = runs(*e)
     scaled = [unit * x for x in e]

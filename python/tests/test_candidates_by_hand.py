@@ -34,9 +34,10 @@ def test_what_followed_from_another_solution_is_void() -> None:
     one: Any = SimpleNamespace(values=np.array([1.0, 2.0]))
     other: Any = SimpleNamespace(values=np.array([3.0, 4.0]))
     problem: Any = SimpleNamespace(names=["a", "b"])
-    fitted = Fitted(problem, solution=one, left_out=[1], halves={2: []})  # type: ignore[list-item]
+    part: Any = object()
+    fitted = Fitted(problem, solution=one, left_out=[part], halves={2: []})
     fitted.improve(one)
-    assert (fitted.left_out, fitted.halves) == ([1], {2: []})
+    assert (fitted.left_out, fitted.halves) == ([part], {2: []})
     fitted.improve(other)
     assert fitted.found() is other
     assert (fitted.left_out, fitted.halves) == ([], {})

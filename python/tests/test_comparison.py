@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from by_hand import LAW, along, coulomb, one_way, there_and_back
-from jbf import Comparison, Model, Rig, Run, compare
+from jbf import Comparison, Model, ParameterValue, Rig, Run, compare
 from jbf.comparison.comparison import compare_prepared, predicted
 from jbf.comparison.over_speed import BINS, friction_over_speed, regimes
 from jbf.comparison.parts import beside_friction, without
 from jbf.estimation.campaign import Campaign
-from jbf.models.model import ParameterValue
 
 Array = npt.NDArray[np.float64]
 MODEL = Model(Rig(), "coulomb", parameters=LAW)
@@ -25,7 +25,7 @@ def off() -> Comparison:
     return compare(MODEL, there_and_back(along(1.0)))
 
 
-def counting(comparison: Comparison, masks: list[Array]) -> Comparison:
+def counting(comparison: Comparison, masks: list[npt.NDArray[Any]]) -> Comparison:
     """The same with only these samples counted."""
     samples = comparison.samples.within([m.astype(bool) for m in masks])
     return replace(comparison, samples=samples)

@@ -27,7 +27,7 @@ N = 2000
 
 def made(
     bend: tuple[float, float], *, names: tuple[str, str] = ("F_c_n", "F_v_n_s_m"), **more: Any
-):  # type: ignore[no-untyped-def]
+) -> tuple[Any, Solution]:
     """A model of two parameters, each in its own direction of the record: at a step of one standard
     error the first goes `1 + bend` times as far one way, and `1 - bend` times the other."""
     ways = [np.repeat([1.0, -1.0], N // 2), np.tile(np.repeat([1.0, -1.0], N // 4), 2)]

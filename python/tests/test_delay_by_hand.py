@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def found() -> Solved:
     return solved({"F_s_n": 5.0})
 
 
-def told(found: Solved, *, values: Array | None = None, **more: Array) -> ExactDelay | None:
+def told(found: Solved, *, values: Array | None = None, **more: Any) -> ExactDelay | None:
     problem, solution, known = found
     return exact_delay(
         problem,

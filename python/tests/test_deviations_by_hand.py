@@ -33,7 +33,8 @@ def quiet(seed: int) -> Array:
     e = np.random.default_rng(seed).standard_normal(N)
     basis = np.linalg.qr(np.column_stack([np.ones(N), t, t**2]))[0]
     left: Array = e - basis @ (basis.T @ e)
-    return left / np.sqrt(np.mean(left**2))
+    left /= np.sqrt(np.mean(left**2))
+    return left
 
 
 def runs(residuals: list[Array], lasts_s: float = 8.0) -> tuple[Any, Any, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -163,7 +164,7 @@ def test_each_motion_comes_under_each_load_and_at_each_temperature() -> None:
 
 def campaign(
     *,
-    loads: list[Array | None] | None = None,
+    loads: Sequence[Array | None] | None = None,
     has_loads: bool = True,
     celsius: tuple[float, float] | None = None,
 ) -> Any:

@@ -168,9 +168,9 @@ def test_what_runs_share_is_their_weighted_mean() -> None:
 def test_runs_that_agree_better_than_chance_are_no_surer_for_that() -> None:
     found = _common([_Place(2.0, 1.0)] * 4)
     assert found is not None
-    assert found == (2.0, pytest.approx(stats.chi2.sf(0.5 * 16.0, 1)))
+    assert found == pytest.approx((2.0, stats.chi2.sf(0.5 * 16.0, 1)))
     one = _common([_Place(-3.0, 1.0)])
-    assert one == (-3.0, pytest.approx(stats.chi2.sf(4.5, 1)))
+    assert one == pytest.approx((-3.0, stats.chi2.sf(4.5, 1)))
     assert _common([NOWHERE, NOWHERE]) is None
     assert _common([]) is None
 
@@ -178,7 +178,7 @@ def test_runs_that_agree_better_than_chance_are_no_surer_for_that() -> None:
 def test_of_three_runs_their_spread_is_known() -> None:
     """Values 5, 7 and 9 of unit variance: Q = 8 of two degrees, and 3 beyond chance."""
     places = [_Place(v, 1.0) for v in (5.0, 7.0, 9.0)]
-    assert _spread([*places, NOWHERE]) == (pytest.approx(np.sqrt(3.0)), pytest.approx(np.exp(-2.0)))
+    assert _spread([*places, NOWHERE]) == pytest.approx((np.sqrt(3.0), np.exp(-2.0)))
     assert _spread(places[:2]) is None
     assert _spread([places[0]] * 4) is None
 

@@ -41,7 +41,7 @@ def noise(n: int, seed: int) -> Array:
 def sizes(
     *residuals: Array,
     force: list[Array] | None = None,
-    counted: list[Array] | None = None,
+    counted: list[npt.NDArray[Any]] | None = None,
     steps: list[float] | None = None,
 ) -> tuple[list[Array], list[Finding]]:
     """Of residuals beside a model that predicts these forces."""

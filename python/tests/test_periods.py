@@ -36,8 +36,8 @@ def error(n: int, period: int = PERIOD) -> Array:
 def told(
     *residuals: Array,
     speeds: list[Array] | None = None,
-    counted: list[Array] | None = None,
-    **policy: float,
+    counted: list[npt.NDArray[Any]] | None = None,
+    **policy: Any,
 ) -> list[Remainder]:
     prepared: list[Any] = [
         record(

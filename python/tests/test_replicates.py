@@ -82,7 +82,7 @@ def record(force: Array, *, rests: Array | None = None, speed: Array | None = No
     return SimpleNamespace(friction_n=force, motion=motion, converter_step_n=0.0)
 
 
-def of(*records: Any, counted: list[Array] | None = None) -> tuple[list[Any], Samples]:
+def of(*records: Any, counted: list[npt.NDArray[Any]] | None = None) -> tuple[list[Any], Samples]:
     """Records, and samples that all count where nothing else is said."""
     masks = tuple(
         np.ones(len(r.friction_n), dtype=bool) if counted is None else counted[i].astype(bool)

@@ -147,7 +147,7 @@ def test_one_run_of_five_with_a_wave_is_not_most(prepared: list[Any]) -> None:
 # ---- the pitch ---------------------------------------------------------------------------------
 
 
-def lines(part: float, count: int = 6, per: int = 100) -> tuple[list[Array], list[Array], float]:
+def lines(part: float, count: int = 6, per: int = 100) -> tuple[list[Any], list[Any], float]:
     """Ways of one sample a bin, and waves in noise of so many times the least size that a line is
     no chance at; with that pitch."""
     fine = 1e-3
@@ -255,7 +255,7 @@ def test_waves_have_the_share_of_their_squares_and_their_median_size() -> None:
     # Of samples that do not count nothing is asked.
     half = samples_of([record(STEP_S * np.arange(n))] * 3, [np.arange(n) < 400] * 3)
     wild = [np.where(np.arange(n) < 400, x, 100.0) for x in r]
-    assert _waves([way] * 3, wild, half, 1.0)[:2] == (pytest.approx(1.0), pytest.approx(2.0))
+    assert _waves([way] * 3, wild, half, 1.0)[:2] == pytest.approx((1.0, 2.0))
 
 
 def test_words_are_those_of_the_rig() -> None:

@@ -38,7 +38,7 @@ def test_a_stroke_ends_where_the_motion_turns_round() -> None:
 
 
 def told(
-    prepared: list[Any], residuals: list[Array], friction: list[Array], **policy: float
+    prepared: list[Any], residuals: list[Array], friction: list[Array], **policy: Any
 ) -> list[Remainder]:
     problem: Any = SimpleNamespace(
         predict=lambda values: friction, campaign=SimpleNamespace(prepared=prepared)
@@ -104,7 +104,7 @@ def test_levels_have_a_share_that_matters() -> None:
 def test_few_or_short_strokes_tell_nothing() -> None:
     assert (LEAST_STROKES, LEAST_SAMPLES) == (3, 8)
     assert told(*levels([0.1, -0.1], 1e-6)) == []
-    loose = {"constancy_chance": 0.5}
+    loose: dict[str, Any] = {"constancy_chance": 0.5}
     assert told(*levels([0.1, -0.1, 0.1], 1e-6, each=15), **loose) == []
     assert len(told(*levels([0.1, -0.1, 0.1], 1e-6, each=16), **loose)) == 1
     # A run of few does not keep the next from being looked at.

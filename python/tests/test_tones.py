@@ -33,7 +33,7 @@ def runs(*signals: Array) -> list[Any]:
 
 
 def found(
-    *signals: Array, share: float = 1e-12, counted: list[Array] | None = None
+    *signals: Array, share: float = 1e-12, counted: list[npt.NDArray[Any]] | None = None
 ) -> list[Remainder]:
     prepared = runs(*signals)
     policy = replace(DEFAULT, tone_share=share)

@@ -190,7 +190,7 @@ def test_rivals_ask_for_a_run_that_parts_them(played: Any) -> None:
     (told,) = script.of("verdict")
     assert told == [{"effects": 2, "alternatives": 1, "remains": False}]
     assert script.of("propose") == [[[[("one", "three"), ("three", "two")]]]]
-    assert found.next_experiment == "none"
+    assert found.next_experiment == "none parts them"
     assert found.experiment is None
     # Of two effects another law is asked for, which may say both.
     assert found.simpler_law == "other"

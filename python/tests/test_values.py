@@ -99,6 +99,7 @@ from jbf.estimation import (
     wild_bootstrap,
     work,
 )
+from jbf.results import Result
 
 COMPARISON = (axes, bins, comparison, over_speed, parts, patterns)
 DIAGNOSIS = (
@@ -194,6 +195,22 @@ ESTIMATION = (
 MODULES = (*COMPARISON, *DIAGNOSIS, *ESTIMATION)
 CHANGING = {"Fitted", "Reached", "Visited", "Work"}
 """Books that are kept while a campaign is fitted: of these there is one, and it fills."""
+THEMSELVES = {
+    "BetweenRuns",
+    "Campaign",
+    "Change",
+    "Deviation",
+    "Directions",
+    "ExactDelay",
+    "PutBack",
+    "Samples",
+    "SecondLook",
+    "Solution",
+    "Spread",
+    "_Scan",
+    "_Shifted",
+}
+"""What holds arrays of many samples."""
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))
@@ -203,6 +220,21 @@ def test_what_is_handed_on_cannot_be_changed(module: ModuleType) -> None:
         if inspect.isclass(kind) and kind.__module__ == module.__name__:
             held: Any = getattr(kind, "__dataclass_params__", None)
             assert held is None or held.frozen != (kind.__name__ in CHANGING), kind
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))
+def test_what_holds_arrays_is_equal_to_itself_alone_and_a_result_is_shown_in_a_line(
+    module: ModuleType,
+) -> None:
+    """Arrays of many samples are no answer to whether two are one, and no line of a terminal; what
+    a fit left is a key, under which more is kept."""
+    for name, kind in vars(module).items():
+        if inspect.isclass(kind) and kind.__module__ == module.__name__:
+            assert (kind.__eq__ is object.__eq__ and kind.__hash__ is object.__hash__) or (
+                name not in THEMSELVES
+            ), name
+            if issubclass(kind, Result):
+                assert "__repr__" not in vars(kind), name
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))

@@ -32,7 +32,7 @@ from made_of import record, samples_of
 Array = npt.NDArray[np.float64]
 module = sys.modules["jbf.estimation.pitches"]
 FINE_M = 1e-3
-PLACE = FINE_M * (np.arange(4000) % 2000 + 0.5)
+PLACE: Array = np.array(FINE_M * (np.arange(4000) % 2000 + 0.5), dtype=np.float64)
 """There and back over 2 m, a sample each millimetre."""
 SPEED = np.where(np.arange(4000) < 2000, 0.1, -0.1)
 

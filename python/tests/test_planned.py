@@ -17,7 +17,7 @@ from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.toml_file import MOST
 
 STEP_S = 0.02
-TIME = STEP_S * np.arange(600)
+TIME = STEP_S * np.arange(600.0)
 SPEED = 0.1 * np.sin(TIME)
 MODEL = Model(Rig(), "coulomb", parameters={**LAW, "F_s_n": 5.0})
 
@@ -140,7 +140,7 @@ def test_a_late_force_is_compared_with_the_motion_so_long_before(
 
 def test_a_motion_read_more_often_than_the_force_is_followed_in_between() -> None:
     p = Prepared.of(Rig(), run())
-    fine = np.linspace(TIME[0], TIME[-1], 4 * 599 + 1)
+    fine = np.asarray(np.linspace(TIME[0], TIME[-1], 4 * 599 + 1), dtype=np.float64)
     sparse = Prepared(
         p.rig, p.run, p.motion, p.friction_n, p.step_s, p.examined, (fine, p.motion.at(TIME, fine))
     )

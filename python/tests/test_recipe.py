@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -79,7 +79,8 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Any:
             steps = [SimpleNamespace(effects=present)]
             return SimpleNamespace(present=present, steps=steps, refused=script.refused, again=None)
 
-        doubted = script.doubted
+        doubted, nothing = script.doubted, cast(Any, None)
+        to_see = Experiment("record a rest", nothing, 1.0, 2.0, 3.0)
         parts: dict[str, Any] = {
             "Campaign": SimpleNamespace(prepare=lambda rig, runs: "recorded"),
             "Candidates": Made,
@@ -111,9 +112,7 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Any:
                 "propose", ("none parts them",), rivals
             ),
             "propose_to_see": lambda c, present, hidden, limits: script.say(
-                "see",
-                (Experiment("record a rest", None, 1.0, 2.0, 3.0),),
-                hidden,  # type: ignore[arg-type]
+                "see", (to_see,), hidden
             ),
             "compare_prepared": lambda model, campaign: ("after", campaign),
             "Diagnosis": lambda **told: SimpleNamespace(**told),

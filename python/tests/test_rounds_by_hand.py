@@ -65,12 +65,10 @@ def test_a_leader_in_hand_is_said() -> None:
 def test_a_line_of_the_ledger_has_the_errors_of_its_model() -> None:
     found = step(candidates(a=2.0), ("a",), 0.5, ())
     assert (found.effects, found.noise_n, found.trials) == (("a",), 0.5, ())
-    assert (found.rms_n, found.holdout_rms_n) == (pytest.approx(2.0), 7.0)
+    assert (found.rms_n, found.holdout_rms_n) == pytest.approx((2.0, 7.0))
 
 
-def refused(
-    monkeypatch: pytest.MonkeyPatch, evidence: float = 1e3, **more: float
-) -> list[tuple[str, float]]:
+def refused(monkeypatch: pytest.MonkeyPatch, evidence: float = 1e3, **more: float) -> list[Any]:
     """What is refused beside a model that leaves 1 N, of fitted ones with one effect more."""
     asked = candidates(_=1.0)
     asked.one_more = lambda present: {
@@ -125,7 +123,7 @@ def test_runs_that_differ_go_before_an_effect_that_leaves_more(
     """The deviation must gain more than a price and than any effect has evidence."""
     asked: list[float] = []
     samples = SimpleNamespace(without_deviations=lambda r, noise: r)
-    allowed = SimpleNamespace(samples=samples)
+    allowed: Any = SimpleNamespace(samples=samples)
 
     def deviation(problem: Any, solution: Any, given: Any, policy: Any, least: float) -> Any:
         asked.append(least)
@@ -198,7 +196,12 @@ def test_a_film_may_take_so_many_steps(
     # A law without a film is never too fast.
     check_film(campaign, "coulomb", "journal")
     known: list[Any] = []
-    problem.starts = lambda seed: known.append(seed) or [2.0]
+
+    def starts(seed: Any) -> list[float]:
+        known.append(seed)
+        return [2.0]
+
+    problem.starts = starts
     try:
         check_film(campaign, "journal", "journal", {"f_m": 0.25, "other": 3.0})
     except InputError:

@@ -135,6 +135,14 @@ def test_a_beginning_that_was_off_is_worth_a_word() -> None:
     ]
     assert [f.size for f in found] == pytest.approx([2.0, 0.5])
     assert found[0].words == "the film was not settled when the run began: 2 s, off by 3 N"
+    # One that is not worth a word keeps no other from it.
+    some = [np.where(m, size, 1.0) for m, size in zip(masks, (1.0, 3.0, 1.0), strict=True)]
+    turned: Any = SimpleNamespace(prepared=prepared[::-1], samples=samples.only([2, 1, 0]))
+    for given, which in ((campaign, 1), (turned, -1)):
+        told_of = _findings(
+            given, some[::which], masks[::which], kept.only([0, 1, 2][::which]), "x"
+        )
+        assert [f.run for f in told_of] == ["b"]
     for part, told in ((0.99, 0), (1.01, 2)):
         less = [np.where(m, part * OFF, 1.0) for m in masks]
         assert len(_findings(campaign, less, masks, kept, "cell")) == told

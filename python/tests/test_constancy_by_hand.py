@@ -97,6 +97,10 @@ def test_one_run_and_runs_of_too_few_samples_disagree_with_nobody() -> None:
     alone = disagreement(*of([SWINGS + 0.5], [LEVEL]))
     assert (alone.gain, alone.degrees) == (0.0, 0)
     assert list(alone.by_run) == ["a"]
+    first = disagreement(*of([np.ones(1), SWINGS + 0.5, SWINGS - 0.5], [LEVEL]))
+    assert first.degrees == 1
+    assert first.gain > 50.0
+    assert sorted(first.by_run) == ["b", "c"]
     tiny = disagreement(*of([SWINGS + 0.5, np.ones(1)], [LEVEL]))
     assert (tiny.gain, tiny.degrees) == (0.0, 0)
     assert list(tiny.by_run) == ["a"]

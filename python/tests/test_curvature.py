@@ -116,6 +116,10 @@ def test_peak_beside_peak_is_doubtful_unseen() -> None:
     names = ("F_c_n", "drive_compliance.k_n_m_rad")
     found = doubtful(bend=(0.0, 0.0), names=names, effects=("drive_compliance",))
     assert found == ("drive_compliance.k_n_m_rad",)
+    # Whichever comes first: the other is looked at.
+    first = ("drive_compliance.k_n_m_rad", "F_c_n")
+    bent = doubtful(bend=(0.0, 0.5), names=first, effects=("drive_compliance",))
+    assert bent == ("drive_compliance.k_n_m_rad", "F_c_n")
     one = ("F_c_n", "sensor_offset.b_n")
     assert doubtful(bend=(0.0, 0.0), names=one, effects=("sensor_offset",)) == ()
 

@@ -135,6 +135,21 @@ def test_the_clearest_is_the_one_that_chance_makes_least_of() -> None:
     assert again[1].kind == "drift_by_run"
 
 
+def test_what_is_within_chance_keeps_no_other_from_being_looked_at() -> None:
+    """Zeros that agree and drifts that do not; a run that does not know comes first."""
+    t = np.linspace(-4.0, 4.0, N)
+    residuals = [quiet(i) + d * t for i, d in enumerate((0.3, -0.3, 0.2, -0.2))]
+    problem, solution, samples = runs(residuals)
+    found = _clearest(problem, solution, samples, 1e-4)
+    assert found is not None
+    assert found[0].names == ("drift",)
+    levels = [9.0, 0.5, -0.5, 1.0]
+    _, solution, samples = runs([quiet(i) + x for i, x in enumerate(levels)])
+    column = [np.zeros(N)] + [np.ones(N)] * 3
+    told = _spread(samples, solution, column, 1.0)
+    assert told == pytest.approx(spread_between(np.array(levels[1:]), np.full(3, float(N))))
+
+
 def test_of_two_runs_or_within_chance_nothing_is_told() -> None:
     problem, solution, samples = runs([quiet(i) + x for i, x in enumerate((0.6, -0.8))])
     assert _clearest(problem, solution, samples, 1.0) is None

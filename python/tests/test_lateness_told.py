@@ -153,3 +153,25 @@ def test_the_models_force_is_asked_for_at_close_instants(step_s: float, times: i
     found = _instants(p)
     assert len(found) == 10 * times + 1
     assert found == pytest.approx(3.0 + step_s * np.arange(10 * times + 1) / times)
+
+
+@pytest.mark.parametrize(("times", "there"), [(1.0, False), (1.0 + 1e-12, True)])
+def test_beyond_chance_is_below_its_probability(
+    times: float, there: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of runs that differ, of a drift of all, and of a force that is early in all."""
+    chance = 0.25
+    for differ, drift, early in (
+        ((3e-3, chance), None, None),
+        (None, (1e-3, chance), None),
+        (None, None, (-2e-3, chance)),
+    ):
+        answers = [drift, early]
+        monkeypatch.setattr(module, "_spread", lambda whole, differ=differ: differ)
+        monkeypatch.setattr(module, "_common", lambda places, answers=answers: answers.pop(0))
+        found, *_ = told(monkeypatch, (0.0,) * 4, chance=times * chance)
+        assert (found is not None) == there
+    monkeypatch.setattr(module, "_clock", lambda *given: (1e-3, chance))
+    at_most, *_ = told(monkeypatch, (0.0,) * 4, chance=chance, clocks="one")
+    assert at_most is not None
+    assert told(monkeypatch, (0.0,) * 4, chance=chance * (1.0 - 1e-12), clocks="one")[0] is None

@@ -217,6 +217,10 @@ def test_a_law_that_predicts_as_well_with_fewer_parameters_is_told(
     assert (found.law, found.parameters) == ("other", 5)
     assert mended(monkeypatch, {"other": (5, 1.2)}) is None
     assert mended(monkeypatch, {}) is None
+    # One that has too many does not keep the next from being looked at.
+    after = mended(monkeypatch, {"large": (9, 0.5), "other": (5, 1.0)})
+    assert after is not None
+    assert after.law == "other"
     # Of several the simplest.
     two = mended(monkeypatch, {"other": (5, 1.0), "simple": (3, 1.003)})
     assert two is not None

@@ -156,3 +156,20 @@ def test_a_motion_read_more_often_than_the_force_is_followed_in_between() -> Non
     for ready in (p, same, sparse):
         assert core.predict(model.values, [ready.core])[0] == pytest.approx(law, abs=2e-2)
     assert "core" not in sparse.__getstate__()
+
+
+def test_a_force_with_a_clock_of_its_own_is_read_from_the_first_to_the_last_of_the_motion() -> None:
+    """Readings before the motion begins, and after it ends, are left."""
+    motion = 0.01 * np.arange(1001.0)
+    force = 0.02 * np.arange(-5.0, 506.0)
+    v = 0.1 * np.sin(motion)
+    there = 5.0 * np.sign(np.sin(force)) + 2.0 * np.sin(force)
+    given = {"velocity_m_s": (motion, v), "friction_n": (force, there)}
+    p = Prepared.of(Rig(), Run.from_channels(given, name="a"))
+    inside = (force >= -1e-12) & (force <= motion[-1] + 1e-12)
+    assert inside.sum() == 501
+    assert p.run.time_s == pytest.approx(force[inside])
+    assert p.friction_n == pytest.approx(there[inside])
+    assert p.recorded is not None
+    assert p.recorded[0] == pytest.approx(motion)
+    assert p.motion.velocity_m_s == pytest.approx(0.1 * np.sin(force[inside]), abs=1e-3)

@@ -68,6 +68,29 @@ def test_what_grows_all_at_once_is_found_between_too_little_and_enough() -> None
         assert 0.3 <= found < 0.3 * (1.0 + 2.0 * AGREES)
 
 
+def test_the_search_ends_where_too_little_and_enough_are_as_good_as_one() -> None:
+    """From 1, a thousandth as strong is too little; in between the middle is taken until a
+    twentieth is left: of log(1000) seven halvings."""
+    runs, model = growing(lambda times: 1e-9 if times < 0.3 else 900.0)
+    asked: list[float] = []
+    plain = runs.change
+
+    def counting(of: Any, times: float) -> Array:
+        asked.append(times)
+        found: Array = plain(of, times)
+        return found
+
+    runs.change = counting
+    found = _times(runs, model, 60.0, 1.0)
+    little = max(times for times in asked if times < 0.3)
+    enough = min(times for times in asked if times >= 0.3)
+    assert found == enough
+    assert enough < little * (1.0 + AGREES)
+    # Not looked at once more than that takes.
+    before = [t for t in asked[:-1] if t < 0.3], [t for t in asked[:-1] if t >= 0.3]
+    assert min(before[1]) >= max(before[0]) * (1.0 + AGREES)
+
+
 def test_at_a_bound_there_is_no_more_to_be_had() -> None:
     """At twice its strength it is worth 40: 30 is found, 60 never; at its weakest it is worth 10
     already, and less than that it cannot be."""
@@ -93,9 +116,6 @@ def test_one_strength_leads_to_the_next() -> None:
     assert found == pytest.approx([2.0, 3.0], rel=1e-6)
     # Each at the first look: from the one the other is known.
     assert asked == pytest.approx([2.0, 3.0])
-    never = _found(runs, model, [np.inf, 90.0])
-    assert np.isnan(never[0])
-    assert np.isnan(_found(runs, model, [40.0, np.inf])[1])
     bounded, short = growing(lambda times: 10.0 * times**2, most=2.5)
     both = _found(bounded, short, [40.0, 90.0])
     assert both[0] == pytest.approx(2.0, rel=AGREES)

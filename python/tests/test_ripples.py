@@ -236,6 +236,20 @@ def test_the_weakest_two_thirds_have_the_wave_beyond_chance(unit: float) -> None
         assert _in_most([way] * 3, e, samples, 1.0) == most
 
 
+@pytest.mark.parametrize(("periods", "most"), [(8.0, True), (7.99, False)])
+def test_a_run_of_just_eight_periods_has_its_say(periods: float, most: bool) -> None:
+    """Shorter ones are not asked; where none is, none has the wave."""
+    n = 1000
+    way = np.linspace(0.0, 4.0, n)
+    samples = samples_of([record(STEP_S * np.arange(n))] * 3)
+    e = [np.cos(2.0 * np.pi * periods * way / 4.0)] * 3
+    assert _in_most([way] * 3, e, samples, 4.0 / periods) == most
+    # Among longer ones it is left out.
+    long = np.linspace(0.0, 40.0, n)
+    whole = [np.cos(2.0 * np.pi * periods * x / 4.0) for x in (way, long, long)]
+    assert _in_most([way, long, long], whole, samples, 4.0 / periods)
+
+
 def test_waves_have_the_share_of_their_squares_and_their_median_size() -> None:
     """Sizes 1, 2 and 4 N on a level, phases 0, 0 and half a turn: (1 + 2 - 4)^2 / 3 of 21 is one
     wave's."""

@@ -107,6 +107,12 @@ def test_few_or_short_strokes_tell_nothing() -> None:
     loose: dict[str, Any] = {"constancy_chance": 0.5}
     assert told(*levels([0.1, -0.1, 0.1], 1e-6, each=15), **loose) == []
     assert len(told(*levels([0.1, -0.1, 0.1], 1e-6, each=16), **loose)) == 1
+    # A short stroke does not keep the longer ones from being looked at.
+    run = strokes([10, 40, 40, 40])
+    friction = 5.0 * np.sign(run.motion.velocity_m_s)
+    level = np.repeat([0.0, 0.1, -0.1, 0.1], [10, 40, 40, 40])
+    level = level + 1e-6 * (np.arange(130) % 7)
+    assert len(told([run], [friction * level], [friction], **loose)) == 1
     # A run of few does not keep the next from being looked at.
     one, two = levels([0.1, -0.1], 1e-6), levels([0.1, -0.1, 0.1, -0.12], 1e-6)
     both = [[*a, *b] for a, b in zip(one, two, strict=True)]

@@ -135,3 +135,12 @@ def test_tones_within_a_fiftieth_of_one_another_are_one(apart: float, one: bool)
         assert told.where == f"a {middle:.2f} Hz tone, amplitude 1.5 N, in all runs"
     else:
         assert told.where == f"tones: 5.00 Hz of 1 N in a, {5.0 + apart:.2f} Hz of 2 N in b"
+
+
+def test_a_run_whose_steps_are_uneven_keeps_no_other_from_being_looked_at() -> None:
+    """Of its usual step no line makes eight turns in the time that it lasts."""
+    sine = 2.0 * np.sin(0.2 * np.pi * np.arange(1000)) + 1e-3 * flat(1000, {})
+    prepared = runs(sine, sine)
+    prepared[0].step_s = 100.0
+    (told,) = find_tones(prepared, samples_of(prepared), [sine] * 2, [sine] * 2, ANY_SHARE)
+    assert told.where.endswith("in b")

@@ -49,6 +49,9 @@ def test_what_is_hidden_and_would_change_something_is_told(
     told = powers(sensor_offset=True, backlash=True, strange=True, found=False)
     assert unseen(candidates, (), told) == ("sensor_offset", *seen)
     assert unseen(candidates, (), []) == ()
+    # In whatever order they come.
+    candidates.names = list(pages)[::-1]
+    assert unseen(candidates, (), told) == (*seen, "sensor_offset")
 
 
 @pytest.mark.parametrize(("more", "changes"), [(0.0, False), (1e-9, True)])

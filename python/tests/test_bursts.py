@@ -52,6 +52,7 @@ def test_a_burst_is_told_with_its_size_its_time_and_its_share(unit: float) -> No
     (one,) = told(with_bursts({1000: 8.0}), unit=unit)
     assert one.axis == "time"
     assert one.where == f"1 burst, of {8.0 * unit:.2g} N: at 20.0 s in a"
+    assert told(with_bursts({1000: 8.0}), unit=unit, burst_share=one.share) == [one]
     assert one.share == pytest.approx(256.0 / (256.0 + (N - 4) * ONE**2))
     assert told(quiet(), unit=unit) == []
 

@@ -56,6 +56,15 @@ def test_the_share_is_what_the_means_explain_beyond_one_variance_a_bin() -> None
     assert found is not None
     assert found.share == pytest.approx((50.0 - 3 * 0.25) / 95.0, rel=1e-12)
     assert found.means_n.tolist() == [2.0, -1.0, 0.0, 0.0]
+    # Just that much is told, and what is just above chance.
+    assert pattern_along(axis, samples, [residuals], 0.5, found.share) is not None
+    assert pattern_along(axis, samples, [residuals], 0.5, np.nextafter(found.share, 1.0)) is None
+    flat = np.full(32, 0.5)
+    alone = binned(RUNS[:2], [0] * 16 + [1] * 16)
+    # Of two bins chance is 2, and each of six spreads 2: 8 of a square of 1/4.
+    even = pattern_along(alone, samples_of(np.ones(32)), [flat], 0.5, 0.0, 15.0)
+    assert even is not None
+    assert pattern_along(alone, samples_of(np.ones(32)), [flat], 0.5, 0.0, 15.01) is None
     assert found.counts.tolist() == [10, 10, 10, 0]
     assert (found.axis, found.bins) == ("run", RUNS[:4])
     assert found.labels == ("run a", "run b", "run c", "run d")

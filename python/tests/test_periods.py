@@ -67,7 +67,7 @@ def test_an_error_is_told_with_its_share(unit: float) -> None:
     assert told(*(unit * e for e in noise)) == []
 
 
-@pytest.mark.parametrize(("share", "there"), [(0.95, True), (1.05, False)])
+@pytest.mark.parametrize(("share", "there"), [(0.95, True), (1.0, True), (1.05, False)])
 def test_an_error_has_a_share_that_matters(share: float, there: bool) -> None:
     residual = 0.5 * error(6000) + np.random.default_rng(1).standard_normal(6000)
     (found,) = told(residual)

@@ -94,6 +94,7 @@ def test_a_wave_of_the_force_is_told_with_pitch_size_and_share(
     half = 0.5 * np.mean(np.square(sizes))
     assert share == pytest.approx(half / (1.0 + half), rel=0.1)
     assert told(prepared, e, share=0.9 * share) != []
+    assert told(prepared, e, share=share) != []
     assert told(prepared, e, share=1.1 * share) == []
 
 

@@ -105,8 +105,13 @@ def test_of_several_the_one_that_leaves_least(monkeypatch: pytest.MonkeyPatch) -
     assert words.startswith("y fits 1 N down to 0.5 N")
     assert share == pytest.approx(0.75)
     assert refused(monkeypatch) == []
+    # As much as is asked for is not less.
+    half = replace(DEFAULT, refused_rms=0.5)
+    monkeypatch.setattr(sys.modules[__name__], "DEFAULT", half)
+    assert refused(monkeypatch, x=0.5) == []
+    assert len(refused(monkeypatch, x=0.49)) == 1
     for more, told in ((0.01, True), (0.0, False)):
-        assert bool(refused(monkeypatch, DEFAULT.weak + more, x=0.5)) == told
+        assert bool(refused(monkeypatch, DEFAULT.weak + more, x=0.25)) == told
 
 
 @pytest.mark.parametrize(

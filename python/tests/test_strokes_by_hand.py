@@ -97,7 +97,7 @@ def test_levels_have_a_share_that_matters() -> None:
     loud = [residual[0] + 3.0 * np.where(np.arange(160) % 2, 1.0, -1.0)]
     (less,) = told(run, loud, friction)
     assert less.share < found.share
-    for part, there in ((0.95, True), (1.05, False)):
+    for part, there in ((0.95, True), (1.0, True), (1.05, False)):
         assert bool(told(run, loud, friction, pattern_share=part * less.share)) == there
 
 

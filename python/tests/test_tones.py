@@ -104,6 +104,7 @@ def test_the_share_is_half_the_squares_of_the_sizes() -> None:
     assert told.where.startswith("tones: 5.00 Hz of 2")
     assert told.where.endswith(" N in b")
     assert found(*signals, share=0.9 * told.share) != []
+    assert found(*signals, share=told.share) != []
     assert found(*signals, share=1.1 * told.share) == []
 
 

@@ -32,7 +32,7 @@ from jbf.estimation.jumps import (
     samples_beside_jumps,
     spreads_jumps,
 )
-from jbf.estimation.run_start import OFF, _findings, _what
+from jbf.estimation.run_start import _findings, _what
 from jbf.estimation.work import ANY_STEPS, STEPS_A_SAMPLE, Work
 from jbf.models.catalogue import Parameter
 from made_of import record, samples_of
@@ -144,7 +144,7 @@ def test_a_beginning_that_was_off_is_worth_a_word() -> None:
         )
         assert [f.run for f in told_of] == ["b"]
     for part, told in ((0.99, 0), (1.01, 2)):
-        less = [np.where(m, part * OFF, 1.0) for m in masks]
+        less = [np.where(m, part * 2.0, 1.0) for m in masks]
         assert len(_findings(campaign, less, masks, kept, "cell")) == told
 
 

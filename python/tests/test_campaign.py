@@ -165,6 +165,7 @@ def stepped(step_n: float, moves: Array, *, taken: float = 0.0) -> Campaign:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_steps_make_of_a_mean_what_their_noise_leaves(unit: float) -> None:
+    assert LEFT_OF_BIAS == 0.3
     moves = unit * np.tile([0.0, 0.0, 1.0, 0.0, -1.0, 0.0], 50)
     campaign = stepped(unit, moves)
     assert campaign.step_n == unit

@@ -67,4 +67,5 @@ def test_the_noise_before_is_told_by_how_often_a_reading_stays(step: float, nois
 def test_readings_that_always_or_never_stay_tell_the_ends() -> None:
     assert noise_before(2.0, np.zeros(100)) == 0.0
     assert noise_before(2.0, np.zeros(0)) == 0.0
-    assert noise_before(2.0, np.full(100, 2.0)) == MOST_NOISE * 2.0
+    assert MOST_NOISE == 3.0
+    assert noise_before(2.0, np.full(100, 2.0)) == 6.0

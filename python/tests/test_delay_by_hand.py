@@ -91,6 +91,7 @@ def test_where_there_is_no_delay_that_is_open_none_is_told(found: Solved) -> Non
     endless = known.sd.copy()
     endless[k] = np.inf
     assert told(found, sd=endless) is None
+    assert LEAST_STEPS == 0.05
     for steps, there in ((0.98 * LEAST_STEPS, False), (1.02 * LEAST_STEPS, True)):
         values = solution.values.copy()
         values[which] = steps * STEP_S
@@ -131,6 +132,7 @@ def test_the_likelihood_is_that_of_each_sample(found: Solved) -> None:
         [r * c for r, c in zip(solution.residuals, solution.samples.counted, strict=True)],
         solution.samples.steps_s,
     )
+    assert CLIPPED == 5.0
     assert scan.share == pytest.approx(min(share, 1.0))
     assert scan.noise_n == pytest.approx(solution.rms_n)
     for delay in (TAU_S, TAU_S + 0.3 * STEP_S):

@@ -78,6 +78,7 @@ def test_laws_within_half_a_hundredth_are_the_same(part: float, same: bool) -> N
 def test_laws_that_differ_by_no_more_than_their_stretches_are_tied(part: float, same: bool) -> None:
     """Forty stretches whose squares stray by s: their mean by s over sqrt(40), twice that is
     chance."""
+    assert STRETCHES == 40
     share = 0.5
     mean = 1.0 + part * DEFAULT.law_tie * share / np.sqrt(STRETCHES)
     for unit in (1e-3, 1e3):
@@ -212,6 +213,7 @@ def mended(
 def test_a_law_that_predicts_as_well_with_fewer_parameters_is_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    assert LAW_SHARE == 0.25
     found = mended(monkeypatch, {"other": (5, 1.004), "worse": (2, 2.0)})
     assert found is not None
     assert (found.law, found.parameters) == ("other", 5)

@@ -255,3 +255,32 @@ def test_a_score_promises_what_a_fit_of_the_effect_gains() -> None:
     off[problem.names.index("F_c_n")] *= 1.2
     for starts in ([start, off], [off, start]):
         assert score_test(problem, starts, near, ("sensor_offset",))[0] == pytest.approx(gain)
+
+
+def test_a_score_is_of_the_samples_that_the_smaller_model_leaves() -> None:
+    """Of half of them half of the gain; of many runs directions of some, and the gain of all."""
+    bare, near, _ = solved((), 0.03)
+    problem, _, start = solved(("sensor_offset",), 0.03)
+    null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b_n": 0.0}
+    start = np.array([null[name] for name in problem.names])
+    near = replace(near, noise=WHITE)
+    whole, every, _ = score_test(problem, [start], near, ("sensor_offset",))
+    halves = near.samples.halves()
+    gains = []
+    for half in halves:
+        gain, shown, _ = score_test(
+            problem, [start], replace(near, samples=half), ("sensor_offset",)
+        )
+        assert len(shown.innovations) == half.count
+        gains.append(gain)
+    assert max(gains) < whole
+    assert len(every.innovations) == near.samples.count
+    few = Problem(
+        problem.campaign.only([0, 1]), "coulomb", "journal", ("sensor_offset",), {"F_s_n": 6.0}
+    )
+    vars(problem)["thinned"] = few
+    gain, some, there = score_test(problem, [start], near, ("sensor_offset",))
+    assert gain == pytest.approx(whole)
+    assert len(some.innovations) == few.campaign.samples.count
+    assert some.ways.shape == (len(some.innovations), 1)
+    assert len(there) == len(problem.names)

@@ -11,7 +11,6 @@ import pytest
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.uneven_noise import (
     FORCE_BINS,
-    HUBER,
     LEAST,
     _uneven,
     _white,
@@ -217,7 +216,7 @@ def tailed(outliers: int, n: int = 1000, unit: float = 1.0) -> Array:
 def test_what_is_far_off_weighs_by_its_distance(unit: float) -> None:
     """A weight on a residual whose square is Huber's on its square."""
     (weight,), (found,) = weights([tailed(20, unit=unit)])
-    assert weight[:20] == pytest.approx(np.full(20, np.sqrt(HUBER / 10.0)))
+    assert weight[:20] == pytest.approx(np.full(20, 0.5))
     assert np.all(weight[20:] == 1.0)
     assert (found.kind, found.channel, found.run) == ("heavy_tails", "friction_n", "a")
     assert (found.size, found.unit, found.done) == (0.02, "1", "weighed")
@@ -245,7 +244,7 @@ def test_what_is_as_large_as_its_own_noise_is_not_far_off() -> None:
     (plain, far), (found,) = weights(e)
     assert found.size == 0.25
     assert np.all(plain == 1.0)
-    assert far == pytest.approx(np.full(1000, np.sqrt(HUBER / 6.745)))
+    assert far == pytest.approx(np.full(1000, np.sqrt(2.5 / 6.745)))
     assert weights(e, [np.ones(3000), np.full(1000, 0.1)])[1] == []
 
 

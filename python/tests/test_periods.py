@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.replicates import MIN_PAIRS, find_replicates
+from jbf.diagnosis.replicates import find_replicates
 from jbf.estimation.noise import WHITE
 from made_of import record, samples_of
 
@@ -106,7 +106,7 @@ def test_a_run_without_a_period_says_nothing_and_the_next_one_does() -> None:
     assert found.where.endswith(", in b")
 
 
-@pytest.mark.parametrize(("pairs", "there"), [(MIN_PAIRS - 1, False), (MIN_PAIRS, True)])
+@pytest.mark.parametrize(("pairs", "there"), [(99, False), (100, True)])
 def test_a_hundred_pairs_are_needed(pairs: int, there: bool) -> None:
     """Of a run that has fewer nothing is asked; the next one has its say."""
     n = PERIOD + pairs

@@ -21,6 +21,7 @@ def told(*columns: list[float]) -> Array:
 
 def test_an_effect_counts_by_its_price_up_to_enough() -> None:
     """A law that knows nothing of it: log(1 + times), and a twentieth of the log beyond four."""
+    assert (ENOUGH, MORE) == (4.0, 0.05)
     law = [1.0, 0.0, 0.0]
     for square, price in ((8.0, 4.0), (2.0, 1.0), (2e6, 1e6)):
         found = _worth(told(law, [0.0, np.sqrt(square), 0.0]), 1, np.array([price]))

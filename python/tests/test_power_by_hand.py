@@ -53,7 +53,8 @@ def growing(
 def test_the_strength_is_where_it_is_worth_so_much(
     begin: float, power: float, wanted: float
 ) -> None:
-    """By whichever power of its strength it grows."""
+    """By whichever power of its strength it grows, to a twentieth."""
+    assert AGREES == 0.05
     runs, model = growing(lambda times: 40.0 * times**power)
     assert _times(runs, model, wanted, begin) == pytest.approx(
         (wanted / 40.0) ** (1.0 / power), rel=AGREES

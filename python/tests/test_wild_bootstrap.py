@@ -81,6 +81,7 @@ def moved(places: list[Array], radius_m: float | None = None) -> Any:
 
 
 def test_a_stroke_goes_from_the_lowest_place_to_the_highest_and_a_little_beyond() -> None:
+    assert (BEYOND, SHORTEST_M) == (0.1, 1e-9)
     places = [np.linspace(-0.1, 0.2, 50), np.linspace(0.0, 0.5, 50)]
     low, high = stroke(moved(places))
     more = max(BEYOND * 0.6, SHORTEST_M)

@@ -98,7 +98,8 @@ def test_what_is_left_is_looked_for_again_and_added(monkeypatch: pytest.MonkeyPa
     assert found is not None
     assert found.late_s == pytest.approx([4.5e-3, -1.9e-3])
     assert found.drift == 0.0
-    assert found.campaign == ("moved", 2)
+    moved: Any = found.campaign
+    assert moved == ("moved", 2)
     assert [look for look, *_ in told.asked] == [0, 1, 2]
     assert told.moved[0][0] == pytest.approx([4e-3, -2e-3])
     # No more than so many times.

@@ -169,6 +169,9 @@ def test_what_an_effect_changes_is_in_units_of_the_noise() -> None:
     size = np.sqrt(np.mean(samples.flat(noise.residuals) ** 2) / effective_share(noise))
     assert shown == pytest.approx(left / size, rel=0.02, abs=1e-3)
     assert hand.friction_n == pytest.approx(samples.rms(hand.now))
+    # Of no change nothing is forgiven; of a level that is far above the noise next to nothing.
+    assert hand.not_forgiven([np.zeros(len(f)) for f in hand.now]) == 1.0
+    assert 0.02 <= hand.not_forgiven([np.full(len(f), 0.5) for f in hand.now]) <= 1.0
     # In white noise a gain counts in full, or nearly.
     counts = hand.counts(shown)
     assert len(counts) == 12

@@ -14,6 +14,13 @@ from jbf.estimation.samples import Samples
 Array = npt.NDArray[Any]
 
 
+class Recorded(SimpleNamespace):
+    """A run of so many samples."""
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+
 def record(
     time: Array,
     *,
@@ -28,7 +35,7 @@ def record(
     n = len(time)
     v = np.full(n, 0.1) if velocity is None else velocity
     at_rest = np.zeros(n, dtype=bool) if resting is None else resting.astype(bool)
-    run = SimpleNamespace(
+    run = Recorded(
         name=name,
         time_s=time,
         duration_s=float(time[-1] - time[0]) if n else 0.0,

@@ -96,6 +96,10 @@ def test_where_there_is_no_delay_that_is_open_none_is_told(found: Solved) -> Non
         values = solution.values.copy()
         values[which] = steps * STEP_S
         assert (told(found, values=values) is not None) == there
+    least = solution.values.copy()
+    step_s = float(np.median([p.step_s for p in problem.campaign.prepared]))
+    least[which] = LEAST_STEPS * step_s
+    assert told(found, values=least) is not None
     held = solved({"F_s_n": 5.0, TAU: TAU_S})
     assert told(held) is None
     bare = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 5.0})

@@ -90,7 +90,7 @@ def test_laws_remember_by_their_films_and_their_contacts() -> None:
     assert memories("journal", ("sensor_offset",)) == memories("journal", ())
 
 
-@pytest.mark.parametrize(("noise_n", "until"), [(1.0, 30), (10.0, 20), (40.0, -1)])
+@pytest.mark.parametrize(("noise_n", "until"), [(1.0, 30), (10.0, 20), (25.0, -1), (40.0, -1)])
 def test_beginnings_differ_until_a_fifth_of_the_noise(
     noise_n: float, until: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,7 +105,7 @@ def test_beginnings_differ_until_a_fifth_of_the_noise(
     assert np.flatnonzero(found).tolist() == list(range(until + 1))
 
 
-@pytest.mark.parametrize(("most", "kept"), [(0.32, True), (0.30, False)])
+@pytest.mark.parametrize(("most", "kept"), [(0.32, True), (0.31, True), (0.30, False)])
 def test_of_all_runs_no_more_than_a_share_goes(
     most: float, kept: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -143,7 +143,7 @@ def test_a_beginning_that_was_off_is_worth_a_word() -> None:
             given, some[::which], masks[::which], kept.only([0, 1, 2][::which]), "x"
         )
         assert [f.run for f in told_of] == ["b"]
-    for part, told in ((0.99, 0), (1.01, 2)):
+    for part, told in ((0.99, 0), (1.0, 2), (1.01, 2)):
         less = [np.where(m, part * 2.0, 1.0) for m in masks]
         assert len(_findings(campaign, less, masks, kept, "cell")) == told
 
@@ -183,6 +183,10 @@ def test_a_rise_that_the_record_resolves_is_no_jump(before: float, alone: bool) 
     for steps in (change, change[::-1]):
         force = np.concatenate(([0.0], np.cumsum(steps)))
         assert bool(np.any(jumps(force) > 0.9)) == alone
+    # Just a third, and just a tenth of the largest force, are no jump.
+    third = np.concatenate(([0.0], np.cumsum([0.0, 1.0, 1.0, 3.0, 0.0, 0.0])))
+    assert np.max(jumps(third)) < 3.0
+    assert not jumps(np.array([9.0, 9.0, 9.0, 10.0, 10.0, 10.0])).any()
     # Of two samples one may be a ramp's own part.
     one = np.concatenate(([0.0], np.cumsum([0.0, 0.0, 0.9, 1.0, 0.0, 0.0])))
     assert jumps(one).any()
@@ -232,6 +236,7 @@ def test_a_gap_is_more_than_four_and_a_half_steps() -> None:
     time = np.cumsum(np.array([0.0, 1.0, 1.0, 4.4, 1.0, 4.6, 1.0, 1.0, 9.0, 1.0]))
     assert _gaps(record(time)).tolist() == [4, 7]
     assert _gaps(record(1e-3 * time)).tolist() == [4, 7]
+    assert _gaps(record(np.array([0.0, 1.0, 2.0, 6.5, 7.5, 12.5, 13.5]))).tolist() == [4]
 
 
 def test_work_is_what_samples_are_worth_and_no_more() -> None:

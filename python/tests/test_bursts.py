@@ -61,6 +61,8 @@ def test_a_burst_is_told_with_its_size_its_time_and_its_share(unit: float) -> No
     ("size", "there"), [(4.95, False), (-4.95, False), (5.05, True), (-5.05, True)]
 )
 def test_innovations_beyond_five_deviations_are_large(size: float, there: bool) -> None:
+    # Of just five deviations they are not.
+    assert told(with_bursts({1000: 5.0})) == told(with_bursts({1000: -5.0})) == []
     for unit in (0.01, 100.0):
         assert bool(told(with_bursts({1000: size}), unit=unit)) == there
 

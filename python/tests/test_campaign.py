@@ -65,7 +65,7 @@ def test_a_run_that_was_given_twice_is_one() -> None:
     assert campaign.named == "a"
 
 
-@pytest.mark.parametrize(("share", "differ"), [(0.049, False), (0.055, True)])
+@pytest.mark.parametrize(("share", "differ"), [(0.049, False), (0.05, False), (0.055, True)])
 def test_loads_differ_by_more_than_a_twentieth(share: float, differ: bool) -> None:
     assert LOADS_DIFFER == 0.05
     loads = [np.full(N, 100.0), np.full(N, 100.0 * (1.0 - share))]

@@ -57,6 +57,7 @@ def _gains(monkeypatch: pytest.MonkeyPatch) -> None:
         (10.0, 1.0, False),
         (9.9, 1.0, False),
         (99.0, DEFAULT.leader_rms - 0.001, True),
+        (99.0, DEFAULT.leader_rms, True),
         # Likelier, and far off.
         (99.0, DEFAULT.leader_rms + 0.001, False),
     ],
@@ -111,7 +112,7 @@ def searched(
     made = Made({effects: near(10.0, effects)})
     found: Any = made.search_peaks(effects)
     assert made.search_peaks(effects) is found
-    return found.gain, said
+    return float(found.gain), said
 
 
 @pytest.mark.parametrize(

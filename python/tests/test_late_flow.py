@@ -54,7 +54,8 @@ class Told:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, answers: Sequence[Lateness | None]) -> None:
         self.answers, self.asked, self.moved, self.fitted = answers, [], [], []  # type: ignore[var-annotated]
         monkeypatch.setattr(module, "lateness", self.lateness)
-        monkeypatch.setattr(module, "_by_any_weights", lambda p, s, policy, found, *more: found)
+        self.weighed: list[Any] = []
+        monkeypatch.setattr(module, "_by_any_weights", self.weigh)
         monkeypatch.setattr(module, "_moved", self.move)
         monkeypatch.setattr(module, "_refitted", self.refit)
 
@@ -64,6 +65,10 @@ class Told:
         assert chance == DEFAULT.deviation_chance
         self.asked.append((look, clocks, at_jumps))
         return self.answers[look] if look < len(self.answers) else None
+
+    def weigh(self, p: Any, s: Any, policy: Any, found: Any, clocks: str, at_jumps: bool) -> Any:
+        self.weighed.append((found, clocks, at_jumps))
+        return found
 
     def move(self, p: Any, late_s: Any, drift: float) -> Any:
         self.moved.append((late_s.tolist(), drift))
@@ -87,7 +92,7 @@ def test_runs_that_are_on_time_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     told = Told(monkeypatch, [None])
     assert shifted(problem()) is None
     assert told.asked == [(0, "by run", False)]
-    assert told.moved == []
+    assert told.moved == told.weighed == []
     assert shifted(problem(), at_jumps=True) is None
     assert told.asked[1] == (0, "by run", True)
 
@@ -101,6 +106,8 @@ def test_what_is_left_is_looked_for_again_and_added(monkeypatch: pytest.MonkeyPa
     moved: Any = found.campaign
     assert moved == ("moved", 2)
     assert [look for look, *_ in told.asked] == [0, 1, 2]
+    # Larger noise in places is asked about once, at first.
+    assert told.weighed == [(late(4e-3, -2e-3), "by run", False)]
     assert told.moved[0][0] == pytest.approx([4e-3, -2e-3])
     # No more than so many times.
     many = Told(monkeypatch, [late(1e-3, 0.0)] * 20)

@@ -103,6 +103,7 @@ def test_runs_say_nothing_of_what_they_hold_a_ten_thousandth_of() -> None:
     known = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
     rest = np.array([0.9 * INSENSITIVE, 2.1 * INSENSITIVE, 0.0])
     assert INSENSITIVE == 1e-4
+    assert _unknown(np.array([[2.0]]), np.array([2.0 * INSENSITIVE])).tolist() == [False]
     assert _unknown(known, rest).tolist() == [True, False, False]
     assert _unknown(known, np.array([1.1 * INSENSITIVE, 1.9 * INSENSITIVE, 0.0])).tolist() == [
         False,

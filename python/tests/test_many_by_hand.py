@@ -164,6 +164,12 @@ def test_what_parts_no_two_is_not_proposed(
     assert isinstance(found, str) != told
     if not told:
         assert str(found).startswith(f"{A} and {B} predict the same friction in every motion")
+    # Of two that part them as far the first.
+    two = propose(
+        rivals(monkeypatch, {"sine": both(64.0, 64.0), "stop": both(64.0, 99.0)}), [[(A,), (B,)]]
+    )
+    assert not isinstance(two, str)
+    assert two.words.startswith("record a sine")
     nothing = propose(rivals(monkeypatch, {"sine": both(0.0, 0.0)}), [[(A,), (B,)]])
     assert "no such run would part them" in str(nothing)
 

@@ -90,6 +90,8 @@ def test_colour_may_lead_a_little_astray_and_no_further(
     """To a fiftieth more in the RMS of the plain fit."""
     assert MOST_FORGIVEN == 1.02
     last = Noise(0.1, 0.25)
+    just: Any = Searches(monkeypatch, ends=(1.02,), noises=(last,))
+    assert settle(just, near(1.0, COLOURED)).noise == last
     problem: Any = Searches(monkeypatch, ends=(5.0 * times,), noises=(last,))
     found: Any = settle(problem, near(5.0, COLOURED))
     assert problem.asked == [("every", 5.0, COLOURED)]
@@ -156,5 +158,8 @@ def test_behind_a_gap_a_film_remembers_what_was_not_recorded(
     assert [f.tolist() for f in found] == [[False] * 7, [False] * 3 + [True, False, True, False]]
     at_most = behind_gaps(problem, np.zeros(1), 2.0)
     assert at_most[1].tolist() == [False] * 3 + [True] + [False] * 3
+    # As much as does not matter is none.
+    just = behind_gaps(problem, np.zeros(1), 1.5)
+    assert just[1].tolist() == [False] * 3 + [True] + [False] * 3
     problem.law = "coulomb"
     assert not any(f.any() for f in behind_gaps(problem, np.zeros(1), 1.0))

@@ -63,6 +63,8 @@ def test_the_lowest_of_other_peaks_is_taken_where_it_is_lower(
     assert looked(monkeypatch, [3.0, 1.0, 1.5]) == (1.0, [1])
     assert looked(monkeypatch, [3.0, 2.0]) == (2.0, [1])
     assert looked(monkeypatch, []) == (2.0, [1])
+    # One that is as low is another place, and no better.
+    assert looked(monkeypatch, [-2.0]) == (2.0, [1])
 
 
 def test_an_effect_of_one_peak_or_of_a_fixed_one_is_passed_over(

@@ -217,6 +217,9 @@ def test_the_lowest_place_is_remembered_with_its_lines() -> None:
     assert visited.lowest[0] is lower
     assert visited.lines_at(lower.values) is lines
     assert visited.lines_at(first.values) is None
+    # Of two that are as low the first.
+    visited.come(place([2.5, 2.5], 50.0), lines)
+    assert visited.lowest[0] is lower
     assert visited.at(higher.values) is higher
     assert visited.at(np.array([7.0, 7.0])) is None
     assert higher.square == pytest.approx(70.0)
@@ -243,6 +246,7 @@ def test_two_places_are_one_where_data_cannot_tell_them() -> None:
     # Far apart they are two, unless nothing depends on it.
     small = [place([1.0, 10.0], 1e6), place([1.4, 10.0], 1e6), place([1.45, 10.0], 1e6)]
     assert _one(small[0], small[1])
+    assert _one(place([7.0, 10.0], 1e6), place([10.0, 10.0], 1e6))
     assert not _one(small[0], small[2])
     still = [place([1.0, 10.0], 1e6, 0.0), place([99.0, 10.0], 1e6, 0.0)]
     assert _one(*still)

@@ -160,6 +160,8 @@ def test_models_that_differ_by_a_converters_steps_are_one(apart: float, within: 
 
     campaign: Any = SimpleNamespace(steps_rms_n=steps)
     assert _within_steps(campaign, richer, simpler) == within
+    half: Any = SimpleNamespace(steps_rms_n=lambda rms_n: 0.5)
+    assert not _within_steps(half, left(1.0), left(1.5))
     assert asked == pytest.approx([1.0 + apart])
 
 

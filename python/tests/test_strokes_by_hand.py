@@ -127,6 +127,7 @@ def test_runs_disagree_by_a_ratio_that_matters_and_beyond_chance() -> None:
     ratio, chance = DEFAULT.constancy_ratio, DEFAULT.constancy_chance
     many = 400
     assert not Disagreement(ratio * many - 1.0, many, {}).beyond_chance()
+    assert not Disagreement(ratio * many, many, {}).beyond_chance()
     assert Disagreement(ratio * many + 1.0, many, {}).beyond_chance()
     least = float(stats.chi2.isf(chance, 3))
     assert least > ratio * 3

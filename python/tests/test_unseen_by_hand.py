@@ -20,6 +20,7 @@ from jbf.diagnosis.standing import (
     confounders,
 )
 from jbf.diagnosis.unseen import propose_to_see, unseen
+from jbf.diagnosis.verdict import name_stands
 
 hiding = sys.modules["jbf.diagnosis.unseen"]
 standing = sys.modules["jbf.diagnosis.standing"]
@@ -135,7 +136,7 @@ def test_the_run_that_shows_most_of_what_hides_is_proposed(monkeypatch: pytest.M
     assert "a sine" in first.words
 
 
-@pytest.mark.parametrize(("most", "told"), [(0.99, False), (1.01, True)])
+@pytest.mark.parametrize(("most", "told"), [(0.99, False), (1.0, False), (1.01, True)])
 def test_what_no_motion_shows_is_said(
     most: float, told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -195,6 +196,9 @@ def doubted(
         (2.0 * (DEFAULT.weak + 9.9), 0.9, (0.18, 0.05), False),
         (2.0 * (DEFAULT.weak + 9.9), 0.9, (), False),
         (1.0, 0.999, (0.01,), True),
+        # Of just as much as weak evidence has, and of just as much as it explains.
+        (2.0 * (DEFAULT.weak + 10.0), 0.9, (0.05, 0.2), True),
+        (1.0, 0.9, (1.0 - 0.9**2,), False),
     ],
 )
 def test_a_weak_effect_that_explains_less_than_remains_is_doubted(
@@ -217,6 +221,13 @@ def test_an_effect_on_which_runs_disagree_is_doubted(monkeypatch: pytest.MonkeyP
     assert doubted(monkeypatch, gain=1e4, left=0.5, own=beyond)[0] == ()
     _, within = doubted(monkeypatch, gain=1e4, left=0.5, own=Disagreement(5.0, 3, {}))
     assert within == [(5e3, None)]
+
+
+def test_a_name_stands_by_more_than_what_runs_disagree_by() -> None:
+    assert name_stands(0.0, None, DEFAULT)
+    least = DEFAULT.clear * 7.0
+    assert not name_stands(least, 7.0, DEFAULT)
+    assert name_stands(least + 1e-9, 7.0, DEFAULT)
 
 
 def test_confounders_stay_where_runs_left_out_are_predicted_better() -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from jbf.comparison.axes import all_axes, force_axis
 from jbf.comparison.bins import Bin, Binned
 from jbf.comparison.patterns import find_failures, pattern_along, pattern_words
 from jbf.estimation.campaign import Campaign
+from made_of import record
 
 U_TR = 0.05
 
@@ -276,6 +279,16 @@ def test_a_hundred_samples_after_a_rest_are_an_axis(count: int, there: bool) -> 
         assert [b.span for b in axis.bins[6:]] == [pytest.approx(pair) for pair in pairwise(ends)]
         wanted = np.concatenate((np.full(last + 1, -1), 6 + np.digitize(since, edges)))
         assert np.array_equal(axis.places[0], wanted)
+
+
+def test_a_rest_of_the_first_sample_alone_is_one() -> None:
+    p = record(0.02 * np.arange(201.0), resting=np.arange(201) == 0)
+    p.motion.acceleration_m_s2 = np.zeros(201)
+    campaign: Any = SimpleNamespace(prepared=(p,), rig=Rig(), has_angle=False)
+    axis = next(a for a in all_axes(campaign, U_TR) if a.axis == "time since a rest")
+    since = p.run.time_s[1:]
+    edges = np.quantile(since, [0.05, 0.1, 0.2, 0.4, 0.7])
+    assert axis.places[0].tolist() == [-1, *(6 + np.digitize(since, edges)).tolist()]
 
 
 def test_few_samples_after_events_are_no_axis() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,6 +24,7 @@ from jbf.estimation.left_out import (
     _Told,
     _unknown,
     errors_by_run,
+    left_out,
     only_witnesses,
 )
 from jbf.estimation.noise import WHITE
@@ -231,3 +233,25 @@ def test_what_was_left_out_is_said() -> None:
     assert one.said("N") == "left-out runs and halves of a 1.5 N"
     three = Confirmation(2.0, 1.5, 0.5, 0.2, ("a", "b", "c"))
     assert three.said("N") == "left-out runs and halves of a and 2 more 1.5 N"
+
+
+def test_halves_of_a_single_run_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of seven samples the first three predict the last four, and the other way round."""
+    asked: list[Any] = []
+
+    def search(problem: Any, kept: Any, values: Any, noise: Any, evaluations: int) -> Any:
+        asked.append(kept.counted[0].tolist())
+        return SimpleNamespace(values=np.array([float(len(asked))]))
+
+    monkeypatch.setattr(sys.modules["jbf.estimation.left_out"], "search", search)
+    problem: Any = SimpleNamespace(
+        campaign=SimpleNamespace(prepared=[0]),
+        residuals=lambda values: [np.full(7, values[0])],
+    )
+    first = [True] * 3 + [False] * 4
+    last = [not x for x in first]
+    parts = left_out(problem, solution([np.ones((7, 1))]))
+    assert asked == [first, last]
+    assert [part.left[0].tolist() for part in parts] == [last, first]
+    assert [float(part.residuals[0][0]) for part in parts] == [1.0, 2.0]
+    assert [part.runs for part in parts] == [(0,), (0,)]

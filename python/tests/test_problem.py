@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from types import SimpleNamespace
 from typing import Any
 
@@ -291,3 +292,24 @@ def test_one_run_is_as_long_as_it_was_made() -> None:
     alone = Problem(campaign, "coulomb", "journal", ())
     assert alone.searched == [0]
     assert len(alone.residuals(alone.starts({})[0])[0]) == 501
+
+
+def test_samples_that_remember_how_their_run_began_are_set_aside(
+    problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By each of what remembers."""
+    module = sys.modules["jbf.estimation.problem"]
+    lengths = [len(p.run) for p in problem.campaign.prepared]
+    parts: Any = {"film": (0, 10), "contact": (5, 30)}
+
+    def remembering(chain: Any, values: Any, prepared: Any, memory: str, noise_n: float) -> Any:
+        first, last = parts[memory]
+        return [(np.arange(n) >= first) & (np.arange(n) < last) for n in lengths]
+
+    monkeypatch.setattr(module, "memories", lambda law, effects: list(parts))
+    monkeypatch.setattr(module, "remembering", remembering)
+    every = problem.campaign.samples
+    left = problem._settled(every, values_of(problem), 1.0)
+    for before, after in zip(every.counted, left.counted, strict=True):
+        assert not after[:30].any()
+        assert np.array_equal(after[30:], before[30:])

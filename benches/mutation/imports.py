@@ -1,12 +1,14 @@
 """Which tests may reach a module, where nobody has measured it: those that import it.
 
 Files that name the module come first, then those that name one that imports it, and so on; of each
-the ones that run no simulator and no process, which take seconds.
+those that are called after the module, and those that run no simulator and no process, which take
+seconds.
 """
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from pathlib import Path
 
 from reach import ANY, Reach
@@ -46,9 +48,21 @@ def by_imports(root: Path) -> Reach:
             for file, names in tests.items()
         }
         reaching = [file for file in tests if far[file] < len(steps)] or _alike(path, list(tests))
-        reaching.sort(key=lambda file: (far[file], seconds[file], file))
+        reaching.sort(key=_order(path, far, seconds))
         lines[path.relative_to(root).as_posix()] = {ANY: reaching}
     return Reach(seconds, lines)
+
+
+def _order(
+    module: Path, far: dict[str, int], seconds: dict[str, float]
+) -> Callable[[str], tuple[int, bool, float, str]]:
+    """Of a file of tests how soon it is asked about a module."""
+    words = {*module.stem.split("_")}
+
+    def order(file: str) -> tuple[int, bool, float, str]:
+        return far[file], not words <= {*Path(file).stem.split("_")}, seconds[file], file
+
+    return order
 
 
 def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:

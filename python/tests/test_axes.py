@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from jbf.comparison.axes import all_axes, force_axis
 from jbf.comparison.bins import Bin, Binned
 from jbf.comparison.patterns import find_failures, pattern_along, pattern_words
 from jbf.estimation.campaign import Campaign
+from made_of import record
 
 U_TR = 0.05
 
@@ -73,6 +77,63 @@ def test_direction_regime_and_run(campaign: Campaign, axes: dict[str, Binned]) -
                 assert regime == ("boundary", "mixed", "full film")[low + high]
 
 
+def test_a_sample_without_a_bin_has_the_place_minus_one(axes: dict[str, Binned]) -> None:
+    for axis in axes.values():
+        at = np.concatenate(axis.places)
+        assert np.min(at) >= -1
+        assert np.max(at) < len(axis.bins)
+
+
+def test_each_bin_says_which_way_its_samples_move(
+    campaign: Campaign, axes: dict[str, Binned]
+) -> None:
+    """First those backwards, then the same forwards; regimes and runs hold both."""
+    for name, axis in axes.items():
+        ways = [b.direction for b in axis.bins]
+        half = len(ways) // 2
+        assert ways == (
+            [0] * len(ways) if name in ("regime", "run") else [-1] * half + [1] * half
+        ), name
+        v = np.concatenate([p.motion.velocity_m_s for p in campaign.prepared])
+        at = np.concatenate(axis.places)
+        for i, b in enumerate(axis.bins):
+            if b.direction:
+                assert -b.direction not in np.sign(v[at == i]), (name, i)
+            assert b.with_rest == (name == "time" and b.direction < 0)
+
+
+def test_units_are_those_of_the_rig(axes: dict[str, Binned]) -> None:
+    units = {name: {b.unit for b in axis.bins} for name, axis in axes.items()}
+    assert units == {
+        "direction": {""},
+        "velocity": {"m/s"},
+        "regime": {""},
+        "acceleration": {""},
+        "time": {"s"},
+        "run": {""},
+        "angle": {"deg"},
+        "time since a rest": {"s"},
+        "distance since a reversal": {"m"},
+    }
+    assert {axis.force_unit for axis in axes.values()} == {"N"}
+
+
+def test_a_law_without_a_film_has_thirds_of_the_speeds_on_record(campaign: Campaign) -> None:
+    axis = next(a for a in all_axes(campaign, None) if a.axis == "speed range")
+    speeds = [np.abs(p.motion.velocity_m_s) for p in campaign.prepared]
+    moving = np.concatenate(speeds)
+    slow, fast = np.quantile(moving[moving > 0.0], [1 / 3, 2 / 3])
+    assert [b.name for b in axis.bins] == [
+        "at rest",
+        f"slow (to {slow:.2g} m/s)",
+        "medium",
+        f"fast (over {fast:.2g} m/s)",
+    ]
+    for p, places, speed in zip(campaign.prepared, axis.places, speeds, strict=True):
+        wanted = np.where(p.motion.resting, 0, 1 + (speed >= slow).astype(int) + (speed >= fast))
+        assert np.array_equal(places, wanted)
+
+
 def test_speeds_fall_into_twelve_bins_of_as_many_samples(
     campaign: Campaign, axes: dict[str, Binned]
 ) -> None:
@@ -89,7 +150,7 @@ def test_speeds_fall_into_twelve_bins_of_as_many_samples(
         sizes = np.abs(np.concatenate((back, forth)))
         assert len(sizes) == pytest.approx(moving / 12, abs=2)
         assert axis.bins[i + 12].centre == pytest.approx(np.median(sizes))
-        assert axis.bins[i].centre == -axis.bins[i + 12].centre
+        assert axis.bins[i].centre == pytest.approx(-np.median(sizes))
 
 
 def test_slowing_down_and_speeding_up(campaign: Campaign, axes: dict[str, Binned]) -> None:
@@ -134,7 +195,8 @@ def test_since_a_rest_and_since_a_reversal(campaign: Campaign, axes: dict[str, B
     rest, turn = axes["time since a rest"], axes["distance since a reversal"]
     # Five edges at quantiles part six bins, once each way.
     assert len(rest.bins) == len(turn.bins) == 12
-    waits, ways = [], []
+    waits: list[float] = []
+    ways: list[float] = []
     for number, p in enumerate(campaign.prepared):
         v, time = p.motion.velocity_m_s.tolist(), p.run.time_s.tolist()
         rested = turned = None
@@ -170,7 +232,63 @@ def test_forces_fall_into_sixteen_bins_of_as_many_samples() -> None:
     at = np.concatenate(axis.places)
     assert np.bincount(at).tolist() == [100] * 16
     for i, b in enumerate(axis.bins):
-        assert (b.centre, b.unit) == (pytest.approx(np.median(forces[at == i])), "N m")
+        assert b.centre == pytest.approx(np.median(forces[at == i]))
+        assert b.unit == "N m"
+
+
+def test_forces_of_few_values_are_few_bins() -> None:
+    """Two forces part in two bins; below the least of them there is none."""
+    forces = np.repeat([1.0, 3.0], 40)
+    axis = force_axis([forces])
+    filled = {i: b for i, b in enumerate(axis.bins) if np.any(axis.places[0] == i)}
+    assert [b.centre for b in filled.values()] == [1.0, 3.0]
+    empty = [b for i, b in enumerate(axis.bins) if i not in filled]
+    assert empty
+    assert {(b.name, b.centre) for b in empty} == {("none", None)}
+    assert (axis.force_unit, filled.popitem()[1].unit) == ("N", "N")
+
+
+def test_before_the_first_reversal_there_is_no_way_since_one() -> None:
+    """A run that moves from its first sample has not turned round there."""
+    time = 0.02 * np.arange(600)
+    run = Run.from_arrays(time, np.where(time < 6.0, 0.1, -0.1), np.where(time < 6.0, 2.0, -2.0))
+    campaign = Campaign.prepare(Rig(), [run])
+    axis = next(a for a in all_axes(campaign, U_TR) if a.axis == "distance since a reversal")
+    turned = int(np.flatnonzero(campaign.prepared[0].motion.velocity_m_s < 0.0)[0])
+    assert np.all(axis.places[0][: turned + 1] == -1)
+    assert np.all(axis.places[0][turned + 1 :] >= 0)
+
+
+@pytest.mark.parametrize(("count", "there"), [(99, False), (100, True)])
+def test_a_hundred_samples_after_a_rest_are_an_axis(count: int, there: bool) -> None:
+    """Counted from the last sample at rest; a run that sets out from rest has it at its start."""
+    speed = np.concatenate((np.zeros(40), np.full(count, 0.1)))
+    time = 0.02 * np.arange(len(speed))
+    run = Run.from_arrays(time, speed, 2.0 + 0.01 * np.cos(time))
+    campaign = Campaign.prepare(Rig(), [run])
+    (p,) = campaign.prepared
+    last = int(np.flatnonzero(p.motion.resting)[-1])
+    assert len(time) - 1 - last == count
+    made = {a.axis: a for a in all_axes(campaign, U_TR)}
+    assert ("time since a rest" in made) == there
+    if there:
+        axis = made["time since a rest"]
+        since = time[last + 1 :] - time[last]
+        edges = np.quantile(since, [0.05, 0.1, 0.2, 0.4, 0.7]).tolist()
+        ends = [-math.inf, *edges, math.inf]
+        assert [b.span for b in axis.bins[6:]] == [pytest.approx(pair) for pair in pairwise(ends)]
+        wanted = np.concatenate((np.full(last + 1, -1), 6 + np.digitize(since, edges)))
+        assert np.array_equal(axis.places[0], wanted)
+
+
+def test_a_rest_of_the_first_sample_alone_is_one() -> None:
+    p = record(0.02 * np.arange(201.0), resting=np.arange(201) == 0)
+    p.motion.acceleration_m_s2 = np.zeros(201)
+    campaign: Any = SimpleNamespace(prepared=(p,), rig=Rig(), has_angle=False)
+    axis = next(a for a in all_axes(campaign, U_TR) if a.axis == "time since a rest")
+    since = p.run.time_s[1:]
+    edges = np.quantile(since, [0.05, 0.1, 0.2, 0.4, 0.7])
+    assert axis.places[0].tolist() == [-1, *(6 + np.digitize(since, edges)).tolist()]
 
 
 def test_few_samples_after_events_are_no_axis() -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
 from jbf import Fit, Rig, Run, compare
 from jbf.comparison.axes import all_axes
-from jbf.comparison.bins import Axis, Bin, Binned, label
+from jbf.comparison.bins import Axis, Bin, Binned, Direction, direction_words, label
 from jbf.comparison.patterns import Failure, pattern_words
 from jbf.estimation.campaign import Campaign
 from jbf.plot.bin_axes import bin_axis
@@ -44,6 +45,13 @@ WORDS: list[tuple[Axis, Bin, str]] = [
 @pytest.mark.parametrize(("axis", "b", "words"), WORDS)
 def test_words_of_a_bin(axis: Axis, b: Bin, words: str) -> None:
     assert label(axis, b) == words
+
+
+def test_a_bin_moves_backwards_either_way_or_forwards() -> None:
+    assert get_args(Direction) == (-1, 0, 1)
+    words = [direction_words(Bin(direction=way)) for way in (-1, 0, 1)]
+    assert words == ["v < 0", "", "v > 0"]
+    assert direction_words(Bin(direction=-1, with_rest=True)) == "v <= 0"
 
 
 def _failure(axis: Axis, *bins: Bin) -> Failure:

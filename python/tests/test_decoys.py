@@ -80,3 +80,15 @@ def test_a_diagnosis_says_what_decoys_made_of_its_residual() -> None:
     assert found.level.decoys_named == 0
     assert found.to_dict()["level"]["decoys"] == DRAWS
     assert "false names below 1.5 %" in " ".join(found.summary().split())
+
+
+def test_a_run_without_samples_has_no_part_and_stops_no_other() -> None:
+    random = np.random.default_rng(6)
+    one = directions(random.standard_normal((N, 1)), random.standard_normal(N))
+    whole = Directions(one.ways, one.innovations, one.counted, one.blocks, np.array([1500]))
+    first = Directions(one.ways, one.innovations, one.counted, one.blocks, np.array([0, 1500]))
+    middle = Directions(one.ways, one.innovations, one.counted, one.blocks, np.array([1500, 1500]))
+    (plain,) = decoy_gains([whole])
+    for empty in (first, middle):
+        (found,) = decoy_gains([empty])
+        np.testing.assert_array_equal(found, plain)

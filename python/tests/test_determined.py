@@ -26,6 +26,7 @@ TABLE = [
     # What has an error smaller than itself is determined, however small it is beside its bounds.
     (PLAIN, 9.9, 0.1, {}, None),
     (PLAIN, 0.003, 0.001, {}, None),
+    (PLAIN, 3.0, 3.0, {}, None),
     (SCALE, 0.02, 0.019, {}, None),
     # A signed one may be nought, give or take.
     (SIGNED, 0.0, 0.1, {}, None),

@@ -129,6 +129,10 @@ def test_without_a_measurement_tests_are_those_that_import_a_module() -> None:
     assert first.tests == ("python/tests/test_film_rate.py",)
     several = reach.chosen("python/jbf/estimation/problem.py", 40, 15.0)
     assert 1 < len(several.tests) <= 3
+    # Of many that name it those that are called after it.
+    assert several.tests[0] == "python/tests/test_problem.py"
+    noise = reach.chosen("python/jbf/estimation/noise.py", 40, 60.0)
+    assert {"python/tests/test_noise.py", "python/tests/test_noise_rules.py"} <= {*noise.tests}
     rooms = ("records", "estimation", "comparison", "diagnosis", "reporting", "control")
     for module, at in reach.lines.items():
         if module.split("/")[2] in rooms and not module.endswith("__init__.py"):

@@ -41,7 +41,11 @@ def test_the_coloured_share_is_the_textbooks(memory_s: float, colour: float) -> 
 
 
 def test_shares_at_the_ends() -> None:
+    assert (WHITE.memory_s, WHITE.colour, WHITE.white) == (0.0, 0.0, True)
     assert WHITE.coloured_share(STEP_S) == 0.0
+    for nothing in (Noise(0.0, 0.5), Noise(0.2, 0.0)):
+        assert nothing.white
+        assert nothing.coloured_share(STEP_S) == 0.0
     assert Noise(0.2, 1.0).coloured_share(STEP_S) == 1.0
     assert Noise(0.2, 0.5).with_share(0.0, STEP_S) == WHITE
 

@@ -169,10 +169,6 @@ def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 
     """How many times its usual strength an effect has that is worth so much, of each."""
     found, times, last = [], near, least[0]
     for wanted in least:
-        if not np.isfinite(wanted):
-            # Nothing is seen of it, however strong.
-            found.append(np.nan)
-            continue
         # What an effect is worth grows as its square, nearly.
         times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
         found.append(times)

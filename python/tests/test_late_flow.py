@@ -1,0 +1,318 @@
+"""How runs are shifted until they are on time, and when that is believed: by lateness as told."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf.diagnosis.late_channels import (
+    CLOCK_LOOKS,
+    DELAY,
+    SETTLED,
+    _all_alike,
+    _by_any_weights,
+    _by_one_clock,
+    _Shifted,
+    _shifted,
+    on_time,
+)
+from jbf.diagnosis.policy import DEFAULT
+from jbf.estimation.lateness import Lateness
+from made_of import record, samples_of
+
+module = sys.modules["jbf.diagnosis.late_channels"]
+LASTS_S = (10.0, 20.0)
+STEP_S = 0.02
+
+
+def late(*late_s: float, drift: float = 0.0, spread: float = 0.0) -> Lateness:
+    return Lateness(late_s, drift, spread)
+
+
+def problem(effects: tuple[str, ...] = (), tau_s: float = 0.0) -> Any:
+    """Two runs of 10 s and 20 s, under a law with these effects."""
+    prepared = [
+        record(np.linspace(0.0, lasts, round(lasts / STEP_S) + 1), name=name)
+        for lasts, name in zip(LASTS_S, "ab", strict=True)
+    ]
+    campaign = SimpleNamespace(
+        prepared=prepared, more_findings=(), samples=SimpleNamespace(between=None)
+    )
+    names = ["F_c_n", *([f"{DELAY}.tau_s"] if DELAY in effects else [])]
+    return SimpleNamespace(
+        campaign=campaign, effects=effects, names=names, values=np.array([5.0, tau_s][: len(names)])
+    )
+
+
+class Told:
+    """Lateness look by look, and what was asked for."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, answers: Sequence[Lateness | None]) -> None:
+        self.answers, self.asked, self.moved, self.fitted = answers, [], [], []  # type: ignore[var-annotated]
+        monkeypatch.setattr(module, "lateness", self.lateness)
+        self.weighed: list[Any] = []
+        monkeypatch.setattr(module, "_by_any_weights", self.weigh)
+        monkeypatch.setattr(module, "_moved", self.move)
+        monkeypatch.setattr(module, "_refitted", self.refit)
+
+    def lateness(
+        self, p: Any, s: Any, look: int, chance: float, clocks: str, at_jumps: bool
+    ) -> Any:
+        assert chance == DEFAULT.deviation_chance
+        self.asked.append((look, clocks, at_jumps))
+        return self.answers[look] if look < len(self.answers) else None
+
+    def weigh(self, p: Any, s: Any, policy: Any, found: Any, clocks: str, at_jumps: bool) -> Any:
+        self.weighed.append((found, clocks, at_jumps))
+        return found
+
+    def move(self, p: Any, late_s: Any, drift: float) -> Any:
+        self.moved.append((late_s.tolist(), drift))
+        return ("moved", len(self.moved))
+
+    def refit(self, p: Any, campaign: Any, effects: Any, known: Any, near: Any) -> Any:
+        self.fitted.append(effects)
+        again = problem(tuple(effects))
+        return again, SimpleNamespace(values=again.values)
+
+
+def shifted(given: Any, **more: Any) -> _Shifted | None:
+    solution: Any = SimpleNamespace(values=given.values)
+    return _shifted(given, solution, DEFAULT, **more)
+
+
+# ---- until they are on time --------------------------------------------------------------------
+
+
+def test_runs_that_are_on_time_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = Told(monkeypatch, [None])
+    assert shifted(problem()) is None
+    assert told.asked == [(0, "by run", False)]
+    assert told.moved == told.weighed == []
+    assert shifted(problem(), at_jumps=True) is None
+    assert told.asked[1] == (0, "by run", True)
+
+
+def test_what_is_left_is_looked_for_again_and_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = Told(monkeypatch, [late(4e-3, -2e-3), late(5e-4, 1e-4), None])
+    found = shifted(problem())
+    assert found is not None
+    assert found.late_s == pytest.approx([4.5e-3, -1.9e-3])
+    assert found.drift == 0.0
+    moved: Any = found.campaign
+    assert moved == ("moved", 2)
+    assert [look for look, *_ in told.asked] == [0, 1, 2]
+    # Larger noise in places is asked about once, at first.
+    assert told.weighed == [(late(4e-3, -2e-3), "by run", False)]
+    assert told.moved[0][0] == pytest.approx([4e-3, -2e-3])
+    # No more than so many times.
+    many = Told(monkeypatch, [late(1e-3, 0.0)] * 20)
+    again = shifted(problem())
+    assert again is not None
+    assert len(many.asked) == DEFAULT.most_shifts
+    assert again.late_s == pytest.approx([DEFAULT.most_shifts * 1e-3, 0.0])
+
+
+@pytest.mark.parametrize(("spread", "shared"), [(3e-3, 0.01), (0.0, 0.0)])
+def test_where_runs_differ_what_they_share_is_the_recordings(
+    spread: float, shared: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = Told(monkeypatch, [late(4e-3, -2e-3, spread=spread)])
+    found = shifted(problem((DELAY, "backlash"), tau_s=0.01))
+    assert found is not None
+    assert found.late_s == pytest.approx([4e-3 + shared, -2e-3 + shared])
+    # On shifted runs a law has no delay of its own.
+    assert told.fitted == [("backlash",)]
+
+
+def test_a_drift_that_is_seen_later_moves_no_middle(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks = [
+        late(4e-3, -2e-3),
+        late(9.0, 9.0, drift=1e-3),
+        late(1e-3, 1e-3, drift=1e-4, spread=1e-3),
+    ]
+    Told(monkeypatch, looks[:2])
+    found = shifted(problem())
+    assert found is not None
+    assert found.late_s == pytest.approx([4e-3, -2e-3])
+    assert found.drift == 1e-3
+    # Where runs differ by then that counts.
+    Told(monkeypatch, looks)
+    again = shifted(problem())
+    assert again is not None
+    assert again.late_s == pytest.approx([5e-3, -1e-3])
+    assert again.drift == pytest.approx(1.1e-3)
+
+
+def test_one_clock_says_how_late_its_runs_are_in_their_middles(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Looked for until a look changes it by less than a fiftieth; a delay is the instrument's."""
+    looks = [late(5e-3, 1e-2, drift=1e-3), late(0.0, 0.0, drift=5e-4), late(0.0, 0.0, drift=2.9e-5)]
+    told = Told(monkeypatch, [*looks, *[late(0.0, 0.0, drift=1.0)] * 20])
+    assert (SETTLED, CLOCK_LOOKS) == (0.02, 3)
+    found = shifted(problem((DELAY,)), clocks="one")
+    assert found is not None
+    assert found.drift == pytest.approx(1.529e-3)
+    assert found.late_s == pytest.approx([0.5 * found.drift * lasts for lasts in LASTS_S])
+    assert len(told.asked) == 3
+    assert told.fitted == [(DELAY,)] * 3
+    on_and_on = Told(monkeypatch, [late(0.0, 0.0, drift=1e-4 * 2.0**k) for k in range(40)])
+    assert shifted(problem(), clocks="one, offset") is not None
+    assert len(on_and_on.asked) == CLOCK_LOOKS * DEFAULT.most_shifts
+    assert {clocks for _, clocks, _ in on_and_on.asked} == {"one, offset"}
+
+
+def test_what_would_leave_the_motion_is_no_lateness(monkeypatch: pytest.MonkeyPatch) -> None:
+    Told(monkeypatch, [late(5.1, 0.0)])
+    assert shifted(problem()) is None
+    Told(monkeypatch, [late(3.0, 0.0), late(2.1, 0.0)])
+    found = shifted(problem())
+    assert found is not None
+    assert found.late_s == pytest.approx([3.0, 0.0])
+
+
+@pytest.mark.parametrize(("uneven", "asked"), [(True, 1), (False, 0)])
+def test_noise_that_is_larger_in_places_counts_less(
+    uneven: bool, asked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes = [np.full(5, 0.5)]
+    looks: list[Any] = []
+
+    def lateness(p: Any, solution: Any, look: int, *more: Any) -> str:
+        looks.append(solution.samples.weight[0].tolist())
+        return "weighed"
+
+    monkeypatch.setattr(module, "noise_sizes", lambda *told: (sizes, ["uneven"] if uneven else []))
+    monkeypatch.setattr(module, "lateness", lateness)
+    monkeypatch.setattr(module, "replace", lambda s, samples: SimpleNamespace(samples=samples))
+    solution: Any = SimpleNamespace(samples=samples_of([record(0.02 * np.arange(5))]))
+    found: Any = _by_any_weights(problem(), solution, DEFAULT, late(1.0), "by run", False)
+    assert found == ("weighed" if uneven else late(1.0))
+    assert looks == [[0.5] * 5] * asked
+
+
+# ---- whether it is believed --------------------------------------------------------------------
+
+
+def made(late_s: Sequence[float], drift: float = 0.0, rms_n: float = 1.0) -> _Shifted:
+    campaign: Any = SimpleNamespace(
+        prepared=problem().campaign.prepared, with_findings=lambda found: ("told", found)
+    )
+    solution: Any = SimpleNamespace(rms_n=rms_n)
+    return _Shifted(campaign, solution, np.array(late_s), drift)
+
+
+def asked(
+    monkeypatch: pytest.MonkeyPatch,
+    *,
+    plain: _Shifted | None = None,
+    at_jumps: _Shifted | None = None,
+    clock: _Shifted | None = None,
+    gains: Sequence[bool] = (True,),
+    errors: tuple[float, float] = (1.0, 1.0),
+    richer: Any = None,
+    more: float = 1.0,
+    between: Any = None,
+    known: str = "",
+) -> tuple[Any, list[str]]:
+    """What becomes of runs that were shifted so, and what was asked on the way."""
+    said: list[str] = []
+
+    def shift(p: Any, s: Any, policy: Any, at_jumps: bool = False, *, last: Any = at_jumps) -> Any:
+        said.append("at jumps" if at_jumps else "by run")
+        return last if at_jumps else plain
+
+    def by_clock(*told: Any) -> Any:
+        said.append("clock")
+        return clock
+
+    def gain(before: float, left: float, found: Any) -> bool:
+        said.append("gains")
+        return gains[min(said.count("gains"), len(gains)) - 1]
+
+    monkeypatch.setattr(module, "_shifted", shift)
+    monkeypatch.setattr(module, "_by_one_clock", by_clock)
+    monkeypatch.setattr(module, "_gains", gain)
+    monkeypatch.setattr(module, "_errors_n", lambda *told: errors)
+    monkeypatch.setattr(module, "_all_alike", lambda p, found: found)
+    given = problem()
+    given.campaign.samples.between = between
+    given.campaign.more_findings = (SimpleNamespace(kind=known),) if known else ()
+    return on_time(given, cast_any(), DEFAULT, richer, more), said
+
+
+def cast_any() -> Any:
+    """A solution that nobody looks into."""
+    return SimpleNamespace()
+
+
+def test_runs_are_shifted_where_that_gains(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, said = asked(monkeypatch, plain=made([4e-3, -2e-3]))
+    assert found[0] == "told"
+    assert [(f.run, f.size) for f in found[1]] == [("a", 4e-3), ("b", -2e-3)]
+    assert said == ["by run", "clock", "gains"]
+    assert asked(monkeypatch, plain=made([4e-3, -2e-3]), gains=(False,))[0] is None
+    # All alike have no clock to ask.
+    assert "clock" not in asked(monkeypatch, plain=made([-4e-3, -4e-3]))[1]
+    assert asked(monkeypatch) == (None, ["by run", "at jumps"])
+    later, said = asked(monkeypatch, at_jumps=made([4e-3, -2e-3]))
+    assert later is not None
+    assert said[:2] == ["by run", "at jumps"]
+
+
+@pytest.mark.parametrize("kind", ["late_channel", "drifting_clock"])
+def test_what_was_shifted_once_is_not_again(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert asked(monkeypatch, plain=made([4e-3, -2e-3]), known=kind) == (None, [])
+    assert asked(monkeypatch, plain=made([4e-3, -2e-3]), known="steps")[0] is not None
+
+
+def test_one_clock_is_taken_where_each_run_gains_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = made([1e-3, 2e-3], drift=2e-4)
+    each = made([4e-3, -2e-3])
+    found, _ = asked(monkeypatch, plain=each, clock=clock, gains=(False, True))
+    assert {f.kind for f in found[1]} == {"drifting_clock"}
+    found, _ = asked(monkeypatch, plain=each, clock=clock, gains=(True, True))
+    assert {f.kind for f in found[1]} == {"late_channel"}
+
+
+@pytest.mark.parametrize(
+    ("left", "more", "there"), [(1.0, 1.0, True), (1.01, 1.0, False), (1.02, 1.03, True)]
+)
+def test_a_richer_model_gives_way_where_shifts_leave_as_little(
+    left: float, more: float, there: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, said = asked(
+        monkeypatch, plain=made([4e-3, -4e-3]), richer="richer", more=more, errors=(1.0, left)
+    )
+    assert (found is not None) == there
+    assert "gains" not in said
+
+
+@pytest.mark.parametrize(("part", "there"), [(0.95, False), (1.05, True)])
+@pytest.mark.parametrize("given", [{"richer": "richer"}, {"between": "known"}])
+def test_runs_that_end_alike_did_not_differ(
+    part: float, there: bool, given: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a share of a step, where something else may say what they seemed to."""
+    half = part * DEFAULT.late_apart * STEP_S
+    found, _ = asked(monkeypatch, plain=made([half, -half]), **given)
+    assert (found is not None) == there
+    assert asked(monkeypatch, plain=made([half, -half]))[0] is not None
+
+
+def test_of_two_ways_of_one_clock_the_one_that_leaves_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    ways = {"one": made([1.0, 1.0], 1e-3, 2.0), "one, offset": made([2.0, 2.0], 1e-3, 1.0)}
+    monkeypatch.setattr(module, "_shifted", lambda p, s, policy, clocks: ways[clocks])
+    assert _by_one_clock(problem(), cast_any(), DEFAULT) is ways["one, offset"]
+    monkeypatch.setattr(module, "_shifted", lambda p, s, policy, clocks: None)
+    assert _by_one_clock(problem(), cast_any(), DEFAULT) is None
+
+
+def test_a_clock_was_right_when_it_was_started() -> None:
+    clock = made([1e-3, 2e-3], drift=2e-4)
+    assert _all_alike(problem(), clock) is clock

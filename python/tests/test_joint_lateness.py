@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from by_hand import LAW, Array, coulomb
+from by_hand import Array, coulomb
 from jbf import Rig, Run
 from jbf.diagnosis import late_channels
 from jbf.diagnosis.late_channels import on_time
@@ -16,10 +16,10 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.shifted import Shifted, jointly, moved
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, lateness_step
-from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from late_runs import fitted
 from scipy import stats
 
 NOISE_N = 0.005
@@ -52,14 +52,6 @@ def campaign(
         force = coulomb(T, v, v) + noise_n * random.standard_normal(len(T))
         runs.append(Run.from_arrays(T, motion(i, T, swing), force, name=f"run {i}"))
     return Campaign.prepare(Rig(), runs)
-
-
-def fitted(campaign: Campaign, effects: Sequence[str] = ()) -> tuple[Problem, Solution]:
-    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
-    known = {"F_s_n": 6.0, **LAW, "time_delay.tau_s": 0.01}
-    start = problem.starts({n: known[n] for n in problem.names})[0]
-    near = problem.solution(start, problem.samples_at(start), WHITE, False)
-    return problem, settle(problem, near)
 
 
 def as_it_is(problem: Problem, solution: Solution) -> Shifted:

@@ -203,3 +203,29 @@ def test_a_lateness_told_beside_another_model_is_told_anew() -> None:
     assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.05)
     # And then there is nothing left to tell.
     assert on_time(*fitted(again), DEFAULT) is None
+
+
+def test_a_mass_in_one_run_is_no_lateness_of_a_tenth_of_a_second() -> None:
+    """Of viscous friction of 20 N s/m, 2 kg more are 100 ms less."""
+    random, runs = np.random.default_rng(0), []
+    for i in range(4):
+        force = coulomb(T, motion(i, T), motion(i, T)) + (2.0 * acceleration(i, T) if i == 0 else 0)
+        force = force + NOISE_N * random.standard_normal(len(T))
+        runs.append(Run.from_arrays(T, motion(i, T), force, name=f"run {i}"))
+    problem, before = first_and(Campaign.prepare(Rig(), runs))
+    assert jointly(problem, before) is before
+    assert on_time(problem, before.solution, DEFAULT) is None
+
+
+def test_a_delay_of_all_runs_stays_the_instruments() -> None:
+    """On the way to where all are late alike runs seem to differ."""
+    for seed in range(3):
+        there = fitted(campaign((30e-3,) * 4, seed=seed))
+        assert late_channels._found(*there, DEFAULT) is None
+
+
+def test_without_noise_nothing_says_how_surely() -> None:
+    step = lateness_step(*fitted(campaign((0.0,) * 3, noise_n=0.0)))
+    assert np.all(np.isfinite(step.late_s))
+    assert 0.0 <= step.chance <= 1.0
+    assert 0.0 <= step.differ_chance(np.zeros(3), 0.5) <= 1.0

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf.diagnosis.late_channels import (
-    _beside_its_motion,
+    beside_its_motion,
     _clipped_rms,
     _finding,
     _gains,
@@ -67,7 +67,7 @@ def test_no_run_is_late_by_more_than_half_of_itself(
     """Runs of 10 s and 20 s; at its ends one is late by half its length times the drift more."""
     prepared = [record(np.linspace(0.0, lasts, 11)) for lasts in (10.0, 20.0)]
     problem: Any = SimpleNamespace(campaign=SimpleNamespace(prepared=prepared))
-    assert _beside_its_motion(problem, np.array(late_s), drift) == beside
+    assert beside_its_motion(problem, np.array(late_s), drift) == beside
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.lateness import CLIPPED, FINE_S, RANGES, Lateness, _instants, lateness
+from jbf.estimation.lateness import CLIPPED, FINE_S, RANGES, Lateness, instants_of, lateness
 from made_of import record
 
 module = sys.modules["jbf.estimation.lateness"]
@@ -149,7 +149,7 @@ def test_the_models_force_is_asked_for_at_close_instants(step_s: float, times: i
     assert (FINE_S, CLIPPED) == (2.5e-3, 3.5)
     time = step_s * np.arange(11) + 3.0
     p: Any = record(time)
-    found = _instants(p)
+    found = instants_of(p)
     assert len(found) == 10 * times + 1
     assert found == pytest.approx(3.0 + step_s * np.arange(10 * times + 1) / times)
 

@@ -184,7 +184,9 @@ def _shifted(
         return shifted
     if at_jumps or np.ptp(late_s) == 0.0:
         return _all_alike(first, shifted)
-    return jointly(first, shifted)
+    # On their way they seemed to differ: a law gives way to what all share, and not alike in all.
+    found_jointly = jointly(first, shifted)
+    return found_jointly if _differ(found_jointly, policy) else None
 
 
 def _by_one_clock(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:

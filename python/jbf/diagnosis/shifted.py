@@ -11,6 +11,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, lateness_step
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
+from jbf.estimation.lateness import RANGES
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.run_start import settled_campaign
@@ -116,8 +117,10 @@ def jointly(first: Problem, start: Shifted) -> Shifted:
         later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(f"{DELAY}.tau_s", 0.0)
         late_s = now.late_s + later_s
         late_s[~step.told] = step.mean_s(late_s)
-        if not beside_its_motion(first, late_s, start.drift):
-            break
+        apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
+        if apart_s > RANGES[0][0] or not beside_its_motion(first, late_s, start.drift):
+            # What a run alone lacks (a mass) may look like a lateness, of any size.
+            return start
         campaign = moved(first, late_s, start.drift)
         effects = without_delay(now.problem.effects)
         problem, solution = refitted(now.problem, campaign, effects, known, now.solution)

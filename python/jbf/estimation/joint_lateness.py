@@ -92,6 +92,10 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
         right.append(r)
         samples += count
     x, y = np.concatenate(rows), np.concatenate(right)
+    # Forces of any size: their squares must not overflow.
+    largest = float(max(np.max(np.abs(x), initial=0.0), np.max(np.abs(y), initial=0.0)))
+    if largest > 0.0:
+        x, y = x / largest, y / largest
     scale = np.sqrt(np.sum(x**2, axis=0))
     told = scale[width:] > 0.0
     scale[scale == 0.0] = 1.0
@@ -101,7 +105,8 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     covariance = float(left @ left) / max(samples, 1) * (inverse @ inverse.T)
     covariance /= np.outer(scale, scale)
     of_late = covariance[width:, width:]
-    told &= np.diag(of_late) < LINEAR_S**2
+    # Where nothing is left, nothing says how surely.
+    told &= (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
     late = np.where(told, (step / scale)[width:], 0.0)
     return LatenessStep(late, of_late[np.ix_(told, told)], told)
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf.diagnosis.late_channels import (
-    beside_its_motion,
     _clipped_rms,
     _finding,
     _gains,
-    _without_delay,
+    beside_its_motion,
     bought_by_lateness,
+    without_delay,
 )
 from made_of import record, samples_of
 
@@ -109,4 +109,4 @@ def test_effects_that_lateness_may_have_bought() -> None:
     assert {"time_delay", "sensor_lag", "sensor_offset"} <= set(bought)
     assert bought_by_lateness(("quadratic_drag", "inertia_leak")) == ()
     assert bought_by_lateness(()) == ()
-    assert _without_delay(("sensor_lag", "time_delay", "backlash")) == ("sensor_lag", "backlash")
+    assert without_delay(("sensor_lag", "time_delay", "backlash")) == ("sensor_lag", "backlash")

@@ -13,10 +13,9 @@ from jbf.diagnosis.late_channels import (
     CLOCK_LOOKS,
     DELAY,
     SETTLED,
-    _all_alike,
+    Shifted,
     _by_any_weights,
     _by_one_clock,
-    _Shifted,
     _shifted,
     on_time,
 )
@@ -56,8 +55,11 @@ class Told:
         monkeypatch.setattr(module, "lateness", self.lateness)
         self.weighed: list[Any] = []
         monkeypatch.setattr(module, "_by_any_weights", self.weigh)
-        monkeypatch.setattr(module, "_moved", self.move)
-        monkeypatch.setattr(module, "_refitted", self.refit)
+        monkeypatch.setattr(module, "moved", self.move)
+        monkeypatch.setattr(module, "jointly", lambda first, found: found)
+        monkeypatch.setattr(module, "_all_alike", lambda first, found: found)
+        monkeypatch.setattr(module, "_differ", lambda found, policy: True)
+        monkeypatch.setattr(module, "refitted", self.refit)
 
     def lateness(
         self, p: Any, s: Any, look: int, chance: float, clocks: str, at_jumps: bool
@@ -77,10 +79,11 @@ class Told:
     def refit(self, p: Any, campaign: Any, effects: Any, known: Any, near: Any) -> Any:
         self.fitted.append(effects)
         again = problem(tuple(effects))
+        again.campaign = campaign
         return again, SimpleNamespace(values=again.values)
 
 
-def shifted(given: Any, **more: Any) -> _Shifted | None:
+def shifted(given: Any, **more: Any) -> Shifted | None:
     solution: Any = SimpleNamespace(values=given.values)
     return _shifted(given, solution, DEFAULT, **more)
 
@@ -199,20 +202,21 @@ def test_noise_that_is_larger_in_places_counts_less(
 # ---- whether it is believed --------------------------------------------------------------------
 
 
-def made(late_s: Sequence[float], drift: float = 0.0, rms_n: float = 1.0) -> _Shifted:
+def made(late_s: Sequence[float], drift: float = 0.0, rms_n: float = 1.0) -> Shifted:
     campaign: Any = SimpleNamespace(
         prepared=problem().campaign.prepared, with_findings=lambda found: ("told", found)
     )
     solution: Any = SimpleNamespace(rms_n=rms_n)
-    return _Shifted(campaign, solution, np.array(late_s), drift)
+    there: Any = SimpleNamespace(campaign=campaign)
+    return Shifted(there, solution, np.array(late_s), drift)
 
 
 def asked(
     monkeypatch: pytest.MonkeyPatch,
     *,
-    plain: _Shifted | None = None,
-    at_jumps: _Shifted | None = None,
-    clock: _Shifted | None = None,
+    plain: Shifted | None = None,
+    at_jumps: Shifted | None = None,
+    clock: Shifted | None = None,
     gains: Sequence[bool] = (True,),
     errors: tuple[float, float] = (1.0, 1.0),
     richer: Any = None,
@@ -239,10 +243,14 @@ def asked(
     monkeypatch.setattr(module, "_by_one_clock", by_clock)
     monkeypatch.setattr(module, "_gains", gain)
     monkeypatch.setattr(module, "_errors_n", lambda *told: errors)
-    monkeypatch.setattr(module, "_all_alike", lambda p, found: found)
+    monkeypatch.setattr(module, "_differing", lambda p, s, policy: None)
+    monkeypatch.setattr(module, "_sharper", lambda p, s, policy: None)
+    monkeypatch.setattr(module, "_differ", lambda found, policy: False)
     given = problem()
     given.campaign.samples.between = between
-    given.campaign.more_findings = (SimpleNamespace(kind=known),) if known else ()
+    given.campaign.more_findings = (
+        (SimpleNamespace(kind=known, run="a", size=0.0),) if known else ()
+    )
     return on_time(given, cast_any(), DEFAULT, richer, more), said
 
 
@@ -311,8 +319,3 @@ def test_of_two_ways_of_one_clock_the_one_that_leaves_less(monkeypatch: pytest.M
     assert _by_one_clock(problem(), cast_any(), DEFAULT) is ways["one, offset"]
     monkeypatch.setattr(module, "_shifted", lambda p, s, policy, clocks: None)
     assert _by_one_clock(problem(), cast_any(), DEFAULT) is None
-
-
-def test_a_clock_was_right_when_it_was_started() -> None:
-    clock = made([1e-3, 2e-3], drift=2e-4)
-    assert _all_alike(problem(), clock) is clock

@@ -139,6 +139,10 @@ def test_runs_that_differ_go_before_an_effect_that_leaves_more(
     monkeypatch.setattr(rounds, "allowing_for", lambda campaign, found: allowed)
     trials = [SimpleNamespace(evidence=e) for e in (-5.0, 12.0, 40.0)]
     found: Any = SimpleNamespace(leader=leader, trials=trials)
+    # Beside what the deviations leave, the law alone leaves far more.
+    monkeypatch.setattr(
+        rounds, "_says_as_much", lambda b, effect, apart, most: effect <= most * apart
+    )
     made = candidates(ab=1.0, abc=leaves)
     assert (_differ_more(made, ("a", "b"), found) is allowed) == there
     assert asked == [70.0]

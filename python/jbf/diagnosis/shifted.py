@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, lateness_step
+from jbf.estimation.lateness import RANGES
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
-from jbf.estimation.lateness import RANGES
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.run_start import settled_campaign

@@ -105,6 +105,7 @@ def test_so_many_times_runs_are_shifted(most: int, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(late_channels, "lateness", always)
     # What is made up here is not in the runs: asked of them, it would not be found.
     monkeypatch.setattr(late_channels, "jointly", lambda _, found: found)
+    monkeypatch.setattr(late_channels, "_differ", lambda found, policy: True)
     problem = linear()
     near = problem.solution(problem.starts({})[0], problem.campaign.samples, WHITE)
     found = late_channels.on_time(problem, near, replace(DEFAULT, most_shifts=most), near, 1e9)

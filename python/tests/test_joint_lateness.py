@@ -229,3 +229,9 @@ def test_without_noise_nothing_says_how_surely() -> None:
     assert np.all(np.isfinite(step.late_s))
     assert 0.0 <= step.chance <= 1.0
     assert 0.0 <= step.differ_chance(np.zeros(3), 0.5) <= 1.0
+    # Nothing at all is left: of no run is it said that it is surely on time.
+    problem, solution = fitted(campaign((0.0,) * 3, noise_n=0.0))
+    exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
+    step = lateness_step(problem, exact)
+    assert not np.any(step.told)
+    assert step.chance == 1.0

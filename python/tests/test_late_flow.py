@@ -100,6 +100,13 @@ def test_runs_that_are_on_time_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told.asked[1] == (0, "by run", True)
 
 
+def test_runs_that_end_alike_stay_where_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    Told(monkeypatch, [late(4e-3, -2e-3), None])
+    assert shifted(problem()) is not None
+    monkeypatch.setattr(module, "_differ", lambda found, policy: False)
+    assert shifted(problem()) is None
+
+
 def test_what_is_left_is_looked_for_again_and_added(monkeypatch: pytest.MonkeyPatch) -> None:
     told = Told(monkeypatch, [late(4e-3, -2e-3), late(5e-4, 1e-4), None])
     found = shifted(problem())

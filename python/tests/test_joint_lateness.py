@@ -13,9 +13,15 @@ from jbf import Rig, Run
 from jbf.diagnosis import late_channels
 from jbf.diagnosis.late_channels import on_time
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.shifted import Shifted, jointly, moved
+from jbf.diagnosis.shifted import SETTLED, Shifted, by_one_clock, jointly, moved
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, lateness_step
+from jbf.estimation.joint_lateness import (
+    LINEAR_S,
+    DriftStep,
+    LatenessStep,
+    drift_step,
+    lateness_step,
+)
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -114,6 +120,110 @@ def test_what_a_law_can_say_as_well_is_no_lateness() -> None:
     # What they have in common is all but the law's: as good as nothing is known of it.
     assert np.min(np.diag(covariance)) > 5.0 * np.var(NOISE_N / (20.0 * rises[0])) / len(T)
     assert covariance[0, 1] > 0.5 * covariance[0, 0]
+
+
+def drifting(drift: float, *, seed: int = 0, noise_n: float = NOISE_N) -> Campaign:
+    """Runs of 20 s and 10 s whose forces were read by a clock that was started with each."""
+    random, runs = np.random.default_rng(seed), []
+    for i, t in enumerate((T, T[: len(T) // 2 + 1])):
+        v = motion(i, t - drift * t)
+        force = coulomb(t, v, v) + noise_n * random.standard_normal(len(t))
+        runs.append(Run.from_arrays(t, motion(i, t), force, name=f"run {i}"))
+    return Campaign.prepare(Rig(), runs)
+
+
+def test_a_step_of_one_clock_solves_the_normal_equations() -> None:
+    drift = 1.2e-4
+    problem, solution = fitted(drifting(drift))
+    viscous = dict(zip(problem.names, solution.values.tolist(), strict=True))["F_v_n_s_m"]
+    rows, right = [], []
+    for i, (p, residual) in enumerate(
+        zip(problem.campaign.prepared, solution.residuals, strict=True)
+    ):
+        t, keep = p.run.time_s, solution.samples.counted[i]
+        late = -viscous * acceleration(i, t) * t
+        rows.append(np.column_stack([np.ones(len(t)), p.motion.velocity_m_s, late])[keep])
+        right.append(residual[keep])
+    x, y = np.concatenate(rows), np.concatenate(right)
+    wanted, *_ = np.linalg.lstsq(x, y, rcond=None)
+    left = y - x @ wanted
+    variance = (float(left @ left) / len(y) * np.linalg.inv(x.T @ x))[2, 2]
+    found = drift_step(problem, replace(solution, noise=WHITE))
+    assert found.drift == pytest.approx(wanted[2], rel=0.02)
+    assert found.drift == pytest.approx(drift, abs=4.0 * variance**0.5)
+    assert found.variance == pytest.approx(variance, rel=0.02)
+    assert found.square == pytest.approx(found.drift**2 / found.variance)
+
+
+def test_beside_a_delay_a_drift_is_what_the_delay_does_not_say() -> None:
+    """Forces that are all late by 3 ms: alone a drift takes half of it in their length; beside a
+    delay it is none. The delay of a model that has one is not put in twice."""
+    random, runs = np.random.default_rng(5), []
+    for i in range(2):
+        v = motion(i, T - 3e-3)
+        force = coulomb(T, v, v) + NOISE_N * random.standard_normal(len(T))
+        runs.append(Run.from_arrays(T, motion(i, T), force, name=f"run {i}"))
+    there = fitted(Campaign.prepare(Rig(), runs))
+    alone, beside = drift_step(*there), drift_step(*there, beside_delay=True)
+    assert alone.drift == pytest.approx(1.5 * 3e-3 / 20.0, rel=0.3)
+    assert alone.square > 50.0
+    assert beside.square < 9.0
+    assert beside.variance == pytest.approx(4.0 * alone.variance, rel=0.3)
+    delayed = fitted(Campaign.prepare(Rig(), runs), ("time_delay",))
+    assert drift_step(*delayed, beside_delay=True) == drift_step(*delayed)
+
+
+def test_a_clock_that_no_run_tells_has_no_drift() -> None:
+    """The force of a speed that is held is the same at any time."""
+    still = [motion(0, T, 0.0) for _ in range(2)]
+    random = np.random.default_rng(1)
+    runs = [
+        Run.from_arrays(T, v, coulomb(T, v, v) + 0.005 * random.standard_normal(len(T)), name=n)
+        for v, n in zip(still, "ab", strict=True)
+    ]
+    found = drift_step(*fitted(Campaign.prepare(Rig(), runs)))
+    assert (found.drift, found.variance, found.square) == (0.0, np.inf, 0.0)
+
+
+@pytest.mark.parametrize("drift", [1.2e-4, -6e-4, 3e-3])
+def test_one_clock_is_found_together_with_the_law(drift: float) -> None:
+    """From far: at the end of the longer run by 2 ms, -12 ms or 60 ms, of 8 ms a step at most."""
+    problem, solution = fitted(drifting(drift))
+    found = by_one_clock(problem, as_it_is(problem, solution))
+    step = drift_step(found.problem, found.solution)
+    assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
+    lasts_s = np.array([p.run.duration_s for p in problem.campaign.prepared])
+    np.testing.assert_allclose(found.late_s, 0.5 * found.drift * lasts_s)
+    assert step.square <= SETTLED**2
+    assert found.solution.rms_n == pytest.approx(NOISE_N, rel=0.05)
+
+
+def test_a_clock_that_is_right_is_left_alone() -> None:
+    """Forty lots of noise, of which none tells a drift at one in 10,000."""
+    asked = []
+    for seed in range(40):
+        problem, solution = fitted(drifting(0.0, seed=seed))
+        asked.append(drift_step(problem, solution).square)
+        assert late_channels._drifting(problem, solution, DEFAULT) is None
+    # Wald's statistic is a chi-square of one degree: its mean is one, its median 0.45.
+    assert 0.5 < np.mean(asked) < 1.7
+    assert 0.2 < np.median(asked) < 0.9
+
+
+def test_only_a_hint_of_a_drift_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[float] = []
+
+    def follow(first: Problem, start: Shifted) -> Shifted:
+        asked.append(start.drift)
+        return start
+
+    monkeypatch.setattr(late_channels, "by_one_clock", follow)
+    problem, solution = fitted(drifting(0.0, seed=0))
+    for square, times in ((stats.chi2.isf(0.0501, 1), 0), (stats.chi2.isf(0.0499, 1), 1)):
+        step = DriftStep(float(np.sqrt(square)), 1.0)
+        monkeypatch.setattr(late_channels, "drift_step", lambda *at, told=step: told)
+        assert late_channels._drifting(problem, solution, DEFAULT) is None
+        assert asked == [0.0] * times
 
 
 def test_beside_a_delay_each_run_is_as_late_as_it_is_beside_that() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -86,28 +85,19 @@ def test_runs_that_are_late_alike_stay_as_they_are(late_s: float, effects: tuple
     assert on_time(*fitted(campaign((late_s,) * 4), effects), DEFAULT) is None
 
 
-@pytest.mark.parametrize("right", [False, True])
-def test_one_clock_is_believed_where_it_leaves_as_little(
-    right: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Runs that start late by times of their own under a clock that drifts, or on time: whichever
-    of the two is told, the other shifts the runs to where they do not belong."""
+@pytest.mark.parametrize("own", [True, False])
+def test_one_clock_is_believed_where_it_leaves_as_little(own: bool) -> None:
+    """Runs that start late by times of their own under a clock that drifts, or on time."""
     drift = 1e-3
     middle = 0.5 * drift * LASTS_S
-    truly = np.full(4, middle) + (0.0 if right else np.array(DIFFER_S))
-    wrong = np.full(4, middle) + (np.array(DIFFER_S) if right else 0.0)
-
-    def two_ways(
-        problem: Problem, near: Solution, look: int, chance: float, clocks: str, jumps: bool
-    ) -> Lateness | None:
-        late = truly if (clocks != "by run") == right else wrong
-        return Lateness(tuple(late.tolist()), drift, 0.0) if look == 0 else None
-
-    monkeypatch.setattr(late_channels, "lateness", two_ways)
+    truly = np.full(4, middle) + (np.array(DIFFER_S) if own else 0.0)
     again = on_time(*fitted(campaign(truly.tolist(), drift)), DEFAULT)
     assert again is not None
     middles = [float(f.words.split(": ")[1].split()[0]) for f in again.more_findings]
-    np.testing.assert_allclose(middles, 1e3 * truly, atol=0.2)
+    np.testing.assert_allclose(middles, 1e3 * truly, atol=1.5 if own else 0.2)
+    if not own:
+        # To the digit: one number says it of all.
+        assert np.ptp([f.size for f in again.more_findings]) == np.ptp(middles) == 0.0
     assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
 
 
@@ -157,7 +147,7 @@ def test_a_drift_seen_once_runs_are_on_time_moves_no_middle(
     truly = np.full(4, middle) + (0.0 if clocks else np.array(DIFFER_S))
 
     def in_turn(
-        problem: Problem, near: Solution, look: int, chance: float, clocks: str, jumps: bool
+        problem: Problem, near: Solution, look: int, chance: float, jumps: bool
     ) -> Lateness | None:
         looks = (Lateness(tuple(truly.tolist()), 0.0, 5e-3), Lateness((middle,) * 4, drift, 0.0))
         return looks[look] if look < len(looks) else None
@@ -225,18 +215,3 @@ def test_a_lateness_gains_by_schwarzs_criterion(gain: float, counts: bool) -> No
     before, after = solution((), 0.0), solution((), gain)
     there = Shifted(cast(Problem, None), after, np.zeros(1), 0.0)
     assert late_channels._gains(before.rms_n, after.rms_n, there) == counts
-
-
-@pytest.mark.parametrize("offset_n", [0.5, 2.0])
-def test_of_two_readings_of_one_clock_the_one_that_leaves_less_is_taken(
-    offset_n: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    left = {"one": 1.0, "one, offset": offset_n}
-
-    def way(problem: object, near: object, policy: object, clocks: str) -> SimpleNamespace:
-        return SimpleNamespace(solution=SimpleNamespace(rms_n=left[clocks]))
-
-    monkeypatch.setattr(late_channels, "_shifted", way)
-    found = late_channels._by_one_clock(*fitted(campaign((0.0,) * 4)), DEFAULT)
-    assert found is not None
-    assert found.solution.rms_n == min(left.values())

@@ -10,12 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf.diagnosis.late_channels import (
-    CLOCK_LOOKS,
     DELAY,
-    SETTLED,
     Shifted,
     _by_any_weights,
-    _by_one_clock,
     _shifted,
     on_time,
 )
@@ -61,15 +58,13 @@ class Told:
         monkeypatch.setattr(module, "_differ", lambda found, policy: True)
         monkeypatch.setattr(module, "refitted", self.refit)
 
-    def lateness(
-        self, p: Any, s: Any, look: int, chance: float, clocks: str, at_jumps: bool
-    ) -> Any:
+    def lateness(self, p: Any, s: Any, look: int, chance: float, at_jumps: bool) -> Any:
         assert chance == DEFAULT.deviation_chance
-        self.asked.append((look, clocks, at_jumps))
+        self.asked.append((look, at_jumps))
         return self.answers[look] if look < len(self.answers) else None
 
-    def weigh(self, p: Any, s: Any, policy: Any, found: Any, clocks: str, at_jumps: bool) -> Any:
-        self.weighed.append((found, clocks, at_jumps))
+    def weigh(self, p: Any, s: Any, policy: Any, found: Any, at_jumps: bool) -> Any:
+        self.weighed.append((found, at_jumps))
         return found
 
     def move(self, p: Any, late_s: Any, drift: float) -> Any:
@@ -94,10 +89,10 @@ def shifted(given: Any, **more: Any) -> Shifted | None:
 def test_runs_that_are_on_time_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     told = Told(monkeypatch, [None])
     assert shifted(problem()) is None
-    assert told.asked == [(0, "by run", False)]
+    assert told.asked == [(0, False)]
     assert told.moved == told.weighed == []
     assert shifted(problem(), at_jumps=True) is None
-    assert told.asked[1] == (0, "by run", True)
+    assert told.asked[1] == (0, True)
 
 
 def test_runs_that_end_alike_stay_where_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,7 +112,7 @@ def test_what_is_left_is_looked_for_again_and_added(monkeypatch: pytest.MonkeyPa
     assert moved == ("moved", 2)
     assert [look for look, *_ in told.asked] == [0, 1, 2]
     # Larger noise in places is asked about once, at first.
-    assert told.weighed == [(late(4e-3, -2e-3), "by run", False)]
+    assert told.weighed == [(late(4e-3, -2e-3), False)]
     assert told.moved[0][0] == pytest.approx([4e-3, -2e-3])
     # No more than so many times.
     many = Told(monkeypatch, [late(1e-3, 0.0)] * 20)
@@ -158,25 +153,6 @@ def test_a_drift_that_is_seen_later_moves_no_middle(monkeypatch: pytest.MonkeyPa
     assert again.drift == pytest.approx(1.1e-3)
 
 
-def test_one_clock_says_how_late_its_runs_are_in_their_middles(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Looked for until a look changes it by less than a fiftieth; a delay is the instrument's."""
-    looks = [late(5e-3, 1e-2, drift=1e-3), late(0.0, 0.0, drift=5e-4), late(0.0, 0.0, drift=2.9e-5)]
-    told = Told(monkeypatch, [*looks, *[late(0.0, 0.0, drift=1.0)] * 20])
-    assert (SETTLED, CLOCK_LOOKS) == (0.02, 3)
-    found = shifted(problem((DELAY,)), clocks="one")
-    assert found is not None
-    assert found.drift == pytest.approx(1.529e-3)
-    assert found.late_s == pytest.approx([0.5 * found.drift * lasts for lasts in LASTS_S])
-    assert len(told.asked) == 3
-    assert told.fitted == [(DELAY,)] * 3
-    on_and_on = Told(monkeypatch, [late(0.0, 0.0, drift=1e-4 * 2.0**k) for k in range(40)])
-    assert shifted(problem(), clocks="one, offset") is not None
-    assert len(on_and_on.asked) == CLOCK_LOOKS * DEFAULT.most_shifts
-    assert {clocks for _, clocks, _ in on_and_on.asked} == {"one, offset"}
-
-
 def test_what_would_leave_the_motion_is_no_lateness(monkeypatch: pytest.MonkeyPatch) -> None:
     Told(monkeypatch, [late(5.1, 0.0)])
     assert shifted(problem()) is None
@@ -201,7 +177,7 @@ def test_noise_that_is_larger_in_places_counts_less(
     monkeypatch.setattr(module, "lateness", lateness)
     monkeypatch.setattr(module, "replace", lambda s, samples: SimpleNamespace(samples=samples))
     solution: Any = SimpleNamespace(samples=samples_of([record(0.02 * np.arange(5))]))
-    found: Any = _by_any_weights(problem(), solution, DEFAULT, late(1.0), "by run", False)
+    found: Any = _by_any_weights(problem(), solution, DEFAULT, late(1.0), False)
     assert found == ("weighed" if uneven else late(1.0))
     assert looks == [[0.5] * 5] * asked
 
@@ -247,7 +223,7 @@ def asked(
         return gains[min(said.count("gains"), len(gains)) - 1]
 
     monkeypatch.setattr(module, "_shifted", shift)
-    monkeypatch.setattr(module, "_by_one_clock", by_clock)
+    monkeypatch.setattr(module, "_drifting", by_clock)
     monkeypatch.setattr(module, "_gains", gain)
     monkeypatch.setattr(module, "_errors_n", lambda *told: errors)
     monkeypatch.setattr(module, "_differing", lambda p, s, policy: None)
@@ -272,18 +248,23 @@ def test_runs_are_shifted_where_that_gains(monkeypatch: pytest.MonkeyPatch) -> N
     assert [(f.run, f.size) for f in found[1]] == [("a", 4e-3), ("b", -2e-3)]
     assert said == ["by run", "clock", "gains"]
     assert asked(monkeypatch, plain=made([4e-3, -2e-3]), gains=(False,))[0] is None
-    # All alike have no clock to ask.
-    assert "clock" not in asked(monkeypatch, plain=made([-4e-3, -4e-3]))[1]
-    assert asked(monkeypatch) == (None, ["by run", "at jumps"])
+    assert asked(monkeypatch) == (None, ["by run", "clock", "at jumps"])
     later, said = asked(monkeypatch, at_jumps=made([4e-3, -2e-3]))
     assert later is not None
-    assert said[:2] == ["by run", "at jumps"]
+    assert said[:3] == ["by run", "clock", "at jumps"]
 
 
 @pytest.mark.parametrize("kind", ["late_channel", "drifting_clock"])
 def test_what_was_shifted_once_is_not_again(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert asked(monkeypatch, plain=made([4e-3, -2e-3]), known=kind) == (None, [])
     assert asked(monkeypatch, plain=made([4e-3, -2e-3]), known="steps")[0] is not None
+
+
+def test_one_clock_comes_before_what_jumps_tell(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, other = made([1e-3, 2e-3], drift=2e-4), made([4e-3, -2e-3])
+    found, said = asked(monkeypatch, at_jumps=other, clock=clock)
+    assert {(f.kind, f.size) for f in found[1]} == {("drifting_clock", 2e-4)}
+    assert "at jumps" not in said
 
 
 def test_one_clock_is_taken_where_each_run_gains_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -308,6 +289,16 @@ def test_a_richer_model_gives_way_where_shifts_leave_as_little(
     assert "gains" not in said
 
 
+@pytest.mark.parametrize(("left", "there"), [(1.0, True), (1.01, False)])
+def test_one_clock_must_leave_less_than_a_richer_model(
+    left: float, there: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is one number, as an effect is at the least; that its runs are late alike is no matter."""
+    clock = made([1e-4, 1e-4], drift=1e-5)
+    found, _ = asked(monkeypatch, clock=clock, richer="richer", more=1.03, errors=(1.0, left))
+    assert (found is not None) == there
+
+
 @pytest.mark.parametrize(("part", "there"), [(0.95, False), (1.05, True)])
 @pytest.mark.parametrize("given", [{"richer": "richer"}, {"between": "known"}])
 def test_runs_that_end_alike_did_not_differ(
@@ -318,11 +309,3 @@ def test_runs_that_end_alike_did_not_differ(
     found, _ = asked(monkeypatch, plain=made([half, -half]), **given)
     assert (found is not None) == there
     assert asked(monkeypatch, plain=made([half, -half]))[0] is not None
-
-
-def test_of_two_ways_of_one_clock_the_one_that_leaves_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    ways = {"one": made([1.0, 1.0], 1e-3, 2.0), "one, offset": made([2.0, 2.0], 1e-3, 1.0)}
-    monkeypatch.setattr(module, "_shifted", lambda p, s, policy, clocks: ways[clocks])
-    assert _by_one_clock(problem(), cast_any(), DEFAULT) is ways["one, offset"]
-    monkeypatch.setattr(module, "_shifted", lambda p, s, policy, clocks: None)
-    assert _by_one_clock(problem(), cast_any(), DEFAULT) is None

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jbf.estimation.lateness import _clock, _Place, lateness
+from jbf.estimation.lateness import lateness
 from jbf.estimation.noise import Noise
 from late_runs import CHANCE, DELAY, DIFFER_S, LASTS_S, campaign, fitted, told
 
@@ -80,43 +80,3 @@ def test_the_samples_beside_reversals_tell_it_in_steps() -> None:
     assert found is not None
     np.testing.assert_allclose(found.late_s, DIFFER_S, atol=2.2e-3)
     assert lateness(*fitted(campaign((0.0,) * 4)), 0, CHANCE, at_jumps=True) is None
-
-
-def test_runs_that_start_late_by_times_of_their_own_have_no_one_clock() -> None:
-    drift = 4e-4
-    middle = 0.5 * drift * LASTS_S
-    there = fitted(campaign([middle + late for late in DIFFER_S], drift))
-    by_run, clock = (lateness(*there, 0, CHANCE, c) for c in ("by run", "one"))
-    assert by_run is not None
-    np.testing.assert_allclose(by_run.late_s, middle + np.array(DIFFER_S), atol=2e-3)
-    assert clock is None
-
-
-@pytest.mark.parametrize("delay_s", [0.0, 30e-3])
-def test_one_clock_shows_in_how_late_longer_runs_are(delay_s: float) -> None:
-    """Within no run does the lateness show to grow; in the middle of a longer one it is larger."""
-    lasts_s, drift = np.array([10.0, 20.0, 40.0, 80.0]), -3e-4
-    whole = [_Place(0.5 * drift * t + delay_s, 1e-7) for t in lasts_s.tolist()]
-    unknown = [_Place(0.0, np.inf)] * 4
-    for growing in (unknown, [_Place(drift, 1e-10)] * 4):
-        found = _clock(whole, growing, lasts_s, delay_s > 0.0)
-        assert found is not None
-        assert found[0] == pytest.approx(drift)
-        assert found[1] < 1e-6
-    # Not allowed for, a time that all share is the clock's, or speaks against it.
-    if delay_s > 0.0:
-        against = _clock(whole, unknown, lasts_s, False)
-        assert against is not None
-        assert against[1] > 1e-3
-    # Of runs that last alike, or of one, nobody can tell a delay from a drift.
-    assert _clock(whole, unknown, np.full(4, 20.0), True) is None
-    assert _clock(whole[:1], unknown[:1], lasts_s[:1], False) is None
-    assert _clock(unknown, unknown, lasts_s, False) is None
-
-
-def test_a_clock_that_was_told_once_is_told_again_by_any_change() -> None:
-    there = fitted(campaign((0.0,) * 4))
-    assert lateness(*there, 0, CHANCE, "one") is None
-    again = lateness(*there, 1, CHANCE, "one")
-    assert again is not None
-    assert abs(again.drift) < 1e-4

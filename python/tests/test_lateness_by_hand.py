@@ -7,8 +7,6 @@ import pytest
 from by_hand import Array
 from jbf.estimation.lateness import (
     LEAST_SAMPLES,
-    _by_clock,
-    _clock,
     _common,
     _drift,
     _Place,
@@ -181,49 +179,3 @@ def test_of_three_runs_their_spread_is_known() -> None:
     assert _spread([*places, NOWHERE]) == pytest.approx((np.sqrt(3.0), np.exp(-2.0)))
     assert _spread(places[:2]) is None
     assert _spread([places[0]] * 4) is None
-
-
-# ---- one clock ---------------------------------------------------------------------------------
-
-
-def test_one_clock_is_weighted_least_squares() -> None:
-    """Middles are late by half the drift times the length, and each run grows by the drift."""
-    lasts = np.array([10.0, 20.0, 40.0])
-    late, grows = [1.2, 1.9, 4.3], [0.25, 0.15]
-    whole = [_Place(v, var) for v, var in zip(late, (0.5, 1.0, 2.0), strict=True)]
-    drifts = [*(_Place(g, 0.01) for g in grows), NOWHERE]
-    x = np.array([5.0, 10.0, 20.0, 1.0, 1.0])
-    y = np.array([*late, *grows])
-    w = 1.0 / np.array([0.5, 1.0, 2.0, 0.01, 0.01])
-    slope = float(np.sum(w * x * y) / np.sum(w * x**2))
-    spread = float(np.sum(w * (y - slope * x) ** 2)) / 4.0
-    found = _clock(whole, drifts, lasts, False)
-    assert found is not None
-    assert found[0] == pytest.approx(slope)
-    square = slope**2 * float(np.sum(w * x**2)) / max(spread, 1.0)
-    assert found[1] == pytest.approx(stats.chi2.sf(square, 1))
-
-
-def test_runs_that_scatter_about_one_clock_make_it_less_sure() -> None:
-    lasts = np.array([10.0, 20.0, 40.0, 30.0])
-    line = 0.5 * 0.1 * lasts
-    off = np.array([3.0, -3.0, 3.0, -3.0])
-    whole = [_Place(v, 1.0) for v in (line + 1.0 + off).tolist()]
-    x = np.stack([0.5 * lasts, np.ones(4)], axis=1)
-    y = line + 1.0 + off
-    fitted, squares, *_ = np.linalg.lstsq(x, y, rcond=None)
-    variance = np.linalg.inv(x.T @ x)[0, 0] * squares[0] / 2.0
-    found = _clock(whole, [NOWHERE] * 4, lasts, True)
-    assert found is not None
-    assert found[0] == pytest.approx(fitted[0])
-    assert found[1] == pytest.approx(stats.chi2.sf(fitted[0] ** 2 / variance, 1))
-
-
-def test_a_clock_that_is_sure_makes_runs_late_in_their_middles() -> None:
-    lasts = np.array([10.0, 30.0])
-    found = _by_clock((2e-4, 0.01), lasts, 0.01)
-    assert found is not None
-    assert found.late_s == pytest.approx((1e-3, 3e-3))
-    assert (found.drift, found.spread_s) == (2e-4, 0.0)
-    assert _by_clock((2e-4, 0.011), lasts, 0.01) is None
-    assert _by_clock(None, lasts, 1.0) is None

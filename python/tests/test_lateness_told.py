@@ -28,7 +28,6 @@ def told(
     sd_s: float = 1e-4,
     look: int = 0,
     chance: float = CHANCE,
-    clocks: Any = "by run",
     at_jumps: bool = False,
 ) -> tuple[Lateness | None, Array, float]:
     """Runs that are late so in their middles, each known to `sd_s`; the grid that was asked for and
@@ -47,7 +46,7 @@ def told(
     monkeypatch.setattr(module, "_scans", scans)
     runs = [record(np.linspace(0.0, lasts, N)) for lasts in lasts_s]
     problem: Any = SimpleNamespace(campaign=SimpleNamespace(prepared=runs))
-    found = lateness(problem, SimpleNamespace(), look, chance, clocks, at_jumps)  # type: ignore[arg-type]
+    found = lateness(problem, SimpleNamespace(), look, chance, at_jumps)  # type: ignore[arg-type]
     return found, seen[0], seen[1]
 
 
@@ -127,23 +126,6 @@ def test_within_chance_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told(monkeypatch, (4e-3, -2e-3), lasts_s=(20.0, 20.0))[0] is None
 
 
-def test_one_clock_is_asked_for_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Longer runs are later in their middles; beside a delay of all where that is allowed for."""
-    lasts, drift = (10.0, 20.0, 30.0, 40.0), 4e-4
-    for delay, clocks in ((0.0, "one"), (5e-3, "one, offset")):
-        late = [0.5 * drift * t + delay for t in lasts]
-        found, *_ = told(monkeypatch, late, drift, lasts_s=lasts, clocks=clocks)
-        assert found is not None
-        assert found.drift == pytest.approx(drift, rel=0.02)
-        assert found.late_s == pytest.approx([0.5 * found.drift * t for t in lasts])
-    # Once it has been told it need not be beyond chance again.
-    unsure = {"lasts_s": lasts, "clocks": "one", "sd_s": 5e-3}
-    late = [0.5 * 1e-5 * t for t in lasts]
-    assert told(monkeypatch, late, 1e-5, **unsure)[0] is None  # type: ignore[arg-type]
-    again = told(monkeypatch, [0.0] * 4, 1e-5, look=1, **unsure)[0]  # type: ignore[arg-type]
-    assert again is not None
-
-
 @pytest.mark.parametrize(("step_s", "times"), [(0.019, 8), (2.4e-3, 1), (2.6e-3, 2), (1e-4, 1)])
 def test_the_models_force_is_asked_for_at_close_instants(step_s: float, times: int) -> None:
     assert (FINE_S, CLIPPED) == (2.5e-3, 3.5)
@@ -170,7 +152,3 @@ def test_beyond_chance_is_below_its_probability(
         monkeypatch.setattr(module, "_common", lambda places, answers=answers: answers.pop(0))
         found, *_ = told(monkeypatch, (0.0,) * 4, chance=times * chance)
         assert (found is not None) == there
-    monkeypatch.setattr(module, "_clock", lambda *given: (1e-3, chance))
-    at_most, *_ = told(monkeypatch, (0.0,) * 4, chance=chance, clocks="one")
-    assert at_most is not None
-    assert told(monkeypatch, (0.0,) * 4, chance=chance * (1.0 - 1e-12), clocks="one")[0] is None

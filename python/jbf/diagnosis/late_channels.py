@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.shifted import (
@@ -15,6 +16,7 @@ from jbf.diagnosis.shifted import (
     Names,
     Shifted,
     beside_its_motion,
+    by_one_clock,
     jointly,
     moved,
     refitted,
@@ -22,9 +24,9 @@ from jbf.diagnosis.shifted import (
 )
 from jbf.diagnosis.uneven_noise import noise_sizes, robust_size
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import lateness_step
+from jbf.estimation.joint_lateness import drift_step, lateness_step
 from jbf.estimation.jumps import samples_beside_jumps
-from jbf.estimation.lateness import CLIPPED, Clocks, Lateness, lateness
+from jbf.estimation.lateness import CLIPPED, Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import search
@@ -36,10 +38,8 @@ Array = npt.NDArray[np.float64]
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
 """So much too little runs are shifted where it is asked what all are late besides, or a step."""
-CLOCK_LOOKS = 3
-"""Times as many looks for one clock: a law that gave way to a drift lets go of it by and by,"""
-SETTLED = 0.02
-"""until a look changes it by no more than this share."""
+HINT = 0.05
+"""Probability of a drift by chance below which it is estimated to its end."""
 
 
 def on_time(
@@ -74,7 +74,8 @@ def on_time(
     else:
         # Another model may fit worse all along, and its few errors far out be the same.
         before_n, left_n = _errors_n(found, richer, CLIPPED)
-        worth_it = left_n <= more * before_n
+        # One clock is one number, as an effect is at the least.
+        worth_it = left_n <= (more if found.drift == 0.0 else 1.0) * before_n
     if not worth_it:
         return None
     before_s = [
@@ -82,9 +83,9 @@ def on_time(
     ]
     late_s = found.late_s + np.array(before_s)
     apart = np.abs(late_s - np.median(late_s))
-    if (richer is not None or problem.campaign.samples.between is not None) and float(
-        np.median(apart)
-    ) < policy.late_apart * problem.campaign.prepared[0].step_s:
+    doubted = richer is not None or problem.campaign.samples.between is not None
+    least_s = policy.late_apart * problem.campaign.prepared[0].step_s
+    if found.drift == 0.0 and doubted and float(np.median(apart)) < least_s:
         # On their way they seemed to differ; where they end, most do not: a delay of all, or what
         # is left of runs that deviate otherwise.
         return None
@@ -98,14 +99,25 @@ def on_time(
 def _found(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """The runs shifted by their own lateness or as one clock has it; None where none is late."""
     found = _shifted(problem, solution, policy) or _differing(problem, solution, policy)
+    simpler = _drifting(problem, solution, policy)
     if found is None:
-        found = _shifted(problem, solution, policy, at_jumps=True)
-    if found is not None and (found.drift != 0.0 or np.ptp(found.late_s) > 0.0):
-        simpler = _by_one_clock(problem, solution, policy)
-        # One clock says more simply what a lateness of each run does.
-        if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
-            found = simpler
+        return simpler or _shifted(problem, solution, policy, at_jumps=True)
+    # One clock says more simply what a lateness of each run does.
+    if simpler is not None and not _gains(*_errors_n(found, simpler.solution, np.inf), found):
+        return simpler
     return found
+
+
+def _drifting(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
+    """The runs shifted as one clock has it; None where it drifts by no more than chance."""
+    step = drift_step(problem, solution)
+    # A law gives way to a drift, and lets go of it step by step: a hint of one is worth the way.
+    if special.chdtrc(1, step.square) >= HINT:
+        return None
+    on_time = np.zeros(len(problem.campaign.prepared))
+    before = Shifted(problem, solution, on_time, 0.0)
+    found = by_one_clock(problem, before)
+    return found if found is not before and _differ(found, policy) else None
 
 
 def _differing(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
@@ -122,9 +134,17 @@ def _differing(problem: Problem, solution: Solution, policy: Policy) -> Shifted 
 
 
 def _differ(found: Shifted, policy: Policy) -> bool:
-    """Whether the lateness of runs that were shifted differs by more than chance."""
+    """Whether the lateness of runs that were shifted differs by more than chance, or grows."""
     if found.drift != 0.0:
-        return False
+        alone = drift_step(found.problem, found.solution)
+        beside = drift_step(found.problem, found.solution, beside_delay=True)
+        # Asked of every model, and residuals are never quite white.
+        square = 0.5 * found.drift**2 / alone.variance
+        # A delay of all runs looks like a drift of half as much in their length.
+        left = (found.drift + beside.drift) ** 2 / beside.variance
+        return bool(
+            special.chdtrc(1, square) < policy.deviation_chance and special.chdtrc(1, left) < HINT
+        )
     step = lateness_step(found.problem, found.solution)
     return step.differ_chance(found.late_s, 1.0) < policy.deviation_chance
 
@@ -143,39 +163,31 @@ def _shifted(
     problem: Problem,
     solution: Solution,
     policy: Policy,
-    clocks: Clocks = "by run",
     at_jumps: bool = False,
 ) -> Shifted | None:
     """The runs shifted by their lateness until there is none; None where there was none."""
     campaign = problem.campaign
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
-    durations_s = np.array([p.run.duration_s for p in campaign.prepared])
-    one_clock = clocks != "by run"
-    looks = policy.most_shifts * (CLOCK_LOOKS if one_clock else 1)
-    for look in range(looks):
-        found = lateness(problem, solution, look, policy.deviation_chance, clocks, at_jumps)
+    for look in range(policy.most_shifts):
+        found = lateness(problem, solution, look, policy.deviation_chance, at_jumps)
         if look == 0 and found is not None:
-            found = _by_any_weights(problem, solution, policy, found, clocks, at_jumps)
+            found = _by_any_weights(problem, solution, policy, found, at_jumps)
         if found is None:
             break
-        # Where runs differ in it, a delay that they share is the recording's as well; beside one
-        # clock it stays the instrument's.
+        # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
         shared = known.get(f"{DELAY}.tau_s", 0.0) if found.spread_s > 0.0 else 0.0
         later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
         if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
-            # In the middle they are on time by now, unless their clock is to say how late.
-            later_s = 0.5 * drifted * durations_s if one_clock else late_s
+            # In the middle they are on time by now.
+            later_s = late_s
         if not beside_its_motion(first, later_s, drifted):
             break
-        on_its_way = abs(found.drift) > SETTLED * abs(drifted)
         late_s, drift = later_s, drifted
         campaign = moved(first, late_s, drift)
-        effects = problem.effects if one_clock else without_delay(problem.effects)
+        effects = without_delay(problem.effects)
         problem, solution = refitted(problem, campaign, effects, known, solution)
-        if one_clock and not on_its_way:
-            break
     if campaign is old:
         return None
     shifted = Shifted(problem, solution, late_s, drift)
@@ -187,12 +199,6 @@ def _shifted(
     # On their way they seemed to differ: a law gives way to what all share, and not alike in all.
     found_jointly = jointly(first, shifted)
     return found_jointly if _differ(found_jointly, policy) else None
-
-
-def _by_one_clock(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
-    """The runs shifted as one clock has it, beside what all share or not: whichever leaves less."""
-    ways = [_shifted(problem, solution, policy, c) for c in ("one", "one, offset")]
-    return min((w for w in ways if w), key=lambda way: way.solution.rms_n, default=None)
 
 
 def _all_alike(problem: Problem, found: Shifted) -> Shifted:
@@ -259,7 +265,6 @@ def _by_any_weights(
     solution: Solution,
     policy: Policy,
     plain: Lateness,
-    clocks: Clocks,
     at_jumps: bool,
 ) -> Lateness | None:
     """The lateness where noise that is larger in places counts less; None where the runs do not
@@ -269,7 +274,7 @@ def _by_any_weights(
         return plain
     ones = [np.ones(len(s)) for s in sizes]
     even = replace(solution, samples=solution.samples.weighed(sizes, ones, None))
-    return lateness(problem, even, 0, policy.deviation_chance, clocks, at_jumps)
+    return lateness(problem, even, 0, policy.deviation_chance, at_jumps)
 
 
 def _finding(run: str, late_s: float, drift: float) -> Finding:

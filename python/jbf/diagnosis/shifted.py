@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import LINEAR_S, lateness_step
+from jbf.estimation.joint_lateness import LINEAR_S, drift_step, lateness_step
 from jbf.estimation.lateness import RANGES
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
@@ -125,6 +125,36 @@ def jointly(first: Problem, start: Shifted) -> Shifted:
         effects = without_delay(now.problem.effects)
         problem, solution = refitted(now.problem, campaign, effects, known, now.solution)
         now = Shifted(problem, solution, late_s, start.drift)
+    if white:
+        now = _coloured(now)
+    return now if now.solution.rms_n < start.solution.rms_n else start
+
+
+def by_one_clock(first: Problem, start: Shifted) -> Shifted:
+    """Runs shifted on as one clock has it that was started with each, its drift fitted together
+    with the model; where that leaves no less, as they were."""
+    lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
+    most = LINEAR_S / float(np.max(lasts_s))
+    now = replace(start, solution=replace(start.solution, noise=WHITE))
+    white = True
+    for _ in range(STEPS):
+        step = drift_step(now.problem, now.solution)
+        if step.square <= SETTLED**2:
+            if not white:
+                break
+            white = False
+            now = _coloured(now)
+            continue
+        drift = now.drift + float(np.clip(step.drift, -most, most))
+        late_s = 0.5 * drift * lasts_s
+        if not beside_its_motion(first, late_s, drift):
+            return start
+        known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        campaign = moved(first, late_s, drift)
+        problem, solution = refitted(
+            now.problem, campaign, now.problem.effects, known, now.solution
+        )
+        now = Shifted(problem, solution, late_s, drift)
     if white:
         now = _coloured(now)
     return now if now.solution.rms_n < start.solution.rms_n else start

@@ -1,4 +1,4 @@
-"""How late the force of each run is, estimated together with the model that tells it.
+"""How late the force of each run is, or its clock, estimated together with the model that tells it.
 
 A law gives way to a late force: on a search for where each run's squares are least it keeps what it
 has given, and moves on by and by. One step of Gauss and Newton in the lateness of every run and all
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,9 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 DELAY = "time_delay.tau_s"
+Clocks = Literal["by run", "one", "one, delay"]
+"""By which clocks forces were read: by one of each run's own, or by one that was started with each,
+where the instrument may delay them all besides."""
 LINEAR_S = 8e-3
 """A force changes as its slope says over a shift of so much; no sample nearer a reversal tells
 it."""
@@ -78,16 +82,65 @@ class LatenessStep:
         return float(np.average(late_s[self.told], weights=1.0 / np.diag(self.covariance_s2)))
 
 
+@dataclass(frozen=True)
+class DriftStep:
+    """By how much slower than it is taken for the clock of the forces runs.
+
+    Attributes
+    ----------
+    drift
+        By how much later forces get in a second.
+    variance
+        Of that, as the residual's spread has it; infinite where it cannot be told.
+    """
+
+    drift: float
+    variance: float
+
+    @property
+    def square(self) -> float:
+        """Its square, in units of its variance (Wald's statistic)."""
+        return self.drift**2 / self.variance
+
+
 def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     """A step of Gauss and Newton in each run's lateness and all parameters of the model, but for a
     delay that all runs share: that is a part of each one's."""
-    runs = len(problem.campaign.prepared)
     own = [k for k, i in enumerate(problem.open) if problem.names[i] != DELAY]
+    late, of_late = _step(problem, solution, own, "by run")
+    # Where nothing is left, nothing says how surely.
+    told = (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
+    return LatenessStep(np.where(told, late, 0.0), of_late[np.ix_(told, told)], told)
+
+
+def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False) -> DriftStep:
+    """A step of Gauss and Newton in the drift of one clock that was started with each run, and all
+    parameters of the model.
+
+    Parameters
+    ----------
+    beside_delay
+        Whether all runs may be late by a time of the instrument's besides.
+    """
+    clocks: Clocks = "one, delay" if beside_delay and DELAY not in problem.names else "one"
+    late, of_late = _step(problem, solution, list(range(len(problem.open))), clocks)
+    longest_s = max(p.run.duration_s for p in problem.campaign.prepared)
+    told = 0.0 < of_late[0, 0] * longest_s**2 < LINEAR_S**2
+    return DriftStep(float(late[0]), float(of_late[0, 0])) if told else DriftStep(0.0, np.inf)
+
+
+def _step(
+    problem: Problem, solution: Solution, own: Sequence[int], clocks: Clocks
+) -> tuple[Array, Array]:
+    """The step in what clocks say of lateness, beside these parameters, and its covariance."""
     width = len(own)
+    later = {"by run": len(problem.campaign.prepared), "one": 1, "one, delay": 2}[clocks]
     rows, right, samples = [], [], 0
-    for i, (r, j, count) in enumerate(_rows(problem, solution, own)):
-        wide = np.zeros((len(r), width + runs))
-        wide[:, :width], wide[:, width + i] = j[:, :width], j[:, width]
+    for i, (r, j, count) in enumerate(_rows(problem, solution, own, clocks)):
+        wide = np.zeros((len(r), width + later))
+        wide[:, :width] = j[:, :width]
+        first = width + i if clocks == "by run" else width
+        wide[:, first : first + j.shape[1] - width] = j[:, width:]
         rows.append(wide)
         right.append(r)
         samples += count
@@ -97,34 +150,37 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     if largest > 0.0:
         x, y = x / largest, y / largest
     scale = np.sqrt(np.sum(x**2, axis=0))
-    told = scale[width:] > 0.0
+    tells = scale[width:] > 0.0
     scale[scale == 0.0] = 1.0
     step, *_ = np.linalg.lstsq(x / scale, y, rcond=RANK)
     left = y - x @ (step / scale)
     inverse = np.linalg.pinv(x / scale, rcond=RANK)
     covariance = float(left @ left) / max(samples, 1) * (inverse @ inverse.T)
     covariance /= np.outer(scale, scale)
-    of_late = covariance[width:, width:]
-    # Where nothing is left, nothing says how surely.
-    told &= (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
-    late = np.where(told, (step / scale)[width:], 0.0)
-    return LatenessStep(late, of_late[np.ix_(told, told)], told)
+    of_later = covariance[width:, width:]
+    return (step / scale)[width:], np.where(np.outer(tells, tells), of_later, 0.0)
 
 
 def _rows(
-    problem: Problem, solution: Solution, by: Sequence[int]
+    problem: Problem, solution: Solution, by: Sequence[int], clocks: Clocks
 ) -> Iterator[tuple[Array, Array, int]]:
     """Of each run the innovations, their derivatives by these parameters and, last, by its
-    lateness, in few rows; and how many samples there were."""
+    lateness as clocks say it, in few rows; and how many samples there were."""
     samples = solution.samples
     for i, p in enumerate(problem.campaign.prepared):
         instants = instants_of(p)
         force = problem.chain.predict(solution.values, [fine_motion(p)])[0]
         slope = -np.interp(p.run.time_s, instants, np.gradient(force, instants))
+        since_start = p.run.time_s - p.run.time_s[0]
+        later = {
+            "by run": [slope],
+            "one": [slope * since_start],
+            "one, delay": [slope * since_start, slope],
+        }[clocks]
         apart = int(np.ceil(LINEAR_S / p.step_s))
         far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=apart)
         own = samples.only([i]).within([far])
-        derivatives = np.column_stack([solution.jacobian[i][:, by], slope])
+        derivatives = np.column_stack([solution.jacobian[i][:, by], *later])
         r, j = own.stacked([solution.residuals[i]], [derivatives], solution.noise)
         count = len(r)
         # The residual stays a row of its own where it is longer than its derivatives.

@@ -11,7 +11,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -69,8 +68,6 @@ class _Place:
     variance: float
 
 
-Clocks = Literal["by run", "one", "one, offset"]
-"""By which clocks forces were read."""
 Tell = Callable[[Array, Array, int], _Place]
 """Where the squares of so many samples are least over a grid."""
 
@@ -80,7 +77,6 @@ def lateness(
     solution: Solution,
     look: int,
     chance: float,
-    clocks: Clocks = "by run",
     at_jumps: bool = False,
 ) -> Lateness | None:
     """How the lateness of the runs differs; None where it does not beyond chance.
@@ -94,10 +90,6 @@ def lateness(
         0 at first; 1 where the runs were shifted before.
     chance
         Probability at which runs that differ, or grow later alike, are chance.
-    clocks
-        `by run`: each run is late by its own time. Or all were read by one clock that was started
-        with each (`one`): then longer runs are later in their middles; or they are so beside what
-        all share (`one, offset`), which a law may have taken for its own memory.
     at_jumps
         Whether the samples beside reversals are asked, too: they tell a lateness of less than a
         sample where friction is smooth over time, and tell it in steps.
@@ -110,11 +102,6 @@ def lateness(
         whole.append(place(grid, squares.sum(axis=1), squares.shape[1]))
         drifts.append(_drift(grid, squares, time, place))
     runs = problem.campaign.prepared
-    if clocks != "by run":
-        lasts_s = np.array([p.run.duration_s for p in runs])
-        clock = _clock(whole, drifts, lasts_s, clocks == "one, offset")
-        # That there is one has been told once.
-        return _by_clock(clock, lasts_s, chance if look == 0 else 1.0)
     by_run, drift = _spread(whole), _common(drifts)
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
@@ -132,12 +119,6 @@ def lateness(
     usual = float(np.average([w.value for w in known], weights=[1.0 / w.variance for w in known]))
     late = tuple(w.value if np.isfinite(w.variance) else usual for w in whole)
     return Lateness(late, share, by_run[0])
-
-
-def _by_clock(drift: tuple[float, float] | None, lasts_s: Array, chance: float) -> Lateness | None:
-    if drift is None or drift[1] > chance:
-        return None
-    return Lateness(tuple((0.5 * drift[0] * lasts_s).tolist()), drift[0], 0.0)
 
 
 def _scans(
@@ -266,26 +247,6 @@ def _spread(places: list[_Place]) -> tuple[float, float] | None:
     precisions = 1.0 / np.array([p.variance for p in known])
     sd, chance, _ = spread_between(values, precisions)
     return (sd, chance) if sd > 0.0 else None
-
-
-def _clock(
-    whole: list[_Place], drifts: list[_Place], lasts_s: Array, offset: bool
-) -> tuple[float, float] | None:
-    """The drift of one clock by how runs grow later and by how late they are in their middles, and
-    the probability of so much by chance; `offset` where they may all be late by a time besides."""
-    columns, ones = 2 if offset else 1, np.ones(len(whole))
-    rows = np.vstack([np.stack([0.5 * lasts_s, ones], 1), np.stack([ones, 0.0 * ones], 1)])
-    places = [*whole, *drifts]
-    known = np.array([np.isfinite(p.variance) for p in places])
-    variance = np.array([p.variance for p in places])[known]
-    x = rows[known, :columns] / np.sqrt(variance)[:, None]
-    y = np.array([p.value for p in places])[known] / np.sqrt(variance)
-    if len(y) <= columns or np.linalg.matrix_rank(x) < columns:
-        return None
-    fitted = np.linalg.lstsq(x, y, rcond=None)[0]
-    spread = float(np.sum((y - x @ fitted) ** 2)) / (len(y) - columns)
-    square = float(fitted[0]) ** 2 / (float(np.linalg.inv(x.T @ x)[0, 0]) * max(spread, 1.0))
-    return float(fitted[0]), float(special.chdtrc(1, square))
 
 
 def _common(drifts: list[_Place]) -> tuple[float, float] | None:

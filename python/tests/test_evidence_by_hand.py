@@ -33,6 +33,7 @@ def _made_up(monkeypatch: pytest.MonkeyPatch) -> None:
         likelihood_gain=lambda richer, simpler: richer.gain - simpler.gain,
         effective_share=lambda solution: 0.5,
         share_of_gain=lambda richer, simpler: 0.25,
+        gain_of_most=lambda richer, simpler: np.inf,
         _within_steps=lambda campaign, richer, simpler: False,
         next_step_gain=lambda near: 3.0,
         many_peaks=lambda effects: "peaks" in effects,
@@ -60,6 +61,20 @@ def test_evidence_is_what_counts_of_the_gain_less_the_price() -> None:
     # What is lost is lost in full.
     assert evidence(candidates(), model(-100.0, 6), base) == -140.0
     assert evidence(candidates(), model(0.0, 6), base) == -40.0
+
+
+@pytest.mark.parametrize(
+    ("of_most", "counts"), [(41.0, 100.0), (40.0, 40.0), (13.0, 13.0), (-5.0, 0.0)]
+)
+def test_a_gain_of_a_few_samples_is_what_the_others_gain(
+    of_most: float, counts: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where those pay the price the gain stands, however much of it a few brought."""
+    told(monkeypatch, gain_of_most=lambda richer, simpler: of_most)
+    rich, base = model(400.0, 6), model(0.0, 4)
+    assert evidence(candidates(), rich, base) == pytest.approx(counts - 40.0)
+    # What does not pay it anyway is not asked.
+    assert evidence(candidates(), model(100.0, 6), base) == pytest.approx(25.0 - 40.0)
 
 
 def test_a_gain_within_a_converters_steps_or_beside_an_idle_effect_is_none(

@@ -8,6 +8,7 @@ import pytest
 from jbf.estimation.blocks import blocks_of
 from jbf.estimation.likelihood import (
     effective_share,
+    gain_of_most,
     independent_share,
     least_squares,
     likelihood_gain,
@@ -58,6 +59,33 @@ def test_models_that_weigh_samples_unlike_are_compared_by_the_smaller_weights() 
     before = solved([np.full(100, 2.0)], samples_of([whole]))
     after = solved([np.concatenate((np.full(40, 9.0), np.ones(60)))], samples_of([part]))
     assert likelihood_gain(after, before) == pytest.approx(60.0 * np.log(4.0))
+
+
+def test_a_gain_of_most_is_no_gain_of_one_sample() -> None:
+    """A sample a hundred standard deviations off, which one of two models follows; and a level of
+    half a standard deviation everywhere, which the other does not know."""
+    drawn = np.random.default_rng(4).standard_normal(1000)
+    samples = samples_of([np.ones(600), np.ones(400)])
+    off = drawn.copy()
+    off[700] += 100.0
+    followed = solved([drawn[:600], drawn[600:]], samples)
+    of_one = solved([off[:600], off[600:]], samples)
+    assert likelihood_gain(followed, of_one) > 2000.0
+    assert 0.0 < gain_of_most(followed, of_one) < 3.5**2
+    level = solved([drawn[:600] + 0.5, drawn[600:] + 0.5], samples)
+    assert gain_of_most(followed, level) == pytest.approx(250.0, rel=0.15)
+    assert gain_of_most(level, followed) < -180.0
+    # In units of what is left: of half the size all of it is the same.
+    halves = [
+        solved([0.5 * r for r in solution.residuals], samples) for solution in (followed, of_one)
+    ]
+    assert gain_of_most(*halves) == pytest.approx(gain_of_most(followed, of_one))
+
+
+def test_where_most_is_fitted_exactly_every_gain_is_one_of_most() -> None:
+    samples = samples_of([np.ones(100)])
+    exact, before = (solved([size * np.ones(100)], samples) for size in (0.0, 1.0))
+    assert gain_of_most(exact, before) == np.inf
 
 
 def test_what_a_step_promises_is_by_what_it_leaves() -> None:

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.glitches import (
     _around,
     _between,
     _both_sides,
     _least,
     _missed,
-    _weights,
     mend_position,
     mend_speed,
 )
@@ -190,11 +190,11 @@ def test_what_is_no_glitch_of_a_speed() -> None:
 
 def test_weights_of_a_cubic_at_zero() -> None:
     """Of even steps those of the textbook; of any they give a cubic's own value."""
-    even = _weights(np.array([-2.0, -1.0, 1.0, 2.0]))
+    even = weights_at_zero(np.array([-2.0, -1.0, 1.0, 2.0]))
     np.testing.assert_allclose(even, np.array([-1.0, 4.0, 4.0, -1.0]) / 6.0)
     t = np.array([[-3.0, -2.0], [-1.0, -0.5], [0.5, 1.0], [4.0, 7.0]])
     value = 2.0 - 3.0 * t + 0.5 * t**2 + 4.0 * t**3
-    np.testing.assert_allclose(np.sum(_weights(t) * value, axis=0), 2.0)
+    np.testing.assert_allclose(np.sum(weights_at_zero(t) * value, axis=0), 2.0)
 
 
 def test_masked_samples_are_on_a_cubic_through_two_good_ones_on_either_side() -> None:

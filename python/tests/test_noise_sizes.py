@@ -15,7 +15,6 @@ from jbf.diagnosis.uneven_noise import (
     _uneven,
     _white,
     noise_sizes,
-    robust_size,
     robust_weights,
 )
 from jbf.estimation.noise import WHITE
@@ -65,12 +64,6 @@ def weights(e: list[Array], sizes: list[Array] | None = None, heavy: float = 6.0
 
 
 # ---- sizes -------------------------------------------------------------------------------------
-
-
-def test_a_robust_size_is_the_median_over_that_of_a_normal() -> None:
-    assert robust_size(np.array([1.0, -2.0, 30.0])) == pytest.approx(2.0 / 0.6745)
-    assert robust_size(np.zeros(0)) == 0.0
-    assert robust_size(noise(20000, 1)) == pytest.approx(1.0, abs=0.02)
 
 
 def test_white_noise_is_what_third_differences_leave() -> None:

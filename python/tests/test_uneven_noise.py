@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.uneven_noise import _uneven, robust_size
+from jbf.diagnosis.uneven_noise import _uneven
+from jbf.estimation.robust import robust_size
 
 COUNTS = np.array([210, 40, 90, 700])
 

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.uneven_noise import robust_size
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
@@ -23,6 +22,7 @@ from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
+from jbf.estimation.robust import robust_size
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution

@@ -9,6 +9,7 @@ from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import (
     effective_share,
+    gain_of_most,
     likelihood_gain,
     next_step_gain,
     share_of_gain,
@@ -44,7 +45,12 @@ def evidence(
         gain *= effective_share(richer) if anywhere else share_of_gain(richer, simpler)
     if set(candidates.idle(richer)) - set(simpler.effects):
         gain = min(gain, 0.0)
-    return gain - price_of(candidates, richer.free - simpler.free)
+    price = price_of(candidates, richer.free - simpler.free)
+    if gain > price:
+        # What a few samples alone ask for may be no more than what is wrong with them.
+        of_most = gain_of_most(richer, simpler)
+        gain = gain if of_most > price else max(of_most, 0.0)
+    return gain - price
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:

@@ -22,13 +22,14 @@ from jbf.diagnosis.shifted import (
     refitted,
     without_delay,
 )
-from jbf.diagnosis.uneven_noise import noise_sizes, robust_size
+from jbf.diagnosis.uneven_noise import noise_sizes
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import drift_step, lateness_step
 from jbf.estimation.jumps import samples_beside_jumps
-from jbf.estimation.lateness import CLIPPED, Lateness, lateness
+from jbf.estimation.lateness import Lateness, lateness
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.problem import Problem
+from jbf.estimation.robust import CLIPPED, robust_size
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect

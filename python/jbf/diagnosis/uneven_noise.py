@@ -8,6 +8,7 @@ from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.problem import Problem
+from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 
@@ -22,13 +23,6 @@ ERROR = 1.9
 """Relative standard error of a size from the median of third differences, times the square root of
 the samples: 1.17 of a median of independent ones (Rousseeuw & Croux 1993); these share readings.
 """
-
-
-def robust_size(values: Array) -> float:
-    """A standard deviation from the median; zero of none, as of a run that was set aside."""
-    if not len(values):
-        return 0.0
-    return float(np.median(np.abs(values))) / 0.6745
 
 
 def _white(residual: Array) -> Array:

@@ -20,6 +20,7 @@ from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
+from jbf.estimation.robust import CLIPPED
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
@@ -29,8 +30,6 @@ Mask = npt.NDArray[np.bool_]
 
 FINE_S = 2.5e-3
 """The model's force is computed at instants no further apart, s."""
-CLIPPED = 3.5
-"""Residuals count no more than at so many standard deviations."""
 PARTS = 3
 """Parts of a run that tell whether its lateness grows."""
 LEAST_SAMPLES = 60

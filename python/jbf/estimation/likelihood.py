@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise import LONGEST_MEMORY_S, Noise
 from jbf.estimation.problem import Problem
+from jbf.estimation.robust import clipped_square, robust_size
 from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples, least_weights
 from jbf.estimation.solution import Solution
@@ -60,6 +61,21 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
         left.append(own)
         ways.append(before - own)
     return min(share, 1.0 / sure_inflation(ways, left, samples.steps_s))
+
+
+def gain_of_most(richer: Solution, simpler: Solution) -> float:
+    """A gain on which no sample has more than a bounded influence: squares count no further than to
+    a few standard deviations of what the richer one leaves of most."""
+    samples = least_weights(richer.samples, simpler.samples)
+    own, before = (
+        np.concatenate(
+            [_whitened(samples, r, richer.noise, i) for i, r in enumerate(solution.residuals)]
+        )
+        for solution in (richer, simpler)
+    )
+    size = robust_size(own)
+    # Of a model that leaves nothing of most samples any gain is one of few.
+    return clipped_square(before, size) - clipped_square(own, size) if size > 0.0 else np.inf
 
 
 def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:

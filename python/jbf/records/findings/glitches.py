@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.counts import count_of
+from jbf.records.findings.ends import ends_finding, loose_ends
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
@@ -55,8 +56,13 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     """Glitches of the force, and where they are; a peak at a reversal or a start is none."""
     assert run.friction_n is not None
     mask = glitches(run.friction_n) & ~_breakaway(velocity_m_s)
+    loose = _loose_ends(run, velocity_m_s, mask)
+    off = run.friction_n - _next_to(run, mask | loose)
+    unit = run.quantities.force
+    ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "set aside")
+    more = [] if ends is None else [ends]
     if not mask.any():
-        return [], mask
+        return more, loose
     index = np.flatnonzero(mask)
     middle = 0.5 * (run.friction_n[index - 1] + run.friction_n[index + 1])
     size = float(np.max(np.abs(run.friction_n[index] - middle)))
@@ -64,9 +70,24 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     singles = count_of(
         len(index), "single sample of the force is", "single samples of the force are"
     )
-    unit = run.quantities.force
     words = f"{singles} off by up to {size:.3g} {unit} (at {first})"
-    return [Finding("glitches", "friction_n", run.name, size, unit, "set aside", words)], mask
+    single = Finding("glitches", "friction_n", run.name, size, unit, "set aside", words)
+    return [single, *more], mask | loose
+
+
+def _loose_ends(run: Run, velocity_m_s: Array, mask: Mask) -> Mask:
+    """Ends of the force that are off, beside those that stick out within; but for a start."""
+    assert run.friction_n is not None
+    loose, good = np.zeros(len(mask), dtype=bool), ~mask
+    loose[good] = loose_ends(run.time_s[good], run.friction_n[good], 1)
+    return loose & ~_breakaway(velocity_m_s)
+
+
+def _next_to(run: Run, mask: Mask) -> Array:
+    """The force as the samples say that do not stick out."""
+    assert run.friction_n is not None
+    said: Array = np.interp(run.time_s, run.time_s[~mask], run.friction_n[~mask])
+    return said
 
 
 def _breakaway(velocity_m_s: Array) -> Mask:

@@ -10,7 +10,12 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.derived_speed import centred_speed, derived_speed
-from jbf.records.motion.glitches import mend_position, mend_speed
+from jbf.records.motion.glitches import (
+    mend_path_ends,
+    mend_position,
+    mend_speed,
+    mend_speed_ends,
+)
 from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from jbf.records.motion.lateness import earlier, late_speed
@@ -21,6 +26,7 @@ from jbf.records.motion.units import wrong_unit
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 NOT_AS_RECORDED = (
     "units",
@@ -52,6 +58,8 @@ class Believed:
         What was found, and what was done about it.
     arm_m
         Metres of path for a unit of the position's column.
+    loose
+        True at ends of which the motion is not known.
     hum
         A speed that is one of a rest, m/s.
     """
@@ -61,6 +69,7 @@ class Believed:
     speed: Array
     speed_measured: bool
     findings: tuple[Finding, ...]
+    loose: Mask
     arm_m: float = 1.0
     hum: float = 0.0
 
@@ -84,12 +93,14 @@ def believed(run: Run, radius_m: float | None) -> Believed:
                 mend="add the column, or give the rig its [bearing]",
             )
         speed, odd = mend_speed(name, time, speed, None, said.speed)
-        return Believed(None, 0.0, speed, True, _there(odd, stamps))
+        speed, loose, ends = mend_speed_ends(name, time, speed, None, said.speed)
+        return Believed(None, 0.0, speed, True, _there(odd, *ends, stamps), loose)
     step = step_of(position.path_m)
     position, astray = mend_position(name, time, position)
+    position, loose, ends = mend_path_ends(name, time, position)
     if not run.speed_recorded:
-        found = _there(astray, stamps)
-        alone = _path_alone(name, time, position.path_m, step, found, said.speed)
+        found = _there(astray, *ends, stamps)
+        alone = _path_alone(name, time, position.path_m, step, found, loose, said.speed)
         return replace(alone, arm_m=position.arm_m)
     speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
     unit = wrong_unit(name, time, position, speed, said)
@@ -105,25 +116,33 @@ def believed(run: Run, radius_m: float | None) -> Believed:
         speed = earlier(time, speed, aside.size)
     if measured:
         speed, odd = mend_speed(name, time, speed, path, said.speed)
+        speed, off, more = mend_speed_ends(name, time, speed, path, said.speed)
+        loose, ends = loose | off, [*ends, *more]
         position, held = mend_held(name, time, position, speed, said.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
     shaken = stamps or shaken_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
-    findings = _there(astray, zero, scale, aside, odd, held, shaken)
-    return Believed(path, step, speed, measured, findings, position.arm_m, hum)
+    findings = _there(astray, *ends, zero, scale, aside, odd, held, shaken)
+    return Believed(path, step, speed, measured, findings, loose, position.arm_m, hum)
 
 
 def _path_alone(
-    name: str, time: Array, path: Array, step: float, found: tuple[Finding, ...], unit: str
+    name: str,
+    time: Array,
+    path: Array,
+    step: float,
+    found: tuple[Finding, ...],
+    loose: Mask,
+    unit: str,
 ) -> Believed:
     """The records of a motion whose speed was not recorded."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)
     shaken = () if found else _there(shaken_path(name, time, path, speed))
-    return Believed(path, step, speed, False, (made, *found, *shaken))
+    return Believed(path, step, speed, False, (made, *found, *shaken), loose)
 
 
 def _there(*findings: Finding | None) -> tuple[Finding, ...]:

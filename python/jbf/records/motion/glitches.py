@@ -7,7 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.counts import count_of
+from jbf.records.findings.ends import ends_finding, loose_ends
 from jbf.records.findings.finding import Finding
+from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.position import Position
 from jbf.records.motion.roughness import step_of
 
@@ -34,6 +36,7 @@ RARE = 0.02
 RARE_ALONE = 0.003
 """The same where no path confirms what a speed says: a slip of the shaft may be as short."""
 LEAST_SAMPLES = 60
+ASIDE = "left out of the motion"
 
 
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
@@ -52,8 +55,7 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
     mended = _between(time, path, mask)
     size = float(np.max(np.abs(path - mended))) / position.arm_m
     words = _words("position", time, mask, f"{size:.3g} {position.unit}")
-    done = "left out of the motion"
-    found = Finding("glitches", position.column, name, size, position.unit, done, words)
+    found = Finding("glitches", position.column, name, size, position.unit, ASIDE, words)
     return position.along(mended), found
 
 
@@ -82,8 +84,33 @@ def mend_speed(
     mended = _between(time, speed, mask)
     size = float(np.max(np.abs(speed - mended)))
     words = _words("speed", time, mask, f"{size:.3g} {unit}")
-    done = "left out of the motion"
-    return mended, Finding("glitches", "velocity_m_s", name, size, unit, done, words)
+    return mended, Finding("glitches", "velocity_m_s", name, size, unit, ASIDE, words)
+
+
+def mend_path_ends(
+    name: str, time: Array, position: Position
+) -> tuple[Position, Mask, list[Finding]]:
+    """The path with ends that are off on the line that comes next to them, and which they are."""
+    path = position.path_m
+    mask = loose_ends(time, path, 3)
+    mended = _between(time, path, mask)
+    off = (path - mended) / position.arm_m
+    found = ends_finding(position.column, "position", name, mask, off, position.unit, ASIDE)
+    return (position.along(mended) if found else position), mask, [found] if found else []
+
+
+def mend_speed_ends(
+    name: str, time: Array, speed: Array, path: Array | None, unit: str
+) -> tuple[Array, Mask, list[Finding]]:
+    """The same of a speed; with a path only where that does not go so fast."""
+    mask = loose_ends(time, speed, 1)
+    mended = _between(time, speed, mask)
+    if path is not None and mask.any():
+        missed = _missed(time, path, speed) > 2.0 * _missed(time, path, mended)
+        if not missed[mask].all():
+            mask[:], mended = False, speed
+    found = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, ASIDE)
+    return mended, mask, [found] if found else []
 
 
 def _off(time: Array, path: Array, least: float) -> Mask:
@@ -94,7 +121,7 @@ def _off(time: Array, path: Array, least: float) -> Mask:
         return found
     t = np.stack([time[k : n - 4 + k] - time[2 : n - 2] for k in (0, 1, 3, 4)])
     y = np.stack([path[k : n - 4 + k] - path[2 : n - 2] for k in (0, 1, 3, 4)])
-    weights = _weights(t)
+    weights = weights_at_zero(t)
     off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
     far = size > np.maximum(FAR * _around(size) / 0.6745, least)
@@ -108,16 +135,6 @@ def _off(time: Array, path: Array, least: float) -> Mask:
     far &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     found[2:-2] = far
     return found
-
-
-def _weights(t: Array) -> Array:
-    """Lagrange's weights at zero of values at times, shape (points, ...)."""
-    weights = np.ones_like(t)
-    for j in range(len(t)):
-        for k in range(len(t)):
-            if k != j:
-                weights[j] *= t[k] / (t[k] - t[j])
-    return weights
 
 
 def _both_sides(change: Array) -> tuple[Array, Array]:
@@ -170,7 +187,7 @@ def _between(time: Array, values: Array, mask: Mask) -> Array:
         near = good[max(k - 2, 0) : k + 2]
         t, y = time[near] - time[i], values[near]
         # A cubic within the record, a line at its ends.
-        mended[i] = np.dot(_weights(t), y)
+        mended[i] = np.dot(weights_at_zero(t), y)
     return mended
 
 

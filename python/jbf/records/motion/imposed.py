@@ -187,7 +187,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
-    sign_known &= ~backward_beside_rest(rest, time, velocity, acceleration)
+    sign_known &= ~backward_beside_rest(rest, time, velocity, acceleration) & ~records.loose
     if records.path is not None and not records.speed_measured:
         sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
     without_swings(rest, velocity, sign_known)

@@ -14,6 +14,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import _within_steps, evidence, evidence_alone, swap_cost
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n
+from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise import WHITE, Noise
 from made_up import SAMPLES, N
 
@@ -50,7 +51,8 @@ def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
     assert lost > 60.0
     # Nor is what a noise costs that was described with those samples in it.
     smooth = problem.solution(right.values, right.samples, Noise(0.5, 0.9))
-    assert evidence(candidates, richer, smooth) > 60.0
+    assert likelihood_gain(richer, smooth) > 60.0
+    assert evidence(candidates, richer, smooth) < 0.0
     assert evidence_alone(candidates, richer, smooth) < 0.0
     # On the same samples the two are one.
     whole = astray.samples.cost(right.residuals, WHITE)

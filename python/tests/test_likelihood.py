@@ -71,7 +71,7 @@ def test_a_gain_of_most_is_no_gain_of_one_sample() -> None:
     followed = solved([drawn[:600], drawn[600:]], samples)
     of_one = solved([off[:600], off[600:]], samples)
     assert likelihood_gain(followed, of_one) > 2000.0
-    assert 0.0 < gain_of_most(followed, of_one) < 3.5**2
+    assert 0.0 < gain_of_most(followed, of_one) < 1.1 * 3.5**2
     level = solved([drawn[:600] + 0.5, drawn[600:] + 0.5], samples)
     assert gain_of_most(followed, level) == pytest.approx(250.0, rel=0.15)
     assert gain_of_most(level, followed) < -180.0

@@ -17,7 +17,7 @@ def test_a_robust_size_is_the_median_over_that_of_a_normal() -> None:
 def test_squares_count_to_three_and_a_half_standard_deviations() -> None:
     assert CLIPPED == 3.5
     errors = np.array([0.5, -1.0, 3.4, -7.0, 1e9])
-    assert clipped_square(errors, 2.0) == pytest.approx(0.0625 + 0.25 + 1.7**2 + 3.5**2 + 3.5**2)
+    assert clipped_square(errors, 2.0) == pytest.approx(0.25 + 1.0 + 3.4**2 + 7.0**2 + 7.0**2)
     # Of the normal's variance a clip there takes a thousandth.
     drawn = np.random.default_rng(2).standard_normal(200_000)
     assert clipped_square(drawn, 1.0) / len(drawn) == pytest.approx(0.9988, abs=0.01)

@@ -74,8 +74,9 @@ def gain_of_most(richer: Solution, simpler: Solution) -> float:
         for solution in (richer, simpler)
     )
     size = robust_size(own)
-    # Of a model that leaves nothing of most samples any gain is one of few.
-    return clipped_square(before, size) - clipped_square(own, size) if size > 0.0 else np.inf
+    left = clipped_square(own, size)
+    # Where most is fitted exactly no sample is off.
+    return len(own) * (clipped_square(before, size) / left - 1.0) if left > 0.0 else np.inf
 
 
 def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:

@@ -19,5 +19,5 @@ def robust_size(values: Array) -> float:
 
 
 def clipped_square(errors: Array, size: float) -> float:
-    """Their sum of squares in units of a standard deviation, each no further than to `CLIPPED`."""
-    return float(np.sum(np.minimum((errors / size) ** 2, CLIPPED**2)))
+    """Their sum of squares, each no further than to `CLIPPED` standard deviations of this size."""
+    return float(np.sum(np.minimum(errors**2, (CLIPPED * size) ** 2)))

@@ -61,6 +61,17 @@ def test_a_gain_must_exceed_what_noise_recordings_and_indifference_ask() -> None
     assert replace(level, candidates=0).white == pytest.approx(stats.chi2.isf(0.02, 1))
 
 
+def test_a_level_alone_asks_for_what_noise_gains() -> None:
+    """Nine in ten times that is less than a tenth: nothing else is asked for."""
+    level = Level(0.9, 1, 0.9)
+    assert level.price(1, 100) == pytest.approx(stats.chi2.isf(0.9, 1))
+    assert (level.blocks, level.decoys, level.decoys_named) == (0, 0, 0)
+
+
+def test_forty_draws_are_beyond_a_level_of_one_in_a_hundred() -> None:
+    assert DRAWS * DEFAULT.false_alarms == 40.0
+
+
 # ---- directions --------------------------------------------------------------------------------
 
 

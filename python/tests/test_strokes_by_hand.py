@@ -36,6 +36,15 @@ def test_a_stroke_ends_where_the_motion_turns_round() -> None:
     assert stroke_of(still).tolist() == [-1] * 4
 
 
+def test_what_is_not_known_to_move_is_in_no_stroke() -> None:
+    """Beside a reversal, and at rest, though the encoder knows which way it lies."""
+    run = strokes([3, 3])
+    run.motion.sign_known = np.array([1, 1, 0, 0, 1, 1], dtype=bool)
+    assert stroke_of(run).tolist() == [0, 0, -1, -1, 1, 1]
+    run.motion.resting = np.array([0, 1, 0, 0, 0, 0], dtype=bool)
+    assert stroke_of(run).tolist() == [0, -1, -1, -1, 1, 1]
+
+
 def told(
     prepared: list[Any], residuals: list[Array], friction: list[Array], **policy: Any
 ) -> list[Remainder]:
@@ -117,3 +126,24 @@ def test_few_or_short_strokes_tell_nothing() -> None:
     both = [[*a, *b] for a, b in zip(one, two, strict=True)]
     assert len(told(both[0], both[1], both[2], **loose)) == 1
     assert told(*levels([0.0] * 6, 0.0)) == []
+
+
+def test_where_the_friction_is_larger_a_level_counts_for_more() -> None:
+    """Halves of strokes whose friction differs: each level is known to one over the root of the
+    squares there, and so are their distances."""
+    sizes = np.array([[1.0, 2.0], [3.0, 1.0], [2.0, 2.0], [1.0, 4.0], [2.0, 1.0]])
+    levels = np.array([0.1, -0.1, 0.12, -0.06, 0.02])
+    apart = np.array([0.004, -0.002, 0.001, 0.003, -0.005])
+    run = strokes([20] * 5)
+    way = np.sign(run.motion.velocity_m_s)
+    friction = way * np.repeat(sizes.ravel(), 10)
+    off = np.stack([levels - 0.5 * apart, levels + 0.5 * apart], axis=1)
+    left = [friction * np.repeat(off.ravel(), 10)]
+    (found,) = told([run], left, [friction], constancy_chance=0.5)
+    weight = 10.0 * sizes**2
+    of_stroke = weight.sum(axis=1)
+    level = (weight * off).sum(axis=1) / of_stroke
+    between = np.sum(of_stroke * (level - np.average(level, weights=of_stroke)) ** 2)
+    known = 1.0 / (1.0 / weight[:, 0] + 1.0 / weight[:, 1])
+    within = np.sum(known * (apart - np.average(apart, weights=known)) ** 2)
+    assert found.share == pytest.approx((between - within) / np.sum(weight * off**2))

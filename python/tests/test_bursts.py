@@ -136,3 +136,7 @@ def test_without_any_noise_a_burst_is_all_there_is() -> None:
     (found,) = told(e)
     assert found.where == "1 burst, of 2 N: at 20.0 s in a"
     assert found.share == 1.0
+
+
+def test_what_is_so_small_that_its_squares_are_nothing_is_no_burst() -> None:
+    assert told(with_bursts({1000: 8.0}), unit=1e-170) == []

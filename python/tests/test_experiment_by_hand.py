@@ -3,136 +3,121 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from jbf import Rig, Run
-from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.experiment import Experiment, _names, propose
 
-module = sys.modules["jbf.diagnosis.experiment"]
-Names = tuple[str, ...]
-A: Names = ("sensor_offset", "sensor_lag")
-B: Names = ("sensor_offset", "sensor_drift")
-C: Names = ("inertia_leak",)
-SAMPLES = 100
-NOISE_N = {A: 0.5, B: 0.25, C: 0.1}
+proposing = sys.modules["jbf.diagnosis.experiment"]
 
 
-def proposed(
-    monkeypatch: pytest.MonkeyPatch,
-    left: dict[str, dict[tuple[Names, Names], float]],
-    rivals: list[list[Names]],
-) -> Experiment | str:
-    """Of motions in each of which so much is left of one model's friction by another's fit."""
+def test_rivals_are_named_by_what_they_do_not_share() -> None:
+    group = [("a", "b"), ("a", "c", "d"), ("a",)]
+    assert _names([group]) == "b and c + d and nothing more"
+    assert _names([[("a",), ("b",)], [("c", "a"), ("c", "d")]]) == "a and b; a and d"
 
-    def model(effects: Names) -> Any:
+
+def rivals(monkeypatch: pytest.MonkeyPatch, apart: dict[str, dict[tuple[str, str], float]]) -> Any:
+    """Candidates whose models are so far apart in each of some motions, in squares of noise."""
+    run = [0.0] * 100
+    excitations = [SimpleNamespace(words=f"a {name}") for name in apart]
+    monkeypatch.setattr(
+        proposing, "filled_limits", lambda c, limits: (SimpleNamespace(duration_s=30.0), 0.02)
+    )
+    monkeypatch.setattr(
+        proposing, "motions", lambda c, limits, step: [(e, run, e.words[2:]) for e in excitations]
+    )
+
+    def rival(fitted: str) -> Any:
+        def separation(own: Any, truth: Any, step_s: float) -> float:
+            motion, a = own
+            return apart[motion][a, truth[1]]
+
+        noise = {"sensor_offset": 0.5}.get(fitted, 0.2)
         return SimpleNamespace(
-            at=lambda motion: (effects, motion),
-            separation=lambda own, truth, step_s: left[own[1]][own[0], truth[0]],
-            noise_n=NOISE_N[effects],
+            at=lambda motion: (motion, fitted), separation=separation, noise_n=noise
         )
 
-    fitted: list[Names] = []
-    monkeypatch.setattr(module, "Rival", model)
-    limits = SimpleNamespace(duration_s=30.0)
-    monkeypatch.setattr(module, "filled_limits", lambda candidates, given: (limits, 0.02))
-    monkeypatch.setattr(
-        module,
-        "motions",
-        lambda candidates, given, step_s: [
-            (SimpleNamespace(words=f"a {name}"), [0.0] * SAMPLES, name) for name in left
-        ],
-    )
-    candidates: Any = SimpleNamespace(
-        converge=fitted.append,
-        fitted=lambda effects: effects,
-        policy=DEFAULT,
+    monkeypatch.setattr(proposing, "Rival", rival)
+    return SimpleNamespace(
+        converge=lambda effects: None,
+        fitted=lambda effects: effects[0],
+        policy=SimpleNamespace(least_separation=25.0),
         campaign=SimpleNamespace(rig=Rig()),
     )
-    found = propose(candidates, rivals)
-    assert fitted == [effects for group in rivals for effects in group]
-    return found
 
 
-def test_the_motion_whose_least_parted_pair_is_parted_most_is_proposed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """A fit that makes up for more than the other is what decides: 60 of the sine, 64 of the
-    sweep."""
-    left = {
-        "rest": {(A, B): 10.0, (B, A): 10.0},
-        "sine": {(A, B): 900.0, (B, A): 60.0},
-        "sweep": {(A, B): 64.0, (B, A): 70.0},
-        "step": {(A, B): 63.0, (B, A): 63.0},
-    }
-    found = proposed(monkeypatch, left, [[A, B]])
-    assert isinstance(found, Experiment)
+A, B = "sensor_offset", "coulomb_drag"
+
+
+def both(there: float, back: float) -> dict[tuple[str, str], float]:
+    return {(A, B): there, (B, A): back}
+
+
+def test_the_run_that_parts_the_least_apart_is_proposed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each of the two may be the truth: what is told of the worse case counts."""
+    candidates = rivals(
+        monkeypatch,
+        {"sine": both(900.0, 30.0), "stop": both(100.0, 64.0), "ramp": both(63.0, 64.0)},
+    )
+    found = propose(candidates, [[(A,), (B,)]])
+    assert not isinstance(found, str)
     assert found.evidence == 64.0
-    # Over 100 samples 0.8 of a noise each, of 0.5 N the larger.
+    # Of a hundred samples 0.8 of the noise, which is 0.5 N of the two.
     assert found.separation_sigma == pytest.approx(0.8)
     assert found.separation_n == pytest.approx(0.4)
     assert found.words == (
-        "record a sweep for 30 s: there sensor_lag and sensor_drift differ by 0.4 N RMS after a "
-        "new fit, 0.8 times the noise"
+        f"record a stop for 30 s: there {A} and {B} differ by 0.4 N RMS after a new fit, "
+        "0.8 times the noise"
     )
+    assert len(found.run) == 100
 
 
-def test_of_two_that_part_as_much_the_first_is_proposed(monkeypatch: pytest.MonkeyPatch) -> None:
-    same = {(A, B): 64.0, (B, A): 64.0}
-    found = proposed(monkeypatch, {"one": same, "other": same}, [[A, B]])
-    assert isinstance(found, Experiment)
-    assert "record a one " in found.words
-
-
-@pytest.mark.parametrize(("part", "there"), [(0.999, False), (1.0, True)])
-def test_what_parts_too_little_is_not_worth_a_run(
-    part: float, there: bool, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("most", "told"), [(24.9, False), (25.0, True)])
+def test_what_parts_no_two_is_not_proposed(
+    most: float, told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    least = part * DEFAULT.least_separation
-    found = proposed(monkeypatch, {"sine": {(A, B): least, (B, A): 1e3}}, [[A, B]])
-    assert isinstance(found, Experiment) == there
-    if not there:
-        assert found == (
-            "sensor_lag and sensor_drift predict the same friction in every motion within the "
-            "limits, once each is fitted: no such run would part them"
-        )
+    found = propose(rivals(monkeypatch, {"sine": both(most, 99.0)}), [[(A,), (B,)]])
+    assert isinstance(found, str) != told
+    if not told:
+        assert str(found).startswith(f"{A} and {B} predict the same friction in every motion")
+    # Of two that part them as far the first.
+    two = propose(
+        rivals(monkeypatch, {"sine": both(64.0, 64.0), "stop": both(64.0, 99.0)}), [[(A,), (B,)]]
+    )
+    assert not isinstance(two, str)
+    assert two.words.startswith("record a sine")
+    nothing = propose(rivals(monkeypatch, {"sine": both(0.0, 0.0)}), [[(A,), (B,)]])
+    assert "no such run would part them" in str(nothing)
 
 
-def test_without_motions_or_differences_nothing_is_proposed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    assert isinstance(proposed(monkeypatch, {}, [[A, B]]), str)
-    nothing = {"sine": {(A, B): 0.0, (B, A): 0.0}}
-    assert isinstance(proposed(monkeypatch, nothing, [[A, B]]), str)
+def test_columns_that_nobody_knows_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = SimpleNamespace(columns=("pressure_pa", "time_s", "angle_rad"))
+    monkeypatch.setattr(proposing, "find_effect", lambda name: page)
+    found = propose(rivals(monkeypatch, {"sine": both(99.0, 99.0)}), [[(A,), (B,)]])
+    assert found == "no run can be proposed: nobody knows what pressure_pa would be"
 
 
 def test_groups_are_parted_each_for_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pairs across groups are not asked for; a model that is part of the other has no name."""
-    bare: Names = ()
-    NOISE_N[bare] = 0.2
-    left = {"sine": {(A, B): 400.0, (B, A): 100.0, (C, bare): 400.0, (bare, C): 200.0}}
-    found = proposed(monkeypatch, left, [[A, B], [C, bare]])
-    assert isinstance(found, Experiment)
+    """Pairs across groups are not asked for; of all of them the least apart decides."""
+    c, d = "inertia_leak", "sensor_lag"
+    apart = {"sine": both(400.0, 300.0) | {(c, d): 100.0, (d, c): 400.0}}
+    fitted: list[Any] = []
+    candidates = rivals(monkeypatch, apart)
+    candidates.converge = fitted.append
+    found = propose(candidates, [[(A,), (B,)], [(c,), (d,)]])
+    assert not isinstance(found, str)
     assert found.evidence == 100.0
-    assert "sensor_lag and sensor_drift; inertia_leak and nothing more differ" in found.words
+    assert f"{A} and {B}; {c} and {d} differ" in found.words
+    assert fitted == [(A,), (B,), (c,), (d,)]
+    assert isinstance(propose(rivals(monkeypatch, {}), [[(A,), (B,)]]), str)
 
 
-def test_what_nobody_can_simulate_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    pages = {
-        "x": SimpleNamespace(columns=("pressure_pa", "angle_rad")),
-        "y": SimpleNamespace(columns=("humidity",)),
-    }
-    monkeypatch.setattr(module, "find_effect", pages.__getitem__)
-    asked: Any = None
-    assert propose(asked, [[("x",), ("y",)]]) == (
-        "no run can be proposed: nobody knows what humidity, pressure_pa would be"
-    )
-
-
-def test_a_run_is_written_to_be_played(tmp_path: Any) -> None:
+def test_a_run_is_written_to_be_played(tmp_path: Path) -> None:
     t = 0.02 * np.arange(20)
     run = Run.from_arrays(t, 0.1 * np.sin(t), name="next")
     Experiment("words", run, 0.4, 0.8, 64.0).write_csv(tmp_path / "next.csv")

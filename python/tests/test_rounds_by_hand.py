@@ -14,7 +14,6 @@ import pytest
 from by_hand import fit_by_hand
 from jbf import InputError, Rig
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import _within_steps
 from jbf.diagnosis.ledger import Step
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.rounds import (
@@ -200,22 +199,6 @@ def test_runs_that_differ_go_before_an_effect_that_leaves_more(
     assert asked[1] == 30.0
     monkeypatch.setattr(rounds, "deviation", lambda *told: None)
     assert _differ_more(made, ("a", "b"), found) is None
-
-
-@pytest.mark.parametrize(("apart", "within"), [(0.099, True), (0.101, False)])
-def test_models_that_differ_by_a_converters_steps_are_one(apart: float, within: bool) -> None:
-    richer, simpler = left(1.0), left(1.0 + apart)
-    asked: list[float] = []
-
-    def steps(rms_n: float) -> float:
-        asked.append(rms_n)
-        return 0.1
-
-    campaign: Any = SimpleNamespace(steps_rms_n=steps)
-    assert _within_steps(campaign, richer, simpler) == within
-    half: Any = SimpleNamespace(steps_rms_n=lambda rms_n: 0.5)
-    assert not _within_steps(half, left(1.0), left(1.5))
-    assert asked == pytest.approx([1.0 + apart])
 
 
 # ---- films -------------------------------------------------------------------------------------

@@ -157,6 +157,25 @@ def test_each_of_six_forces_has_a_size_of_its_own(loud: int) -> None:
     assert share == pytest.approx(weight, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("sd", "told"),
+    [
+        # A line through the squares: 1 at 1 N, and so much more at 6 N.
+        (np.sqrt(1.0 + (1.4**2 - 1.0) * (np.arange(1.0, 7.0) ** 2 - 1.0) / 35.0), True),
+        # In the middle alone it is larger: the line rises little.
+        (np.array([1.0, 1.0, 1.3, 1.3, 1.1, 1.1]), False),
+    ],
+)
+def test_noise_grows_with_the_force_where_the_line_rises_by_a_quarter(
+    sd: Array, told: bool
+) -> None:
+    """From the least of the sizes; in squares 1.5625."""
+    each = 4000
+    held = np.repeat(np.arange(1.0, 7.0), each)
+    _, found = sizes(to_and_fro(np.repeat(sd, each)), force=[held])
+    assert [f.kind for f in found] == ["noise_with_force"] * told
+
+
 def test_noise_that_a_larger_force_explains_is_not_the_runs() -> None:
     """One runs under 1.5 to 2.5 N, the other under twice that; both have a tenth of it as noise."""
     low = 2.0 + 0.5 * np.sin(0.7 * np.arange(N))
@@ -258,6 +277,11 @@ def test_what_is_far_off_weighs_by_its_distance(unit: float) -> None:
     assert (found.kind, found.channel, found.run) == ("heavy_tails", "friction_n", "a")
     assert (found.size, found.unit, found.done) == (0.02, "1", "weighed")
     assert found.words == "2 % of the noise is beyond four of its standard deviations"
+
+
+def test_the_share_of_tails_is_told_to_two_digits() -> None:
+    _, (found,) = weights([tailed(99)])
+    assert found.words == "9.9 % of the noise is beyond four of its standard deviations"
 
 
 @pytest.mark.parametrize(("outliers", "told"), [(4, False), (5, True)])

@@ -13,8 +13,10 @@ import pytest
 from jbf.diagnosis.alone import Change, chance_apart, left_apart
 from jbf.diagnosis.power import (
     AGREES,
+    LOOKS_ALONE,
     Power,
     _found,
+    _further,
     _parameters,
     _power,
     _Seen,
@@ -259,3 +261,58 @@ def test_what_is_never_found_is_hidden_and_has_no_strength() -> None:
     # At the usual strength it is found, above it is hidden.
     assert not of(0.0, times=1.0)[0].hidden
     assert of(0.0, times=1.01)[0].hidden
+
+
+def test_a_rival_that_moves_jumps_is_looked_at_where_the_effect_is_stronger(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Both at twice the strength at which each is found, of which half is what it leaves of the
+    effect as it was; one that is never found at twice its usual one."""
+    asked: list[Any] = []
+
+    def left(own: Any, rival: Any, runs: Any) -> float:
+        asked.append((own, rival))
+        return 12.0
+
+    monkeypatch.setattr(module, "_change", lambda runs, model, times: (model, times))
+    monkeypatch.setattr(module, "left_apart", left)
+    jumps, none = SimpleNamespace(shares=[np.ones(3)]), SimpleNamespace(shares=None)
+    seen: Any = {
+        "own": SimpleNamespace(times=(0.5, 1.0), change=none),
+        "straight": SimpleNamespace(times=(7.0, 9.0), change=none),
+        "late": SimpleNamespace(times=(3.0, 4.0), change=jumps),
+        "never": SimpleNamespace(times=(np.nan, np.nan), change=jumps),
+    }
+    models: Any = {name: name for name in seen}
+    asks = {"straight": 8.0, "late": 2.0, "never": 5.0}
+    nobody: Any = None
+    found = _further(nobody, models, seen, "own", 2.0, asks)
+    assert found == {"late": (6.0, 2.0), "never": (6.0, 5.0)}
+    assert asked == [(("own", 1.0), ("late", 6.0)), (("own", 1.0), ("never", 2.0))]
+    # Of one that moves jumps itself all are.
+    seen["own"].change = jumps
+    assert set(_further(nobody, models, seen, "own", 2.0, asks)) == set(asks)
+
+
+@pytest.mark.parametrize(("share", "looks"), [(1.0, 1), (0.99, 1), (0.7, LOOKS_ALONE)])
+def test_it_is_looked_further_until_the_strength_settles(
+    share: float, looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each look leaves so much of what the last one did; three at most."""
+    assert LOOKS_ALONE == 3
+    asked: list[float] = []
+
+    def further(
+        runs: Any, models: Any, seen: Any, name: str, times: float, asks: dict[str, float]
+    ) -> dict[str, tuple[float, float]]:
+        asked.append(times)
+        left = left_apart(seen["own"].change, seen["rival"].change, runs)
+        return {"rival": (left * share ** len(asked), asks["rival"])}
+
+    monkeypatch.setattr(module, "_further", further)
+    found, _ = of(0.9)
+    assert len(asked) == looks
+    # Stronger each time, as less is left.
+    assert asked == sorted(asked)
+    assert found.alone_80 is not None
+    assert (found.alone_80 > 2.0 * asked[0] * (1.0 + AGREES)) == (looks > 1)

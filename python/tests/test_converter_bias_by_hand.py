@@ -19,6 +19,7 @@ Array = npt.NDArray[np.float64]
 module = sys.modules["jbf.diagnosis.converter_bias"]
 N = 4000
 STEP_N = 2.0
+ZERO_N = 0.7
 
 
 # ---- off and on until it stays -----------------------------------------------------------------
@@ -30,9 +31,11 @@ def test_a_bias_is_taken_off_and_the_model_fitted_again_until_it_stays(
 ) -> None:
     """Eight times at most, each a fit of a few steps from where the last one ended."""
     fits: list[Any] = []
+    asked: list[int] = []
 
     def once(problem: Any, solution: Any, policy: Any) -> Any:
         turn = problem.turn
+        asked.append(turn)
         assert solution.turn == turn
         return turn + 1 if turn < moves else None
 
@@ -59,6 +62,8 @@ def test_a_bias_is_taken_off_and_the_model_fitted_again_until_it_stays(
     given = made(0, "law", "clock", ("e",), {"F_s_n": 6.0})
     near: Any = SimpleNamespace(turn=0, values="v0", noise="noise")
     assert without_bias(given, near, DEFAULT) == (turns or None)
+    # Once it stays nobody asks again.
+    assert asked == list(range(min(turns + 1, 8)))
     assert fits == [(i + 1, ("samples", f"v{i}"), f"v{i}", "noise", 8) for i in range(turns)]
 
 
@@ -91,15 +96,15 @@ def forces(n: int = N) -> Array:
 
 def read(noise: float, step_n: float = STEP_N) -> Array:
     """Mean readings beside so much noise, in steps: what a converter adds, no sample averages."""
-    found: Array = forces() + bias_n(step_n, noise * step_n, forces())
+    found: Array = forces() + bias_n(step_n, noise * step_n, forces() - ZERO_N)
     return found
 
 
 def once(
     monkeypatch: pytest.MonkeyPatch, *readings: Array, stepped: str = "ab", **more: Any
 ) -> Any:
-    """By a model that is right, of runs whose readings' steps begin at zero."""
-    monkeypatch.setattr(module, "origin_n", lambda step, readings: 0.0)
+    """By a model that is right, of runs whose readings' steps do not begin at zero."""
+    monkeypatch.setattr(module, "origin_n", lambda step, readings: ZERO_N)
     prepared = tuple(
         Ready(SimpleNamespace(name="ab"[i], time_s=np.arange(N)), r, r)
         for i, r in enumerate(readings)
@@ -144,3 +149,13 @@ def test_what_moves_a_hundredth_of_a_step_is_off_already(monkeypatch: pytest.Mon
 
 def test_beside_noise_of_most_of_a_step_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert once(monkeypatch, forces()) is None
+
+
+def test_each_run_has_its_residual(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that is missing is not left out without a word."""
+    run = Ready(SimpleNamespace(name="a", time_s=np.arange(N)), read(0.2), read(0.2))
+    findings = (SimpleNamespace(run="a", size=STEP_N, kind="steps"),)
+    problem: Any = SimpleNamespace(campaign=Runs((run, run), findings))
+    solution: Any = SimpleNamespace(residuals=[np.zeros(N)], samples=samples_of([run]))
+    with pytest.raises(ValueError, match="zip"):
+        module._once(problem, solution, DEFAULT)

@@ -13,7 +13,15 @@ import pytest
 from by_hand import coulomb, one_way
 from jbf import Rig
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.power import FURTHER, LEVELS, _change, _Seen, _times, non_centrality
+from jbf.diagnosis.power import (
+    FURTHER,
+    LEVELS,
+    _change,
+    _Seen,
+    _times,
+    non_centrality,
+    power,
+)
 from jbf.diagnosis.strength import RunsAtHand, strength_of
 from jbf.estimation.campaign import Campaign
 
@@ -31,6 +39,7 @@ class Growing:
         self.told, self.left, self.most = told, left, most
         self.asked: list[float] = []
         self.forgiven: list[float] = []
+        self.before = 0
         self.base = SimpleNamespace(free=3)
         self.samples = SimpleNamespace(rms=lambda change: float(np.sqrt(np.mean(change**2))))
         self.friction_n = 4.0
@@ -51,6 +60,7 @@ class Growing:
 
     def not_forgiven(self, change: Array) -> float:
         self.forgiven.append(float(np.sum(change**2)))
+        self.before = len(self.asked)
         return self.left
 
 
@@ -130,6 +140,9 @@ def test_what_a_noise_described_anew_forgives_must_be_made_up_for(
     assert found.times == pytest.approx(strengths(90.0, counts), rel=1e-6)
     assert runs.forgiven == pytest.approx([1.44 * non_centrality(PRICE, 1, 0.95)])
     assert where == found.times[0]
+    if left < 0.97:
+        # From what was found it is known where to look: once for each, and there for the share.
+        assert runs.asked[runs.before :] == pytest.approx([*found.times, found.times[0]])
     # Of a friction of 4 N.
     assert found.share == pytest.approx(np.sqrt(90.0 / SAMPLES) * found.times[0] / 4.0)
 
@@ -160,3 +173,35 @@ def test_a_change_is_seen_there_and_at_twice_as_much_and_by_its_parameters() -> 
         # Linear in the mass.
         assert mass * way[:, 2] == pytest.approx(now, abs=1e-9)
     assert found.shown == pytest.approx(hand.shown(found.ways))
+
+
+# ---- of which effects --------------------------------------------------------------------------
+
+
+def test_power_is_told_of_all_that_may_come_and_is_not_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A further one of an effect beside that one alone; none of an effect without a null; and all
+    of them are rivals, whichever are asked for."""
+    names = ["sensor_offset", "cogging", "cogging_2", "sensor_lag", "inertia_leak"]
+    monkeypatch.setattr(module, "RunsAtHand", lambda candidates, present: "runs")
+    monkeypatch.setattr(
+        module, "strength_of", lambda c, present, name: None if name == "sensor_lag" else name
+    )
+    monkeypatch.setattr(module, "fits_at_once", lambda campaign, law, names: 1)
+    monkeypatch.setattr(_Seen, "of", lambda candidates, runs, model: f"seen {model}")
+    monkeypatch.setattr(module, "_power", lambda c, runs, models, seen, name: (name, seen))
+    candidates: Any = SimpleNamespace(names=names, campaign=None, law="coulomb")
+
+    def told(present: tuple[str, ...], *asked: Any) -> list[str]:
+        found: Any = power(candidates, present, *asked)
+        for _, seen in found:
+            assert set(seen) == {"sensor_offset", "inertia_leak", *beside}
+            assert seen["inertia_leak"] == "seen inertia_leak"
+        return [name for name, _ in found]
+
+    beside = ["cogging"]
+    assert told(()) == ["sensor_offset", "cogging", "inertia_leak"]
+    assert told((), ["inertia_leak", "sensor_lag"]) == ["inertia_leak"]
+    beside = ["cogging_2"]
+    assert told(("cogging",)) == ["sensor_offset", "cogging_2", "inertia_leak"]

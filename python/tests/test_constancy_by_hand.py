@@ -212,6 +212,21 @@ def test_a_warmer_oil_is_known_by_either_of_what_it_moves(known: str, degrees: i
     assert (found.gain > 10.0) == (degrees > 0)
 
 
+def test_units_of_parameters_are_no_matter() -> None:
+    """One in microns beside one in metres."""
+    residuals = [SWINGS + way * RAMP + 0.2 * LEVEL for way in (1.0, -1.0)]
+    plain = disagreement(*of(residuals, [LEVEL, RAMP]))
+    other = disagreement(*of(residuals, [1e6 * LEVEL, 1e-3 * RAMP]))
+    assert (other.gain, other.degrees) == (pytest.approx(plain.gain), plain.degrees)
+
+
+def test_a_run_of_which_nothing_is_left_asks_for_nothing() -> None:
+    found = disagreement(*of([SWINGS + RAMP, 0.0 * SWINGS, SWINGS - RAMP], [LEVEL, RAMP]))
+    assert np.isfinite(found.gain)
+    assert found.by_run["b"] == 0.0
+    assert min(found.by_run["a"], found.by_run["c"]) > 10.0
+
+
 # ---- what decides, and in which directions ----------------------------------------------------
 
 

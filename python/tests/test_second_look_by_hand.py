@@ -50,7 +50,7 @@ def looked(
     known: tuple[str, ...] = (),
     step_n: float = 0.0,
 ) -> tuple[Any, list[Any]]:
-    """A second look at a residual of 1 N, and what was asked for it."""
+    """A second look at a residual of 2 N, and what was asked for it."""
     asked: list[Any] = []
 
     def sizes(problem: Any, solution: Any, policy: Any) -> Any:
@@ -71,7 +71,7 @@ def looked(
     monkeypatch.setattr(module, "_keeps", keeps)
     before = Runs(tuple(SimpleNamespace(kind=kind) for kind in known), step_n)
     problem: Any = SimpleNamespace(campaign=before)
-    solution: Any = SimpleNamespace(residuals=[np.zeros(2)], rms_n=1.0)
+    solution: Any = SimpleNamespace(residuals=[np.zeros(2)], rms_n=2.0)
     found = second_look(problem, solution, POLICY)
     if not found.found:
         assert found.campaign is before
@@ -130,7 +130,7 @@ def test_weights_are_given_once(
     assert (("robust", [ONES], POLICY.heavy_tails) in asked) == tails
 
 
-@pytest.mark.parametrize(("step_n", "tails"), [(1.99, True), (2.0, False), (2.01, False)])
+@pytest.mark.parametrize(("step_n", "tails"), [(3.99, True), (4.0, False), (4.01, False)])
 def test_steps_of_twice_the_residual_are_its_tails(
     step_n: float, tails: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

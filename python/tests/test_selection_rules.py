@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.selection import AHEAD, reconsider, still_needed, try_candidates, weights
@@ -79,3 +80,21 @@ def test_one_of_the_three_that_gained_most_may_lead(idle: int, left_behind: bool
     try_candidates(candidates, ())
     looks = [effects for what, effects in candidates.asked if what == "rank"]
     assert (frozenset(["backlash"]) not in looks) == left_behind
+
+
+# ---- what it is worth --------------------------------------------------------------------------
+
+
+def test_no_candidate_is_worse_than_its_null() -> None:
+    """A fit that lost its way loses no more than the price of its parameter."""
+    lost = made({"sensor_lag": -50.0, "sensor_drift": 300.0})
+    trial = next(t for t in try_candidates(lost, ()).trials if t.effect == "sensor_lag")
+    assert trial.evidence == pytest.approx(-PRICE)
+
+
+def test_weights_are_odds_of_half_the_evidence_that_an_exchange_loses() -> None:
+    gains = {"sensor_lag": 300.0, "sensor_drift": 298.0, "cogging": 293.0}
+    found = weights(made(gains), ("sensor_lag",))["sensor_lag"]
+    odds = np.exp([0.0, -1.0, -3.5])
+    assert list(found) == ["sensor_lag", "sensor_drift", "cogging"]
+    assert list(found.values()) == pytest.approx(odds / odds.sum(), rel=1e-4)

@@ -61,7 +61,8 @@ def test_a_bias_is_taken_off_and_the_model_fitted_again_until_it_stays(
     monkeypatch.setattr(module, "search", search)
     given = made(0, "law", "clock", ("e",), {"F_s_n": 6.0})
     near: Any = SimpleNamespace(turn=0, values="v0", noise="noise")
-    assert without_bias(given, near, DEFAULT) == (turns or None)
+    found: Any = without_bias(given, near, DEFAULT)
+    assert found == (turns or None)
     # Once it stays nobody asks again.
     assert asked == list(range(min(turns + 1, 8)))
     assert fits == [(i + 1, ("samples", f"v{i}"), f"v{i}", "noise", 8) for i in range(turns)]

@@ -102,7 +102,9 @@ def test_each_run_has_a_prediction(bare: Comparison, full: Comparison) -> None:
 # ---- what of it the rest could not say ---------------------------------------------------------
 
 
-def left_over(added: list[Array], ways: list[Array], counted: list[Array]) -> list[Array]:
+def left_over(
+    added: list[Array], ways: list[Array], counted: list[npt.NDArray[np.bool_]]
+) -> list[Array]:
     """What of it columns cannot make up for, where samples count."""
     flat = np.concatenate([a[c] for a, c in zip(added, counted, strict=True)])
     rows = np.concatenate([w[c] for w, c in zip(ways, counted, strict=True)])

@@ -121,7 +121,7 @@ def test_too_few_and_too_many_runs_are_no_plan(
     ],
 )
 def test_no_run_has_more_than_6000_samples(
-    duration_s: float, given: dict[str, float], step_s: float, monkeypatch: pytest.MonkeyPatch
+    duration_s: float, given: dict[str, Any], step_s: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = Asked(monkeypatch)
     asked.plan(30.0, duration_s=duration_s, **given)

@@ -82,8 +82,14 @@ def test_what_effects_make_of_late_runs_the_lateness_may_say_alone(
 
 def test_a_bias_is_asked_for_beside_the_effects_present(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(module, "without_bias", lambda *told: asked.append(told) or "corrected")
-    assert _without_bias(candidates(), ("one",)) == "corrected"  # type: ignore[comparison-overlap]
+
+    def without_bias(*told: Any) -> str:
+        asked.append(told)
+        return "corrected"
+
+    monkeypatch.setattr(module, "without_bias", without_bias)
+    found: Any = _without_bias(candidates(), ("one",))
+    assert found == "corrected"
     assert asked == [(("problem", ("one",)), ("solution", ("one",)), DEFAULT)]
 
 

@@ -36,7 +36,8 @@ def comes_again(size: float) -> Array:
 def comes_not(size: float) -> Array:
     """One whose sign is the same in the next period as often as not."""
     signs = np.resize([1.0, 1.0, -1.0, -1.0], PERIODS)
-    return size * turns(7) * np.repeat(signs, PERIOD)
+    found: Array = size * turns(7) * np.repeat(signs, PERIOD)
+    return found
 
 
 def told(
@@ -121,7 +122,7 @@ def test_a_product_that_strays_for_long_is_less_sure() -> None:
 
 @pytest.mark.parametrize(("part", "there"), [(0.99, True), (1.01, False)])
 def test_a_share_that_matters_is_told(part: float, there: bool) -> None:
-    given = {"replicate_share": part * 1.44 / 2.44}
+    given: dict[str, Any] = {"replicate_share": part * 1.44 / 2.44}
     assert bool(told(comes_again(1.2) + comes_not(1.0), **given)) == there
 
 

@@ -69,7 +69,7 @@ def looked(
     monkeypatch.setattr(module, "noise_sizes", sizes)
     monkeypatch.setattr(module, "robust_weights", robust)
     monkeypatch.setattr(module, "_keeps", keeps)
-    before = Runs(tuple(SimpleNamespace(kind=kind) for kind in known), step_n)
+    before: Any = Runs(tuple(SimpleNamespace(kind=kind) for kind in known), step_n)
     problem: Any = SimpleNamespace(campaign=before)
     solution: Any = SimpleNamespace(residuals=[np.zeros(2)], rms_n=2.0)
     found = second_look(problem, solution, POLICY)

@@ -35,7 +35,7 @@ STEP_S = 0.02
 def test_a_motion_to_play_has_its_way(linear: bool) -> None:
     """0.1 m/s^2 for two seconds are 0.2 m; on a shaft of 25.4 mm that is an angle of 7.87."""
     rig = Rig() if linear else Rig.thesis()
-    t = STEP_S * np.arange(101)
+    t: Array = STEP_S * np.arange(101.0)
     run = played(rig, Excitation("up", 0.1 * t, None), STEP_S, linear=linear)
     assert run.name == "next"
     assert run.time_s == pytest.approx(t)
@@ -121,8 +121,8 @@ def test_a_model_knows_its_noise_and_how_well_it_knows_its_parameters(rival: Riv
 
 def test_a_model_under_a_motion_says_its_force_and_its_slopes(rival: Rival) -> None:
     """Dry and viscous friction; slopes by the logarithms of the parameters, that are searched."""
-    t = STEP_S * np.arange(200)
-    v = 0.1 + 0.05 * np.sin(t)
+    t: Array = STEP_S * np.arange(200.0)
+    v: Array = 0.1 + 0.05 * np.sin(t)
     campaign = Campaign.prepare(Rig(), [Run.from_arrays(t, v, coulomb(t, v, v), name="next")])
     friction, slopes = rival.at(campaign.motions[0])
     known = dict(zip(rival.problem.names, rival.solution.values.tolist(), strict=True))

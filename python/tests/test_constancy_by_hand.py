@@ -217,7 +217,8 @@ def test_units_of_parameters_are_no_matter() -> None:
     residuals = [SWINGS + way * RAMP + 0.2 * LEVEL for way in (1.0, -1.0)]
     plain = disagreement(*of(residuals, [LEVEL, RAMP]))
     other = disagreement(*of(residuals, [1e6 * LEVEL, 1e-3 * RAMP]))
-    assert (other.gain, other.degrees) == (pytest.approx(plain.gain), plain.degrees)
+    assert other.gain == pytest.approx(plain.gain)
+    assert other.degrees == plain.degrees
 
 
 def test_a_run_of_which_nothing_is_left_asks_for_nothing() -> None:

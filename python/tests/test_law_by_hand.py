@@ -300,6 +300,6 @@ def test_a_law_has_a_part_of_the_work(ends: bool, monkeypatch: pytest.MonkeyPatc
     )
     monkeypatch.setattr(module, "left_out", errors)
     campaign: Any = SimpleNamespace(work=SimpleNamespace(part=lambda share: share))
-    found: Any = _within(campaign, "dahl", "contact")
+    found: Any = _within(campaign, "dahl", "thesis")
     assert found == (None if ends else "errors")
     assert asked == [(("settled", ("part", 0.25)), "dahl", ("sensor_offset", "gravity"))]

@@ -144,4 +144,5 @@ def test_effects_that_motions_could_show_are_those_of_known_columns(
     )
     candidates: Any = SimpleNamespace(names=list(columns))
     model: Any = SimpleNamespace(effects=("there",))
-    assert _effects(candidates, model) == ["a", "b"]
+    found: Any = _effects(candidates, model)
+    assert found == ["a", "b"]

@@ -37,7 +37,7 @@ def find_tones(
         if n < SHORTEST:
             continue
         f = np.fft.rfftfreq(n, p.step_s)
-        spectrum = np.abs(np.fft.rfft(e)) ** 2
+        spectrum = np.abs(np.fft.rfft(e - np.mean(e))) ** 2
         band = f > LEAST_TURNS / p.run.duration_s
         if not band.any():
             continue

@@ -231,6 +231,11 @@ def test_lines_are_a_quarter_of_a_line_apart() -> None:
     assert pitch_of(ways, noisy(ways, 8000.0 / 401.0)) == pytest.approx(8000.0 / 401.0, rel=1e-9)
 
 
+def test_a_pitch_of_just_four_bins_is_looked_for() -> None:
+    ways = [np.arange(2000.0)] * 4
+    assert pitch_of(ways, noisy(ways, 4.0)) == pytest.approx(4.0, rel=1e-9)
+
+
 @pytest.mark.parametrize(("long", "is_found"), [(2, False), (3, True)])
 def test_three_runs_are_long_enough_for_a_pitch(long: int, is_found: bool) -> None:
     """Of a pitch of 100 bins one of 2000 holds twenty, one of 500 but five."""

@@ -345,3 +345,47 @@ def test_samples_beside_jumps_count_unless_the_model_moves_them(campaign: Campai
         Model(Rig.thesis(), effects=["time_delay"], parameters={"time_delay.tau_s": 0.05}), runs
     )
     assert late.samples.count < bare.samples.count
+
+
+def test_no_axis_divides_by_a_speed_of_zero(campaign: Campaign) -> None:
+    assert any(np.any(p.motion.velocity_m_s == 0.0) for p in campaign.prepared)
+    with np.errstate(all="raise"):
+        assert len(all_axes(campaign, U_TR)) == 9
+
+
+def test_a_sample_without_speed_that_does_not_rest_counts_as_backwards() -> None:
+    """As it turns round: since the rest before it is known, which way it moves is not."""
+    n = np.arange(201)
+    v = np.where(n == 100, 0.0, 0.1)
+    p = record(0.02 * n.astype(float), velocity=v, resting=n == 0)
+    p.motion.acceleration_m_s2 = np.zeros(201)
+    campaign: Any = SimpleNamespace(prepared=(p,), rig=Rig(), has_angle=False)
+    axis = next(a for a in all_axes(campaign, U_TR) if a.axis == "time since a rest")
+    ways = [axis.bins[place].direction for place in axis.places[0][1:]]
+    assert ways == [1] * 99 + [-1] + [1] * 100
+
+
+def test_less_than_a_fiftieth_of_the_largest_acceleration_is_steady() -> None:
+    """Of 50 m/s^2 one is just a fiftieth."""
+    a = np.array([50.0, 1.0, np.nextafter(1.0, 0.0), -1.0, -50.0, 0.0])
+    p = record(0.02 * np.arange(6.0))
+    p.motion.acceleration_m_s2 = a
+    campaign: Any = SimpleNamespace(prepared=(p,), rig=Rig(), has_angle=False)
+    axis = next(x for x in all_axes(campaign, U_TR) if x.axis == "acceleration")
+    names = [axis.bins[i].name if i >= 0 else "" for i in axis.places[0]]
+    assert names == ["speeding up", "speeding up", "", "slowing", "slowing", ""]
+
+
+def test_an_angle_that_rounds_to_a_whole_turn_is_in_the_last_bin() -> None:
+    """Just below zero is just below 360 degrees, which no number near it says."""
+    way = np.array([-1e-18, 0.0, np.pi, 0.1])
+    v = np.array([0.1, 0.1, -0.1, 0.0])
+    p = record(0.02 * np.arange(4.0), way=way, velocity=v)
+    p.motion.acceleration_m_s2 = np.zeros(4)
+    campaign: Any = SimpleNamespace(prepared=(p,), rig=Rig(), has_angle=True)
+    axis = next(x for x in all_axes(campaign, U_TR) if x.axis == "angle")
+    assert np.mod(way[0], 2.0 * np.pi) == 2.0 * np.pi
+    bins = [axis.bins[i] for i in axis.places[0]]
+    assert [b.centre for b in bins] == pytest.approx([352.5, 7.5, 187.5, 7.5])
+    # What neither rests nor moves backwards is with what moves forwards.
+    assert [b.direction for b in bins] == [1, 1, -1, 1]

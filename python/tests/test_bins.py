@@ -39,6 +39,9 @@ WORDS: list[tuple[Axis, Bin, str]] = [
     ),
     ("run", Bin("2_stops"), "run 2_stops"),
     ("force", Bin(centre=3.14, unit="N"), "f = +3.14 N"),
+    ("force", Bin("none"), "none"),
+    # Only along some axes is a centre what a bin is called by.
+    ("run", Bin("b", centre=2.0), "run b"),
 ]
 
 

@@ -12,6 +12,7 @@ from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from made_of import record, samples_of
+from scipy import special
 
 Array = npt.NDArray[np.float64]
 STEP_S = 0.02
@@ -136,3 +137,34 @@ def test_without_any_noise_a_burst_is_all_there_is() -> None:
     (found,) = told(e)
     assert found.where == "1 burst, of 2 N: at 20.0 s in a"
     assert found.share == 1.0
+
+
+def test_what_is_so_small_that_its_squares_are_nothing_is_no_burst() -> None:
+    assert told(with_bursts({1000: 8.0}), unit=1e-170) == []
+
+
+def test_beside_a_burst_innovations_of_just_five_deviations_are_none() -> None:
+    (found,) = told(with_bursts({400: 8.0, 1000: 5.0}))
+    assert found.where == "1 burst, of 8 N: at 8.0 s in a"
+
+
+@pytest.mark.parametrize(("part", "there"), [(0.9, False), (1.1, True)])
+def test_neighbours_of_one_sign_are_no_chance(part: float, there: bool) -> None:
+    """Four samples of eight deviations, cut to three: three pairs of 9 and two at the edges, whose
+    other halves cancel; each deviates by three times what is usual."""
+    usual = (4 * 9.0 + (N - 4) * ONE**2) / N
+    first, last = quiet()[999], quiet()[1004]
+    product = 3 * 9.0 + 3.0 * (first + last)
+    chance = special.ndtr(-product / np.sqrt(5 * 9.0 * usual))
+    assert bool(told(with_bursts({1000: 8.0}), burst_chance=part * chance)) == there
+
+
+def test_only_pairs_that_both_count_last() -> None:
+    """Of twenty large ones every other does not count: none has a neighbour."""
+    e = with_bursts({1000: 8.0}, 20)
+    prepared = runs(e)
+    here = np.ones(N)
+    here[1001:1020:2] = 0.0
+    assert find_bursts(prepared, samples_of(prepared, [here]), [e], [e], DEFAULT) == []
+    here[1001:1008] = 1.0
+    assert len(find_bursts(prepared, samples_of(prepared, [here]), [e], [e], DEFAULT)) == 1

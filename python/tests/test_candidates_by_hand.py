@@ -133,6 +133,14 @@ def test_how_far_it_is_is_told() -> None:
     some.look_all(sets, base)
     assert {said.split()[0] for said, *_ in told} == {"looking"}
     assert [(i, n) for _, i, n in told] == [(0, 3), (1, 3), (2, 3)]
+    # Those that take longest first.
+    for doing, work in (("looking at", some.look_all), ("trying", some.rank_all)):
+        told.clear()
+        work([("sensor_offset",), ("sensor_offset", "inertia_leak")], base)
+        assert [said for said, *_ in told] == [
+            f"{doing} sensor_offset, inertia_leak",
+            f"{doing} sensor_offset",
+        ]
     # Once it was calibrated directions are let go of, and the level is that of these.
     some.calibrate(())
     assert all(f.directions is None for f in some._fitted.values())

@@ -146,3 +146,17 @@ def test_a_delayed_model_lags_the_one_without_a_delay() -> None:
     (now,), (late,) = predicted(MODEL, campaign), predicted(delayed, campaign)
     inner = slice(10, -10)
     assert (now - late)[inner] == pytest.approx(20.0 * 0.02 * 0.1, rel=0.02)
+
+
+def test_what_stands_still_moves_neither_way(off: Comparison) -> None:
+    """Ten samples there without a speed: the slowest mean is of those that move."""
+    p, other = off.campaign.prepared
+    still = np.arange(501) < 10
+    v = np.where(still, 0.0, p.motion.velocity_m_s)
+    moved = replace(p, motion=replace(p.motion, velocity_m_s=v))
+    found = friction_over_speed(
+        replace(off, campaign=replace(off.campaign, prepared=(moved, other)))
+    )
+    # 491 samples in 24 bins.
+    assert found[0].speed_m_s[0] == pytest.approx(np.sort(v[~still])[:21].mean())
+    assert np.all(found[1].speed_m_s < 0.0)

@@ -10,12 +10,20 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf import Rig
-from jbf.diagnosis.constancy import disagreement, find_disagreement, own_step
+from jbf.diagnosis.constancy import (
+    Disagreement,
+    _directions,
+    _set_aside,
+    disagreement,
+    find_disagreement,
+    own_step,
+)
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.noise import WHITE
 from jbf.models.catalogue import parameters_of
 from made_of import record, samples_of
+from scipy import stats
 
 Array = npt.NDArray[np.float64]
 N = 400
@@ -189,3 +197,73 @@ def test_runs_that_disagree_are_named_the_worst_first() -> None:
     assert "(next:" not in alone.where
     agreed, same = of([SWINGS + a for a in (0.02, 0.0, 0.01)], [LEVEL])
     assert find_disagreement(agreed, same, DEFAULT) == []
+
+
+@pytest.mark.parametrize(("known", "degrees"), [("zero", 2), ("U_tr_m_s", 0), ("gamma", 0)])
+def test_a_warmer_oil_is_known_by_either_of_what_it_moves(known: str, degrees: int) -> None:
+    """What runs are known to differ in otherwise says nothing of the oil."""
+    residuals = [SWINGS + way * RAMP for way in (1.0, -1.0)]
+    between = BetweenRuns((known,), tuple(np.ones((N, 1)) for _ in residuals), 1.0)
+    problem, solution = of(residuals, [LEVEL, RAMP], between=between)
+    problem.names = ["U_tr_m_s", "gamma"]
+    found = disagreement(problem, solution)
+    # Of two runs with two parameters each two are shared.
+    assert found.degrees == (degrees or 1)
+    assert (found.gain > 10.0) == (degrees > 0)
+
+
+def test_units_of_parameters_are_no_matter() -> None:
+    """One in microns beside one in metres."""
+    residuals = [SWINGS + way * RAMP + 0.2 * LEVEL for way in (1.0, -1.0)]
+    plain = disagreement(*of(residuals, [LEVEL, RAMP]))
+    other = disagreement(*of(residuals, [1e6 * LEVEL, 1e-3 * RAMP]))
+    assert other.gain == pytest.approx(plain.gain)
+    assert other.degrees == plain.degrees
+
+
+def test_a_run_of_which_nothing_is_left_asks_for_nothing() -> None:
+    found = disagreement(*of([SWINGS + RAMP, 0.0 * SWINGS, SWINGS - RAMP], [LEVEL, RAMP]))
+    assert np.isfinite(found.gain)
+    assert found.by_run["b"] == 0.0
+    assert min(found.by_run["a"], found.by_run["c"]) > 10.0
+
+
+# ---- what decides, and in which directions ----------------------------------------------------
+
+
+def test_runs_disagree_by_a_ratio_that_matters_and_beyond_chance() -> None:
+    ratio, chance = DEFAULT.constancy_ratio, DEFAULT.constancy_chance
+    many = 400
+    assert not Disagreement(ratio * many - 1.0, many, {}).beyond_chance()
+    assert not Disagreement(ratio * many, many, {}).beyond_chance()
+    assert Disagreement(ratio * many + 1.0, many, {}).beyond_chance()
+    least = float(stats.chi2.isf(chance, 3))
+    assert least > ratio * 3
+    assert not Disagreement(0.99 * least, 3, {}).beyond_chance()
+    assert Disagreement(1.01 * least, 3, {}).beyond_chance()
+    assert not Disagreement(1e9, 0, {}).beyond_chance()
+    assert Disagreement(1e9, 1, {}).beyond_chance()
+    easy = replace(DEFAULT, constancy_chance=0.5, constancy_ratio=1.0)
+    assert Disagreement(3.5, 3, {}).beyond_chance(easy)
+
+
+def test_directions_that_hardly_move_are_none() -> None:
+    """Less than a thousandth of the best."""
+    basis = np.linalg.qr(np.random.default_rng(1).standard_normal((20, 3)))[0]
+    for unit in (1e-9, 1e9):
+        assert _directions(unit * basis * [1.0, 1.1e-3, 0.9e-3]).shape == (20, 2)
+    found = _directions(basis * [1.0, 2.0, 3.0])
+    assert found.T @ found == pytest.approx(np.eye(3), abs=1e-12)
+    assert _directions(np.zeros((20, 2))).shape == (20, 0)
+    assert _directions(np.zeros((20, 0))).shape == (20, 0)
+
+
+def test_what_is_set_aside_explains_nothing_and_leaves_nothing_of_itself() -> None:
+    j = np.array([[1.0, 3.0], [0.0, 4.0], [0.0, 0.0]])
+    r = np.array([5.0, 6.0, 7.0])
+    left, rest = _set_aside(r, j, np.array([True, False]))
+    assert left == pytest.approx([0.0, 6.0, 7.0])
+    assert rest == pytest.approx(np.array([[0.0], [4.0], [0.0]]))
+    same, whole = _set_aside(r, j, np.array([False, False]))
+    assert same is r
+    assert whole is j

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,12 +12,15 @@ import numpy.typing as npt
 import pytest
 from jbf import Rig
 from jbf.diagnosis.deviations import (
+    EVALUATIONS,
     _clearest,
     _columns,
     _predicts_worse,
     _spread,
     _words,
+    deviation,
 )
+from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.noise import WHITE
 from jbf.estimation.random_effect import spread_between
 from made_of import record, samples_of
@@ -211,3 +214,83 @@ def test_runs_left_out_are_predicted_worse_beyond_their_scatter(
 )
 def test_deviations_have_their_words(name: str, unit: str, kind: str, words: str) -> None:
     assert _words(name, 0.123, unit) == (kind, words)
+
+
+# ---- what it must gain -------------------------------------------------------------------------
+
+
+def gained(
+    monkeypatch: pytest.MonkeyPatch, *, least: float = 0.0, worse: bool = False, there: bool = True
+) -> Any:
+    """A deviation that leaves a cost of 60 of 100, of which half counts, less a volume of 5 of
+    what runs could deviate by, beside 2 of what they could before."""
+    counted = [np.arange(N) < 300] * 3
+    prepared = [record(0.02 * np.arange(N), name=name) for name in "abc"]
+    samples = samples_of(prepared)
+    monkeypatch.setattr(type(samples), "cost", lambda self, residuals, noise: 100.0)
+    between: Any = SimpleNamespace(names=("zero",))
+    campaign_problem: Any = SimpleNamespace(
+        solution=lambda values, allowed, noise: SimpleNamespace(
+            cost=60.0, samples=allowed, values=values, noise=noise
+        )
+    )
+    near: Any = Near(samples_of(prepared, counted))
+
+    def clearest(problem: Any, solution: Any, some: Any, chance: float) -> Any:
+        assert (solution, chance) == (near, DEFAULT.deviation_chance)
+        # The samples of the campaign, by what the solution counts.
+        assert [int(c.sum()) for c in some.counted] == [300] * 3
+        return (between, "finding") if there else None
+
+    def search(problem: Any, allowed: Any, values: Any, noise: Any, evaluations: int) -> Any:
+        assert (allowed.between, values, noise, evaluations) == (between, "v", WHITE, EVALUATIONS)
+        return SimpleNamespace(values="there")
+
+    def predicts_worse(problem: Any, after: Any, before: Any, most: float) -> bool:
+        assert (after.values, before.values, most) == ("there", "v", DEFAULT.no_worse)
+        assert before.samples.between is None
+        return worse
+
+    for name, part in {
+        "_clearest": clearest,
+        "search": search,
+        "noise_at": lambda problem, allowed, values: f"noise {values}",
+        "_share": lambda after, before: 0.5,
+        "_volume": lambda some, solution: 2.0 if some.between is None else 5.0,
+        "_predicts_worse": predicts_worse,
+    }.items():
+        monkeypatch.setattr(module, name, part)
+    return deviation(campaign_problem, near, samples, DEFAULT, least)
+
+
+@dataclass(frozen=True)
+class Near:
+    """A solution of which nothing else is asked."""
+
+    samples: Any
+    residuals: Any = ()
+    noise: Any = WHITE
+    values: Any = "v"
+
+
+def test_a_deviation_gains_what_counts_less_its_volume(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half of 40, less 3; the samples that come back are all of the campaign's."""
+    found = gained(monkeypatch)
+    assert found.gain == pytest.approx(17.0)
+    assert found.finding == "finding"
+    assert found.samples.between.names == ("zero",)
+    assert [int(c.sum()) for c in found.samples.counted] == [N] * 3
+
+
+@pytest.mark.parametrize(("least", "there"), [(16.9, True), (17.0, False), (17.1, False)])
+def test_it_must_gain_more_than_is_asked(
+    least: float, there: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert (gained(monkeypatch, least=least) is not None) == there
+
+
+def test_a_deviation_that_predicts_worse_or_is_not_there_is_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert gained(monkeypatch, worse=True) is None
+    assert gained(monkeypatch, there=False) is None

@@ -19,6 +19,28 @@ from jbf.estimation.noise import WHITE, Noise
 from made_up import SAMPLES, N
 
 
+def left(size: float) -> Any:
+    """A solution that leaves so much, RMS, its sign turning from sample to sample."""
+    residual = size * np.where(np.arange(N) % 2, 1.0, -1.0)
+    return SimpleNamespace(residuals=[residual], samples=SAMPLES, rms_n=size)
+
+
+@pytest.mark.parametrize(("apart", "within"), [(0.099, True), (0.101, False)])
+def test_models_that_differ_by_a_converters_steps_are_one(apart: float, within: bool) -> None:
+    richer, simpler = left(1.0), left(1.0 + apart)
+    asked: list[float] = []
+
+    def steps(rms_n: float) -> float:
+        asked.append(rms_n)
+        return 0.1
+
+    campaign: Any = SimpleNamespace(steps_rms_n=steps)
+    assert _within_steps(campaign, richer, simpler) == within
+    half: Any = SimpleNamespace(steps_rms_n=lambda rms_n: 0.5)
+    assert not _within_steps(half, left(1.0), left(1.5))
+    assert asked == pytest.approx([1.0 + apart])
+
+
 def test_what_the_samples_set_aside_cost_is_no_evidence() -> None:
     """A law led astray by three wild samples at a start; a delay that sets them aside."""
     t = np.arange(0.0, 20.0, 0.02)

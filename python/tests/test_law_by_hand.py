@@ -15,9 +15,11 @@ from jbf.diagnosis.which_law import (
     LAW_SHARE,
     STRETCHES,
     LawTried,
+    _within,
     allowed,
     compared,
     followed,
+    left_out,
     simpler_law,
     which_law,
 )
@@ -250,3 +252,54 @@ def test_a_law_that_is_far_off_or_too_dear_is_no_law(monkeypatch: pytest.MonkeyP
     after = mended(monkeypatch, beside, late="other")
     assert after is not None
     assert after.law == "last"
+
+
+# ---- errors of runs left out -------------------------------------------------------------------
+
+
+def test_errors_stand_at_the_samples_that_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And none at the others."""
+    counted = [np.array([True, False, True]), np.array([False, True])]
+    errors = [np.array([1.0, 2.0]), np.array([3.0])]
+    monkeypatch.setattr(module, "left_out_by_run", lambda problem, solution: errors)
+    candidates: Any = SimpleNamespace(
+        converge=lambda effects: SimpleNamespace(samples=SimpleNamespace(counted=counted)),
+        fitted=lambda effects: SimpleNamespace(problem=None),
+    )
+    first, second = left_out(candidates, ())
+    assert first == pytest.approx([1.0, np.nan, 2.0], nan_ok=True)
+    assert second == pytest.approx([np.nan, 3.0], nan_ok=True)
+    # A run without errors of its own is not left out without a word.
+    errors.pop()
+    with pytest.raises(ValueError, match="zip"):
+        left_out(candidates, ())
+
+
+@pytest.mark.parametrize("ends", [True, False])
+def test_a_law_has_a_part_of_the_work(ends: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside those that are no friction and that these runs could show; where that is not enough
+    there are no errors."""
+    asked: list[Any] = []
+
+    def errors(candidates: Any, effects: tuple[str, ...]) -> str:
+        asked.append((candidates.campaign, candidates.law, effects))
+        if ends:
+            raise Unfinished(steps=7.0)
+        return "errors"
+
+    monkeypatch.setattr(module, "replace", lambda campaign, work: ("part", work))
+    monkeypatch.setattr(
+        module, "settled_campaign", lambda campaign, law, clock: ("settled", campaign)
+    )
+    monkeypatch.setattr(
+        module,
+        "Candidates",
+        lambda campaign, law, clock: SimpleNamespace(
+            campaign=campaign, law=law, names=["gravity", "sensor_lag", "sensor_offset"]
+        ),
+    )
+    monkeypatch.setattr(module, "left_out", errors)
+    campaign: Any = SimpleNamespace(work=SimpleNamespace(part=lambda share: share))
+    found: Any = _within(campaign, "dahl", "thesis")
+    assert found == (None if ends else "errors")
+    assert asked == [(("settled", ("part", 0.25)), "dahl", ("sensor_offset", "gravity"))]

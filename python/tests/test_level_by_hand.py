@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -61,6 +62,17 @@ def test_a_gain_must_exceed_what_noise_recordings_and_indifference_ask() -> None
     assert replace(level, candidates=0).white == pytest.approx(stats.chi2.isf(0.02, 1))
 
 
+def test_a_level_alone_asks_for_what_noise_gains() -> None:
+    """Nine in ten times that is less than a tenth: nothing else is asked for."""
+    level = Level(0.9, 1, 0.9)
+    assert level.price(1, 100) == pytest.approx(stats.chi2.isf(0.9, 1))
+    assert (level.blocks, level.decoys, level.decoys_named) == (0, 0, 0)
+
+
+def test_forty_draws_are_beyond_a_level_of_one_in_a_hundred() -> None:
+    assert DRAWS * DEFAULT.false_alarms == 40.0
+
+
 # ---- directions --------------------------------------------------------------------------------
 
 
@@ -92,6 +104,17 @@ def test_an_effect_shows_where_the_law_cannot_follow() -> None:
     assert found.counted == pytest.approx([1.0, 1.0])
     less = Directions.of(e, own, law, samples_of(400, 200), 0.25)
     assert less.counted == pytest.approx([0.25, 0.25])
+
+
+def test_runs_end_where_their_samples_of_some_weight_do() -> None:
+    """Of 400 samples a hundred have none: they have no rows."""
+    whole = samples_of(400, 200)
+    first = whole.weight[0].copy()
+    first[50:150] = 0.0
+    some = replace(whole, weight=(first, whole.weight[1]))
+    random = np.random.default_rng(4)
+    e, own = random.standard_normal(500), random.standard_normal((500, 1))
+    assert Directions.of(e, own, np.ones((500, 1)), some, 1.0).ends.tolist() == [300]
 
 
 def test_a_score_where_the_noise_is_larger_counts_for_less() -> None:
@@ -174,6 +197,13 @@ def test_candidates_that_say_nothing_keep_their_share() -> None:
     assert calibrated(wide, [one, nothing]).chance == pytest.approx(p, rel=1e-3)
     assert calibrated(OPEN, [nothing]) is OPEN
     assert calibrated(OPEN, []) is OPEN
+
+
+def test_more_that_are_told_than_candidates_leave_none_silent() -> None:
+    """Four scores of one each, as above, of two directions that are one."""
+    one = made(np.full(16, 0.25), np.repeat([1.0, 1.0, -1.0, -1.0], 4), [0, 4, 8, 12])
+    found = calibrated(replace(OPEN, false_alarms=0.10), [one, one])
+    assert found.chance == pytest.approx(stats.chi2.sf(16.0, 1), rel=1e-3)
 
 
 def test_a_candidate_of_two_parameters_is_judged_by_both() -> None:
@@ -284,3 +314,25 @@ def test_a_score_is_of_the_samples_that_the_smaller_model_leaves() -> None:
     assert len(some.innovations) == few.campaign.samples.count
     assert some.ways.shape == (len(some.innovations), 1)
     assert len(there) == len(problem.names)
+
+
+def test_of_several_starts_the_one_that_promises_most_is_stepped_from(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of two that promise as much the first."""
+    bare, near, _ = solved((), 0.03)
+    problem, _, _ = solved(("sensor_offset",), 0.03)
+    null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b_n": 0.0}
+    place = problem.names.index("F_c_n")
+    starts = [np.array([null[name] for name in problem.names]) for _ in range(4)]
+    for k, start in enumerate(starts):
+        start[place] *= 1.0 + 0.1 * k
+    added = ("sensor_offset",)
+    alone = [score_test(problem, [start], near, added)[2] for start in starts]
+    assert len({float(there[place]) for there in alone}) == 4
+    promised = iter([3.0, 7.0, 5.0, 7.0])
+    level = sys.modules["jbf.diagnosis.level"]
+    monkeypatch.setattr(level, "promised_gain", lambda *told: next(promised))
+    gain, _, there = score_test(problem, starts, near, added)
+    assert gain == 7.0
+    assert there == pytest.approx(alone[1])

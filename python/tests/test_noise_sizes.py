@@ -122,6 +122,61 @@ def test_the_smallest_forces_have_a_size_of_their_own() -> None:
     assert found.size == pytest.approx(np.sqrt(slope), rel=0.25)
 
 
+def to_and_fro(sd: Array) -> Array:
+    """Readings whose third differences, of white noise of that size, are all as large."""
+    found: Array = np.where(np.arange(len(sd)) % 2, 1.0, -1.0) * sd
+    return found
+
+
+@pytest.mark.parametrize("loud", [0, 5])
+def test_each_of_six_forces_has_a_size_of_its_own(loud: int) -> None:
+    """At one of six, held for a sixth of the run, the noise is half or twice that of the line."""
+    held = np.repeat([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], 400)
+    at = 0.2 * np.arange(1.0, 7.0)
+    at[loud] *= 0.5 if loud == 0 else 2.0
+    sd = np.repeat(at, 400)
+    # Ends lie between the forces, so that each bin has the middle of two of them.
+    edges = np.quantile(held, np.linspace(0.0, 1.0, 7))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    which = np.clip(np.searchsorted(edges, held) - 1, 0, 5)
+    own = np.array([np.median(sd[which == k]) for k in range(6)])
+    # Third differences of what goes to and fro are eight times it; 0.6745 is a normal's median.
+    own *= 8.0 / np.sqrt(20.0) / 0.6745
+    slope, level = np.polyfit(middle**2, own**2, 1)
+    (share,), (found,) = sizes(to_and_fro(sd), force=[held])
+    assert found.size == pytest.approx(np.sqrt(slope), rel=1e-9)
+    least = max(level, 0.25 * own.min() ** 2)
+    weight = np.sqrt((least + slope) / (least + slope * held**2))
+    assert share == pytest.approx(weight, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sd", "told"),
+    [
+        # A line through the squares: 1 at 1 N, and so much more at 6 N.
+        (np.sqrt(1.0 + (1.4**2 - 1.0) * (np.arange(1.0, 7.0) ** 2 - 1.0) / 35.0), True),
+        # In the middle alone it is larger: the line rises little.
+        (np.array([1.0, 1.0, 1.3, 1.3, 1.1, 1.1]), False),
+    ],
+)
+def test_noise_grows_with_the_force_where_the_line_rises_by_a_quarter(
+    sd: Array, told: bool
+) -> None:
+    """From the least of the sizes; in squares 1.5625."""
+    each = 4000
+    held = np.repeat(np.arange(1.0, 7.0), each)
+    _, found = sizes(to_and_fro(np.repeat(sd, each)), force=[held])
+    assert [f.kind for f in found] == ["noise_with_force"] * told
+
+
+def test_noise_that_a_larger_force_explains_is_not_the_runs() -> None:
+    """One runs under 1.5 to 2.5 N, the other under twice that; both have a tenth of it as noise."""
+    low = 2.0 + 0.5 * np.sin(0.7 * np.arange(N))
+    force = [low, 2.0 * low]
+    _, found = sizes(*(0.1 * f * noise(N, i) for i, f in enumerate(force)), force=force)
+    assert [f.kind for f in found] == ["noise_with_force"]
+
+
 @pytest.mark.parametrize(("count", "told"), [(-1, False), (0, True)])
 def test_of_a_few_samples_the_sizes_are_not_told(count: int, told: bool) -> None:
     n = LEAST * FORCE_BINS + count
@@ -186,7 +241,8 @@ def test_sizes_differ_by_a_quarter_and_by_more_than_chance(unit: float) -> None:
     many = np.array([100000, 100000])
     for ratio, apart in ((1.24, False), (1.26, True)):
         assert _uneven(unit * np.array([1.0, ratio]), many, DEFAULT) == apart
-    assert not _uneven(np.array([0.0, 1.0]), many, DEFAULT)
+    with np.errstate(all="raise"):
+        assert not _uneven(np.array([0.0, 1.0]), many, DEFAULT)
     # A relative error of 1.9 over the root of the samples, and a chi-square of one degree.
     least = special.chdtri(1, DEFAULT.deviation_chance)
     for part, apart in ((0.98, False), (1.02, True)):
@@ -214,6 +270,11 @@ def test_what_is_far_off_weighs_by_its_distance(unit: float) -> None:
     assert (found.kind, found.channel, found.run) == ("heavy_tails", "friction_n", "a")
     assert (found.size, found.unit, found.done) == (0.02, "1", "weighed")
     assert found.words == "2 % of the noise is beyond four of its standard deviations"
+
+
+def test_the_share_of_tails_is_told_to_two_digits() -> None:
+    _, (found,) = weights([tailed(99)])
+    assert found.words == "9.9 % of the noise is beyond four of its standard deviations"
 
 
 @pytest.mark.parametrize(("outliers", "told"), [(4, False), (5, True)])

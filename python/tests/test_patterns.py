@@ -45,6 +45,9 @@ def test_means_are_of_the_samples_that_count_and_have_a_bin() -> None:
     means, counts = bin_means(axis, samples, residuals)
     assert counts.tolist() == [3, 0, 2]
     assert means.tolist() == [3.0, 0.0, -4.5]
+    # One sample is its own mean.
+    lone, _ = bin_means(binned(RUNS[:1], [0]), samples_of(np.ones(1)), [np.array([7.0])])
+    assert lone.tolist() == [7.0]
 
 
 def test_the_share_is_what_the_means_explain_beyond_one_variance_a_bin() -> None:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import sys
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf.diagnosis.plan import ENOUGH, MORE, _chosen, _least_worth, _worth
+from jbf.diagnosis.plan import ENOUGH, MORE, _chosen, _effects, _least_worth, _told, _worth
 
 Array = npt.NDArray[np.float64]
 NONE = np.log(ENOUGH)
@@ -78,3 +82,67 @@ def test_motions_are_chosen_for_what_is_not_told_yet() -> None:
     assert _chosen([one, both], 1, prices, 0) == []
     # Of motions that are worth the same the first.
     assert _chosen([one, one], 1, prices, 1) == [0]
+
+
+def test_what_was_chosen_is_not_chosen_for_once_more() -> None:
+    """Squares of 3 and of 2.9 at a price of one: of a third motion log(1 + 4) is left to gain, from
+    log 4 of the first or from log 3.9 of the second; twice the first would be worth less."""
+    law = [1.0, 0.0, 0.0]
+    one = told(law, [0.0, np.sqrt(3.0), 0.0], [0.0, 0.0, 0.0])
+    other = told(law, [0.0, 0.0, 0.0], [0.0, 0.0, np.sqrt(2.9)])
+    assert _chosen([one, other], 1, np.ones(2), 3) == [0, 1, 1]
+
+
+def test_a_motion_tells_by_its_slopes_and_by_what_effects_change(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """By the logarithm of the first parameter, 3, and by the second itself; in noises of 0.5 N, of
+    samples that are worth a quarter each."""
+    module = sys.modules["jbf.diagnosis.plan"]
+    monkeypatch.setattr(module, "imposed", lambda rig, run: "imposed")
+    monkeypatch.setattr(module, "core_motion", lambda rig, run, motion: (run, motion))
+    monkeypatch.setattr(module, "effective_share", lambda solution: 0.25)
+    friction = np.array([1.0, 2.0, 4.0])
+    slopes = np.array([[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
+
+    def jacobian(values: Any, motions: Any, by: Any) -> Any:
+        assert (values.tolist(), motions, by) == ([3.0, 5.0, 7.0], [("run", "imposed")], [0, 2])
+        return [(friction, slopes)]
+
+    problem = SimpleNamespace(
+        chain=SimpleNamespace(jacobian=jacobian), log=np.array([True, True, False]), open=[0, 2]
+    )
+    fitted = SimpleNamespace(
+        problem=problem, found=lambda: SimpleNamespace(values=np.array([3.0, 5.0, 7.0]))
+    )
+    candidates: Any = SimpleNamespace(fitted=lambda effects: fitted)
+    model: Any = SimpleNamespace(rig=None, effects=())
+    way = np.array([0.0, 6.0, 8.0])
+    chain = SimpleNamespace(predict=lambda times, motions: [friction + times * way])
+    effect: Any = SimpleNamespace(problem=SimpleNamespace(chain=chain), values=lambda times: times)
+    run: Any = "run"
+    rows = np.column_stack([3.0 * slopes[:, 0], slopes[:, 1], way])
+    found = _told(candidates, model, [effect], run, 0.5)
+    assert found == pytest.approx(rows.T @ rows * 0.25 / 0.5**2)
+
+
+def test_effects_that_motions_could_show_are_those_of_known_columns(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """And that are not in the model, and have a null; whichever comes first."""
+    module = sys.modules["jbf.diagnosis.plan"]
+    columns = {
+        "there": (),
+        "strange": ("pressure_pa",),
+        "endless": (),
+        "a": ("angle_rad",),
+        "b": (),
+    }
+    monkeypatch.setattr(module, "find_effect", lambda name: SimpleNamespace(columns=columns[name]))
+    monkeypatch.setattr(
+        module, "strength_of", lambda c, present, name: None if name == "endless" else name
+    )
+    candidates: Any = SimpleNamespace(names=list(columns))
+    model: Any = SimpleNamespace(effects=("there",))
+    found: Any = _effects(candidates, model)
+    assert found == ["a", "b"]

@@ -13,8 +13,10 @@ import pytest
 from jbf.diagnosis.alone import Change, chance_apart, left_apart
 from jbf.diagnosis.power import (
     AGREES,
+    LOOKS_ALONE,
     Power,
     _found,
+    _further,
     _parameters,
     _power,
     _Seen,
@@ -117,10 +119,20 @@ def test_one_strength_leads_to_the_next() -> None:
     assert found == pytest.approx([2.0, 3.0], rel=1e-6)
     # Each at the first look: from the one the other is known.
     assert asked == pytest.approx([2.0, 3.0])
+    # From where the first was found, not from where it was looked for.
+    asked.clear()
+    assert _found(runs, model, [22.5, 40.0], 2.0) == pytest.approx([1.5, 2.0])
+    assert asked == pytest.approx([2.0, 1.5, 2.0])
     bounded, short = growing(lambda times: 10.0 * times**2, most=2.5)
     both = _found(bounded, short, [40.0, 90.0])
     assert both[0] == pytest.approx(2.0, rel=AGREES)
     assert np.isnan(both[1])
+    # Where the first never is, the next is looked for from where that one was.
+    lower, low = growing(lambda times: 10.0 * times**2, most=1.0)
+    plain, lower.change = lower.change, counting
+    asked.clear()
+    assert np.isnan(_found(lower, low, [40.0, 90.0], 0.8)).all()
+    assert asked == pytest.approx([0.8, 2.0, 1.2])
 
 
 def test_a_tenth_of_it_is_as_much_where_it_is_as_weak_as_can_be() -> None:
@@ -149,6 +161,11 @@ def test_non_centralities_are_those_of_chi_squares(parameters: int, chance: floa
     for price in (10.0, 30.0, 400.0):
         found = non_centrality(price, parameters, chance)
         assert stats.ncx2.sf(price, parameters, found) == pytest.approx(chance, abs=1e-4)
+    # Of what chance nearly always gives, next to nothing is asked.
+    least = stats.chi2.isf(chance - 0.01, parameters)
+    found = non_centrality(least, parameters, chance)
+    assert found < 1.0
+    assert stats.ncx2.sf(least, parameters, found) == pytest.approx(chance, abs=1e-4)
     # Of gains that count in full or by a quarter, each as likely.
     found = non_centrality(30.0, parameters, chance, (1.0, 0.25))
     whole, less = (stats.ncx2.sf(p, parameters, found) for p in (30.0, 120.0))
@@ -175,7 +192,11 @@ def _straight(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def of(
-    along: float, times: float = 0.5, price: float = PRICE, dearer: float = 0.0
+    along: float,
+    times: float = 0.5,
+    price: float = PRICE,
+    dearer: float = 0.0,
+    growth: float = 1.5,
 ) -> tuple[Power, float]:
     """The power of an effect that is seen at so many times its strength, beside a rival that has
     so much of its direction; and what the rival leaves."""
@@ -208,7 +229,7 @@ def of(
         for name, count in (("own", 4), ("rival", 4 if dearer == 0.0 else 5))
     }
     seen = {
-        "own": _Seen((times, 1.5 * times), own, 0.07),
+        "own": _Seen((times, growth * times), own, 0.07),
         "rival": _Seen((1.0, 1.5), rival, 0.2),
     }
     return _power(candidates, runs, models, seen, "own"), left_apart(own, rival, runs)
@@ -256,6 +277,69 @@ def test_what_is_never_found_is_hidden_and_has_no_strength() -> None:
     assert (found.found_80, found.found_95, found.alone_80, found.share_80) == (None,) * 4
     assert found.hidden
     assert found.like == ()
+    # One that is never found in 95 of 100 is found in 80.
+    some, _ = of(0.0, growth=np.nan)
+    assert (some.found_80, some.found_95, some.share_80) == (2.0, None, 0.07)
+    assert some.alone_80 is not None
     # At the usual strength it is found, above it is hidden.
     assert not of(0.0, times=1.0)[0].hidden
     assert of(0.0, times=1.01)[0].hidden
+
+
+def test_a_rival_that_moves_jumps_is_looked_at_where_the_effect_is_stronger(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Both at twice the strength at which each is found, of which half is what it leaves of the
+    effect as it was; one that is never found at twice its usual one."""
+    asked: list[Any] = []
+
+    def left(own: Any, rival: Any, runs: Any) -> float:
+        asked.append((own, rival))
+        return 12.0
+
+    monkeypatch.setattr(module, "_change", lambda runs, model, times: (model, times))
+    monkeypatch.setattr(module, "left_apart", left)
+    jumps, none = SimpleNamespace(shares=[np.ones(3)]), SimpleNamespace(shares=None)
+    seen: Any = {
+        "own": SimpleNamespace(times=(0.5, 1.0), change=none),
+        "straight": SimpleNamespace(times=(7.0, 9.0), change=none),
+        "late": SimpleNamespace(times=(3.0, 4.0), change=jumps),
+        "never": SimpleNamespace(times=(np.nan, np.nan), change=jumps),
+    }
+    models: Any = {name: name for name in seen}
+    asks = {"straight": 8.0, "late": 2.0, "never": 5.0}
+    nobody: Any = None
+    found = _further(nobody, models, seen, "own", 2.0, asks)
+    assert found == {"late": (6.0, 2.0), "never": (6.0, 5.0)}
+    assert asked == [(("own", 1.0), ("late", 6.0)), (("own", 1.0), ("never", 2.0))]
+    # Of one that moves jumps itself all are.
+    seen["own"].change = jumps
+    assert set(_further(nobody, models, seen, "own", 2.0, asks)) == set(asks)
+
+
+@pytest.mark.parametrize(("share", "looks"), [(1.0, 1), (0.99, 1), (0.7, LOOKS_ALONE)])
+def test_it_is_looked_further_until_the_strength_settles(
+    share: float, looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each look leaves so much of what the last one did; three at most."""
+    assert LOOKS_ALONE == 3
+    asked: list[float] = []
+
+    def further(
+        runs: Any, models: Any, seen: Any, name: str, times: float, asks: dict[str, float]
+    ) -> dict[str, tuple[float, float]]:
+        asked.append(times)
+        left = left_apart(seen["own"].change, seen["rival"].change, runs)
+        return {"rival": (left * share ** len(asked), asks["rival"])}
+
+    monkeypatch.setattr(module, "_further", further)
+    found, _ = of(0.9)
+    assert len(asked) == looks
+    # Stronger each time, as less is left.
+    assert asked == sorted(asked)
+    assert found.alone_80 is not None
+    assert (found.alone_80 > 2.0 * asked[0] * (1.0 + AGREES)) == (looks > 1)
+    # Of one that no rival comes near nothing more is asked.
+    asked.clear()
+    of(0.0)
+    assert asked == []

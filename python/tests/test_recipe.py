@@ -19,6 +19,7 @@ from jbf.errors import Stopped, Unfinished
 from made_of import record, samples_of
 
 module = sys.modules["jbf.diagnosis.recipe"]
+LAWS = (SimpleNamespace(law="lugre"), SimpleNamespace(law="dahl"))
 
 
 @dataclass
@@ -59,7 +60,7 @@ class Made:
         self.not_tried = {"far": "no column"}
 
     def fitted(self, effects: tuple[str, ...]) -> Any:
-        return SimpleNamespace(problem=("problem", effects))
+        return SimpleNamespace(problem=("problem", effects, self.law))
 
     def converge(self, effects: tuple[str, ...]) -> Any:
         return ("solution", effects)
@@ -86,9 +87,7 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Any:
             "Candidates": Made,
             "check_rig": lambda rig, law: script.say("rig", (None,), law),
             "settled_campaign": lambda campaign, law, clock: "settled",
-            "which_law": lambda *_: script.say(
-                "law", ((((SimpleNamespace(law="lugre"),), {"law journal": "too fast"})),)
-            ),
+            "which_law": lambda *_: script.say("law", ((LAWS, {"law journal": "too fast"}),)),
             "_without_bias": lambda c, present: script.say("unbiased", script.unbiased, present),
             "_on_time": lambda c, present: script.say("on_time", script.on_time, present),
             "_weighed": lambda c, present: script.say("weighed", script.weighed, present),
@@ -101,7 +100,9 @@ def played(monkeypatch: pytest.MonkeyPatch) -> Any:
             "weights": lambda c, named: script.say("weights", (script.weights,), named),
             "best_predicting": lambda c, present, named: script.kept or named,
             "step": lambda c, kept, noise_n, trials: SimpleNamespace(effects=kept, noise_n=noise_n),
-            "finish": lambda problem, solution: SimpleNamespace(model="model", of=solution),
+            "finish": lambda problem, solution: SimpleNamespace(
+                model="model", of=solution, law=problem[2]
+            ),
             "verdict": lambda **told: script.say(
                 "verdict", ("adequate" if not told["effects"] else "missing",), told
             ),
@@ -159,6 +160,7 @@ def test_where_nothing_is_found_the_law_is_adequate(played: Any) -> None:
     assert (found.power, found.unseen, found.laws) == (("strong",), (), ())
     # One effect more is no reason to ask for another law, nor is none.
     assert found.simpler_law is None
+    assert played(Script(selected=[("one",)])).simpler_law is None
     assert found.elapsed_s >= 0.0
     assert [told[0]["remains"] for told in script.of("verdict")] == [False]
     assert script.of("rig") == [["coulomb"]]
@@ -199,7 +201,9 @@ def test_rivals_ask_for_a_run_that_parts_them(played: Any) -> None:
 def test_a_law_of_its_own_choice_is_told_with_those_refused(played: Any) -> None:
     script = Script(selected=[("one", "two")])
     found = played(script, law="auto")
-    assert [t.law for t in found.laws] == ["lugre"]
+    assert [t.law for t in found.laws] == ["lugre", "dahl"]
+    # The first of them is taken.
+    assert found.fit.law == "lugre"
     assert found.not_tried == {"far": "no column", "law journal": "too fast"}
     # Other laws have been asked already.
     assert found.simpler_law is None
@@ -307,6 +311,10 @@ def test_a_model_that_predicts_better_has_its_line(played: Any) -> None:
     assert found.fit.of == ("solution", ("one",))
     plain = played(Script(selected=[("one", "two")]))
     assert [s.effects for s in plain.steps] == [("one", "two")]
+    # The last line is the model's already, whatever the first one was.
+    steps = [SimpleNamespace(effects=()), SimpleNamespace(effects=("one",))]
+    grown = SimpleNamespace(present=("one",), steps=steps, refused=(), again=None)
+    assert [s.effects for s in played(Script(selected=[grown])).steps] == [(), ("one",)]
 
 
 def test_who_is_interrupted_has_what_there_is(played: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -104,6 +104,14 @@ def test_a_wave_in_the_direction_of_motion_is_one_of_friction(prepared: list[Any
     assert share == pytest.approx(1.0 / 3.0, rel=0.1)
 
 
+def test_a_sample_without_speed_has_no_part_in_friction(prepared: list[Any]) -> None:
+    first = there_and_back(SPEEDS[0], "a")
+    first.motion.velocity_m_s[100:105] = 0.0
+    e = waves([first, *prepared[1:]], [1.0] * 5, along=True)
+    ((words, _),) = told([first, *prepared[1:]], e)
+    assert words.startswith("friction that comes again with every 0.0")
+
+
 def test_of_two_the_clearer_is_told(prepared: list[Any]) -> None:
     both = [
         a + 2.0 * b
@@ -201,6 +209,39 @@ def test_the_shortest_pitch_is_four_steps_of_the_way(bins: float, is_found: bool
     samples = samples_of([record(STEP_S * np.arange(2000))] * 4)
     found = _pitch([way] * 4, [a + b for a, b in zip(e, noise, strict=True)], samples, DEFAULT)
     assert found == (pytest.approx(bins, rel=0.01) if is_found else None)
+
+
+def noisy(ways: list[Array], bins: float, size: float = 1.0) -> list[Array]:
+    """Waves of one phase a run in white noise of 1 N."""
+    random = np.random.default_rng(9)
+    return [
+        size * np.cos(2.0 * np.pi * way / bins + i) + random.standard_normal(len(way))
+        for i, way in enumerate(ways)
+    ]
+
+
+def pitch_of(ways: list[Array], e: list[Array]) -> float | None:
+    return _pitch(ways, e, samples_of([record(STEP_S * np.arange(len(w))) for w in ways]), DEFAULT)
+
+
+def test_lines_are_a_quarter_of_a_line_apart() -> None:
+    """A way of 2000 bins has lines at 1/8000 of a wave a bin: one at every whole number of 400."""
+    ways = [np.arange(2000.0)] * 4
+    assert pitch_of(ways, noisy(ways, 20.0)) == pytest.approx(20.0, rel=1e-9)
+    assert pitch_of(ways, noisy(ways, 8000.0 / 401.0)) == pytest.approx(8000.0 / 401.0, rel=1e-9)
+
+
+def test_a_pitch_of_just_four_bins_is_looked_for() -> None:
+    ways = [np.arange(2000.0)] * 4
+    assert pitch_of(ways, noisy(ways, 4.0)) == pytest.approx(4.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("long", "is_found"), [(2, False), (3, True)])
+def test_three_runs_are_long_enough_for_a_pitch(long: int, is_found: bool) -> None:
+    """Of a pitch of 100 bins one of 2000 holds twenty, one of 500 but five."""
+    ways = [np.arange(2000.0)] * long + [np.arange(500.0)] * 2
+    found = pitch_of(ways, noisy(ways, 100.0))
+    assert found == (pytest.approx(100.0, rel=0.01) if is_found else None)
 
 
 def test_runs_that_stand_still_or_leave_nothing_have_no_pitch() -> None:

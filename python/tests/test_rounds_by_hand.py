@@ -6,21 +6,31 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from by_hand import fit_by_hand
 from jbf import InputError, Rig
-from jbf.diagnosis.evidence import _within_steps
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.ledger import Step
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.rounds import _differ_more, _one_more, _refused, step
+from jbf.diagnosis.rounds import (
+    Selected,
+    _differ_more,
+    _one_more,
+    _refused,
+    _says_as_much,
+    select,
+    step,
+)
 from jbf.estimation.film_rate import ANY_STEPS, MOST_STEPS, check_film
 from jbf.estimation.noise import WHITE
 from jbf.estimation.solution import Solution
 from jbf.estimation.weighting import BETTER, NO_WORSE, SHARPER, _better
 from made_of import record, samples_of
+from made_up import MadeUp, sets
 
 Array = npt.NDArray[np.float64]
 rounds = sys.modules["jbf.diagnosis.rounds"]
@@ -66,6 +76,44 @@ def test_a_line_of_the_ledger_has_the_errors_of_its_model() -> None:
     found = step(candidates(a=2.0), ("a",), 0.5, ())
     assert (found.effects, found.noise_n, found.trials) == (("a",), 0.5, ())
     assert (found.rms_n, found.holdout_rms_n) == pytest.approx((2.0, 7.0))
+
+
+@pytest.mark.parametrize(
+    ("before", "effect", "apart", "most", "as_much"),
+    [
+        # As little as the deviations leave, and no more: twice 1 N is 2 N.
+        (2.0, 2.0, 1.0, 2.0, True),
+        (9.0, 2.001, 1.0, 2.0, False),
+        # Of 4 - 2.25 N^2 that they explain 0.0609 times as much may be left.
+        (2.0, np.sqrt(2.25 + 0.106), 1.5, 1.03, True),
+        (2.0, np.sqrt(2.25 + 0.107), 1.5, 1.03, False),
+        # Where they explain nothing, nothing may.
+        (1.0, 1.19, 1.2, 1.03, True),
+        (1.0, 1.2, 1.2, 1.03, True),
+        (1.0, 1.21, 1.2, 1.03, False),
+    ],
+)
+def test_an_effect_says_as_much_as_the_deviations_of_the_runs(
+    before: float, effect: float, apart: float, most: float, as_much: bool
+) -> None:
+    assert _says_as_much(before, effect, apart, most) == as_much
+
+
+def test_the_ledger_goes_on_from_all_but_its_last_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """That model is looked at once more, as the samples are seen now."""
+    monkeypatch.setattr(rounds, "settled_again", lambda problem, solution: None)
+    monkeypatch.setattr(rounds, "_differ_more", lambda candidates, present, found: None)
+    made = MadeUp(["sensor_offset", "sensor_lag"], sets({"": 0.0, "sensor_lag": 300.0}))
+    lines = [Step(("sensor_lag",), x, x, 0.5) for x in (11.0, 12.0, 13.0)]
+    start = Selected(("sensor_lag",), lines)
+    found = select(cast(Candidates, made), 0.5, start)
+    assert found.present == ("sensor_lag",)
+    assert found.steps[:2] == lines[:2]
+    assert [s.effects for s in found.steps[2:]] == [("sensor_lag",)]
+    assert found.steps[2].rms_n < 11.0
+    # From the law alone there is nothing to go on from.
+    alone = select(cast(Candidates, made), 0.5, Selected((), lines))
+    assert [s.effects for s in alone.steps] == [(), ("sensor_lag",)]
 
 
 def refused(monkeypatch: pytest.MonkeyPatch, evidence: float = 1e3, **more: float) -> list[Any]:
@@ -151,22 +199,6 @@ def test_runs_that_differ_go_before_an_effect_that_leaves_more(
     assert asked[1] == 30.0
     monkeypatch.setattr(rounds, "deviation", lambda *told: None)
     assert _differ_more(made, ("a", "b"), found) is None
-
-
-@pytest.mark.parametrize(("apart", "within"), [(0.099, True), (0.101, False)])
-def test_models_that_differ_by_a_converters_steps_are_one(apart: float, within: bool) -> None:
-    richer, simpler = left(1.0), left(1.0 + apart)
-    asked: list[float] = []
-
-    def steps(rms_n: float) -> float:
-        asked.append(rms_n)
-        return 0.1
-
-    campaign: Any = SimpleNamespace(steps_rms_n=steps)
-    assert _within_steps(campaign, richer, simpler) == within
-    half: Any = SimpleNamespace(steps_rms_n=lambda rms_n: 0.5)
-    assert not _within_steps(half, left(1.0), left(1.5))
-    assert asked == pytest.approx([1.0 + apart])
 
 
 # ---- films -------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Strokes of made-up motions and their halves, and runs that agree or do not: sums by hand."""
+"""Strokes of made-up motions and their halves: sums by hand."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf.diagnosis.constancy import Disagreement, _directions, _set_aside
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.strokes import LEAST_SAMPLES, LEAST_STROKES, find_stroke_levels, stroke_of
@@ -35,6 +34,15 @@ def test_a_stroke_ends_where_the_motion_turns_round() -> None:
     assert stroke_of(rests).tolist() == [-1, 0, 0, -1, 0, 1, -1, 1, 2]
     still = record(0.02 * np.arange(4), velocity=np.zeros(4), resting=np.ones(4))
     assert stroke_of(still).tolist() == [-1] * 4
+
+
+def test_what_is_not_known_to_move_is_in_no_stroke() -> None:
+    """Beside a reversal, and at rest, though the encoder knows which way it lies."""
+    run = strokes([3, 3])
+    run.motion.sign_known = np.array([1, 1, 0, 0, 1, 1], dtype=bool)
+    assert stroke_of(run).tolist() == [0, 0, -1, -1, 1, 1]
+    run.motion.resting = np.array([0, 1, 0, 0, 0, 0], dtype=bool)
+    assert stroke_of(run).tolist() == [0, -1, -1, -1, 1, 1]
 
 
 def told(
@@ -120,41 +128,22 @@ def test_few_or_short_strokes_tell_nothing() -> None:
     assert told(*levels([0.0] * 6, 0.0)) == []
 
 
-# ---- runs that agree ---------------------------------------------------------------------------
-
-
-def test_runs_disagree_by_a_ratio_that_matters_and_beyond_chance() -> None:
-    ratio, chance = DEFAULT.constancy_ratio, DEFAULT.constancy_chance
-    many = 400
-    assert not Disagreement(ratio * many - 1.0, many, {}).beyond_chance()
-    assert not Disagreement(ratio * many, many, {}).beyond_chance()
-    assert Disagreement(ratio * many + 1.0, many, {}).beyond_chance()
-    least = float(stats.chi2.isf(chance, 3))
-    assert least > ratio * 3
-    assert not Disagreement(0.99 * least, 3, {}).beyond_chance()
-    assert Disagreement(1.01 * least, 3, {}).beyond_chance()
-    assert not Disagreement(1e9, 0, {}).beyond_chance()
-    easy = replace(DEFAULT, constancy_chance=0.5, constancy_ratio=1.0)
-    assert Disagreement(3.5, 3, {}).beyond_chance(easy)
-
-
-def test_directions_that_hardly_move_are_none() -> None:
-    """Less than a thousandth of the best."""
-    basis = np.linalg.qr(np.random.default_rng(1).standard_normal((20, 3)))[0]
-    for unit in (1e-9, 1e9):
-        assert _directions(unit * basis * [1.0, 1.1e-3, 0.9e-3]).shape == (20, 2)
-    found = _directions(basis * [1.0, 2.0, 3.0])
-    assert found.T @ found == pytest.approx(np.eye(3), abs=1e-12)
-    assert _directions(np.zeros((20, 2))).shape == (20, 0)
-    assert _directions(np.zeros((20, 0))).shape == (20, 0)
-
-
-def test_what_is_set_aside_explains_nothing_and_leaves_nothing_of_itself() -> None:
-    j = np.array([[1.0, 3.0], [0.0, 4.0], [0.0, 0.0]])
-    r = np.array([5.0, 6.0, 7.0])
-    left, rest = _set_aside(r, j, np.array([True, False]))
-    assert left == pytest.approx([0.0, 6.0, 7.0])
-    assert rest == pytest.approx(np.array([[0.0], [4.0], [0.0]]))
-    same, whole = _set_aside(r, j, np.array([False, False]))
-    assert same is r
-    assert whole is j
+def test_where_the_friction_is_larger_a_level_counts_for_more() -> None:
+    """Halves of strokes whose friction differs: each level is known to one over the root of the
+    squares there, and so are their distances."""
+    sizes = np.array([[1.0, 2.0], [3.0, 1.0], [2.0, 2.0], [1.0, 4.0], [2.0, 1.0]])
+    levels = np.array([0.1, -0.1, 0.12, -0.06, 0.02])
+    apart = np.array([0.004, -0.002, 0.001, 0.003, -0.005])
+    run = strokes([20] * 5)
+    way = np.sign(run.motion.velocity_m_s)
+    friction = way * np.repeat(sizes.ravel(), 10)
+    off = np.stack([levels - 0.5 * apart, levels + 0.5 * apart], axis=1)
+    left = [friction * np.repeat(off.ravel(), 10)]
+    (found,) = told([run], left, [friction], constancy_chance=0.5)
+    weight = 10.0 * sizes**2
+    of_stroke = weight.sum(axis=1)
+    level = (weight * off).sum(axis=1) / of_stroke
+    between = np.sum(of_stroke * (level - np.average(level, weights=of_stroke)) ** 2)
+    known = 1.0 / (1.0 / weight[:, 0] + 1.0 / weight[:, 1])
+    within = np.sum(known * (apart - np.average(apart, weights=known)) ** 2)
+    assert found.share == pytest.approx((between - within) / np.sum(weight * off**2))

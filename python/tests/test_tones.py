@@ -88,6 +88,15 @@ def test_between_lines_a_sine_has_its_own_frequency_and_size(off: float) -> None
     assert one.share == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.parametrize(("off", "told"), [(-0.4, "4.90"), (0.4, "5.10"), (0.8, "5.20")])
+def test_a_frequency_is_told_to_a_twentieth_of_a_line(off: float, told: str) -> None:
+    """Four seconds have a line each 0.25 Hz; sought is to the next ones on both sides."""
+    time = STEP_S * np.arange(200)
+    frequency = 5.0 + 0.25 * off
+    (one,) = found(np.sin(2.0 * np.pi * frequency * time) + 1e-3 * flat(200, {}))
+    assert one.where == f"a {told} Hz tone, amplitude 1 N, in all runs"
+
+
 def test_the_share_is_half_the_squares_of_the_sizes() -> None:
     """Sines of 2 N and 1 N in two runs, none in a third: 2000 and 500 of what is left in all."""
     n = 1000

@@ -136,6 +136,15 @@ def test_the_run_that_shows_most_of_what_hides_is_proposed(monkeypatch: pytest.M
     assert "a sine" in first.words
 
 
+def test_a_hundredth_in_the_chances_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 55 each 1.42 effects are found, of a million and of twenty 1.35; that these are worth far
+    more is no matter."""
+    shown = {"sine": {"one": 1e6, "two": 20.0}, "stop": {"one": 55.0, "two": 55.0}}
+    found, _ = proposed(monkeypatch, shown)
+    assert not isinstance(found, str)
+    assert "record a stop " in found.words
+
+
 @pytest.mark.parametrize(("most", "told"), [(0.99, False), (1.0, False), (1.01, True)])
 def test_what_no_motion_shows_is_said(
     most: float, told: bool, monkeypatch: pytest.MonkeyPatch

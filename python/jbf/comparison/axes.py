@@ -122,17 +122,17 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
 
 def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
     values = [measure(p) for p in campaign.prepared]
-    known = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values] or [np.zeros(0)])
+    known = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
     unit = "s" if axis == "time since a rest" else campaign.rig.quantities.length
     if len(known) < 100:
-        return Binned(axis, (), [np.full(len(v), -1, dtype=np.intp) for v in values])
+        return Binned(axis, (), [])
     edges = np.unique(np.quantile(known, [0.05, 0.1, 0.2, 0.4, 0.7]))
     ends = [-np.inf, *edges.tolist(), np.inf]
     spans = [Bin(span=pair, unit=unit) for pair in pairwise(ends)]
     places = []
     for p, v in zip(campaign.prepared, values, strict=True):
         ok = np.isfinite(v) & (v > 0)
-        kind = np.digitize(np.where(ok, v, 0.0), edges)
+        kind = np.digitize(v, edges)
         kind = np.where(p.motion.velocity_m_s > 0, kind + len(spans), kind)
         places.append(np.where(ok & ~p.motion.resting, kind, -1).astype(np.intp))
     return Binned(axis, _both_ways(spans), places)

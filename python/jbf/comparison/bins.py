@@ -105,7 +105,9 @@ def direction_words(b: Bin) -> str:
     """`v < 0`, `v > 0`; empty where a bin holds both."""
     if b.direction == 0:
         return ""
-    return "v > 0" if b.direction > 0 else ("v <= 0" if b.with_rest else "v < 0")
+    if b.direction == 1:
+        return "v > 0"
+    return "v <= 0" if b.with_rest else "v < 0"
 
 
 def label(axis: Axis, b: Bin) -> str:

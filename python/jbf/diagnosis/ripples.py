@@ -62,7 +62,7 @@ def find_ripples(
     found: list[Remainder] = []
     for along in (False, True):
         signs = turned if along else [np.ones(len(w)) for w in ways]
-        e = [x * s * c for x, s, c in zip(innovations, signs, samples.counted, strict=True)]
+        e = [x * s for x, s in zip(innovations, signs, strict=True)]
         pitch = _pitch(ways, e, samples, policy)
         if pitch is None:
             continue
@@ -103,10 +103,9 @@ def _pitch(
     spans = np.array([float(np.ptp(w)) for w in ways])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in ways])
-    usual = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
-    if usual <= 0.0:
+    if not np.any(steps):
         return None
-    fine = max(usual, longest / MOST_BINS)
+    fine = max(float(np.median(steps[steps > 0.0])), longest / MOST_BINS)
     length = PADDING * (int(longest / fine) + 1)
     # Waves in a metre.
     waves = np.arange(length // 2 + 1) / (length * fine)

@@ -85,7 +85,7 @@ def noise_sizes(
     sampled = np.array([int(c.sum()) for c in samples.counted])
     some = (sampled > LEAST) & (white > 0.0) & (whole > 0.0)
     # A smooth channel has no white noise, a wrong model more than noise: both must say so.
-    if some.sum() > 1 and all(_uneven(x[some], sampled[some], policy) for x in (white, whole)):
+    if some.any() and all(_uneven(x[some], sampled[some], policy) for x in (white, whole)):
         by_run = np.ones(len(some))
         by_run[some] = np.maximum(*(x[some].min() / x[some] for x in (white, whole)))
         shares = [w * share for w, share in zip(shares, by_run.tolist(), strict=True)]

@@ -98,6 +98,27 @@ def test_a_pitch_is_four_steps_of_the_way(
     assert (abs(bins * FINE_M / found[0] - 1.0) < 1e-3) == there
 
 
+def test_a_way_of_just_four_shortest_pitches_has_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sixteen steps of the way, and a wave of four."""
+    fine = 2.0**-10
+    place = np.linspace(0.0, 16.0 * fine, 200)
+    found = told(monkeypatch, wave(4.0 * fine, place=place), place=place, speed=np.ones(200), way=fine)
+    assert found == (4.0 * fine,)
+    less = np.nextafter(16.0 * fine, 0.0) / (16.0 * fine) * place
+    assert told(monkeypatch, wave(4.0 * fine, place=less), place=less, speed=np.ones(200), way=fine) == ()
+
+
+def test_beside_a_high_line_no_other_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wave that grows along the way is a line with slopes: higher than another wave, and still
+    one."""
+    rest = PLACE * wave(0.05) + wave(0.011, 0.3)
+    found = told(monkeypatch, rest)
+    lines = [2.0 / pitch for pitch in found]
+    assert lines[0] == pytest.approx(40.0, abs=0.2)
+    assert lines[1] == pytest.approx(2.0 / 0.011, abs=0.2)
+    assert all(abs(a - b) > 2.0 for i, a in enumerate(lines) for b in lines[:i])
+
+
 def test_few_samples_or_a_short_way_have_no_pitch(monkeypatch: pytest.MonkeyPatch) -> None:
     few = PADDING * KNOTS
     assert few == 64

@@ -1,0 +1,150 @@
+"""When one step of Gauss and Newton is the whole way to a fit without a run, and what is known of
+the halves of one: by made-up fits."""
+
+from __future__ import annotations
+
+import sys
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf.estimation.left_out import (
+    EVALUATIONS,
+    _predicted,
+    _Told,
+    halves_left_out,
+    left_out_rms,
+)
+from jbf.estimation.noise import WHITE
+from jbf.estimation.solution import Solution
+from made_of import record, samples_of
+
+module = sys.modules["jbf.estimation.left_out"]
+N = 6
+HERE, STEP = np.array([1.0, 2.0]), np.array([0.25, -0.5])
+FAR = 9.0
+"""Values from which on the made-up problem has its bound."""
+
+
+def solution(effects: tuple[str, ...] = (), converged: bool = True) -> Solution:
+    runs = [record(0.02 * np.arange(N), name=name) for name in "ab"]
+    jacobian = [np.ones((N, 2)), np.ones((N, 2))]
+    left = [np.zeros(N)] * 2
+    return Solution(effects, HERE, left, jacobian, WHITE, 0.0, converged, "", samples_of(runs))
+
+
+class Fits:
+    """A problem of two parameters; what was predicted, and where searches began and ended."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, squares: dict[float, float]) -> None:
+        self.searched: list[Array] = []
+        self.names, self.open = ["a", "b"], [0, 1]
+        self.campaign = SimpleNamespace(prepared=["a", "b"], only=lambda rest: rest)
+        part = SimpleNamespace(open=[0], square=lambda values, kept: squares[float(values[0])])
+        monkeypatch.setattr(module, "_of", lambda problem, campaign, held: part)
+        monkeypatch.setattr(module, "search", self.search)
+
+    def search(self, part: Any, kept: Any, start: Array, noise: Any, evaluations: int) -> Any:
+        assert evaluations == EVALUATIONS == 12
+        assert kept.runs == ("b",)
+        self.searched.append(start)
+        return SimpleNamespace(values=np.array([100.0, 100.0]))
+
+    def encode(self, values: Array) -> Array:
+        return np.minimum(values, FAR)
+
+    def decode(self, x: Array, base: Array) -> Array:
+        return np.minimum(x, FAR)
+
+    def residuals(self, values: Array, which: list[int]) -> list[Array]:
+        assert which == [0]
+        return [np.full(N, values[0])]
+
+
+@pytest.mark.parametrize(
+    ("square", "way", "straight", "effects", "converged", "stepped"),
+    [
+        (1.0, STEP, True, (), True, True),
+        # Three standard deviations of either parameter, and no more.
+        (18.0, STEP, True, (), True, True),
+        (18.001, STEP, True, (), True, False),
+        # A step that would leave the bounds; one that bends; one of a search that had not ended.
+        (1.0, np.array([9.0, 0.0]), True, (), True, False),
+        (1.0, STEP, False, (), True, False),
+        (1.0, STEP, True, (), False, False),
+        # A drive that rings has peak beside peak.
+        (1.0, STEP, True, ("drive_compliance",), True, False),
+        (1.0, STEP, True, ("sensor_offset",), True, True),
+    ],
+)
+@pytest.mark.parametrize("better", [True, False])
+def test_a_short_and_straight_step_is_the_whole_way(
+    square: float,
+    way: Array,
+    straight: bool,
+    effects: tuple[str, ...],
+    converged: bool,
+    stepped: bool,
+    better: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else a search goes on from its end, or from the whole's solution where that is better."""
+    end = float(min(HERE[0] + way[0], FAR))
+    problem: Any = Fits(monkeypatch, {1.0: 5.0, end: 4.0 if better else 6.0})
+    monkeypatch.setattr(module, "_straight", lambda *given: straight)
+    told: Any = SimpleNamespace(known=np.ones((2, 2)), step=lambda rest: (way, square))
+    (found,) = _predicted(problem, solution(effects, converged), told, [0], [1])
+    if stepped:
+        assert (float(found[0]), problem.searched) == (end, [])
+    else:
+        assert float(found[0]) == 100.0
+        assert [float(start[0]) for start in problem.searched] == [end if better else 1.0]
+
+
+def test_where_no_sample_was_left_out_nothing_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    none: Any = None
+    for left, rms in (([], 0.0), ([0.0], 0.0), ([3.0], 3.0), ([3.0, 4.0], np.sqrt(12.5))):
+        parts = [np.array(left), np.zeros(0)]
+        monkeypatch.setattr(module, "left_out_by_run", lambda *given, parts=parts, **more: parts)
+        assert left_out_rms(none, none) == pytest.approx(rms)
+
+
+def test_a_step_without_residuals_is_none() -> None:
+    told = _Told(np.ones((1, 1)), [(np.zeros(2), np.ones((2, 1)))], [0])
+    step, square = told.step([0])
+    assert (step.tolist(), square) == ([0.0], 0.0)
+
+
+def test_of_a_half_that_alone_knows_a_parameter_the_other_tells_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first parameter shows everywhere, the second in the first half of the first run."""
+    runs = [record(0.02 * np.arange(N), name=name) for name in "ab"]
+    own = np.stack([np.ones(N), np.arange(N) < 3], axis=1).astype(float)
+    other = np.stack([np.ones(N), np.zeros(N)], axis=1)
+    there = Solution(
+        (), HERE, [np.zeros(N)] * 2, [own, other], WHITE, 0.0, True, "", samples_of(runs)
+    )
+    kept: list[Any] = []
+
+    def fitted(part: Any, samples: Any, start: Array, near: Any) -> Array:
+        kept.append(samples)
+        return np.full(2, float(len(kept)))
+
+    monkeypatch.setattr(module, "_of", lambda problem, campaign, held: None)
+    monkeypatch.setattr(module, "_held", lambda problem, unknown: {})
+    monkeypatch.setattr(module, "_at", lambda problem, solution, held: HERE)
+    monkeypatch.setattr(module, "_fitted", fitted)
+    problem: Any = SimpleNamespace(
+        campaign=None, residuals=lambda values, which: [np.full(N, values[0])]
+    )
+    parts = halves_left_out(problem, there, 0)
+    first = np.arange(N) < 3
+    assert [part.told.tolist() for part in parts] == [[True, False], [True, True]]
+    assert [part.left[0].tolist() for part in parts] == [first.tolist(), (~first).tolist()]
+    assert [part.runs for part in parts] == [(0,), (0,)]
+    assert [float(part.residuals[0][0]) for part in parts] == [1.0, 2.0]
+    assert [s.counted[0].tolist() for s in kept] == [(~first).tolist(), first.tolist()]
+    assert all(s.counted[1].all() for s in kept)

@@ -166,6 +166,32 @@ def test_two_models_share_the_smaller_weight() -> None:
         assert [w.tolist() for w in shared.weight] == [[0.2, 0.5, 0.0, 1.0], [1.0, 0.1, 0.5]]
 
 
+@pytest.mark.parametrize("fewer", [[VALUES[0]], [*VALUES, VALUES[0]]])
+def test_runs_and_their_samples_go_in_step(fewer: list[Array]) -> None:
+    """One too few or too many is a fault, and is not dropped in silence."""
+    masks = [np.ones(len(v), dtype=bool) for v in fewer]
+    ones = [np.ones(len(c)) for c in COUNTED]
+    broken = [
+        lambda: SAMPLES.within(masks),
+        lambda: SAMPLES.weighed(fewer, ones, None),
+        lambda: SAMPLES.weighed(ones, fewer, None),
+        lambda: replace(SAMPLES, level=tuple(fewer)).weighed(ones, ones, None),
+        lambda: replace(SAMPLES, weight=tuple(fewer)).tested(),
+        lambda: SAMPLES.flat(fewer),
+        lambda: SAMPLES.rms(fewer),
+        lambda: SAMPLES.square(fewer),
+        lambda: SAMPLES.cost(fewer, WHITE),
+        lambda: SAMPLES.weighted_innovations(fewer, WHITE),
+        lambda: SAMPLES.innovations(fewer, WHITE),
+        lambda: SAMPLES.plain_innovations(fewer, WHITE),
+        lambda: least_weights(SAMPLES, replace(SAMPLES, weight=tuple(fewer))),
+        lambda: least_weights(SAMPLES, replace(SAMPLES, counted=tuple(masks))),
+    ]
+    for call in broken:
+        with pytest.raises(ValueError, match="zip"):
+            call()
+
+
 # ---- rows --------------------------------------------------------------------------------------
 
 

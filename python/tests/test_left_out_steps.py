@@ -4,17 +4,23 @@ the halves of one: by made-up fits."""
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array
+from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.left_out import (
     EVALUATIONS,
+    LeftOut,
     _predicted,
     _Told,
+    errors_by_run,
     halves_left_out,
+    left_out_by_run,
+    left_out_residuals,
     left_out_rms,
 )
 from jbf.estimation.noise import WHITE
@@ -120,12 +126,13 @@ def test_a_step_without_residuals_is_none() -> None:
 def test_of_a_half_that_alone_knows_a_parameter_the_other_tells_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The first parameter shows everywhere, the second in the first half of the first run."""
-    runs = [record(0.02 * np.arange(N), name=name) for name in "ab"]
+    """The first parameter shows everywhere, the second in the first half of the second run."""
+    runs = [record(0.02 * np.arange(N), name=name) for name in "abc"]
     own = np.stack([np.ones(N), np.arange(N) < 3], axis=1).astype(float)
     other = np.stack([np.ones(N), np.zeros(N)], axis=1)
+    jacobian = [other, own, other]
     there = Solution(
-        (), HERE, [np.zeros(N)] * 2, [own, other], WHITE, 0.0, True, "", samples_of(runs)
+        (), HERE, [np.zeros(N)] * 3, jacobian, WHITE, 0.0, True, "", samples_of(runs)
     )
     kept: list[Any] = []
 
@@ -140,11 +147,31 @@ def test_of_a_half_that_alone_knows_a_parameter_the_other_tells_nothing(
     problem: Any = SimpleNamespace(
         campaign=None, residuals=lambda values, which: [np.full(N, values[0])]
     )
-    parts = halves_left_out(problem, there, 0)
+    parts = halves_left_out(problem, there, 1)
     first = np.arange(N) < 3
     assert [part.told.tolist() for part in parts] == [[True, False], [True, True]]
     assert [part.left[0].tolist() for part in parts] == [first.tolist(), (~first).tolist()]
-    assert [part.runs for part in parts] == [(0,), (0,)]
+    assert [part.runs for part in parts] == [(1,), (1,)]
     assert [float(part.residuals[0][0]) for part in parts] == [1.0, 2.0]
-    assert [s.counted[0].tolist() for s in kept] == [(~first).tolist(), first.tolist()]
-    assert all(s.counted[1].all() for s in kept)
+    assert [s.counted[1].tolist() for s in kept] == [(~first).tolist(), first.tolist()]
+    assert all(s.counted[0].all() and s.counted[2].all() for s in kept)
+
+
+def test_what_runs_deviate_by_is_taken_off_where_that_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A zero of a run's own, 2 N, far larger than its noise: no model predicts it, and no more than
+    a hundredth of it is left."""
+    between = BetweenRuns(("zero",), (np.full((N, 1), 50.0),) * 2, 1.0)
+    there = replace(solution(), samples=replace(solution().samples, between=between))
+    every = np.ones(N, dtype=bool)
+    parts = [LeftOut((i,), (every,), np.ones(2, dtype=bool), (np.full(N, 2.0),)) for i in (0, 1)]
+    monkeypatch.setattr(module, "left_out", lambda problem, solution: parts)
+    problem: Any = None
+    for apart, rms in (({}, 2.0), ({"apart": False}, 2.0), ({"apart": True}, 0.0)):
+        assert left_out_rms(problem, there, **apart) == pytest.approx(rms, abs=0.02)
+        by_run = left_out_by_run(problem, there, **apart)
+        assert [float(e[0]) for e in by_run] == pytest.approx([rms] * 2, abs=0.02)
+        errors = errors_by_run(there, parts, **apart)
+        assert float(errors[1][3]) == pytest.approx(rms, abs=0.02)
+    assert left_out_residuals(problem, there).tolist() == [2.0] * (2 * N)

@@ -135,6 +135,17 @@ def test_errors_of_a_motion_come_again_with_other_signs() -> None:
     assert np.any(np.sign(moved[20:]) != np.sign((p.run.position_m - PATH)[20:]))
 
 
+def test_a_place_on_a_bearing_is_as_far_as_its_surface_went() -> None:
+    p = prepared()
+    p.rig = Rig.thesis()
+    assert p.rig.bearing is not None
+    p.motion.angle_rad = PATH / p.rig.bearing.radius_m
+    again = read_again(p, np.full(N, 3.0), np.random.default_rng(1))
+    assert again.position_m is not None
+    off = np.abs(p.run.position_m - PATH)
+    assert np.abs(again.position_m - PATH) == pytest.approx(off, abs=1e-12)
+
+
 def test_a_column_that_is_not_believed_stays_as_it_was() -> None:
     p = prepared(velocity_m_s=True, position_m=True)
     again = read_again(p, np.full(N, 3.0), np.random.default_rng(1))

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import InputError, Parameter, ParameterValue, Rig, Run
+from jbf import InputError, Parameter, ParameterValue, Rig, Run, threads
 from jbf.estimation.bootstrap import (
     LEAST_REPEATS,
     MOST_REPEATS,
+    bootstrap,
     check_repeats,
     innovation_sizes,
     read_again,
@@ -19,6 +20,7 @@ from jbf.estimation.bootstrap import (
     with_error,
 )
 from jbf.estimation.determined import undetermined
+from jbf.estimation.fit import fit
 from jbf.estimation.noise import WHITE, Noise
 from made_of import record, samples_of
 
@@ -180,3 +182,17 @@ def test_noise_of_that_size_and_colour_is_added() -> None:
     assert again.friction_n is not None
     assert again.friction_n[KNOWN] == pytest.approx(wanted[KNOWN])
     assert np.all(again.friction_n[~KNOWN] == 7.0)
+
+
+def test_linear_algebra_keeps_to_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a fit, and of its repetitions."""
+    asked: list[str] = []
+    monkeypatch.setattr(threads, "_enter", lambda: asked.append("in"))
+    monkeypatch.setattr(threads, "_leave", lambda: asked.append("out"))
+    none: Any = None
+    with pytest.raises(InputError):
+        bootstrap(none, [], repeats=1)
+    assert asked == ["in", "out"]
+    with pytest.raises(InputError):
+        fit(Rig(), [], law="coulomb")
+    assert asked == ["in", "out"] * 2

@@ -13,7 +13,9 @@ import pytest
 from by_hand import Array
 from jbf import InputError, Rig, Run
 from jbf.estimation.prepared import FINER, Prepared
+from jbf.records.findings.examine import Examined
 from jbf.records.findings.finding import Finding
+from jbf.records.findings.interpolated import Native
 
 module = sys.modules["jbf.estimation.prepared"]
 STEP_S = 3.0 / 128.0
@@ -84,6 +86,72 @@ def test_a_load_is_steadied_before_anything_is_drawn_through_it() -> None:
     assert not steady.flags.writeable
     swings = 100.0 + 20.0 * np.sin(TIME)
     assert Prepared.of(Rig(), run(load_n=swings)).run.load_n == pytest.approx(swings)
+
+
+# ---- clocks of its own -------------------------------------------------------------------------
+
+
+def test_a_force_is_compared_where_its_motion_is_known() -> None:
+    """What was read before the motion begins, or after it ends, has none; at its ends it has."""
+    instants = TIME[10:301]
+    force = TIME[::5]
+    channels = {
+        "velocity_m_s": (instants, speed(instants)),
+        "position_m": (instants, STEP_S * np.cumsum(speed(instants))),
+        "friction_n": (force, 5.0 * np.sign(speed(force))),
+    }
+    found = Prepared.of(Rig(), Run.from_channels(channels, name="slide"))
+    assert found.run.time_s.tolist() == TIME[10:301:5].tolist()
+    assert found.run.read == {}
+    assert len(found.motion.velocity_m_s) == len(found.run)
+    assert found.recorded is not None
+    assert found.recorded[0].tolist() == instants.tolist()
+
+
+@pytest.mark.parametrize("own_clock", [False, True])
+def test_what_was_drawn_in_lines_is_compared_at_its_readings(
+    own_clock: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The motion stays that of its own instants; steps are looked for as in what was drawn."""
+    ticks = TIME[20:380:6]
+    native = Native(ticks, 5.0 * np.sign(speed(ticks)), 6.0 * STEP_S)
+    usable = np.arange(len(ticks)) % 7 > 0
+    asked: list[Any] = []
+
+    def examine(run: Run, velocity: Array, period_s: float | None) -> Examined:
+        asked.append(period_s)
+        return Examined((finding("interpolated", 7.0, "Hz"),), np.ones(len(run), bool), native)
+
+    def steps(run: Run, may: Array, *, drawn: bool = False) -> list[Finding]:
+        asked.append((may is usable, drawn))
+        return [finding("steps", 0.25)]
+
+    monkeypatch.setattr(module, "examine", examine)
+    monkeypatch.setattr(
+        module, "examine_readings", lambda run, v: Examined((finding("spikes", 1.0),), usable)
+    )
+    monkeypatch.setattr(module, "find_steps", steps)
+    given = run()
+    if own_clock:
+        fine = TIME[0] + 0.5 * STEP_S * np.arange(799)
+        v = speed(fine)
+        channels = {
+            "velocity_m_s": (fine, v),
+            "position_m": (fine, 0.5 * STEP_S * np.cumsum(v)),
+            "friction_n": (TIME, 5.0 * np.sign(speed(TIME))),
+        }
+        given = Run.from_channels(channels, name="slide")
+    found = Prepared.of(Rig(), given, 3.0)
+    assert asked == [3.0, (True, True)]
+    assert found.run.time_s.tolist() == ticks.tolist()
+    assert found.friction_n.tolist() == native.values.tolist()
+    assert found.examined.usable is usable
+    assert [f.kind for f in found.examined.findings[:3]] == ["interpolated", "spikes", "steps"]
+    assert found.step_s == pytest.approx(6.0 * STEP_S)
+    assert found.recorded is not None
+    assert len(found.recorded[0]) == (799 if own_clock else 400)
+    assert len(found.recorded[1].velocity_m_s) == len(found.recorded[0])
+    assert found.motion.velocity_m_s == pytest.approx(speed(ticks), abs=2e-3)
 
 
 # ---- a force at other instants -----------------------------------------------------------------

@@ -131,9 +131,7 @@ def test_of_a_half_that_alone_knows_a_parameter_the_other_tells_nothing(
     own = np.stack([np.ones(N), np.arange(N) < 3], axis=1).astype(float)
     other = np.stack([np.ones(N), np.zeros(N)], axis=1)
     jacobian = [other, own, other]
-    there = Solution(
-        (), HERE, [np.zeros(N)] * 3, jacobian, WHITE, 0.0, True, "", samples_of(runs)
-    )
+    there = Solution((), HERE, [np.zeros(N)] * 3, jacobian, WHITE, 0.0, True, "", samples_of(runs))
     kept: list[Any] = []
 
     def fitted(part: Any, samples: Any, start: Array, near: Any) -> Array:

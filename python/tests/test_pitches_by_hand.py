@@ -102,10 +102,15 @@ def test_a_way_of_just_four_shortest_pitches_has_one(monkeypatch: pytest.MonkeyP
     """Sixteen steps of the way, and a wave of four."""
     fine = 2.0**-10
     place = np.linspace(0.0, 16.0 * fine, 200)
-    found = told(monkeypatch, wave(4.0 * fine, place=place), place=place, speed=np.ones(200), way=fine)
+    found = told(
+        monkeypatch, wave(4.0 * fine, place=place), place=place, speed=np.ones(200), way=fine
+    )
     assert found == (4.0 * fine,)
     less = np.nextafter(16.0 * fine, 0.0) / (16.0 * fine) * place
-    assert told(monkeypatch, wave(4.0 * fine, place=less), place=less, speed=np.ones(200), way=fine) == ()
+    assert (
+        told(monkeypatch, wave(4.0 * fine, place=less), place=less, speed=np.ones(200), way=fine)
+        == ()
+    )
 
 
 def test_beside_a_high_line_no_other_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:

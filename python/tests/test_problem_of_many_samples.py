@@ -95,6 +95,18 @@ def test_of_some_runs_a_search_is_as_long_as_they_are(monkeypatch: pytest.Monkey
     assert thin.thinned is thin
 
 
+def test_what_is_stated_is_not_fitted_and_stays_where_it_is_given() -> None:
+    stated = "stroke_dependence.x_0_m"
+    problem = Problem(campaign(), "coulomb", "journal", ("stroke_dependence",))
+    page = problem.parameters[stated]
+    assert page.stated
+    assert problem.fixed[stated] == page.starts[0]
+    assert problem.names.index(stated) not in problem.open
+    given = {stated: page.starts[0] + 0.25}
+    mine = Problem(campaign(), "coulomb", "journal", ("stroke_dependence",), given)
+    assert mine.fixed[stated] == given[stated]
+
+
 def test_derivatives_cost_twice_what_a_prediction_does() -> None:
     problem = posed()
     values, work = values_of(problem), problem.campaign.work

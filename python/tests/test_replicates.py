@@ -99,7 +99,9 @@ def waves(n: int, size: float) -> Array:
     return found
 
 
-@pytest.mark.parametrize(("length", "known"), [(397, False), (398, False), (399, True), (400, True)])
+@pytest.mark.parametrize(
+    ("length", "known"), [(397, False), (398, False), (399, True), (400, True)]
+)
 def test_a_rest_tells_the_noise_after_its_first_quarter(length: int, known: bool) -> None:
     """Three hundred samples are needed; what moves along a line is no noise, and the first quarter
     may do anything."""

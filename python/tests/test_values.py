@@ -260,11 +260,16 @@ def test_what_belongs_together_has_one_length(module: ModuleType) -> None:
         (left_out.left_out_by_run, ("apart",)),
         (left_out.errors_by_run, ("apart", "counted")),
         (pitches.pitches, ("along",)),
-        (trajectory_fit.fit_trajectories, ("start", "model", "clock", "tolerance", "eps", "phi_rad")),
+        (
+            trajectory_fit.fit_trajectories,
+            ("start", "model", "clock", "tolerance", "eps", "phi_rad"),
+        ),
     ],
     ids=lambda what: getattr(what, "__name__", ""),
 )
-def test_what_only_its_name_explains_is_given_by_name(function: Any, named: tuple[str, ...]) -> None:
+def test_what_only_its_name_explains_is_given_by_name(
+    function: Any, named: tuple[str, ...]
+) -> None:
     """A `True` among other values says nothing to who reads the call."""
     given = inspect.signature(function).parameters.values()
     only = tuple(p.name for p in given if p.kind is inspect.Parameter.KEYWORD_ONLY)

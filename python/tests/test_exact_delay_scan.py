@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.exact_delay import COARSE, FINE, ExactDelay, exact_delay
+from jbf import Rig
+from jbf.estimation.exact_delay import COARSE, FINE, ExactDelay, _Scan, exact_delay
+from jbf.models.catalogue import parameters_of
 from jbf.models.late_reading import TAU
+from made_of import record, samples_of
 
 module = sys.modules["jbf.estimation.exact_delay"]
 STEP_S = 0.02
@@ -118,3 +121,84 @@ def test_beside_no_delay_only_later_ones_are_looked_at(monkeypatch: pytest.Monke
     assert found is not None
     assert min(scan.asked) > 0.0
     assert 0.0 < found.values[1] < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("names", "opened"), [(["F_c_n", "F_v_n_s_m"], [0, 1]), (["F_c_n", TAU], [0])]
+)
+def test_of_a_delay_that_is_not_open_nothing_is_told(names: list[str], opened: list[int]) -> None:
+    problem: Any = SimpleNamespace(names=names, open=opened, campaign=None)
+    none: Any = None
+    assert exact_delay(problem, none, none, np.zeros(2)) is None
+
+
+# ---- the likelihood ----------------------------------------------------------------------------
+
+
+def test_others_follow_along_the_valley_and_a_zero_of_a_runs_own_is_no_delay() -> None:
+    """By their covariance over the delay's variance; of what never moved, not at all."""
+    pages = parameters_of("coulomb", ("time_delay",))
+    names = list(pages)
+    k = names.index(TAU)
+    count = len(names)
+    correlation = np.full((count, count), 0.5)
+    correlation[0, k] = np.nan
+    moved = np.arange(count) != 1
+    sd, scale = 1.0 + np.arange(count), np.full(count, 3.0)
+    spread: Any = SimpleNamespace(correlation=correlation, sd=sd, scale=scale, moved=moved)
+    runs = [record(STEP_S * np.arange(50), name=name, friction=np.full(50, 4.0)) for name in "ab"]
+    samples = SimpleNamespace(**vars(samples_of(runs)))
+    samples.without_deviations = lambda residuals, noise: [r - 1.5 for r in residuals]
+    samples.rms = lambda residuals: float(residuals[0][0])
+    solution: Any = SimpleNamespace(samples=samples, residuals=[np.full(50, 2.0)] * 2, noise=None)
+    problem: Any = SimpleNamespace(
+        campaign=SimpleNamespace(rig=Rig(), prepared=runs),
+        law="coulomb",
+        clock="journal",
+        effects=("time_delay",),
+        names=names,
+    )
+    scan = _Scan.of(problem, solution, spread, np.zeros(count), k)
+    wanted = 0.5 * sd / sd[k] / 3.0
+    wanted[[0, 1]] = 0.0
+    assert scan.way.tolist() == wanted.tolist()
+    assert [f.tolist() for f in scan.friction_n] == [[2.5] * 50] * 2
+    assert scan.noise_n == 0.5
+
+
+@pytest.mark.parametrize("over", [0.0, 0.9e-3, 1.2e-3, 0.4, 0.6, 0.9985, 0.9991, 1.0])
+def test_a_sample_is_a_mixture_within_three_and_a_half_deviations_of_its_instant(
+    over: float,
+) -> None:
+    """Where one side is less likely than that it is the other's, and counts for its share; read
+    1 N off the one and 3 N off the other in a noise of 1 N."""
+    far = 0.5 * np.exp(-0.5 * 3.5**2)
+    assert 0.9e-3 < far < 1.2e-3
+    reading = SimpleNamespace(
+        before_n=np.array([4.0]), after_n=np.array([2.0]), over=np.array([over]), mean_n=np.ones(1)
+    )
+    asked: list[Any] = []
+
+    def read(values: Array, run: Any, time: Array, motion: Any, sd_s: float) -> Any:
+        asked.append((run, time, sd_s))
+        return reading
+
+    run = record(np.zeros(1), name="a")
+    run.motion_as_read = ("instants", "motion")
+    run.examined = SimpleNamespace(usable=np.ones(1, dtype=bool))
+    problem: Any = SimpleNamespace(
+        campaign=SimpleNamespace(prepared=[run]),
+        encode=lambda values: values,
+        decode=lambda x, base: x.copy(),
+    )
+    chain: Any = SimpleNamespace(tau=0, read=read)
+    scan = _Scan(problem, chain, [np.array([5.0])], np.zeros(1), np.zeros(1), 1.0, 0.25)
+    if min(over, 1.0 - over) > far:
+        wanted = -2.0 * np.log((1.0 - over) * np.exp(-0.5) + over * np.exp(-4.5))
+    else:
+        wanted = 0.25 * (9.0 if over > 0.5 else 1.0)
+    assert scan.cost(0.01) == pytest.approx(wanted)
+    assert asked == [(run.run, "instants", 0.0)]
+    # A reading that tells nothing says nothing.
+    run.examined.usable[0] = False
+    assert scan.cost(0.01) == 0.0

@@ -113,6 +113,25 @@ def test_a_way_of_just_four_shortest_pitches_has_one(monkeypatch: pytest.MonkeyP
     )
 
 
+def test_a_pitch_is_told_by_steps_of_the_way_and_not_by_what_is_left_of_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A way of nearly 26 steps is taken for 25 of them."""
+    fine = 2.0**-10
+    place = np.linspace(0.0, 25.96 * fine, 400)
+    rest = wave(5.0 * fine, place=place)
+    found = told(monkeypatch, rest, place=place, speed=np.ones(400), way=fine)
+    assert found[0] == pytest.approx(5.0 * fine, rel=0.01)
+
+
+def test_without_a_way_no_pitch_is_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = record(0.02 * np.arange(10))
+    campaign: Any = SimpleNamespace(prepared=[run], rig=Rig())
+    for moving, longest in ((np.zeros(10, bool), np.inf), (np.arange(10) == 3, np.inf)):
+        monkeypatch.setattr(module, "moving_samples", lambda campaign, at=moving: [at])
+        assert longest_pitch(campaign) == longest
+
+
 def test_beside_a_high_line_no_other_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """A wave that grows along the way is a line with slopes: higher than another wave, and still
     one."""

@@ -206,6 +206,32 @@ def test_samples_beside_a_jump_count_by_what_is_in_doubt_there() -> None:
     assert samples_beside_jumps(half, [p], [force], ["time_delay"]).weight[0][49] == 0.3
 
 
+def test_behind_a_reversal_a_sample_counts_by_the_error_of_its_instant(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Off by 4 N beside a noise of 3 N: three fifths; no test looks there, nor where none did."""
+    count = 20
+    asked: list[float] = []
+    error = np.where(np.isin(np.arange(count), [7, 8]), 4.0, 0.0)
+
+    def errors(p: Any, prediction: Array, least_n: float) -> Array:
+        asked.append(least_n)
+        return error
+
+    monkeypatch.setattr(sys.modules["jbf.estimation.jumps"], "instant_errors_n", errors)
+    prediction = np.full(count, 5.0)
+    noise = 3.0 * np.where(np.arange(count) % 2, 1.0, -1.0)
+    noise[3] = 1e3
+    run = record(0.02 * np.arange(count), friction=prediction + noise)
+    counted = np.arange(count) != 3
+    found = samples_beside_jumps(samples_of([run], [counted]), [run], [prediction], ["sensor_lag"])
+    # From half of the noise on it is told.
+    assert asked == [1.5]
+    assert np.flatnonzero(~found.counted[0]).tolist() == [3, 7, 8]
+    assert found.weight[0][[7, 8]] == pytest.approx([0.6, 0.6])
+    assert found.weight[0][[0, 19]].tolist() == [1.0, 1.0]
+
+
 def test_effects_that_move_or_spread_jumps_are_known() -> None:
     assert moves_jumps(["sensor_offset", "time_delay"])
     assert not moves_jumps(["sensor_offset"])

@@ -77,6 +77,11 @@ def test_a_run_that_never_forgets_is_taken_as_it_is(last: int, kept: bool) -> No
 
 
 def test_laws_remember_by_their_films_and_their_contacts() -> None:
+    """A film was anywhere between a rest and the top speed, a contact bent either way; of a run not
+    more than a part may go, of a single stroke most."""
+    assert (SPEEDS, WAYS) == ((1e-3, 0.1, 1.0), (-1.0, 1.0))
+    assert (MOST_OF_A_RUN, MOST_OF_A_STROKE, MOST_OF_ALL) == (0.5, 0.75, 0.5)
+    assert (LONGER, FURTHER) == (1.5, 1.1)
     assert memories("coulomb", ()) == []
     assert memories("journal", ()) == [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)]
     assert memories("lugre", ()) == [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)]

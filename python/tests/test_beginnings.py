@@ -149,8 +149,9 @@ def test_a_beginning_that_was_off_is_worth_a_word() -> None:
         )
         assert [f.run for f in told_of] == ["b"]
     for part, told in ((0.99, 0), (1.0, 2), (1.01, 2)):
-        less = [np.where(m, part * 2.0, 1.0) for m in masks]
-        assert len(_findings(campaign, less, masks, kept, "cell")) == told
+        for unit in (0.25, 1.0, 64.0):
+            less = [unit * np.where(m, part * 2.0, 1.0) for m in masks]
+            assert len(_findings(campaign, less, masks, kept, "cell")) == told
 
 
 @pytest.mark.parametrize(

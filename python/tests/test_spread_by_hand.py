@@ -168,9 +168,10 @@ def test_what_does_not_move_has_no_error_and_what_is_one_is_not_separate() -> No
     assert found.inflation[1] == 1.0
     # A thousand-millionth of the largest is nothing yet.
     for least, seen in ((1e-9, False), (1.01e-9, True)):
-        one, other = np.eye(300)[0], least * np.eye(300)[1]
-        problem, solution, _ = solved([one, other], [1.0] * 2, [False] * 2)
-        assert spread(problem, solution).moved.tolist() == [True, seen]
+        for unit in (1.0, 1024.0, 2.0**-20):
+            one, other = unit * np.eye(300)[0], unit * least * np.eye(300)[1]
+            problem, solution, _ = solved([one, other], [1.0] * 2, [False] * 2)
+            assert spread(problem, solution).moved.tolist() == [True, seen]
     nothing, solution, _ = solved([np.zeros(300)], [1.0], [False])
     still = spread(nothing, solution)
     assert (still.moved.tolist(), still.separate.tolist()) == ([False], [True])

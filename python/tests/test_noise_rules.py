@@ -13,7 +13,7 @@ import pytest
 from by_hand import coulomb, one_way
 from jbf import Rig, fit
 from jbf.estimation.noise import WHITE, Noise, _changes, estimate_noise, innovation_cost
-from scipy import signal
+from scipy import optimize, signal
 
 Array = npt.NDArray[np.float64]
 STEP_S = 0.02
@@ -153,6 +153,35 @@ def test_colour_must_gain_twenty_in_twice_the_log_likelihood() -> None:
             assert estimate_noise(r, [STEP_S], every).white == (gain < 20.0)
             told[gain < 20.0] += 1
     assert min(told.values()) > 5
+
+
+@pytest.mark.parametrize(
+    ("size", "seed", "earned"),
+    [(0.1, 17, True), (0.1, 3, True), (0.095, 16, False), (0.11, 0, False)],
+)
+def test_a_gain_of_a_little_more_than_twenty_is_earned(
+    size: float, seed: int, earned: bool
+) -> None:
+    """The best of all memories and colours is sought here by a simplex (Nelder & Mead 1965)."""
+    n = 3000
+    every = [np.ones(n, bool)]
+    white = np.random.default_rng(100 + seed).normal(0.0, 0.4, n)
+    r = [autoregressive(seed, 0.85, size, n) + white]
+
+    def cost(x: Array) -> float:
+        memory_s, colour = np.exp(x).tolist()
+        if not (2.0 * STEP_S <= memory_s <= 0.6 and colour < 1.0):
+            return np.inf
+        return innovation_cost(Noise(memory_s, colour), r, [STEP_S], every)
+
+    starts = [
+        np.log([m, c]) for m in np.geomspace(0.05, 0.5, 6) for c in np.geomspace(0.01, 0.2, 6)
+    ]
+    best = optimize.minimize(cost, min(starts, key=cost), method="Nelder-Mead")
+    gain = innovation_cost(WHITE, r, [STEP_S], every) - float(best.fun)
+    assert 19.0 < gain < 21.0
+    assert (gain > 20.0) == earned
+    assert estimate_noise(r, [STEP_S], every).white != earned
 
 
 def test_runs_steps_and_masks_go_in_step() -> None:

@@ -1,5 +1,4 @@
-"""Robust weights that follow their residuals, and which of two solutions predicts better: by
-made-up searches."""
+"""Robust weights that follow their residuals, by made-up searches."""
 
 from __future__ import annotations
 
@@ -13,7 +12,7 @@ from by_hand import Array
 from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.solution import Solution
-from jbf.estimation.weighting import ROUNDS, _better, _robust, best_weighting, huber, student
+from jbf.estimation.weighting import ROUNDS, _better, _robust, huber, student
 from made_of import record, samples_of
 
 module = sys.modules["jbf.estimation.weighting"]
@@ -85,41 +84,3 @@ def test_of_errors_that_are_mostly_nothing_squares_decide() -> None:
     assert _better(0.99 * left, left)
     assert not _better(1.1 * left, left)
     assert not _better(left, np.zeros(4))
-
-
-@pytest.mark.parametrize(
-    ("errors", "best"),
-    [
-        # What predicts better is kept, and what comes after must be better than that.
-        ({"plain": 1.0, "huber": 0.9, "student": 0.8}, "student"),
-        ({"plain": 1.0, "huber": 0.8, "student": 0.79}, "huber"),
-        ({"plain": 1.0, "huber": 1.1, "student": 0.9}, "student"),
-        ({"plain": 1.0, "huber": 0.99, "student": 1.5}, "plain"),
-        # What leads to the same place is not asked.
-        ({"plain": 1.0, "student": 0.5}, "student"),
-        ({"huber": None}, "plain"),
-    ],
-)
-def test_weights_are_kept_that_predict_what_was_left_out(
-    errors: dict[str, float | None], best: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[str] = []
-    residuals = {"plain": 1.0, "huber": 1.06, "student": 1.06}
-    for name in ("huber", "student"):
-        if errors.get(name) is None:
-            residuals[name] = 1.049
-    found = {name: solution(size * SHAPE) for name, size in residuals.items()}
-
-    def left_out(problem: Any, there: Solution) -> Array:
-        (name,) = [name for name, one in found.items() if one is there]
-        asked.append(name)
-        size = errors[name]
-        assert size is not None
-        return np.full(5, size)
-
-    monkeypatch.setattr(module, "_robust", lambda problem, plain, w: found[w.__name__])
-    monkeypatch.setattr(module, "left_out_residuals", left_out)
-    problem: Any = None
-    assert best_weighting(problem, found["plain"]) is found[best]
-    # Each at most once.
-    assert sorted(asked) == sorted(name for name, size in errors.items() if size is not None)

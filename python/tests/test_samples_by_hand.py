@@ -211,6 +211,10 @@ def test_of_very_many_samples_some_runs_are_searched() -> None:
     length = 2 * MOST_SEARCHED // 20
     assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]
     assert every_so_many([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
+    # Half of 400,000 are as many as it takes, and so are all of them; of one more there are two
+    # for each, and a bit.
+    assert every_so_many([20_000] * 20, names) == list(range(20))
+    assert every_so_many([20_000] * 19 + [20_001], names) == [0, 3, 6, 9, 12, 15, 18]
     # Of a quarter more than it takes every third, two and a half being none.
     assert every_so_many([5 * length // 8] * 20, names) == [0, 3, 6, 9, 12, 15, 18]
     # No more than a search takes: all of them; and so where runs are few.

@@ -117,6 +117,30 @@ def test_where_no_sample_was_left_out_nothing_is_wrong(monkeypatch: pytest.Monke
         assert left_out_rms(none, none) == pytest.approx(rms)
 
 
+def test_what_only_runs_that_were_left_out_know_is_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No step is tried then; a search begins where what was held is put back."""
+    problem: Any = Fits(monkeypatch, {})
+    asked: list[list[bool]] = []
+
+    def held(problem: Any, unknown: Array) -> dict[str, float]:
+        asked.append(unknown.tolist())
+        return {"b": 0.5}
+
+    monkeypatch.setattr(module, "_held", held)
+    none: Any = None
+    told: Any = SimpleNamespace(known=np.array([[1.0, 1.0], [1.0, 0.0]]), step=none)
+    (found,) = _predicted(problem, solution(), told, [0], [1])
+    assert asked == [[False, True]]
+    assert [start.tolist() for start in problem.searched] == [[1.0, 0.5]]
+    assert found.tolist() == [100.0] * N
+
+
+def test_a_step_of_one_innovation_is_as_long_as_its_noise() -> None:
+    told = _Told(np.ones((1, 1)), [(np.array([3.0, 0.0]), np.array([[2.0], [0.0]]))], [1])
+    step, square = told.step([0])
+    assert (step.tolist(), square) == ([1.5], 1.0)
+
+
 def test_a_step_without_residuals_is_none() -> None:
     told = _Told(np.ones((1, 1)), [(np.zeros(2), np.ones((2, 1)))], [0])
     step, square = told.step([0])
@@ -126,9 +150,10 @@ def test_a_step_without_residuals_is_none() -> None:
 def test_of_a_half_that_alone_knows_a_parameter_the_other_tells_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The first parameter shows everywhere, the second in the first half of the second run."""
+    """The first parameter shows everywhere, the second in the first half of the second run: up and
+    down by as much."""
     runs = [record(0.02 * np.arange(N), name=name) for name in "abc"]
-    own = np.stack([np.ones(N), np.arange(N) < 3], axis=1).astype(float)
+    own = np.stack([np.ones(N), [1.0, -1.0, 0.0, 0.0, 0.0, 0.0]], axis=1)
     other = np.stack([np.ones(N), np.zeros(N)], axis=1)
     jacobian = [other, own, other]
     there = Solution((), HERE, [np.zeros(N)] * 3, jacobian, WHITE, 0.0, True, "", samples_of(runs))

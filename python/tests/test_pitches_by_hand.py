@@ -113,6 +113,23 @@ def test_a_way_of_just_four_shortest_pitches_has_one(monkeypatch: pytest.MonkeyP
     )
 
 
+def test_each_line_is_of_what_the_higher_ones_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A weak wave is lower than the slopes of either of two strong ones."""
+    rest = wave(2.0 / 40.4, 3.0) + wave(2.0 / 90.4, 2.0) + wave(2.0 / 60.4, 0.03)
+    found = told(monkeypatch, rest)
+    assert [2.0 / pitch for pitch in found] == pytest.approx([40.4, 90.4, 60.4], abs=0.13)
+
+
+@pytest.mark.parametrize("beside", [-2.5, 2.5])
+def test_two_waves_are_two_where_they_are_two_lines_apart(
+    beside: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rest = wave(2.0 / 40.0) + wave(2.0 / (40.0 + beside), 0.4)
+    found = told(monkeypatch, rest)
+    assert 2.0 / found[0] == pytest.approx(40.0, abs=0.2)
+    assert 2.0 / found[1] == pytest.approx(40.0 + beside, abs=0.4)
+
+
 def test_a_pitch_is_told_by_steps_of_the_way_and_not_by_what_is_left_of_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

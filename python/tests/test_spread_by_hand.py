@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf.estimation.long_run import (
+    _white,
     between_runs,
     long_run_variance,
     score_inflation,
@@ -125,6 +126,11 @@ def solved(
     found = Solution((), np.array(values), parts, rows, WHITE, 0.0, True, "", samples)
     problem: Any = SimpleNamespace(log=np.array(log), open=list(range(len(values))))
     return problem, found, r
+
+
+def test_white_noise_is_the_mean_square_of_what_counts() -> None:
+    for innovations, square in (([3.0], 9.0), ([3.0, 0.0, 4.0], 12.5), ([0.0], 0.0), ([], 0.0)):
+        assert _white([np.array(innovations), np.zeros(5)]) == square
 
 
 def test_errors_are_those_of_linear_regression() -> None:

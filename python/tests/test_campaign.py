@@ -4,6 +4,8 @@ that take more than its sizes."""
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -56,6 +58,14 @@ def test_no_run_and_no_force_are_refused() -> None:
         of(run(force=np.zeros(N)))
     # Of two runs one with a force will do.
     assert len(of(run("a"), run("b", force=np.zeros(N))).prepared) == 2
+
+
+def test_of_forces_that_are_nothing_throughout_the_first_run_is_named() -> None:
+    nothing = [run(name, force=np.zeros(N)) for name in "ab"]
+    nothing[1] = replace(nothing[1], path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
+    with pytest.raises(InputError) as refused:
+        of(*nothing)
+    assert (refused.value.file, refused.value.column) == ("a", "friction_n")
 
 
 def test_a_run_that_was_given_twice_is_one() -> None:

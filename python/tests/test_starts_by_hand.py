@@ -29,8 +29,9 @@ FROM_DATA = {
     "drive_play": (4e-3, 4e-4, 4e-5),
     # A third and a tenth of 10 s.
     "run_time": (3.0, 1.0),
-    # Three hundredths of 2 N.
+    # Three hundredths of 2 N, and of its square what makes such a share there.
     "cell_play": (0.06,),
+    "cell_cubic": (0.0075,),
 }
 CATALOGUES = (11.0, 12.0)
 
@@ -42,12 +43,12 @@ def page(start: str, **more: Any) -> Parameter:
 @pytest.mark.parametrize(
     ("in_newtons", "bearing", "taken"),
     [
-        (True, False, {"kinetic", "drive_play", "run_time", "cell_play"}),
+        (True, False, {"kinetic", "drive_play", "run_time", "cell_play", "cell_cubic"}),
         # The catalogue's values of a drive are those of a shaft.
-        (True, True, {"kinetic", "run_time", "cell_play"}),
+        (True, True, {"kinetic", "run_time", "cell_play", "cell_cubic"}),
         # Coefficients know no newtons; a cell's errors are newtons whatever the law.
-        (False, True, {"cell_play"}),
-        (False, False, {"cell_play"}),
+        (False, True, {"cell_play", "cell_cubic"}),
+        (False, False, {"cell_play", "cell_cubic"}),
     ],
 )
 def test_starts_are_the_datas_where_a_law_has_newtons(

@@ -4,7 +4,7 @@ that take more than its sizes."""
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
+from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -66,6 +66,15 @@ def test_of_forces_that_are_nothing_throughout_the_first_run_is_named() -> None:
     with pytest.raises(InputError) as refused:
         of(*nothing)
     assert (refused.value.file, refused.value.column) == ("a", "friction_n")
+
+
+def test_a_campaign_is_one_with_itself_alone_and_stays_what_it_is() -> None:
+    """What is known of it is kept under it."""
+    campaign = of(run())
+    assert campaign != replace(campaign)
+    assert {campaign: 1}[campaign] == 1
+    with pytest.raises(FrozenInstanceError):
+        campaign.prepared = ()  # type: ignore[misc]
 
 
 def test_a_run_that_was_given_twice_is_one() -> None:

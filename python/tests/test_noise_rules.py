@@ -7,6 +7,8 @@ step `(1 - phi theta)(phi - theta) / (1 - phi^2)` times it.
 
 from __future__ import annotations
 
+from dataclasses import FrozenInstanceError
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -48,6 +50,12 @@ def test_shares_at_the_ends() -> None:
         assert nothing.coloured_share(STEP_S) == 0.0
     assert Noise(0.2, 1.0).coloured_share(STEP_S) == 1.0
     assert Noise(0.2, 0.5).with_share(0.0, STEP_S) == WHITE
+
+
+def test_a_description_is_a_value() -> None:
+    assert Noise(0.2, 0.5) == Noise(0.2, 0.5) != Noise(0.2, 0.4)
+    with pytest.raises(FrozenInstanceError):
+        WHITE.colour = 0.5  # type: ignore[misc]
 
 
 def test_noise_made_of_innovations_gives_them_back() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,13 @@ def test_those_that_count_stand_in_a_row() -> None:
     nothing = SAMPLES.within([np.zeros(4, dtype=bool), np.zeros(3, dtype=bool)])
     assert (nothing.count, nothing.rms(VALUES), nothing.square(VALUES)) == (0, 0.0, 0.0)
     assert nothing.cost(VALUES, WHITE) == 0.0
+
+
+def test_samples_are_one_where_they_are_the_same_and_stay_what_they_are() -> None:
+    assert replace(SAMPLES) != SAMPLES
+    assert {SAMPLES: 1}[SAMPLES] == 1
+    with pytest.raises(FrozenInstanceError):
+        SAMPLES.runs = ()  # type: ignore[misc]
 
 
 def test_parts_keep_what_belongs_together() -> None:

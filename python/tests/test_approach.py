@@ -173,3 +173,27 @@ def test_ratios_of_nothing_are_finite() -> None:
     assert _log_ratio(4.0, 1.0) == pytest.approx(np.log(4.0))
     assert np.isfinite(_log_ratio(1.0, 0.0))
     assert _log_ratio(0.0, 0.0) == 0.0
+
+
+@pytest.mark.parametrize("part", [False, True])
+def test_what_every_sample_says_where_it_ends_is_not_asked_for_again(
+    part: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a search of the whole; what a part of the runs says is not what all do."""
+    problem = Bowl([2.0])
+    if part:
+        problem.thinned = Bowl([2.0])
+    asked: list[Any] = []
+
+    def noted(*given: Any) -> str:
+        asked.append(given[-1])
+        return "noted"
+
+    monkeypatch.setattr(module, "noise_at", noted)
+    monkeypatch.setattr(problem, "samples_at", noted)
+    monkeypatch.setattr(problem, "solution", noted)
+    monkeypatch.setattr(module, "search", lambda *given, **named: Found(np.zeros(1), True, ""))
+    way: Any = Approach(problem, [{}])  # type: ignore[arg-type]
+    way.visited = SimpleNamespace(lines_at=lambda values: "lines", ended=[])
+    way.follow(10)
+    assert asked == [None if part else "lines"] * 3

@@ -77,6 +77,11 @@ def test_a_run_that_never_forgets_is_taken_as_it_is(last: int, kept: bool) -> No
 
 
 def test_laws_remember_by_their_films_and_their_contacts() -> None:
+    """A film was anywhere between a rest and the top speed, a contact bent either way; of a run not
+    more than a part may go, of a single stroke most."""
+    assert (SPEEDS, WAYS) == ((1e-3, 0.1, 1.0), (-1.0, 1.0))
+    assert (MOST_OF_A_RUN, MOST_OF_A_STROKE, MOST_OF_ALL) == (0.5, 0.75, 0.5)
+    assert (LONGER, FURTHER) == (1.5, 1.1)
     assert memories("coulomb", ()) == []
     assert memories("journal", ()) == [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)]
     assert memories("lugre", ()) == [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)]
@@ -144,8 +149,9 @@ def test_a_beginning_that_was_off_is_worth_a_word() -> None:
         )
         assert [f.run for f in told_of] == ["b"]
     for part, told in ((0.99, 0), (1.0, 2), (1.01, 2)):
-        less = [np.where(m, part * 2.0, 1.0) for m in masks]
-        assert len(_findings(campaign, less, masks, kept, "cell")) == told
+        for unit in (0.25, 1.0, 64.0):
+            less = [unit * np.where(m, part * 2.0, 1.0) for m in masks]
+            assert len(_findings(campaign, less, masks, kept, "cell")) == told
 
 
 @pytest.mark.parametrize(
@@ -206,6 +212,32 @@ def test_samples_beside_a_jump_count_by_what_is_in_doubt_there() -> None:
     assert samples_beside_jumps(half, [p], [force], ["time_delay"]).weight[0][49] == 0.3
 
 
+def test_behind_a_reversal_a_sample_counts_by_the_error_of_its_instant(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Off by 4 N beside a noise of 3 N: three fifths; no test looks there, nor where none did."""
+    count = 20
+    asked: list[float] = []
+    error = np.where(np.isin(np.arange(count), [7, 8]), 4.0, 0.0)
+
+    def errors(p: Any, prediction: Array, least_n: float) -> Array:
+        asked.append(least_n)
+        return error
+
+    monkeypatch.setattr(sys.modules["jbf.estimation.jumps"], "instant_errors_n", errors)
+    prediction = np.full(count, 5.0)
+    noise = 3.0 * np.where(np.arange(count) % 2, 1.0, -1.0)
+    noise[3] = 1e3
+    run = record(0.02 * np.arange(count), friction=prediction + noise)
+    counted = np.arange(count) != 3
+    found = samples_beside_jumps(samples_of([run], [counted]), [run], [prediction], ["sensor_lag"])
+    # From half of the noise on it is told.
+    assert asked == [1.5]
+    assert np.flatnonzero(~found.counted[0]).tolist() == [3, 7, 8]
+    assert found.weight[0][[7, 8]] == pytest.approx([0.6, 0.6])
+    assert found.weight[0][[0, 19]].tolist() == [1.0, 1.0]
+
+
 def test_effects_that_move_or_spread_jumps_are_known() -> None:
     assert moves_jumps(["sensor_offset", "time_delay"])
     assert not moves_jumps(["sensor_offset"])
@@ -240,6 +272,8 @@ def test_a_gap_is_more_than_four_and_a_half_steps() -> None:
 
 
 def test_work_is_what_samples_are_worth_and_no_more() -> None:
+    # A diagnosis of four thousand samples and less may take as many as one of four thousand.
+    assert [Work.of(n).most for n in (1, 4000, 5000)] == [4e8, 4e8, 5e8]
     assert Work.of(10).most == ANY_STEPS
     assert Work.of(10_000).most == STEPS_A_SAMPLE * 10_000
     work = Work(10.0)

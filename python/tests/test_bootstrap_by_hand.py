@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from jbf import InputError, Parameter, ParameterValue, Rig, Run
+from jbf import InputError, Parameter, ParameterValue, Rig, Run, threads
 from jbf.estimation.bootstrap import (
     LEAST_REPEATS,
     MOST_REPEATS,
+    bootstrap,
     check_repeats,
     innovation_sizes,
     read_again,
@@ -19,6 +20,7 @@ from jbf.estimation.bootstrap import (
     with_error,
 )
 from jbf.estimation.determined import undetermined
+from jbf.estimation.fit import fit
 from jbf.estimation.noise import WHITE, Noise
 from made_of import record, samples_of
 
@@ -135,6 +137,17 @@ def test_errors_of_a_motion_come_again_with_other_signs() -> None:
     assert np.any(np.sign(moved[20:]) != np.sign((p.run.position_m - PATH)[20:]))
 
 
+def test_a_place_on_a_bearing_is_as_far_as_its_surface_went() -> None:
+    p = prepared()
+    p.rig = Rig.thesis()
+    assert p.rig.bearing is not None
+    p.motion.angle_rad = PATH / p.rig.bearing.radius_m
+    again = read_again(p, np.full(N, 3.0), np.random.default_rng(1))
+    assert again.position_m is not None
+    off = np.abs(p.run.position_m - PATH)
+    assert np.abs(again.position_m - PATH) == pytest.approx(off, abs=1e-12)
+
+
 def test_a_column_that_is_not_believed_stays_as_it_was() -> None:
     p = prepared(velocity_m_s=True, position_m=True)
     again = read_again(p, np.full(N, 3.0), np.random.default_rng(1))
@@ -169,3 +182,17 @@ def test_noise_of_that_size_and_colour_is_added() -> None:
     assert again.friction_n is not None
     assert again.friction_n[KNOWN] == pytest.approx(wanted[KNOWN])
     assert np.all(again.friction_n[~KNOWN] == 7.0)
+
+
+def test_linear_algebra_keeps_to_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a fit, and of its repetitions."""
+    asked: list[str] = []
+    monkeypatch.setattr(threads, "_enter", lambda: asked.append("in"))
+    monkeypatch.setattr(threads, "_leave", lambda: asked.append("out"))
+    none: Any = None
+    with pytest.raises(InputError):
+        bootstrap(none, [], repeats=1)
+    assert asked == ["in", "out"]
+    with pytest.raises(InputError):
+        fit(Rig(), [], law="coulomb")
+    assert asked == ["in", "out"] * 2

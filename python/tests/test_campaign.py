@@ -3,6 +3,9 @@ that take more than its sizes."""
 
 from __future__ import annotations
 
+import sys
+from dataclasses import FrozenInstanceError, replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf import InputError, Parameter, Rig, Run
-from jbf.estimation.campaign import LEFT_OF_BIAS, LOADS_DIFFER, Campaign
+from jbf.estimation.campaign import LEFT_OF_BIAS, LOADS_DIFFER, Campaign, _each, _span
 from jbf.estimation.converter import curve_rms_n, noise_before
 from jbf.estimation.starts import (
     CAMPAIGN_RULES,
@@ -24,6 +27,7 @@ from jbf.estimation.starts import (
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 from made_of import record, samples_of
+from scipy import stats
 
 Array = npt.NDArray[np.float64]
 N = 800
@@ -56,6 +60,23 @@ def test_no_run_and_no_force_are_refused() -> None:
     assert len(of(run("a"), run("b", force=np.zeros(N))).prepared) == 2
 
 
+def test_of_forces_that_are_nothing_throughout_the_first_run_is_named() -> None:
+    nothing = [run(name, force=np.zeros(N)) for name in "ab"]
+    nothing[1] = replace(nothing[1], path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
+    with pytest.raises(InputError) as refused:
+        of(*nothing)
+    assert (refused.value.file, refused.value.column) == ("a", "friction_n")
+
+
+def test_a_campaign_is_one_with_itself_alone_and_stays_what_it_is() -> None:
+    """What is known of it is kept under it."""
+    campaign = of(run())
+    assert campaign != replace(campaign)
+    assert {campaign: 1}[campaign] == 1
+    with pytest.raises(FrozenInstanceError):
+        campaign.prepared = ()  # type: ignore[misc]
+
+
 def test_a_run_that_was_given_twice_is_one() -> None:
     other = run("b", force=6.0 * np.sign(SPEED))
     campaign = of(run("a"), other, run("c"))
@@ -82,6 +103,41 @@ def test_loads_differ_by_more_than_a_twentieth(share: float, differ: bool) -> No
 def test_noise_on_a_load_is_no_load() -> None:
     noisy = 100.0 + 4.0 * np.random.default_rng(1).standard_normal(N)
     assert not of(run(load_n=noisy)).has_loads
+
+
+@pytest.mark.parametrize("noise_n", [0.0, 4.0, 8.0])
+def test_how_far_a_load_goes_is_told_without_its_noise(noise_n: float) -> None:
+    """A slow load of normally distributed heights, 4 N each way: 3.29 of them from 5 % to 95 %."""
+    n = 20000
+    turns = np.abs(np.arange(n) % 2000 - 999.5) / 1000.0
+    slow = 100.0 + 4.0 * stats.norm.ppf(0.0005 + 0.999 * turns)
+    noisy = slow + noise_n * np.random.default_rng(2).standard_normal(n)
+    assert _span(noisy) == pytest.approx(3.29 * 4.0, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("rates_hz", "period_s"),
+    [
+        ((0.0, 0.0, 0.0), None),
+        ((50.0, 20.0, 5.0), None),
+        ((0.5, 0.0, 0.0), 2.0),
+        ((50.0, 0.0, 30.0), 1.0 / 40.0),
+        ((0.0, 50.0, 0.0), 1.0 / 50.0),
+    ],
+)
+def test_a_run_is_looked_at_anew_by_the_rate_that_others_of_its_logger_tell(
+    rates_hz: tuple[float, ...], period_s: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def of_run(rig: Any, run: Any, period_s: float | None = None) -> Any:
+        return SimpleNamespace(run=run, drawn_at_hz=rates_hz[run], period_s=period_s)
+
+    module = sys.modules["jbf.estimation.campaign"]
+    monkeypatch.setattr(module, "Prepared", SimpleNamespace(of=of_run))
+    runs: Any = list(range(len(rates_hz)))
+    found: Any = _each(Rig(), runs)
+    assert [p.run for p in found] == runs
+    wanted = [None if rate > 0.0 else period_s for rate in rates_hz]
+    assert [p.period_s for p in found] == [pytest.approx(w) if w else None for w in wanted]
 
 
 def test_temperatures_go_from_the_lowest_to_the_highest_on_record() -> None:

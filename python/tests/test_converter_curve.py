@@ -45,6 +45,24 @@ def test_readings_lie_off_whole_steps_by_their_origin(step: float, off: float) -
     assert origin_n(step, readings) == pytest.approx(off * step, abs=1e-9 * step)
 
 
+def test_the_origin_of_readings_with_noise_is_the_middle_of_their_circle() -> None:
+    """Each counts alike, however large it is."""
+    readings = np.array([-40.1, 0.1, 3.1, 7.9, 50.0, 2e3 - 0.1, 2e3 + 0.1])
+    assert origin_n(1.0, readings) == pytest.approx(0.0, abs=1e-9)
+    assert origin_n(1.0, readings + 0.2) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_three_harmonics_of_the_saw_tooth_are_counted(noise: float) -> None:
+    """Each as high as a step over pi and its number, and sunk by the noise as a Gaussian."""
+    force = np.arange(64) / 64.0
+    waves = np.fft.rfft(bias_n(1.0, noise, force)).imag / -32.0
+    k = np.arange(1, 4)
+    sunk = np.exp(-2.0 * (np.pi * k * noise) ** 2)
+    assert waves[1:4] == pytest.approx((-1.0) ** k / (np.pi * k) * sunk)
+    assert np.delete(waves, [1, 2, 3]) == pytest.approx(np.zeros(30), abs=1e-12)
+
+
 def same(noise: float) -> float:
     """How often two readings of one force are one, by the chance of their distance in steps."""
     apart = np.sqrt(2.0) * noise

@@ -31,8 +31,9 @@ def made(
     """A model of two parameters, each in its own direction of the record: at a step of one standard
     error the first goes `1 + bend` times as far one way, and `1 - bend` times the other."""
     ways = [np.repeat([1.0, -1.0], N // 2), np.tile(np.repeat([1.0, -1.0], N // 4), 2)]
-    noise = np.where(np.arange(N) % 2, 1.0, -1.0)
-    sd = 1.0 / np.sqrt(N - 2)
+    unit = more.pop("unit", 1.0)
+    noise = unit * np.where(np.arange(N) % 2, 1.0, -1.0)
+    sd = unit / np.sqrt(N - 2)
     centre = np.array([5.0, 20.0])
     mix = more.pop("mix", 0.0)
 
@@ -80,6 +81,9 @@ def doubtful(held: tuple[str, ...] = (), **given: Any) -> tuple[str, ...]:
 def test_where_the_likelihood_is_a_parabola_errors_are_errors() -> None:
     assert BENT == 0.3
     assert doubtful(bend=(0.0, 0.0)) == ()
+    for unit in (1e-3, 1e3):
+        assert doubtful(bend=(0.0, 0.0), unit=unit) == ()
+        assert doubtful(bend=(0.5, 0.0), unit=unit) == ("F_c_n",)
     # However much of the one the other makes up for.
     assert doubtful(bend=(0.0, 0.0), mix=3.0) == ()
 
@@ -110,6 +114,17 @@ def test_beyond_a_bound_nothing_is_looked_for() -> None:
     below = ((5.0 - 0.5 * sd, 1e9), (-1e9, 1e9))
     assert doubtful(bend=(0.15, 0.0), bounds=below) == ("F_c_n",)
     assert doubtful(bend=(-0.15, 0.0), bounds=below) == ()
+
+
+def test_what_stands_at_its_bound_does_not_move_along() -> None:
+    """A search stops a little inside; from there the others are looked at all the same."""
+    at_bound = ((-1e9, 1e9), (-1e9, 20.0 + 1e-9))
+    held = ("F_v_n_s_m",)
+    assert doubtful(bend=(0.5, 0.0), bounds=at_bound, held=held) == ("F_c_n",)
+    assert doubtful(bend=(0.0, 0.0), bounds=at_bound, held=held) == ()
+    # What it would make up for is not made up for: the rise is larger than that of an error.
+    assert doubtful(bend=(0.0, 0.0), mix=3.0, bounds=at_bound, held=held) == ("F_c_n",)
+    assert doubtful(bend=(0.0, 0.0), mix=3.0, held=held) == ()
 
 
 def test_peak_beside_peak_is_doubtful_unseen() -> None:

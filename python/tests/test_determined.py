@@ -20,6 +20,7 @@ SIGNED = Parameter("b_n", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
 DRAG = Parameter("F_d_n", lower=0.0, upper=1e4, null=0.0, starts=(0.5,))
 STIFF = Parameter("sigma_1_m", lower=1.0, upper=1e12, null=math.inf, starts=(3e3,), log=True)
 FACTOR = Parameter("factor", lower=1e-3, upper=1e3, null=1.0, starts=(0.5,), log=True)
+SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
 
 LARGER = "its error, {}, is larger than itself: these runs {}"
 TABLE = [
@@ -38,9 +39,25 @@ TABLE = [
     (SCALE, 1e-7, 1e-9, {}, "at its lower bound 1e-07: the runs ask for less"),
     (SCALE, 1e3, math.nan, {}, "at its upper bound 1000: the runs ask for more"),
     (SIGNED, 1e5, 1.0, {}, "at its upper bound 100000: the runs ask for more"),
+    # With no error, and with none that is known.
+    (PLAIN, 0.0, 0.0, {}, "at its lower bound 0: the runs ask for less"),
+    (PLAIN, 0.0, math.nan, {}, "at its lower bound 0: the runs ask for less"),
+    # Within a millionth of the error, or of the width in the logarithm, which is 23.
+    (PLAIN, 1e-6 * 2.0**20, 2.0**20, {}, "at its lower bound 0: the runs ask for less"),
+    (
+        PLAIN,
+        1.1e-6 * 2.0**20,
+        2.0**20,
+        {},
+        LARGER.format("1e+06", "tell only that it is below 2.1e+06"),
+    ),
+    (SCALE, 1e-7 * math.exp(2.2e-5), 1e-12, {}, "at its lower bound 1e-07: the runs ask for less"),
+    (SCALE, 1e-7 * math.exp(2.4e-5), 1e-12, {}, None),
     # A scale that is less than its error.
     (PLAIN, 3.0, 4.0, {}, LARGER.format("4", "tell only that it is below 11")),
     (PLAIN, 3e6, 4e6, {}, LARGER.format("4e+06", "do not tell its size")),
+    (PLAIN, 2e6, 3.9e6, {}, LARGER.format("3.9e+06", "tell only that it is below 9.8e+06")),
+    (PLAIN, 2e6, 4e6, {}, LARGER.format("4e+06", "do not tell its size")),
     (SCALE, 1e-4, 28.0, {}, LARGER.format("28", "do not tell its size")),
     (SCALE, 1.0, math.inf, {}, LARGER.format("inf", "do not tell its size")),
     # Nothing moves, or not alone.
@@ -69,6 +86,11 @@ def test_the_rule(
         (STIFF, math.inf, math.nan, False, True),
         (STIFF, 1e11, math.nan, False, False),
         (STIFF, 1.0, math.nan, False, False),
+        # A null that is a bound stops it, whichever.
+        (SHARE, 1.0, 0.1, False, True),
+        (SHARE, 1.0 - 1e-9, 0.1, False, True),
+        (SHARE, 0.5, 0.1, False, False),
+        (SHARE, 0.0, 0.1, False, False),
         # Nothing stops a fit at a null between the bounds; a user may hold it there.
         (SIGNED, 0.0, 0.1, False, False),
         (SIGNED, 0.0, math.nan, True, True),

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import _gaps, behind_gaps
+from jbf.estimation.film_gaps import EDGE, _gaps, _through, behind_gaps
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 
 LEAST_N = 0.02
+module = sys.modules["jbf.estimation.film_gaps"]
 
 
 def corner(t: Array) -> Array:
@@ -94,3 +97,39 @@ def test_a_campaign_leaves_those_samples_out() -> None:
     assert not settled.samples.counted[0][behind].any()
     assert settled.samples.counted[0][gap.time_s > 13.0].all()
     assert whole.name == "whole"
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_an_imagined_motion_changes_its_speed_at_an_end_of_the_gap(
+    late: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It keeps the speed from before until a thousandth of the gap is left, or has the one behind
+    from its first thousandth on; all that was recorded stays."""
+    t = np.arange(0.0, 16.0, 0.02)
+    kept = ((t < 7.0) | (t > 8.11)) & ((t < 10.0) | (t > 10.49))
+    run = Run.from_arrays(t[kept], 0.02 * (1.0 + t[kept]), np.ones(int(kept.sum())), name="broken")
+    problem, _ = posed(run)
+    (p,) = problem.campaign.prepared
+    asked: list[Any] = []
+    real = module.core_motion
+
+    def seen(rig: Rig, run: Run, motion: Any) -> Any:
+        asked.append((run, motion))
+        return real(rig, run, motion)
+
+    monkeypatch.setattr(module, "core_motion", seen)
+    driven = _through(p, late=late)
+    ((whole, motion),) = asked
+    gaps = _gaps(p)
+    begin, end = run.time_s[gaps], run.time_s[gaps + 1]
+    assert end - begin == pytest.approx([1.14, 0.52])
+    new = end - EDGE * (end - begin) if late else begin + EDGE * (end - begin)
+    assert EDGE == 1e-3
+    assert whole.time_s == pytest.approx(np.sort(np.concatenate((run.time_s, new))))
+    assert driven.kept is not None
+    assert whole.time_s[driven.kept].tolist() == run.time_s.tolist()
+    at = np.searchsorted(whole.time_s, new - 1e-9)
+    held = p.motion.velocity_m_s[gaps if late else gaps + 1]
+    assert motion.velocity_m_s[at].tolist() == held.tolist()
+    assert motion.acceleration_m_s2[at].tolist() == [0.0, 0.0]
+    assert motion.velocity_m_s[driven.kept] == pytest.approx(p.motion.velocity_m_s)

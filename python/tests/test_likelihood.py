@@ -19,7 +19,7 @@ from jbf.estimation.likelihood import (
     unexplained,
     unexplained_square,
 )
-from jbf.estimation.noise import WHITE
+from jbf.estimation.noise import LONGEST_MEMORY_S, WHITE
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 
@@ -235,3 +235,28 @@ def test_blocks_are_a_second_long_or_four_memories_and_none_spans_two_runs() -> 
     # Two at least, of white noise; a step of more than a second is a block by itself no more.
     assert blocks_of(rare, 1.0).tolist() == [0, 2, 3]
     assert blocks_of(rare, 10.0).tolist() == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("step_s", [0.02, 0.1])
+def test_autocorrelations_are_summed_until_they_sink_into_chance(step_s: float) -> None:
+    """By products of each sample with those behind it: up to two over the root of their number,
+    and no further than noise remembers."""
+    near, longest = 0, int(LONGEST_MEMORY_S / step_s) + 1
+    for seed in range(30):
+        random = np.random.default_rng(seed)
+        kicks = [random.standard_normal(n) for n in (900, 700)]
+        runs = [k[8:] + 0.075 * sum(k[8 - i : len(k) - i] for i in range(1, 8)) for k in kicks]
+        middle = np.concatenate(runs).mean()
+        off = [r - middle for r in runs]
+        whole = sum(float(r @ r) for r in off)
+        chance = 2.0 / np.sqrt(sum(map(len, runs)))
+        added = 0.0
+        for lag in range(1, longest + 1):
+            rho = sum(float(r[lag:] @ r[:-lag]) for r in off) / whole
+            if rho < chance:
+                break
+            near += rho < 1.5 * chance
+            added += rho
+        found = independent_share(runs, [step_s] * 2)
+        assert found == pytest.approx(1.0 / (1.0 + 2.0 * added))
+    assert near > 20

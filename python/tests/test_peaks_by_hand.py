@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf.estimation.minimum import search_peaks
+from jbf.estimation.peaks import other_peaks
 from jbf.estimation.weighting import ELSEWHERE, best_weighting, huber, student
 from made_of import record, samples_of
 
@@ -55,6 +56,21 @@ def looked(
     monkeypatch.setattr(minima, "settle", lambda p, near: near)
     near: Any = SimpleNamespace(values=np.array([2.0]), samples=None, noise=None)
     return float(search_peaks(problem, near).values[0]), asked
+
+
+def test_peaks_are_looked_for_up_to_five_times_the_value_and_down_to_a_fifth() -> None:
+    """At 41 places of a logarithm, the value among them; within bounds alone."""
+    asked: list[float] = []
+
+    def square(values: Array) -> float:
+        asked.append(float(values[1]))
+        return 0.0
+
+    other_peaks(square, np.array([7.0, 2.0]), 1, 1e-9, 1e9)
+    assert asked == pytest.approx(2.0 * 5.0 ** np.linspace(-1.0, 1.0, 41))
+    asked.clear()
+    other_peaks(square, np.array([7.0, 2.0]), 1, 1.0, 4.0)
+    assert (len(asked), min(asked) > 1.0, max(asked) < 4.0) == (17, True, True)
 
 
 def test_the_lowest_of_other_peaks_is_taken_where_it_is_lower(

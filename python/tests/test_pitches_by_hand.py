@@ -98,6 +98,68 @@ def test_a_pitch_is_four_steps_of_the_way(
     assert (abs(bins * FINE_M / found[0] - 1.0) < 1e-3) == there
 
 
+def test_a_way_of_just_four_shortest_pitches_has_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sixteen steps of the way, and a wave of four."""
+    fine = 2.0**-10
+    place = np.linspace(0.0, 16.0 * fine, 200)
+    found = told(
+        monkeypatch, wave(4.0 * fine, place=place), place=place, speed=np.ones(200), way=fine
+    )
+    assert found == (4.0 * fine,)
+    less = np.nextafter(16.0 * fine, 0.0) / (16.0 * fine) * place
+    assert (
+        told(monkeypatch, wave(4.0 * fine, place=less), place=less, speed=np.ones(200), way=fine)
+        == ()
+    )
+
+
+def test_each_line_is_of_what_the_higher_ones_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A weak wave is lower than the slopes of either of two strong ones."""
+    rest = wave(2.0 / 40.4, 3.0) + wave(2.0 / 90.4, 2.0) + wave(2.0 / 60.4, 0.03)
+    found = told(monkeypatch, rest)
+    assert [2.0 / pitch for pitch in found] == pytest.approx([40.4, 90.4, 60.4], abs=0.13)
+
+
+@pytest.mark.parametrize("beside", [-2.5, 2.5])
+def test_two_waves_are_two_where_they_are_two_lines_apart(
+    beside: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rest = wave(2.0 / 40.0) + wave(2.0 / (40.0 + beside), 0.4)
+    found = told(monkeypatch, rest)
+    assert 2.0 / found[0] == pytest.approx(40.0, abs=0.2)
+    assert 2.0 / found[1] == pytest.approx(40.0 + beside, abs=0.4)
+
+
+def test_a_pitch_is_told_by_steps_of_the_way_and_not_by_what_is_left_of_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A way of nearly 26 steps is taken for 25 of them."""
+    fine = 2.0**-10
+    place = np.linspace(0.0, 25.96 * fine, 400)
+    rest = wave(5.0 * fine, place=place)
+    found = told(monkeypatch, rest, place=place, speed=np.ones(400), way=fine)
+    assert found[0] == pytest.approx(5.0 * fine, rel=0.01)
+
+
+def test_without_a_way_no_pitch_is_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = record(0.02 * np.arange(10))
+    campaign: Any = SimpleNamespace(prepared=[run], rig=Rig())
+    for moving, longest in ((np.zeros(10, bool), np.inf), (np.arange(10) == 3, np.inf)):
+        monkeypatch.setattr(module, "moving_samples", lambda campaign, at=moving: [at])
+        assert longest_pitch(campaign) == longest
+
+
+def test_beside_a_high_line_no_other_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wave that grows along the way is a line with slopes: higher than another wave, and still
+    one."""
+    rest = PLACE * wave(0.05) + wave(0.011, 0.3)
+    found = told(monkeypatch, rest)
+    lines = [2.0 / pitch for pitch in found]
+    assert lines[0] == pytest.approx(40.0, abs=0.2)
+    assert lines[1] == pytest.approx(2.0 / 0.011, abs=0.2)
+    assert all(abs(a - b) > 2.0 for i, a in enumerate(lines) for b in lines[:i])
+
+
 def test_few_samples_or_a_short_way_have_no_pitch(monkeypatch: pytest.MonkeyPatch) -> None:
     few = PADDING * KNOTS
     assert few == 64

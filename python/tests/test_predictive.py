@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -122,3 +124,32 @@ def test_coloured_errors_are_whitened_first() -> None:
     square, count = mean_square(solution, solution.samples, noise)
     own = np.concatenate([noise.innovations(r, 0.1) for r in solution.residuals])
     assert (square, count) == (pytest.approx(np.mean(own**2)), sum(COUNTS))
+
+
+def test_samples_without_weight_say_nothing() -> None:
+    """As if they had not been recorded; noise is white, so none drives another."""
+    rng = np.random.default_rng(9)
+    there = solved(rng)
+    keep = [np.arange(n) % 4 > 0 for n in COUNTS]
+    samples = replace(there.samples, weight=tuple(k.astype(float) for k in keep))
+    errors = [rng.standard_normal(n) for n in COUNTS]
+    some = replace(there, jacobian=[j[k] for j, k in zip(there.jacobian, keep, strict=True)])
+    ones = tuple(np.ones(int(k.sum())) for k in keep)
+    fewer = replace(samples, weight=ones, counted=tuple(one > 0.0 for one in ones))
+    parts = [whole(i, e) for i, e in enumerate(errors)]
+    rest = [whole(i, e[k]) for i, (e, k) in enumerate(zip(errors, keep, strict=True))]
+    assert surprise(there, parts, samples, WHITE, VARIANCE) == pytest.approx(
+        surprise(some, rest, fewer, WHITE, VARIANCE)
+    )
+
+
+def test_a_parameter_that_moves_nothing_changes_nothing() -> None:
+    rng = np.random.default_rng(10)
+    there = solved(rng)
+    errors = [rng.standard_normal(n) for n in COUNTS]
+    parts = [whole(i, e) for i, e in enumerate(errors)]
+    usual = surprise(there, parts, there.samples, WHITE, VARIANCE)
+    wide = [np.column_stack([j, np.zeros(len(j))]) for j in there.jacobian]
+    more = [whole(i, e, (True,) * 4) for i, e in enumerate(errors)]
+    still = replace(there, jacobian=wide)
+    assert surprise(still, more, there.samples, WHITE, VARIANCE) == pytest.approx(usual)

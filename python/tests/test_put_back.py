@@ -35,6 +35,7 @@ def found(
     walls: dict[str, tuple[float, float]] | None = None,
     start: dict[str, float] | None = None,
     jump_n: float = 1.0,
+    left: Array = RESIDUAL,
 ) -> PutBack:
     """Of a model that predicts the same while each parameter is within its walls, and differs by
     `jump_n` everywhere beyond."""
@@ -49,7 +50,7 @@ def found(
             <= value
             <= inside.get(name, (-math.inf, math.inf))[1]
         ]
-        return [RESIDUAL + jump_n * bool(out)]
+        return [left + jump_n * bool(out)]
 
     prepared = [record(0.02 * np.arange(N), friction=np.full(N, 1e3))]
     problem: Any = SimpleNamespace(
@@ -61,9 +62,7 @@ def found(
         residuals=residuals,
         campaign=SimpleNamespace(prepared=prepared),
     )
-    solution: Any = SimpleNamespace(
-        values=whole, residuals=[RESIDUAL], samples=samples_of(prepared)
-    )
+    solution: Any = SimpleNamespace(values=whole, residuals=[left], samples=samples_of(prepared))
     spread: Any = SimpleNamespace(
         moved=np.array([moved.get(name, True) for name in NAMES]), error=lambda k: 0.1
     )
@@ -137,6 +136,19 @@ def test_the_same_is_within_a_ten_thousandth_of_the_residual(share: float, same:
     least = float(np.hypot(1e-4 * NOISE_N, 1e-9 * 1e3))
     back = found(
         {"F_c_n": 900.0}, {"F_c_n": False}, walls={"F_c_n": (899.0, 901.0)}, jump_n=share * least
+    )
+    assert (value(back, "F_c_n") == 4.0) == same
+
+
+@pytest.mark.parametrize(("share", "same"), [(0.99, True), (1.01, False)])
+def test_where_nothing_is_left_the_friction_says_what_is_the_same(share: float, same: bool) -> None:
+    """A micro-newton of 1 kN."""
+    back = found(
+        {"F_c_n": 900.0},
+        {"F_c_n": False},
+        walls={"F_c_n": (899.0, 901.0)},
+        jump_n=share * 1e-6,
+        left=np.zeros(N),
     )
     assert (value(back, "F_c_n") == 4.0) == same
 

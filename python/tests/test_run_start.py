@@ -179,6 +179,16 @@ def test_a_film_that_is_as_fast_as_the_bare_laws_sets_no_more_aside() -> None:
     assert settled_again(bare, minimum(bare, [{}])) is None
 
 
+def test_without_an_effect_on_the_film_nothing_more_is_set_aside() -> None:
+    """What the bare law remembers is set aside before, for every model, or not at all."""
+    campaign = Campaign.prepare(Rig.thesis(), [recorded(motion("a", None), RESTED, 0)])
+    assert settled_campaign(campaign, "journal", "journal") is not campaign
+    for effects in ((), ("sensor_offset",)):
+        problem = Problem(campaign, "journal", "journal", effects)
+        values = problem.starts({})[0]
+        assert settled_again(problem, problem.solution(values, campaign.samples, WHITE)) is None
+
+
 def test_a_law_in_newtons_remembers_nothing() -> None:
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     assert settled_campaign(campaign, "coulomb", "journal") is campaign

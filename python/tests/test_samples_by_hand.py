@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,13 @@ def test_those_that_count_stand_in_a_row() -> None:
     nothing = SAMPLES.within([np.zeros(4, dtype=bool), np.zeros(3, dtype=bool)])
     assert (nothing.count, nothing.rms(VALUES), nothing.square(VALUES)) == (0, 0.0, 0.0)
     assert nothing.cost(VALUES, WHITE) == 0.0
+
+
+def test_samples_are_one_where_they_are_the_same_and_stay_what_they_are() -> None:
+    assert replace(SAMPLES) != SAMPLES
+    assert {SAMPLES: 1}[SAMPLES] == 1
+    with pytest.raises(FrozenInstanceError):
+        SAMPLES.runs = ()  # type: ignore[misc]
 
 
 def test_parts_keep_what_belongs_together() -> None:
@@ -148,6 +155,7 @@ def test_deviations_of_runs_are_shrunk_and_taken_off() -> None:
     r, _ = samples.stacked([np.full(3, 3.0)], [np.zeros((3, 0))], WHITE)
     assert r == pytest.approx(np.full(3, 3.0 / np.sqrt(13.0)))
     assert samples.cost([np.full(3, 3.0)], WHITE) == pytest.approx(3.0 * np.log(9.0 / 13.0))
+    assert samples.within([~every]).cost([np.full(3, 3.0)], WHITE) == 0.0
     assert between.log_determinant([np.ones(3)], (0.02,), WHITE) == pytest.approx(np.log(13.0))
 
 
@@ -164,6 +172,32 @@ def test_two_models_share_the_smaller_weight() -> None:
             [True, False, True],
         ]
         assert [w.tolist() for w in shared.weight] == [[0.2, 0.5, 0.0, 1.0], [1.0, 0.1, 0.5]]
+
+
+@pytest.mark.parametrize("fewer", [[VALUES[0]], [*VALUES, VALUES[0]]])
+def test_runs_and_their_samples_go_in_step(fewer: list[Array]) -> None:
+    """One too few or too many is a fault, and is not dropped in silence."""
+    masks = [np.ones(len(v), dtype=bool) for v in fewer]
+    ones = [np.ones(len(c)) for c in COUNTED]
+    broken = [
+        lambda: SAMPLES.within(masks),
+        lambda: SAMPLES.weighed(fewer, ones, None),
+        lambda: SAMPLES.weighed(ones, fewer, None),
+        lambda: replace(SAMPLES, level=tuple(fewer)).weighed(ones, ones, None),
+        lambda: replace(SAMPLES, weight=tuple(fewer)).tested(),
+        lambda: SAMPLES.flat(fewer),
+        lambda: SAMPLES.rms(fewer),
+        lambda: SAMPLES.square(fewer),
+        lambda: SAMPLES.cost(fewer, WHITE),
+        lambda: SAMPLES.weighted_innovations(fewer, WHITE),
+        lambda: SAMPLES.innovations(fewer, WHITE),
+        lambda: SAMPLES.plain_innovations(fewer, WHITE),
+        lambda: least_weights(SAMPLES, replace(SAMPLES, weight=tuple(fewer))),
+        lambda: least_weights(SAMPLES, replace(SAMPLES, counted=tuple(masks))),
+    ]
+    for call in broken:
+        with pytest.raises(ValueError, match="zip"):
+            call()
 
 
 # ---- rows --------------------------------------------------------------------------------------
@@ -184,6 +218,12 @@ def test_of_very_many_samples_some_runs_are_searched() -> None:
     length = 2 * MOST_SEARCHED // 20
     assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]
     assert every_so_many([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
+    # Half of 400,000 are as many as it takes, and so are all of them; of one more there are two
+    # for each, and a bit.
+    assert every_so_many([20_000] * 20, names) == list(range(20))
+    assert every_so_many([20_000] * 19 + [20_001], names) == [0, 3, 6, 9, 12, 15, 18]
+    # Of a quarter more than it takes every third, two and a half being none.
+    assert every_so_many([5 * length // 8] * 20, names) == [0, 3, 6, 9, 12, 15, 18]
     # No more than a search takes: all of them; and so where runs are few.
     assert every_so_many([length // 2] * 20, names) == list(range(20))
     assert every_so_many([10 * length] * 2, names[:2]) == [0, 1]

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from jbf.estimation.long_run import (
+    _white,
     between_runs,
     long_run_variance,
     score_inflation,
@@ -127,6 +128,11 @@ def solved(
     return problem, found, r
 
 
+def test_white_noise_is_the_mean_square_of_what_counts() -> None:
+    for innovations, square in (([3.0], 9.0), ([3.0, 0.0, 4.0], 12.5), ([0.0], 0.0), ([], 0.0)):
+        assert _white([np.array(innovations), np.zeros(5)]) == square
+
+
 def test_errors_are_those_of_linear_regression() -> None:
     """In the parameter's own unit: of a logarithm times the value."""
     t = np.linspace(-1.0, 1.0, 300)
@@ -168,9 +174,10 @@ def test_what_does_not_move_has_no_error_and_what_is_one_is_not_separate() -> No
     assert found.inflation[1] == 1.0
     # A thousand-millionth of the largest is nothing yet.
     for least, seen in ((1e-9, False), (1.01e-9, True)):
-        one, other = np.eye(300)[0], least * np.eye(300)[1]
-        problem, solution, _ = solved([one, other], [1.0] * 2, [False] * 2)
-        assert spread(problem, solution).moved.tolist() == [True, seen]
+        for unit in (1.0, 1024.0, 2.0**-20):
+            one, other = unit * np.eye(300)[0], unit * least * np.eye(300)[1]
+            problem, solution, _ = solved([one, other], [1.0] * 2, [False] * 2)
+            assert spread(problem, solution).moved.tolist() == [True, seen]
     nothing, solution, _ = solved([np.zeros(300)], [1.0], [False])
     still = spread(nothing, solution)
     assert (still.moved.tolist(), still.separate.tolist()) == ([False], [True])

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf import InputError, Rig, trajectories
+from jbf import InputError, Rig, threads, trajectories
+from jbf.estimation.determined import NEVER_MOVED
 from jbf.estimation.trajectory_fit import _errors, _usable, fit_trajectories
 
 RIG = Rig.thesis()
@@ -105,3 +106,42 @@ def test_more_samples_than_parameters_are_needed(count: int, enough: bool) -> No
 def test_frictions_are_a_list(wrong: Any) -> None:
     with pytest.raises(InputError, match="the friction is"):
         fit_trajectories(RIG, SWINGS, wrong)
+
+
+def ended(status: int, jacobian: Array) -> Any:
+    """What a search says that was over at once, having asked once for residuals and slopes."""
+
+    def search(residuals: Any, x: Array, *, jac: Any, **more: Any) -> Any:
+        left = residuals(x)
+        jac(x)
+        cost = 0.5 * float(left @ left)
+        return SimpleNamespace(x=x, jac=jacobian, cost=cost, status=status, message="over")
+
+    return search
+
+
+@pytest.mark.parametrize(("status", "converged"), [(-1, False), (0, False), (1, True), (2, True)])
+def test_what_a_search_says_of_itself_is_told(
+    status: int, converged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A parameter that moves a coefficient by a thousandth is one that the runs show."""
+    from scipy import optimize
+
+    clean = [d.friction_coefficient for d in trajectories(RIG, TRUTH, SWINGS)]
+    jacobian = 1e-3 * np.random.default_rng(2).standard_normal((116, 4))
+    monkeypatch.setattr(optimize, "least_squares", ended(status, jacobian))
+    found = fit_trajectories(RIG, SWINGS, clean, start=TRUTH)
+    assert (found.converged, found.message, found.evaluations) == (converged, "over", 1)
+    assert all(p.stderr is not None for p in found.parameters.values())
+    jacobian[:, 1] = 0.0
+    hidden = fit_trajectories(RIG, SWINGS, clean, start=TRUTH)
+    assert hidden["U_tr_m_s"].note == NEVER_MOVED
+
+
+def test_linear_algebra_keeps_to_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(threads, "_enter", lambda: asked.append("in"))
+    monkeypatch.setattr(threads, "_leave", lambda: asked.append("out"))
+    with pytest.raises(InputError):
+        fit_trajectories(RIG, [], [])
+    assert asked == ["in", "out"]

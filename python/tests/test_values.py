@@ -66,6 +66,7 @@ from jbf.estimation import (
     film_rate,
     fit,
     initial_state,
+    joint_lateness,
     jumps,
     lateness,
     left_out,
@@ -159,6 +160,7 @@ ESTIMATION = (
     film_rate,
     fit,
     initial_state,
+    joint_lateness,
     jumps,
     lateness,
     left_out,
@@ -202,6 +204,7 @@ THEMSELVES = {
     "Deviation",
     "Directions",
     "ExactDelay",
+    "LatenessStep",
     "PutBack",
     "Samples",
     "SecondLook",
@@ -245,3 +248,32 @@ def test_what_belongs_together_has_one_length(module: ModuleType) -> None:
             (strict,) = [k.value for k in node.keywords if k.arg == "strict"]
             assert isinstance(strict, ast.Constant)
             assert strict.value is True, f"line {node.lineno}"
+
+
+@pytest.mark.parametrize(
+    ("function", "named"),
+    [
+        (approach.Approach, ("each", "stepped")),
+        (approach.approach, ("followed", "steps", "method")),
+        (bootstrap.bootstrap, ("repeats", "seed", "start", "progress")),
+        (determined.undetermined, ("moved", "separate")),
+        (determined.at_null, ("fixed",)),
+        (fit.fit, ("law", "clock", "start", "fixed")),
+        (left_out.left_out_rms, ("apart",)),
+        (left_out.left_out_by_run, ("apart",)),
+        (left_out.errors_by_run, ("apart", "counted")),
+        (pitches.pitches, ("along",)),
+        (
+            trajectory_fit.fit_trajectories,
+            ("start", "model", "clock", "tolerance", "eps", "phi_rad"),
+        ),
+    ],
+    ids=lambda what: getattr(what, "__name__", ""),
+)
+def test_what_only_its_name_explains_is_given_by_name(
+    function: Any, named: tuple[str, ...]
+) -> None:
+    """A `True` among other values says nothing to who reads the call."""
+    given = inspect.signature(function).parameters.values()
+    only = tuple(p.name for p in given if p.kind is inspect.Parameter.KEYWORD_ONLY)
+    assert only == named

@@ -118,7 +118,7 @@ class _Scan:
         ]
         # Of coloured residuals a sample tells less.
         counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
-        share = min(independent_share(counted, samples.steps_s), 1.0)
+        share = independent_share(counted, samples.steps_s)
         noise_n = max(samples.rms(left), 1e-300)
         way = np.where(np.isfinite(way) & spread.moved, way, 0.0)
         return cls(problem, chain, friction, values, way, noise_n, share)

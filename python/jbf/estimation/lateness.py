@@ -134,7 +134,7 @@ def _scans(
     for p, force in zip(runs, forces, strict=True):
         instants = instants_of(p)
         slopes.append(np.interp(p.run.time_s, instants, np.gradient(force, instants)))
-    share = min(independent_share(_on_time(problem, solution, slopes), samples.steps_s), 1.0)
+    share = independent_share(_on_time(problem, solution, slopes), samples.steps_s)
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
         instants = instants_of(p)

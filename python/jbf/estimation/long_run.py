@@ -64,7 +64,7 @@ def score_inflation(
     directions = [d / largest for d in directions]
     square = sum(float(np.sum(d**2)) for d in directions)
     white = _white(innovations)
-    if square <= 0.0 or white <= 0.0:
+    if white <= 0.0:
         return 1.0
     # What the score itself explains is no noise here either.
     along = sum(float(d @ e) for d, e in zip(directions, innovations, strict=True)) / square

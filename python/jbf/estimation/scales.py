@@ -69,8 +69,9 @@ def scales(campaign: Campaign) -> Scales:
     f = np.concatenate([p.friction_n[m] for p, m in zip(campaign.prepared, moving, strict=True)])
     speed, along = np.abs(v), f * np.sign(v)
     whole = max(float(np.median(np.abs(f))), 1e-5)
-    slow_m_s, usual_m_s = (max(float(q), 1e-9) for q in np.quantile(speed, [0.1, 0.5]))
-    low, high = speed <= usual_m_s, speed >= usual_m_s
+    slow, usual = (float(q) for q in np.quantile(speed, [0.1, 0.5]))
+    slow_m_s, usual_m_s = max(slow, 1e-9), max(usual, 1e-9)
+    low, high = speed <= usual, speed >= usual
     f_low, f_high = float(np.median(along[low])), float(np.median(along[high]))
     v_low, v_high = float(np.median(speed[low])), float(np.median(speed[high]))
     slope = max((f_high - f_low) / (v_high - v_low), 0.0) if v_high > 1.2 * v_low else 0.0

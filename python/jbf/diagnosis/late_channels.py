@@ -64,7 +64,7 @@ def on_time(
     if any(f.kind == "drifting_clock" for f in problem.campaign.more_findings):
         return None
     found = _sharper(problem, solution, policy) if told else _found(problem, solution, policy)
-    if found is None:
+    if found is None or _says_no_more(found, solution):
         return None
     if richer is None:
         worth_it = (
@@ -95,6 +95,15 @@ def on_time(
         for p, late in zip(found.campaign.prepared, late_s.tolist(), strict=True)
     ]
     return found.campaign.with_findings(findings)
+
+
+def _says_no_more(found: Shifted, solution: Solution) -> bool:
+    """Whether shifted runs leave no less than deviations do that are known of them: a film that
+    carries later in one run than in another makes its force late, nearly."""
+    if solution.samples.between is None:
+        return False
+    apart = solution.samples.without_deviations(solution.residuals, solution.noise)
+    return found.solution.rms_n >= solution.samples.rms(apart)
 
 
 def _found(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:

@@ -18,7 +18,7 @@ from jbf.diagnosis.power import power
 from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
-from jbf.diagnosis.rounds import select, step
+from jbf.diagnosis.rounds import Selected, select, step
 from jbf.diagnosis.second_look import second_look
 from jbf.diagnosis.selection import Names, weights
 from jbf.diagnosis.shifted import DELAY
@@ -130,6 +130,8 @@ def _diagnose(
     for _ in range(policy.most_looks):
         weighed = None
         again = _on_time(candidates, selected.present)
+        if again is not None and _deviate_rather(candidates, selected, again):
+            again = selected.again
         again = again or _without_bias(candidates, selected.present) or selected.again
         if again is None:
             again = weighed = _weighed(candidates, selected.present)
@@ -220,6 +222,21 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
         more = 1.0 if bought == (DELAY,) else candidates.policy.no_worse
         shifted = on_time(simpler, near, candidates.policy, solution, more)
     return shifted
+
+
+def _deviate_rather(candidates: Candidates, selected: Selected, shifted: Campaign) -> bool:
+    """Whether the runs deviate from one another, and are not late: what of both leaves less."""
+    differ = selected.again
+    if differ is None or differ.samples.between is candidates.campaign.samples.between:
+        return False
+    law, clock, policy = candidates.law, candidates.clock, candidates.policy
+    left_n = []
+    for campaign in (differ, shifted):
+        there = Candidates(campaign, law, clock, policy, None, candidates)
+        solution = there.converge(selected.present)
+        apart = solution.samples.without_deviations(solution.residuals, solution.noise)
+        left_n.append(solution.samples.rms(apart))
+    return left_n[0] < left_n[1]
 
 
 def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:

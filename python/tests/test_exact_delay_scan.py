@@ -171,11 +171,11 @@ def test_a_sample_is_a_mixture_within_three_and_a_half_deviations_of_its_instant
     over: float,
 ) -> None:
     """Where one side is less likely than that it is the other's, and counts for its share; read
-    1 N off the one and 3 N off the other in a noise of 1 N."""
+    2 N off the one and 3 N off the other in a noise of 1 N."""
     far = 0.5 * np.exp(-0.5 * 3.5**2)
     assert 0.9e-3 < far < 1.2e-3
     reading = SimpleNamespace(
-        before_n=np.array([4.0]), after_n=np.array([2.0]), over=np.array([over]), mean_n=np.ones(1)
+        before_n=np.array([3.0]), after_n=np.array([2.0]), over=np.array([over]), mean_n=np.ones(1)
     )
     asked: list[Any] = []
 
@@ -194,9 +194,9 @@ def test_a_sample_is_a_mixture_within_three_and_a_half_deviations_of_its_instant
     chain: Any = SimpleNamespace(tau=0, read=read)
     scan = _Scan(problem, chain, [np.array([5.0])], np.zeros(1), np.zeros(1), 1.0, 0.25)
     if min(over, 1.0 - over) > far:
-        wanted = -2.0 * np.log((1.0 - over) * np.exp(-0.5) + over * np.exp(-4.5))
+        wanted = -2.0 * np.log((1.0 - over) * np.exp(-2.0) + over * np.exp(-4.5))
     else:
-        wanted = 0.25 * (9.0 if over > 0.5 else 1.0)
+        wanted = 0.25 * (9.0 if over > 0.5 else 4.0)
     assert scan.cost(0.01) == pytest.approx(wanted)
     assert asked == [(run.run, "instants", 0.0)]
     # A reading that tells nothing says nothing.

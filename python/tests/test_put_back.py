@@ -124,6 +124,13 @@ def test_where_home_predicts_otherwise_part_of_the_way_is_gone(
     assert back.notes == {name: f"flat here: these runs tell only that it is not {home:.3g}"}
 
 
+def test_the_whole_way_home_ends_there_to_the_bit() -> None:
+    """0.7 and what 0.1 is less than that are not 0.1."""
+    assert 0.7 + (0.1 - 0.7) != 0.1
+    back = found({"F_c_n": 0.7}, {"F_c_n": False}, start={"F_c_n": 0.1})
+    assert value(back, "F_c_n") == 0.1
+
+
 def test_there_is_no_half_of_the_way_to_infinity() -> None:
     back = found({"two.sigma": 900.0}, {"two.sigma": False}, walls={"two.sigma": (0.0, 1e6)})
     assert value(back, "two.sigma") == 900.0

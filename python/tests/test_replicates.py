@@ -33,12 +33,6 @@ def test_the_period_is_found_to_the_sample(period: int, level: float) -> None:
     assert period_samples(level + wave(5 * period + 130, period)) == period
 
 
-@pytest.mark.parametrize("period", [40, 150, 600])
-def test_a_slow_turn_is_as_long_as_it_is(period: int) -> None:
-    """Near its top a sine's correlation is flat: the top is meant, and not the way up."""
-    assert period_samples(np.sin(2.0 * np.pi * np.arange(5 * period) / period)) == period
-
-
 @pytest.mark.parametrize(("count", "found"), [(99, None), (100, 20)])
 def test_fewer_than_a_hundred_samples_have_no_period(count: int, found: int | None) -> None:
     assert period_samples(wave(count, 20)) == found

@@ -156,6 +156,9 @@ def test_deviations_of_runs_are_shrunk_and_taken_off() -> None:
     assert r == pytest.approx(np.full(3, 3.0 / np.sqrt(13.0)))
     assert samples.cost([np.full(3, 3.0)], WHITE) == pytest.approx(3.0 * np.log(9.0 / 13.0))
     assert samples.within([~every]).cost([np.full(3, 3.0)], WHITE) == 0.0
+    # Of a single one, 2 N as usual beside 1 N: a fifth of its square.
+    first = samples.within([np.arange(3) == 0])
+    assert first.cost([np.full(3, 3.0)], WHITE) == pytest.approx(np.log(9.0 / 5.0))
     assert between.log_determinant([np.ones(3)], (0.02,), WHITE) == pytest.approx(np.log(13.0))
 
 

@@ -144,7 +144,7 @@ def test_where_nothing_counts_the_first_run_is_named() -> None:
     t = np.arange(0.0, 10.0, 0.02)
     v = 0.1 * np.sin(t)
     runs = [Run.from_arrays(t, v, np.sign(v) + k, name=f"{k}") for k in range(3)]
-    runs[2] = replace(runs[2], path=Path("last.csv"))
+    runs[1:] = [replace(run, path=Path("later.csv")) for run in runs[1:]]
     campaign = Campaign.prepare(Rig(), runs)
     nothing = campaign.without([np.ones(len(p.run), dtype=bool) for p in campaign.prepared])
     with pytest.raises(InputError) as refused:

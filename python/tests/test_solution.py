@@ -32,6 +32,7 @@ def solution(**more: Any) -> Solution:
 def test_its_parameters_are_those_that_were_fitted() -> None:
     """One of three was held; of nothing that is known of the derivatives it is all of them."""
     assert solution().free == 2
+    assert solution(jacobian=[np.ones((N, 2))]).free == 2
     assert solution(jacobian=[]).free == 3
 
 

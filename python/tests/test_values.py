@@ -277,3 +277,22 @@ def test_what_only_its_name_explains_is_given_by_name(
     given = inspect.signature(function).parameters.values()
     only = tuple(p.name for p in given if p.kind is inspect.Parameter.KEYWORD_ONLY)
     assert only == named
+
+
+@pytest.mark.parametrize(
+    ("function", "defaults"),
+    [
+        # Forty answers tell an error to a fifth.
+        (bootstrap.bootstrap, {"repeats": 40, "seed": 0}),
+        (fit.fit, {"effects": (), "law": "journal", "clock": "journal"}),
+        (
+            trajectory_fit.fit_trajectories,
+            {"model": "journal", "clock": "journal", "tolerance": 1e-6},
+        ),
+    ],
+    ids=lambda what: getattr(what, "__name__", ""),
+)
+def test_what_is_not_given_is_as_it_is_documented(function: Any, defaults: dict[str, Any]) -> None:
+    given = inspect.signature(function).parameters.values()
+    found = {p.name: p.default for p in given if p.default not in (None, inspect.Parameter.empty)}
+    assert found == defaults

@@ -84,3 +84,10 @@ def test_of_errors_that_are_mostly_nothing_squares_decide() -> None:
     assert _better(0.99 * left, left)
     assert not _better(1.1 * left, left)
     assert not _better(left, np.zeros(4))
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_a_middle_is_smaller_by_its_share(unit: float) -> None:
+    left = unit * np.array([1.0, -1.0, 1.0, 1e3, -1e3])
+    assert not _better(np.array([0.9, 0.9, 0.9, 1.0, 1.0]) * left, left)
+    assert _better(np.array([0.7, 0.7, 0.7, 1.0, 1.0]) * left, left)

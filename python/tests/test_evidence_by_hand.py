@@ -113,6 +113,11 @@ def test_what_sets_samples_aside_is_judged_by_those_it_leaves(
     for there, wanted in ((0.0, 80.0), (200.0, 30.0), (-200.0, 80.0), (400.0, -20.0)):
         fewer["gain"] = there
         assert evidence_alone(made, rich, base) == pytest.approx(wanted)
+    # However little evidence there is, it is asked.
+    slight = model(82.0, 5)
+    slight.samples, fewer["gain"] = "few", 200.0
+    assert evidence(made, slight, base) == pytest.approx(0.5)
+    assert evidence_alone(made, slight, base) == pytest.approx(-118.0 - 20.0)
     assert set(asked) == {"few"}
     # Of the same samples, or without evidence, nothing is asked.
     count = len(asked)

@@ -118,6 +118,12 @@ def test_bins_with_a_fiftieth_of_what_is_explained_have_a_part(other: float, nam
         assert said == "one sign throughout: record minus model +1 N m; most +1 N m at run a"
 
 
+def test_a_bin_with_just_a_fiftieth_has_no_part() -> None:
+    """Of 49 and 1."""
+    said = words(RUNS[:2], [7.0, -1.0])
+    assert said == "one sign throughout: record minus model +7 N m; most +7 N m at run a"
+
+
 def test_sizes_are_means_over_samples() -> None:
     """Of 300 samples at 1 N m and 100 at 3 N m, 1.5 N m."""
     counts = [300, 100]

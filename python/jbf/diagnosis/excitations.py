@@ -181,7 +181,8 @@ def _mixed(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str,
     for share in STOP_SHARES:
         first, after_s = _stop_and_go(t, share * top, sharp)
         for short in SHARES[1:]:
-            if not quick[1.0] or not quick[short]:
+            # Where a full one is within the acceleration, so is one that is less far.
+            if not quick[1.0]:
                 continue
             # Half of what is left, in whole half-waves.
             left_s = 0.5 * (duration - after_s)

@@ -126,8 +126,7 @@ def _pitch(
     chance = np.ones(len(waves))
     # Chi-square's tail; where it underflows the excess decides.
     chance[band] = special.gammaincc(0.5 * degrees[band], 0.5 * total[band])
-    excess = np.where(band, total - degrees, -np.inf)
-    k = int(np.argmax(np.where(chance <= chance.min(), excess, -np.inf)))
+    k = int(np.argmax(np.where(chance <= chance.min(), total - degrees, -np.inf)))
     if chance[k] * band.sum() > policy.tone_chance:
         return None
     pitch = 1.0 / float(waves[k])

@@ -68,7 +68,10 @@ def stepped(monkeypatch: pytest.MonkeyPatch, rows: list[tuple[Array, Array, int]
     of the model one is the delay that all runs share, and one is held."""
     asked: list[list[int]] = []
 
-    def made(problem: Any, solution: Any, by: list[int]) -> Iterator[tuple[Array, Array, int]]:
+    def made(
+        problem: Any, solution: Any, by: list[int], clocks: str
+    ) -> Iterator[tuple[Array, Array, int]]:
+        assert clocks == "by run"
         asked.append(by)
         yield from rows
 
@@ -175,7 +178,7 @@ def test_rows_are_of_samples_no_nearer_to_a_reversal_than_a_step_goes(
     problem: Any = SimpleNamespace(
         campaign=SimpleNamespace(prepared=runs), chain=SimpleNamespace(predict=predict)
     )
-    for i, (r, j, count) in enumerate(_rows(problem, solution, [2, 0])):
+    for i, (r, j, count) in enumerate(_rows(problem, solution, [2, 0], "by run")):
         unknown = np.flatnonzero(~runs[i].motion.sign_known)
         far = np.abs(np.arange(n)[:, None] - unknown[None, :]).min(axis=1) > apart
         columns = np.column_stack([solution.jacobian[i][:, [2, 0]], slopes[i]])

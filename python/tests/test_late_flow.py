@@ -13,6 +13,7 @@ from jbf.diagnosis.late_channels import (
     DELAY,
     Shifted,
     _by_any_weights,
+    _says_no_more,
     _shifted,
     on_time,
 )
@@ -229,6 +230,7 @@ def asked(
     monkeypatch.setattr(module, "_differing", lambda p, s, policy: None)
     monkeypatch.setattr(module, "_sharper", lambda p, s, policy: None)
     monkeypatch.setattr(module, "_differ", lambda found, policy: False)
+    monkeypatch.setattr(module, "_says_no_more", lambda found, solution: False)
     given = problem()
     given.campaign.samples.between = between
     given.campaign.more_findings = (
@@ -309,3 +311,30 @@ def test_runs_that_end_alike_did_not_differ(
     found, _ = asked(monkeypatch, plain=made([half, -half]), **given)
     assert (found is not None) == there
     assert asked(monkeypatch, plain=made([half, -half]))[0] is not None
+
+
+@pytest.mark.parametrize(("left_n", "no_more"), [(0.99, False), (1.0, True), (1.2, True)])
+def test_beside_known_deviations_shifts_must_leave_less_than_those(
+    left_n: float, no_more: bool
+) -> None:
+    """Residuals of 3 N, of which what the runs deviate by leaves 1 N."""
+
+    def leaves(between: object) -> Any:
+        samples = SimpleNamespace(
+            between=between,
+            without_deviations=lambda residuals, noise: [r / 3.0 for r in residuals],
+            rms=lambda left: float(np.sqrt(np.mean(np.concatenate(left) ** 2))),
+        )
+        return SimpleNamespace(samples=samples, residuals=[np.full(5, 3.0)], noise=None)
+
+    found = made([4e-3, -2e-3], rms_n=left_n)
+    assert _says_no_more(found, leaves("known")) == no_more
+    assert not _says_no_more(found, leaves(None))
+
+
+def test_shifts_that_say_no_more_than_deviations_are_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert asked(monkeypatch, plain=made([4e-3, -2e-3]))[0] is not None
+    monkeypatch.setattr(module, "_says_no_more", lambda found, solution: True)
+    assert on_time(problem(), cast_any(), DEFAULT) is None

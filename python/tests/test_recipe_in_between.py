@@ -13,7 +13,7 @@ from jbf.diagnosis.one_round import one_round
 from jbf.diagnosis.plan import plan
 from jbf.diagnosis.planned import planned_power
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.recipe import _on_time, _without_bias, diagnose
+from jbf.diagnosis.recipe import _deviate_rather, _on_time, _without_bias, diagnose
 
 module = sys.modules["jbf.diagnosis.recipe"]
 ANY: Any = None
@@ -78,6 +78,37 @@ def test_what_effects_make_of_late_runs_the_lateness_may_say_alone(
         (present, present),
         (("drag",), ("drag",), ("solution", present), more),
     ]
+
+
+@pytest.mark.parametrize(("differ_n", "rather"), [(0.99, True), (1.0, False), (1.01, False)])
+def test_runs_deviate_where_that_leaves_less_than_a_lateness_of_each(
+    differ_n: float, rather: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside the deviations what they say of each run is no error."""
+    left_n = {"differ": differ_n, "shifted": 1.0}
+
+    def campaign(name: str, between: object) -> Any:
+        return SimpleNamespace(name=name, samples=SimpleNamespace(between=between))
+
+    def anew(campaign: Any, law: str, clock: str, policy: Any, *more: Any) -> Any:
+        assert (law, clock, policy) == ("journal", "thesis", DEFAULT)
+        samples = SimpleNamespace(
+            without_deviations=lambda residuals, noise: residuals - 1.0, rms=lambda e: e
+        )
+        known = SimpleNamespace(residuals=left_n[campaign.name] + 1.0, noise=None, samples=samples)
+        return SimpleNamespace(converge=lambda effects: known if effects == ("one",) else None)
+
+    monkeypatch.setattr(module, "Candidates", anew)
+    here: Any = SimpleNamespace(
+        campaign=campaign("here", None), law="journal", clock="thesis", policy=DEFAULT
+    )
+    differ, shifted = campaign("differ", "some"), campaign("shifted", None)
+    selected: Any = SimpleNamespace(present=("one",), again=differ)
+    assert _deviate_rather(here, selected, shifted) == rather
+    # What is looked at again for another reason has no say.
+    for other in (None, campaign("settled", None)):
+        selected.again = other
+        assert not _deviate_rather(here, selected, shifted)
 
 
 def test_a_bias_is_asked_for_beside_the_effects_present(monkeypatch: pytest.MonkeyPatch) -> None:

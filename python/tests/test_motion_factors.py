@@ -7,7 +7,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jbf.records.motion.compared import HALF_WIDTHS, LEAST, WIDE, Compared, compared
+from jbf.records.motion.compared import (
+    COMMON,
+    HALF_WIDTHS,
+    LEAST,
+    LONG,
+    SHARE,
+    WHOLE,
+    WIDE,
+    Compared,
+    compared,
+)
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from jbf.records.motion.lateness import _lateness, earlier, late_speed
 from jbf.records.motion.position import Position
@@ -58,6 +68,43 @@ def test_windows_with_a_gap_in_them_tell_nothing() -> None:
         clock: Any = 0.1 * np.arange(samples)
         assert len(list(compared(clock, clock, 0.0 * clock))) == widths
     assert LEAST == 60
+
+
+@pytest.mark.parametrize("gap_s", [0.5, 1.1, 2.0])
+def test_rows_that_are_missing_make_no_factor(gap_s: float) -> None:
+    """A second is little of a wide window, and in it a fast motion goes to and fro; of a motion
+    that is logged at 50 Hz, with three gaps."""
+    time: Any = 0.02 * np.arange(900)
+    for begin in (3.1, 8.4, 13.3):
+        time = time[(time < begin) | (time > begin + gap_s)]
+    rate = 2.0 * np.pi * 1.7
+    path = -0.2 / rate * np.cos(rate * time) + 0.02 * time
+    speed = 0.2 * np.sin(rate * time) + 0.02
+    for c in compared(time, path, speed, WIDE):
+        np.testing.assert_allclose(c.by_path, c.by_speed, atol=2e-3)
+    assert factor_between(time, path, speed) is None
+    assert factor_between(time, 1.386 * path, speed) == pytest.approx(1.386, rel=0.02)
+
+
+@pytest.mark.parametrize(("half", "steps"), [(2, 2.5), (8, 2.5), (16, 3.2), (64, 12.8)])
+@pytest.mark.parametrize("more", [-0.01, 0.01])
+def test_a_step_is_a_gap_by_its_share_of_the_window(half: int, steps: float, more: float) -> None:
+    """Or where it is as long as two and a half of what nine tenths of the steps are at most."""
+    assert (LONG, SHARE, COMMON) == (2.5, 0.05, 0.9)
+    apart = np.full(1000, 0.1)
+    apart[500] = 0.1 * (steps + more)
+    time: Any = np.concatenate(([0.0], np.cumsum(apart)))
+    (c,) = compared(time, time, 0.0 * time + 1.0, (half,))
+    reaches = more > 0.0 or 4 * half + steps - 1.0 >= WHOLE * 4 * half
+    assert len(c.by_path) == 1001 - 4 * half - (4 * half if reaches else 0)
+
+
+def test_uneven_stamps_are_no_gaps() -> None:
+    """Instants by chance, as of a logger that is busy: two windows in three tell something."""
+    random = np.random.default_rng(7)
+    time: Any = np.cumsum(random.exponential(0.01, 4000))
+    for c in compared(time, time, 0.0 * time + 1.0, WIDE):
+        assert len(c.by_path) > 2400
 
 
 @pytest.mark.parametrize("factor", [1.25, -1.0, 57.3, 1e-3, 0.75])

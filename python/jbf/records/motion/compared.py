@@ -22,7 +22,13 @@ WIDE = (*HALF_WIDTHS, 16, 32, 64)
 """The same where a ratio is asked, which no width bends: a slow motion logged fast goes by a count
 in tens of samples."""
 WHOLE = 1.2
-"""A window that is longer than so many times the usual has a gap in it."""
+"""A window that is longer than so many times the usual has a gap in it,"""
+LONG = 2.5
+"""and so has one with a step of so many usual ones"""
+SHARE = 0.05
+"""that is this share of it: of a fast motion nobody knows how far it went there."""
+COMMON = 0.9
+"""Share of the steps that no usual one is below, however uneven they are."""
 LEAST = 60
 """Windows that tell something together."""
 
@@ -43,6 +49,8 @@ def compared(
 ) -> Iterator[Compared]:
     """Path and speed over windows of several widths, wide ones last."""
     whole = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
+    steps = np.diff(time)
+    usual = float(np.quantile(steps, COMMON)) if len(steps) else 0.0
     for half in half_widths:
         if len(time) < 4 * half + LEAST:
             return
@@ -52,7 +60,8 @@ def compared(
         apart = time[3 * half : -half] - time[half : -3 * half]
         acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / apart
         lengths = time[4 * half :] - time[: -4 * half]
-        kept = lengths < WHOLE * np.median(lengths)
+        gaps = np.cumsum(np.r_[0, steps > usual * max(LONG, SHARE * 4 * half)])
+        kept = (lengths < WHOLE * np.median(lengths)) & (gaps[4 * half :] == gaps[: -4 * half])
         inner = slice(half, -half)
         if kept.sum() >= LEAST:
             count = step_of(path) / float(np.median(lasts))

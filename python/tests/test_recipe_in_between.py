@@ -13,7 +13,7 @@ from jbf.diagnosis.one_round import one_round
 from jbf.diagnosis.plan import plan
 from jbf.diagnosis.planned import planned_power
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.recipe import _deviate_rather, _on_time, _without_bias, diagnose
+from jbf.diagnosis.recipe import _deviate_rather, _on_time, _seen_again, _without_bias, diagnose
 
 module = sys.modules["jbf.diagnosis.recipe"]
 ANY: Any = None
@@ -109,6 +109,25 @@ def test_runs_deviate_where_that_leaves_less_than_a_lateness_of_each(
     for other in (None, campaign("settled", None)):
         selected.again = other
         assert not _deviate_rather(here, selected, shifted)
+
+
+@pytest.mark.parametrize(
+    ("late", "rather", "bias", "wanted"),
+    [
+        ("late", False, "bias", "late"),
+        ("late", True, "bias", "differ"),
+        (None, True, "bias", "bias"),
+        (None, True, None, "differ"),
+    ],
+)
+def test_lateness_comes_first_but_for_runs_that_deviate_rather(
+    late: str | None, rather: bool, bias: str | None, wanted: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_on_time", lambda candidates, present: late)
+    monkeypatch.setattr(module, "_deviate_rather", lambda candidates, selected, again: rather)
+    monkeypatch.setattr(module, "_without_bias", lambda candidates, present: bias)
+    found: Any = _seen_again(ANY, SimpleNamespace(present=(), again="differ"))  # type: ignore[arg-type]
+    assert found == wanted
 
 
 def test_a_bias_is_asked_for_beside_the_effects_present(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -129,10 +129,7 @@ def _diagnose(
     selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
         weighed = None
-        again = _on_time(candidates, selected.present)
-        if again is not None and _deviate_rather(candidates, selected, again):
-            again = selected.again
-        again = again or _without_bias(candidates, selected.present) or selected.again
+        again = _seen_again(candidates, selected)
         if again is None:
             again = weighed = _weighed(candidates, selected.present)
         if again is None:
@@ -222,6 +219,14 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
         more = 1.0 if bought == (DELAY,) else candidates.policy.no_worse
         shifted = on_time(simpler, near, candidates.policy, solution, more)
     return shifted
+
+
+def _seen_again(candidates: Candidates, selected: Selected) -> Campaign | None:
+    """The campaign as a model shows what its recording did; None where it shows nothing more."""
+    again = _on_time(candidates, selected.present)
+    if again is not None and _deviate_rather(candidates, selected, again):
+        return selected.again
+    return again or _without_bias(candidates, selected.present) or selected.again
 
 
 def _deviate_rather(candidates: Candidates, selected: Selected, shifted: Campaign) -> bool:

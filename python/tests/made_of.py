@@ -10,8 +10,20 @@ import numpy as np
 import numpy.typing as npt
 from jbf import Rig
 from jbf.estimation.samples import Samples
+from jbf.estimation.scales import Scales
 
 Array = npt.NDArray[Any]
+SIZES = Scales(
+    whole_n=7.0,
+    kinetic_n=5.0,
+    viscous_n_s_m=20.0,
+    breakaway_n=8.0,
+    slow_m_s=0.01,
+    usual_m_s=0.1,
+    stroke_m=0.4,
+    resolved_m=1e-6,
+)
+"""What data might say of themselves."""
 
 
 class Recorded(SimpleNamespace):

@@ -7,20 +7,11 @@ import pytest
 from by_hand import Array
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.scales import Scales, moving_samples, scales
+from jbf.estimation.scales import moving_samples, scales
 from jbf.estimation.starts import LINEAR_RULES, RULES
+from made_of import SIZES
 
 STEP_S = 0.01
-SIZES = Scales(
-    whole_n=7.0,
-    kinetic_n=5.0,
-    viscous_n_s_m=20.0,
-    breakaway_n=8.0,
-    slow_m_s=0.01,
-    usual_m_s=0.1,
-    stroke_m=0.4,
-    resolved_m=1e-6,
-)
 
 
 def swinging(force: float = 5.0, viscous: float = 20.0, top: float = 0.1) -> Run:

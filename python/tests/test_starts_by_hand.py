@@ -11,19 +11,9 @@ import pytest
 from jbf import Parameter, Rig
 from jbf.estimation.scales import Scales
 from jbf.estimation.starts import with_starts
-from made_of import record
+from made_of import SIZES, record
 
 module = sys.modules["jbf.estimation.starts"]
-SIZES = Scales(
-    whole_n=7.0,
-    kinetic_n=5.0,
-    viscous_n_s_m=20.0,
-    breakaway_n=8.0,
-    slow_m_s=0.01,
-    usual_m_s=0.1,
-    stroke_m=0.4,
-    resolved_m=1e-6,
-)
 FROM_DATA = {
     "kinetic": (5.0, 7.0),
     "drive_play": (4e-3, 4e-4, 4e-5),

@@ -68,7 +68,7 @@ def main() -> None:
     prepared = Campaign.prepare(rig, runs)
     problem = Problem(prepared, "journal", "journal", EFFECTS)
     found = jbf.fit(rig, runs, EFFECTS)
-    values, motions = found.model.values, prepared.motions
+    values, motions = found.model.values, [driven.motion for driven in prepared.motions]
     count = len(values)
 
     def chain(step_s: float) -> _core.Chain:

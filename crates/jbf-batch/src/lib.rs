@@ -39,6 +39,6 @@ mod trajectories;
 pub use batch::{Batch, Films, Method};
 pub use film_paths::film_paths;
 pub use lane::{Float, Lane};
-pub use simd::Simd;
+pub use simd::{Baseline, InstructionSet, Simd};
 pub use speeds::Speeds;
 pub use trajectories::follow_side_by_side;

@@ -3,6 +3,41 @@
 //! Lanes never meet and nothing is contracted (no fused multiply-add), so every choice gives the
 //! same bits.
 
+use core::fmt::Debug;
+
+/// An instruction set as a type, for code that is compiled once for each set.
+pub trait InstructionSet: Copy + Debug + Send + Sync {
+    /// Call `work` as a function of its own, everything inlined into it compiled for this set.
+    fn call<R>(self, work: impl FnOnce() -> R) -> R;
+}
+
+/// What every machine of the target has (SSE2 on x86-64).
+#[derive(Clone, Copy, Debug)]
+pub struct Baseline;
+
+impl InstructionSet for Baseline {
+    #[inline(never)]
+    fn call<R>(self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+}
+
+#[cfg(all(feature = "wide", target_arch = "x86_64"))]
+impl InstructionSet for pulp::x86::V3 {
+    #[inline(always)]
+    fn call<R>(self, work: impl FnOnce() -> R) -> R {
+        pulp::Simd::vectorize(self, work)
+    }
+}
+
+#[cfg(all(feature = "wide", target_arch = "x86_64"))]
+impl InstructionSet for pulp::x86::V4 {
+    #[inline(always)]
+    fn call<R>(self, work: impl FnOnce() -> R) -> R {
+        pulp::Simd::vectorize(self, work)
+    }
+}
+
 /// Which instructions the lanes run on.
 #[derive(Clone, Copy, Debug)]
 pub enum Simd {

@@ -140,7 +140,7 @@ fn a_million_steps_change_nothing() {
 
 /// 1e8 steps, 55 hours of the loop, no drift and no growth: `cargo test --release -- --ignored`.
 #[test]
-#[ignore = "minutes: make test-slow"]
+#[ignore = "minutes: make test-extended"]
 fn a_hundred_million_steps_change_nothing() {
     let n = 100_000_000;
     let control = Control::Velocity;

@@ -2,7 +2,7 @@
 //! film each is tried on the same path, and a search comes back to where it was.
 //!
 //! A path is found by every number that it depends on, to the bit, so that what is kept changes no
-//! answer (python/tests/test_film_paths.py).
+//! answer (python/tests/estimation/test_film_rate.py).
 
 use jbf_core::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};
@@ -34,6 +34,16 @@ pub struct FilmPath {
     pub places: Vec<Place>,
     pub has_slopes: bool,
     pub ends: Arc<[u32]>,
+}
+
+impl FilmPath {
+    /// The path as a prediction takes it.
+    pub fn kept(&self) -> jbf_predict::FilmPath<'_> {
+        jbf_predict::FilmPath {
+            places: &self.places,
+            ends: &self.ends,
+        }
+    }
 }
 
 /// What a motion asks of a film, and whether all of it is under one load.

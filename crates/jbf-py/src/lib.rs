@@ -18,10 +18,11 @@ mod trajectory;
 
 use pyo3::prelude::*;
 
-/// The extension module `jbf._core`. Its classes do not change once they are made: it asks for no
-/// interpreter lock.
-#[pymodule(gil_used = false)]
-fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+/// Add every class and function to the extension module `jbf._core`.
+///
+/// # Errors
+/// Those of the interpreter.
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("FASTEST_FILM_1_S", jbf_core::run::FASTEST_FILM_1_S)?;
     m.add_class::<motion::Motion>()?;

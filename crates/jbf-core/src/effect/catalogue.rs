@@ -82,6 +82,9 @@ impl<T: Real> Effects<T> {
 }
 
 /// Each stage asks the effects of its own line only.
+///
+/// The code of all effects is inlined into the time loop of each law. With debug assertions each stage is
+/// a function of its own instead: tests are compiled in a fraction of the time.
 impl<T: Real> EffectSet<T> for Effects<T> {
     type State = States<T>;
 
@@ -132,11 +135,13 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     fn has_drive(&self) -> bool {
         self.drive.has_drive()
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn drive(&self, s: &mut States<T>, journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
         self.drive.drive(&mut s.drive, journal, rig, dt_s);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn resist(&self, s: &mut States<T>, resistance: &Resistance<T>, dt_s: T) {
         self.drive.resist(&mut s.drive, resistance, dt_s);
     }
@@ -144,15 +149,18 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     fn transmitted_n(&self, s: &States<T>, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         self.drive.transmitted_n(&s.drive, motion, rig)
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lubricant(&self, s: &States<T>, journal: &JournalMotion<T>, factor: &mut T) {
         self.lubricant.lubricant(&s.lubricant, journal, factor);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn warm(&self, s: &mut States<T>, power_w: T, dt_s: T) {
         self.lubricant.warm(&mut s.lubricant, power_w, dt_s);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn scales(
         &self,
         s: &mut States<T>,
@@ -161,7 +169,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     ) {
         self.load.scales(&mut s.load, share, scales);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn film_rate(&self, s: &States<T>, journal: &JournalMotion<T>, rate: &mut T) {
         self.lubricant.film_rate(&s.lubricant, journal, rate);
         self.film.film_rate(&s.film, journal, rate);
@@ -170,7 +179,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     fn fastest_film(&self) -> f64 {
         self.film.fastest_film()
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn contact(
         &self,
         s: &mut States<T>,
@@ -182,7 +192,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         self.contact
             .contact(&mut s.contact, from, to, sliding, dt_s);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn bristle(
         &self,
         s: &mut States<T>,
@@ -194,7 +205,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         self.bristle
             .bristle(&mut s.bristle, from, to, magnitude, dt_s)
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn other(
         &self,
         s: &States<T>,
@@ -204,7 +216,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     ) {
         self.other.other(&s.other, journal, all_n, transmitted_n);
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn transmission(&self, s: &States<T>, transmitted_n: T, sliding: &mut Friction<T>) {
         self.transmission
             .transmission(&s.transmission, transmitted_n, sliding);
@@ -213,7 +226,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     fn first(&self, s: &mut States<T>, force_n: T) -> T {
         self.instrument.first(&mut s.instrument, force_n)
     }
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn reading(&self, s: &mut States<T>, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
         self.instrument
             .reading(&mut s.instrument, signal, time_s, dt_s)

@@ -62,7 +62,7 @@ mod vogel;
 pub use crate::law::Scales;
 pub use crate::page::Parameter;
 pub use catalogue::{
-    fits, moves_jumps, peaks, spreads_jumps, type_names, Effects, States, CATALOGUE,
+    fits, moves_jumps, peaks, spreads_jumps, type_names, Effects, OccupiedStages, States, CATALOGUE,
 };
 pub use info::{Info, Stage};
 pub use need::Need;

@@ -11,6 +11,9 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
     /// None of them is there.
     const EMPTY: Self;
 
+    /// True where none of them is there.
+    fn is_empty(&self) -> bool;
+
     /// Put the effect of that name here, or take it out where its parameters stand at an infinite
     /// null; nothing where this shelf has no effect of that name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
@@ -19,6 +22,10 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
 impl<T: Real> Shelf<T> for () {
     const EMPTY: Self = ();
 
+    fn is_empty(&self) -> bool {
+        true
+    }
+
     fn set(&mut self, _name: &str, _parameters: &[T]) -> Option<Result<(), ParameterError>> {
         None
     }
@@ -26,6 +33,10 @@ impl<T: Real> Shelf<T> for () {
 
 impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
     const EMPTY: Self = (None, S::EMPTY);
+
+    fn is_empty(&self) -> bool {
+        self.0.is_none() && self.1.is_empty()
+    }
 
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>> {
         if name != P::INFO.name {
@@ -74,6 +85,15 @@ macro_rules! signal_chain {
             $($stage: <line::$stage<T> as EffectSet<T>>::State,)*
         }
 
+        /// The stages of the signal chain in which a subset has an effect.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct OccupiedStages {
+            $(
+                #[doc = concat!("True where the stage `", stringify!($stage), "` has an effect.")]
+                pub $stage: bool,
+            )*
+        }
+
         /// Every effect, in the order of the signal chain.
         pub const CATALOGUE: &[Info] = &[
             $($(<$Place<$module::$Type<f64>> as Place<f64>>::INFO,)*)*
@@ -118,6 +138,11 @@ macro_rules! signal_chain {
         impl<T: Real> Effects<T> {
             /// No effect at all: the bare law.
             pub const NONE: Self = Self { $($stage: Shelf::EMPTY,)* };
+
+            /// The stages that have an effect.
+            pub fn occupied_stages(&self) -> OccupiedStages {
+                OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
+            }
 
             /// Add (or replace) the effect of that name, or take it out where its
             /// parameters stand at an infinite null.

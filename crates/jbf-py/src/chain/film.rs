@@ -44,7 +44,7 @@ impl Chain {
             return Ok(vec![None; motions.len()]);
         }
         let max_step_s = self.max_step_s;
-        let inner_s = self.with_chain(
+        let inner_s = self.model().with_chain(
             p,
             InnerSteps {
                 max_step_s,

@@ -12,12 +12,12 @@ use crate::pool::on_pool;
 use crate::share::longest_first;
 use jbf_core::effect::Info;
 use jbf_core::law;
-use jbf_core::spec::{Spec, Using};
-use jbf_core::{Bearing, Clock, ParameterError, Real};
+use jbf_core::{Bearing, Clock, ParameterError};
+use jbf_predict::Model;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use runs::{FilmRate, InnerSteps, Reader, Run, Values};
+use runs::{FilmRate, InnerSteps};
 
 /// A friction law and effects round it; parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
@@ -36,22 +36,16 @@ impl Chain {
         self.law.parameters.len() + theirs.sum::<usize>()
     }
 
-    /// Run the chain with one set of parameter values along a motion, its film on its path where
-    /// there is one.
-    fn run<T: Real, R: Reader<T>>(
-        &self,
-        p: &[T],
-        reader: R,
-        motion: &Motion,
-        path: Option<&FilmPath>,
-    ) -> Result<R::Read, ParameterError> {
-        let run = Run {
-            reader,
+    /// The law with its effects.
+    fn model(&self) -> Model<'_> {
+        Model {
+            law: self.law,
+            bearing: self.bearing.as_ref(),
+            load_n: self.load_n,
+            clock: self.clock,
+            effects: &self.effects,
             max_step_s: self.max_step_s,
-            motion,
-            path: path.map(|path| (path, p)),
-        };
-        self.with_chain(p, run)
+        }
     }
 
     /// Readings alone, N, along each motion.
@@ -61,34 +55,11 @@ impl Chain {
         longest_first(
             &jobs,
             |(motion, _)| motion.len(),
-            |(motion, path)| self.run(p, Values, motion, path.as_deref()),
+            |(motion, path)| {
+                let path = path.as_deref().map(FilmPath::kept);
+                self.model().readings(p, &motion.record(), path)
+            },
         )
-    }
-
-    /// Build the chain with one set of parameter values: the law's first, then each effect's.
-    fn with_chain<T: Real, U: Using<T>>(
-        &self,
-        p: &[T],
-        then: U,
-    ) -> Result<U::Output, ParameterError> {
-        let (values, mut rest) = p.split_at(self.law.parameters.len());
-        let effects = self.effects.iter().map(|info| {
-            let (own, after) = rest.split_at(info.parameters.len());
-            rest = after;
-            (info.name, own)
-        });
-        self.spec(values).chain(effects, then)
-    }
-
-    /// The law with these parameters.
-    fn spec<'a, T>(&'a self, values: &'a [T]) -> Spec<'a, T> {
-        Spec {
-            law: self.law.name,
-            values,
-            bearing: self.bearing.as_ref(),
-            load_n: self.load_n,
-            clock: self.clock,
-        }
     }
 
     fn checked<'a>(&self, parameters: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
@@ -184,7 +155,7 @@ impl Chain {
         let p = self.checked(&parameters)?;
         let motions: Vec<&Motion> = motions.iter().map(Py::get).collect();
         let film_rate = FilmRate { motions: &motions };
-        self.with_chain(p, film_rate).map_err(refused)
+        self.model().with_chain(p, film_rate).map_err(refused)
     }
 
     /// How many inner steps a prediction along all of the motions takes: what it costs.
@@ -199,7 +170,7 @@ impl Chain {
             motions: &motions,
             max_step_s: self.max_step_s,
         };
-        self.with_chain(p, counted).map_err(refused)
+        self.model().with_chain(p, counted).map_err(refused)
     }
 
     /// Readings (N) and their derivatives with respect to the parameters `which`: for each

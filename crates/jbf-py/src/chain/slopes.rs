@@ -1,18 +1,12 @@
 //! Derivatives of a chain's readings: parameters in groups that one pass carries side by side, and
 //! the passes of all runs on all cores.
 
-use super::runs::Slopes;
 use super::Chain;
 use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use crate::share::longest_first;
-use jbf_core::{Dual, ParameterError, Real};
-
-/// Derivatives carried side by side in one pass: a law's own, or those of a law with effects. A
-/// pass of eight costs a quarter more than one of four, one of twelve three quarters of two passes.
-const FEW: usize = 4;
-const MANY: usize = 8;
-const MOST: usize = 12;
+use jbf_core::ParameterError;
+use jbf_predict::groups;
 
 /// Values of a run, and the derivatives of each with respect to some parameters, row by row.
 pub type Slice = (Vec<f64>, Vec<f64>);
@@ -25,11 +19,7 @@ impl Chain {
         which: &[usize],
         motions: &[&Motion],
     ) -> Result<Vec<Slice>, ParameterError> {
-        let groups: Vec<&[usize]> = match which.len() {
-            0 => vec![&[]],
-            MANY..=MOST => vec![which],
-            _ => which.chunks(MANY).collect(),
-        };
+        let groups = groups(which);
         let paths = self.film_paths(p, true, motions)?;
         let jobs: Vec<(usize, usize)> = (0..motions.len())
             .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
@@ -37,7 +27,11 @@ impl Chain {
         let done = longest_first(
             &jobs,
             |&(m, _)| motions[m].len(),
-            |&(m, g)| self.slopes(p, groups[g], motions[m], paths[m].as_deref()),
+            |&(m, g)| {
+                let path = paths[m].as_deref().map(FilmPath::kept);
+                self.model()
+                    .derivatives(p, groups[g], &motions[m].record(), path)
+            },
         )?;
         let mut done = done.into_iter();
         let mut out = Vec::with_capacity(motions.len());
@@ -47,41 +41,6 @@ impl Chain {
             out.push((parts.swap_remove(0).0, matrix));
         }
         Ok(out)
-    }
-
-    /// Values and derivatives with respect to at most `MOST` parameters along one run.
-    fn slopes(
-        &self,
-        p: &[f64],
-        which: &[usize],
-        motion: &Motion,
-        path: Option<&FilmPath>,
-    ) -> Result<Slice, ParameterError> {
-        match which.len() {
-            n if n <= FEW => self.slopes_of::<FEW>(p, which, motion, path),
-            n if n <= MANY => self.slopes_of::<MANY>(p, which, motion, path),
-            _ => self.slopes_of::<MOST>(p, which, motion, path),
-        }
-    }
-
-    fn slopes_of<const LANES: usize>(
-        &self,
-        p: &[f64],
-        which: &[usize],
-        motion: &Motion,
-        path: Option<&FilmPath>,
-    ) -> Result<Slice, ParameterError> {
-        let lifted: Vec<Dual<LANES>> = p
-            .iter()
-            .enumerate()
-            .map(|(i, &v)| match which.iter().position(|&w| w == i) {
-                Some(lane) => Dual::parameter(v, lane),
-                None => Dual::of(v),
-            })
-            .collect();
-        let (values, lanes) = self.run(&lifted, Slopes, motion, path)?;
-        let rows = lanes.iter().flat_map(|row| row[..which.len()].iter());
-        Ok((values, rows.copied().collect()))
     }
 }
 

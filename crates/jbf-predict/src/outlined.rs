@@ -1,0 +1,242 @@
+//! The effects of the catalogue, each stage compiled as a function of its own.
+//!
+//! A chain that holds [`Effects`] inlines the code of all effects into the time loop of every law. With
+//! nine laws, four kinds of numbers and three instruction sets that code would be compiled more than a
+//! hundred times. Here it is compiled once for each kind of numbers and each instruction set; a step pays
+//! one call for each stage that has an effect, and nothing for a stage that has none.
+//!
+//! What a call may change has an address, and so is kept in memory. The effects' states are therefore
+//! outside the chain's state, and a stage gets copies of the few numbers that it reads and changes: what
+//! the time loop works with stays in registers.
+
+use core::cell::RefCell;
+use jbf_batch::InstructionSet;
+use jbf_core::effect::{EffectSet, Effects, OccupiedStages, Resistance, Rig, Signal, States};
+use jbf_core::friction::Friction;
+use jbf_core::law::Scales;
+use jbf_core::motion::{JournalMotion, Motion};
+use jbf_core::Real;
+
+/// [`Effects`] whose stages are called as functions compiled for the instruction set `I`, for one run of
+/// one chain at a time: a copy shares the states. The results have the same bits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outlined<'a, T: Real, I> {
+    effects: &'a Effects<T>,
+    states: &'a RefCell<States<T>>,
+    occupied: OccupiedStages,
+    instructions: I,
+}
+
+impl<'a, T: Real, I> Outlined<'a, T, I> {
+    /// These effects, with their states, on these instructions.
+    pub(crate) fn new(
+        effects: &'a Effects<T>,
+        states: &'a RefCell<States<T>>,
+        instructions: I,
+    ) -> Self {
+        Self {
+            occupied: effects.occupied_stages(),
+            effects,
+            states,
+            instructions,
+        }
+    }
+}
+
+impl<T: Real, I: InstructionSet> Outlined<'_, T, I> {
+    /// A stage as a function of its own, its body inlined into that function whatever its size.
+    #[inline(always)]
+    fn call<R>(&self, stage: impl FnOnce(&Effects<T>, &mut States<T>) -> R) -> R {
+        let (effects, states) = (self.effects, self.states);
+        self.instructions.call(
+            #[inline(always)]
+            move || stage(effects, &mut states.borrow_mut()),
+        )
+    }
+}
+
+impl<T: Real, I: InstructionSet> EffectSet<T> for Outlined<'_, T, I> {
+    type State = ();
+
+    fn start(&self, motion: &Motion<T>, rig: &Rig<T>) {
+        *self.states.borrow_mut() = self.effects.start(motion, rig);
+    }
+    fn longest_step_s(&self) -> f64 {
+        self.effects.longest_step_s()
+    }
+    fn remembers(&self) -> bool {
+        self.effects.remembers()
+    }
+    #[inline(always)]
+    fn has_drive(&self) -> bool {
+        self.occupied.drive
+    }
+    #[inline(always)]
+    fn drive(&self, _: &mut (), journal: &mut JournalMotion<T>, rig: &Rig<T>, dt_s: T) {
+        if self.occupied.drive {
+            let (from, rig) = (*journal, *rig);
+            *journal = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut to = from;
+                    effects.drive(states, &mut to, &rig, dt_s);
+                    to
+                },
+            );
+        }
+    }
+    #[inline(always)]
+    fn resist(&self, _: &mut (), resistance: &Resistance<T>, dt_s: T) {
+        if self.occupied.drive {
+            let resistance = *resistance;
+            self.call(
+                #[inline(always)]
+                |effects, states| effects.resist(states, &resistance, dt_s),
+            );
+        }
+    }
+    fn transmitted_n(&self, _: &(), motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
+        self.effects
+            .transmitted_n(&self.states.borrow(), motion, rig)
+    }
+    #[inline(always)]
+    fn lubricant(&self, _: &(), journal: &JournalMotion<T>, factor: &mut T) {
+        if self.occupied.lubricant {
+            let (journal, before) = (*journal, *factor);
+            *factor = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut factor = before;
+                    effects.lubricant(states, &journal, &mut factor);
+                    factor
+                },
+            );
+        }
+    }
+    #[inline(always)]
+    fn warm(&self, _: &mut (), power_w: T, dt_s: T) {
+        if self.occupied.lubricant {
+            self.call(
+                #[inline(always)]
+                |effects, states| effects.warm(states, power_w, dt_s),
+            );
+        }
+    }
+    #[inline(always)]
+    fn scales(&self, _: &mut (), share: impl Fn() -> T + Copy, scales: &mut Option<Scales<T>>) {
+        if self.occupied.load {
+            let (share, before) = (share(), *scales);
+            *scales = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut scales = before;
+                    effects.scales(states, || share, &mut scales);
+                    scales
+                },
+            );
+        }
+    }
+    #[inline(always)]
+    fn film_rate(&self, _: &(), journal: &JournalMotion<T>, rate: &mut T) {
+        if self.occupied.lubricant || self.occupied.film {
+            let (journal, before) = (*journal, *rate);
+            *rate = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut rate = before;
+                    effects.film_rate(states, &journal, &mut rate);
+                    rate
+                },
+            );
+        }
+    }
+    fn fastest_film(&self) -> f64 {
+        self.effects.fastest_film()
+    }
+    #[inline(always)]
+    fn contact(
+        &self,
+        _: &mut (),
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        sliding: &mut Friction<T>,
+        dt_s: T,
+    ) {
+        if self.occupied.contact {
+            let (from, to, before) = (*from, *to, *sliding);
+            *sliding = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut sliding = before;
+                    effects.contact(states, &from, &to, &mut sliding, dt_s);
+                    sliding
+                },
+            );
+        }
+    }
+    #[inline(always)]
+    fn transmission(&self, _: &(), transmitted_n: T, sliding: &mut Friction<T>) {
+        if self.occupied.transmission {
+            let before = *sliding;
+            *sliding = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let mut sliding = before;
+                    effects.transmission(states, transmitted_n, &mut sliding);
+                    sliding
+                },
+            );
+        }
+    }
+    #[inline(always)]
+    fn bristle(
+        &self,
+        _: &mut (),
+        from: &JournalMotion<T>,
+        to: &JournalMotion<T>,
+        magnitude: [T; 2],
+        dt_s: T,
+    ) -> Option<T> {
+        if !self.occupied.bristle {
+            return None;
+        }
+        let (from, to) = (*from, *to);
+        self.call(
+            #[inline(always)]
+            |effects, states| effects.bristle(states, &from, &to, magnitude, dt_s),
+        )
+    }
+    #[inline(always)]
+    fn other(
+        &self,
+        _: &(),
+        journal: &JournalMotion<T>,
+        all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        if self.occupied.other {
+            let (journal, before) = (*journal, (*all_n, *transmitted_n));
+            (*all_n, *transmitted_n) = self.call(
+                #[inline(always)]
+                |effects, states| {
+                    let (mut all_n, mut transmitted_n) = before;
+                    effects.other(states, &journal, &mut all_n, &mut transmitted_n);
+                    (all_n, transmitted_n)
+                },
+            );
+        }
+    }
+    fn first(&self, _: &mut (), force_n: T) -> T {
+        self.effects.first(&mut self.states.borrow_mut(), force_n)
+    }
+    #[inline(always)]
+    fn reading(&self, _: &mut (), signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
+        if !self.occupied.instrument {
+            return signal;
+        }
+        self.call(
+            #[inline(always)]
+            |effects, states| effects.reading(states, signal, time_s, dt_s),
+        )
+    }
+}

@@ -1,0 +1,120 @@
+//! Derivatives of the readings: some parameters in each pass, side by side in the registers.
+
+use crate::model::{FilmPath, Model};
+use crate::run::Run;
+use jbf_batch::{Baseline, InstructionSet, Simd};
+use jbf_core::record::Record;
+use jbf_core::{Dual, ParameterError, Real};
+
+/// Parameters in one pass: a law's own, or those of a law with effects. A pass of eight costs a quarter
+/// more than one of four, one of twelve three quarters of two passes.
+const FEW: usize = 4;
+const MANY: usize = 8;
+const MOST: usize = 12;
+
+/// The parameters of each pass over a record, for the machine that this runs on.
+pub fn groups(which: &[usize]) -> Vec<&[usize]> {
+    match which.len() {
+        0 => vec![&[]],
+        MANY..=MOST if !has_one_width(Simd::best()) => vec![which],
+        _ => which.chunks(MANY).collect(),
+    }
+}
+
+/// True on a processor older than the instructions that the derivatives are compiled for: passes of eight
+/// are all that is compiled without them.
+fn has_one_width(simd: Simd) -> bool {
+    cfg!(all(feature = "wide", target_arch = "x86_64")) && matches!(simd, Simd::Baseline)
+}
+
+impl Model<'_> {
+    /// Readings (N) along a record, and row by row their derivatives with respect to the parameters
+    /// `which`, one of the [`groups`].
+    ///
+    /// # Errors
+    /// Names the first parameter that breaks its rule.
+    ///
+    /// # Panics
+    /// Where `which` has more parameters than a pass.
+    pub fn derivatives(
+        &self,
+        parameters: &[f64],
+        which: &[usize],
+        record: &Record<'_>,
+        path: Option<FilmPath<'_>>,
+    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+        let pass = Pass {
+            model: self,
+            parameters,
+            which,
+            record,
+            path,
+        };
+        match Simd::best() {
+            // Wider registers than AVX2's gain nothing: a derivative of a chain is short arithmetic
+            // between loads and stores.
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
+            Simd::Avx512(v4) => pass.of_any_width(*v4),
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
+            Simd::Avx2(v3) => pass.of_any_width(v3),
+            #[cfg(all(feature = "wide", target_arch = "x86_64"))]
+            Simd::Baseline => pass.of::<MANY, _>(Baseline),
+            #[cfg(not(all(feature = "wide", target_arch = "x86_64")))]
+            Simd::Baseline => pass.of_any_width(Baseline),
+        }
+    }
+}
+
+/// One pass over a record.
+struct Pass<'a> {
+    model: &'a Model<'a>,
+    parameters: &'a [f64],
+    which: &'a [usize],
+    record: &'a Record<'a>,
+    path: Option<FilmPath<'a>>,
+}
+
+impl Pass<'_> {
+    fn of_any_width<I: InstructionSet>(
+        &self,
+        instructions: I,
+    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+        match self.which.len() {
+            n if n <= FEW => self.of::<FEW, I>(instructions),
+            n if n <= MANY => self.of::<MANY, I>(instructions),
+            _ => self.of::<MOST, I>(instructions),
+        }
+    }
+
+    fn of<const LANES: usize, I: InstructionSet>(
+        &self,
+        instructions: I,
+    ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
+        assert!(self.which.len() <= LANES, "more parameters than a pass has");
+        let lifted: Vec<Dual<LANES>> = self
+            .parameters
+            .iter()
+            .enumerate()
+            .map(|(i, &v)| match self.which.iter().position(|&w| w == i) {
+                Some(lane) => Dual::parameter(v, lane),
+                None => Dual::of(v),
+            })
+            .collect();
+        let samples = self.record.time_s.len();
+        let mut readings = vec![0.0; samples];
+        let mut slopes = vec![[0.0; LANES]; samples];
+        let run = Run {
+            record: self.record,
+            max_step_s: self.model.max_step_s,
+            path: self.path.map(|path| (path, lifted.as_slice())),
+            instructions,
+            sink: &mut |i, reading: Dual<LANES>| {
+                readings[i] = reading.value;
+                slopes[i] = reading.slope;
+            },
+        };
+        self.model.with_chain(&lifted, run)?;
+        let rows = slopes.iter().flat_map(|row| &row[..self.which.len()]);
+        Ok((readings, rows.copied().collect()))
+    }
+}

@@ -1,0 +1,68 @@
+//! One chain, of whatever law, along a record.
+
+use crate::model::FilmPath;
+use crate::outlined::Outlined;
+use jbf_batch::InstructionSet;
+use jbf_core::effect::EffectSet;
+use jbf_core::film_path::OnPath;
+use jbf_core::law::{Law, Named};
+use jbf_core::record::Record;
+use jbf_core::run::{self, Steps};
+use jbf_core::spec::Using;
+use jbf_core::{Chain, Motion, Real};
+use std::cell::RefCell;
+
+/// Runs a chain along a record and hands every reading (N) to `sink` with the number of its sample.
+pub struct Run<'a, T, I> {
+    pub record: &'a Record<'a>,
+    pub max_step_s: f64,
+    /// The path of the film, and the law's parameters.
+    pub path: Option<(FilmPath<'a>, &'a [T])>,
+    pub instructions: I,
+    pub sink: &'a mut dyn FnMut(usize, T),
+}
+
+impl<T: Real, I: InstructionSet> Run<'_, T, I> {
+    /// The time loop with the code of all effects in it: the fastest, and the slowest to compile.
+    fn inlined<L: Law<T>, E: EffectSet<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
+        self.instructions.call(
+            #[inline(always)]
+            || run::predict_by(chain, self.record, self.max_step_s, steps, self.sink),
+        );
+    }
+
+    /// The time loop with calls of the effects' stages, whose code all laws share.
+    fn with_calls<L: Law<T>>(self, chain: Chain<T, L>) {
+        let Chain { law, effects, rig } = chain;
+        let states = RefCell::new(effects.start(&Motion::at_rest(T::ONE), &rig));
+        let effects = Outlined::new(&effects, &states, self.instructions);
+        self.inlined(&Chain { law, effects, rig }, Steps::Every);
+    }
+}
+
+impl<T: Real, I: InstructionSet> Using<T> for Run<'_, T, I> {
+    type Output = ();
+
+    fn with<L: Named<T>>(self, chain: Chain<T, L>) {
+        // A constant of the type: a law without a film is not compiled on a path.
+        if const { L::FILM_PARAMETERS.is_none() } {
+            return self.with_calls(chain);
+        }
+        let (Some((path, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
+            return self.with_calls(chain);
+        };
+        let law = OnPath::new(chain.law, [p[first], p[second]], path.places);
+        let (law, steps) = if chain.effects.remembers() {
+            (law, Steps::Every)
+        } else {
+            (law.at(path.ends), Steps::Last)
+        };
+        let on_path = Chain {
+            law,
+            effects: chain.effects,
+            rig: chain.rig,
+        };
+        // What a diagnosis of a bearing spends most of its time in.
+        self.inlined(&on_path, steps);
+    }
+}

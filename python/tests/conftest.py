@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,6 +14,24 @@ from jbf import Fit, Model, Rig, Run, compare, fit
 from jbf.diagnosis import Diagnosis, Remainder, Step, Trial
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
+from shared import DIRECTORY
+
+SHARED = pytest.StashKey[str]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Create the directory of shared results; workers inherit the environment variable."""
+    if DIRECTORY not in os.environ:
+        config.stash[SHARED] = os.environ[DIRECTORY] = tempfile.mkdtemp(prefix="jbf-tests-")
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Remove the directory in the process that created it."""
+    created = config.stash.get(SHARED, None)
+    if created is not None:
+        shutil.rmtree(created, ignore_errors=True)
+        del os.environ[DIRECTORY]
+
 
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
 DRAG_N = 2.0

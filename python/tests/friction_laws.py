@@ -1,5 +1,4 @@
-"""Friction laws written down a second time, with scipy's integrators, to make data that owes
-nothing to the core."""
+"""Friction laws implemented independently of jbf, with the integrators of SciPy."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ Speed = Callable[[float], float]
 
 
 def stroke_speed(amplitude_m: float, omega: float, second: float = 0.37) -> Speed:
-    """Speed (m/s) of two sines that swell from rest: inner loops and several speeds appear."""
+    """Speed (m/s) of two superposed sines that start from rest."""
 
     def speed(t: float) -> float:
         waves = np.cos(omega * t) + 0.6 * np.cos(second * omega * t + 1.0)
@@ -25,13 +24,13 @@ def stroke_speed(amplitude_m: float, omega: float, second: float = 0.37) -> Spee
 
 
 def _bristle(speed: Speed, t: Array, slope: Callable[[float, float], float]) -> Array:
-    """A state driven by speed from zero, at the times `t`."""
+    """A state whose rate depends on the speed, from zero, at the times `t`."""
     return driven(lambda s, y: slope(speed(s), y), t)
 
 
 def driven(rate: Callable[[float, float], float], t: Array) -> Array:
-    """A state of a given rate (time, state) from zero, at the times `t`."""
-    found = solve_ivp(
+    """A state with a given rate (time, state), from zero, at the times `t`."""
+    result = solve_ivp(
         lambda s, y: [rate(s, y[0])],
         (t[0], t[-1]),
         [0.0],
@@ -41,12 +40,12 @@ def driven(rate: Callable[[float, float], float], t: Array) -> Array:
         atol=1e-12,
         max_step=float(t[1] - t[0]),
     )
-    assert found.success
-    return np.asarray(found.y[0])
+    assert result.success
+    return np.asarray(result.y[0])
 
 
 def dahl(speed: Speed, t: Array, *, fc: float, s0: float, exponent: float, fv: float) -> Array:
-    """Dahl with any exponent, N."""
+    """Dahl law with any exponent (N)."""
 
     def slope(v: float, f: float) -> float:
         u = 1.0 - f / fc * np.sign(v)
@@ -68,7 +67,7 @@ def lugre(
     vd: float,
     fv: float,
 ) -> Array:
-    """LuGre in Olsson's form, N."""
+    """LuGre law in the form of Olsson (N)."""
 
     def level(v: float | Array) -> float | Array:
         return fc + (fs - fc) * np.exp(-((v / vs) ** 2))
@@ -93,11 +92,13 @@ def maxwell_slip(
     excess: float = 0.0,
     vs: float = 1.0,
 ) -> Array:
-    """Maxwell slip as a crowd of four hundred elements, equally stiff, whose slip displacements are
-    drawn evenly from those of a virgin curve of that exponent, N; its level falls with speed by
-    `excess` (GMS)."""
-    crowd, finer = 400, 4
-    u = (np.arange(crowd) + 0.5) / crowd
+    """Generalised Maxwell slip (N) as four hundred elements of equal stiffness.
+
+    The slip displacements sample a virgin curve of the given exponent; the level falls with the
+    speed by `excess`.
+    """
+    elements, finer = 400, 4
+    u = (np.arange(elements) + 0.5) / elements
     if exponent == 1.0:
         slip = -np.log(u) * fc / s0
     else:
@@ -105,7 +106,7 @@ def maxwell_slip(
     step = (t[1] - t[0]) / finer
     fine = t[0] + step * np.arange(finer * (len(t) - 1) + 1)
     v = np.array([speed(x) for x in fine])
-    bent = np.zeros(crowd)
+    bent = np.zeros(elements)
     force = np.zeros(len(fine))
     level = 1.0 + excess / fc * np.exp(-((v / vs) ** 2))
     for i, way in enumerate(0.5 * (v[1:] + v[:-1]) * step, start=1):
@@ -117,24 +118,10 @@ def maxwell_slip(
 def elasto_plastic(
     speed: Speed, t: Array, *, fc: float, s0: float, breakaway: float, fv: float
 ) -> Array:
-    """Dupont's single state, alpha rising so that the force nears its level exponentially, N."""
+    """Single-state elasto-plastic law of Dupont with an exponential approach to the level (N)."""
 
     def alpha(share: float) -> float:
         return 0.0 if share <= breakaway else (1.0 - breakaway / share) / (1.0 - breakaway)
-
-    return _single_state(speed, t, alpha, fc, s0, fv)
-
-
-def elasto_plastic_sine(
-    speed: Speed, t: Array, *, fc: float, s0: float, breakaway: float, fv: float
-) -> Array:
-    """The same with the half sine of the paper, N."""
-
-    def alpha(share: float) -> float:
-        middle, width = 0.5 * (1.0 + breakaway), 1.0 - breakaway
-        if share <= breakaway:
-            return 0.0
-        return 1.0 if share >= 1.0 else 0.5 * np.sin(np.pi * (share - middle) / width) + 0.5
 
     return _single_state(speed, t, alpha, fc, s0, fv)
 
@@ -153,7 +140,7 @@ def _single_state(
 def stribeck(
     speed: Speed, t: Array, *, fc: float, fs: float, vs: float, delta: float, fv: float
 ) -> Array:
-    """The Stribeck curve, N."""
+    """The Stribeck curve (N)."""
     v = np.array([speed(x) for x in t])
     return (fc + (fs - fc) * np.exp(-((np.abs(v) / vs) ** delta)) + fv * np.abs(v)) * np.sign(v)
 
@@ -170,7 +157,7 @@ def seven(
     tau: float,
     gamma: float,
 ) -> Array:
-    """The seven-parameter model as a plain machine of two states on a grid of 0.1 ms, N."""
+    """The seven-parameter model as a state machine on a grid of 0.1 ms (N)."""
     dt = 1e-4
     fine = np.arange(t[0], t[-1] + dt, dt)
     v = np.array([speed(x) for x in fine])
@@ -204,11 +191,11 @@ def record(
     """A run of a linear axis: position in counts of 0.1 um, speed and friction with noise."""
     rng = np.random.default_rng(seed)
     v = np.array([speed(x) for x in t])
-    place = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))))
+    position = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))))
     return Run.from_arrays(
         t,
         v + 1e-4 * np.max(np.abs(v)) * rng.standard_normal(len(t)),
         friction + noise_n * rng.standard_normal(len(t)),
-        position_m=count_m * np.round(place / count_m),
+        position_m=count_m * np.round(position / count_m),
         name=name,
     )

@@ -1,6 +1,6 @@
-"""One long recording of a slide, by closed forms: motions with rests between them, in one file.
+"""A long recording of a slide in closed form: motions separated by rests.
 
-Shares nothing with jbf: Coulomb and viscous friction, a moved mass, white noise.
+Coulomb and viscous friction, a moved mass and white noise; independent of jbf.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _FINE = 20
 
 @dataclass(frozen=True)
 class Recording:
-    """A recording, and where its motions begin and end (s).
+    """A recording with the begin and end (s) of each motion.
 
     Attributes
     ----------
     run
-        The number of the motion that a sample is of; of a rest, that of the motion before.
+        Number of the motion at each sample; in a rest, that of the motion before.
     """
 
     columns: dict[str, Array]
@@ -33,7 +33,7 @@ class Recording:
 
 
 def recording(motions: int, moving_s: float, resting_s: float, seed: int = 1) -> Recording:
-    """Motions to and fro, each after a rest; a last rest at the end."""
+    """Create motions in both directions, each after a rest, and a last rest."""
     rng = np.random.default_rng(seed)
     speeds, spans, runs = [], [], []
     at_s = 0.0
@@ -52,7 +52,7 @@ def recording(motions: int, moving_s: float, resting_s: float, seed: int = 1) ->
     v, x, a = fine[::_FINE], path[::_FINE], rate[::_FINE]
     force = COULOMB_N * np.sign(v) + VISCOUS_N_S_M * v + MASS_KG * a
     columns = {
-        # A quotient of whole numbers: what every format's own clock gives, too.
+        # A quotient of integers, as the clock of every format gives it.
         "time_s": np.arange(len(v)) / RATE_HZ,
         "position_m": np.round(x, 6),
         "velocity_m_s": np.where(v == 0.0, 0.0, v + 1e-5 * rng.standard_normal(len(v))),
@@ -67,7 +67,7 @@ def _motion(duration_s: float, rng: np.random.Generator) -> Array:
     rates = 2.0 * np.pi * rng.uniform(0.1, 0.6, 3)
     sizes, phases = rng.uniform(0.05, 0.15, 3), rng.uniform(0.0, 2.0 * np.pi, 3)
     waves = sizes @ np.sin(rates[:, None] * time + phases[:, None])
-    # It sets out and comes to rest within a second.
+    # The speed rises and falls within one second.
     edge = np.clip(np.minimum(time, time[-1] - time), 0.0, 1.0)
     speed: Array = waves * edge**2 * (3.0 - 2.0 * edge)
     return speed

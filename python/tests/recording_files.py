@@ -1,6 +1,6 @@
-"""One recording in every format that can be imported, as its own writers write it.
+"""Write one recording in every file format that can be imported.
 
-Each writer is imported where it is used: without the library its test is skipped, and says so.
+Each library is imported where it is used; without it the test is skipped.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ NS = 10**9
 
 
 def rows(columns: Columns) -> list[list[float]]:
-    found: list[list[float]] = np.column_stack(list(columns.values())).tolist()
-    return found
+    result: list[list[float]] = np.column_stack(list(columns.values())).tolist()
+    return result
 
 
 def stamps(columns: Columns) -> list[int]:
-    """Whole nanoseconds."""
+    """Time stamps in integer nanoseconds."""
     return [round(t * NS) for t in columns["time_s"].tolist()]
 
 
@@ -38,18 +38,8 @@ def csv(path: Path, columns: Columns) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
-def german_csv(path: Path, columns: Columns) -> None:
-    lines = [";".join(columns), *(";".join(map(repr, row)) for row in rows(columns))]
-    lines = [lines[0], *(line.replace(".", ",") for line in lines[1:])]
-    path.write_bytes(("\r\n".join(lines) + "\r\n").encode("utf-8-sig"))
-
-
 def npz(path: Path, columns: Columns) -> None:
     np.savez(path, **columns)  # type: ignore[arg-type]
-
-
-def npy(path: Path, columns: Columns) -> None:
-    np.save(path, np.rec.fromarrays(list(columns.values()), names=list(columns)))
 
 
 def mat(path: Path, columns: Columns) -> None:
@@ -128,7 +118,7 @@ def mdf4(path: Path, columns: Columns) -> None:
 
 
 def mdf4_groups(path: Path, columns: Columns) -> None:
-    """Each channel in a group of its own, as some loggers do; the masters are equal."""
+    """Write each channel into its own group with its own master."""
     asammdf = pytest.importorskip("asammdf")
     file = asammdf.MDF(version="4.10")
     for name, values in without_time(columns).items():
@@ -194,9 +184,7 @@ def ros1_bag(path: Path, columns: Columns) -> None:
 
 WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     "r.csv": csv,
-    "german.csv": german_csv,
     "r.npz": npz,
-    "r.npy": npy,
     "r.mat": mat,
     "structure.mat": mat_structure,
     "r73.mat": mat73,
@@ -212,4 +200,4 @@ WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     "bag": ros2_bag,
     "ros1.bag": ros1_bag,
 }
-"""File name to writer."""
+"""Writers by file name."""

@@ -1,4 +1,4 @@
-"""What the workbench's tests share."""
+"""A client of the workbench, shared by its tests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TOKEN, PORT = "a-token", 8123
 
 
 def client_of(session: Session, **more: Any) -> TestClient:
-    """A client that has the right host and the token."""
+    """A client with the correct host and token."""
     app = create_app(session, TOKEN, PORT, **more)
     headers = {"X-JBF-Token": TOKEN}
     return TestClient(app, base_url=f"http://127.0.0.1:{PORT}", headers=headers)

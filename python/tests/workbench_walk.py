@@ -1,4 +1,4 @@
-"""A page in a real browser: the workbench's own server, headless Chromium, and what both said."""
+"""A page in headless Chromium, served by the workbench, with every console message collected."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ PATIENCE_MS = 120_000.0
 
 
 def browser() -> str | None:
-    """Debian's Chromium, or another."""
+    """Path of an installed Chromium or Chrome."""
     return next((path for name in BROWSERS if (path := shutil.which(name))), None)
 
 
 def why_not() -> str | None:
-    """Why no page can be looked at here; None where one can."""
+    """The reason why browser tests cannot run here; None where they can."""
     try:
         import playwright.sync_api  # noqa: F401
     except ImportError:
-        return "no page is looked at: pip install playwright"
+        return "browser tests need: pip install playwright"
     if browser() is None:
-        return "no page is looked at: apt-get install chromium"
+        return "browser tests need: apt-get install chromium"
     if not vendored.is_there():
-        return "no page is looked at: python -m jbf.workbench.vendored"
+        return "browser tests need: python -m jbf.workbench.vendored"
     return None
 
 
 @contextmanager
 def served(folder: Path, *more: str) -> Iterator[str]:
-    """`jbf workbench FOLDER`, as a user starts it; its address."""
+    """Run `jbf workbench FOLDER` in a separate process; gives its address."""
     command = [sys.executable, "-m", "jbf", "workbench", str(folder), "--no-browser", *more]
 
     def interruptible() -> None:
@@ -65,20 +65,20 @@ def served(folder: Path, *more: str) -> Iterator[str]:
 
 
 class Said:
-    """What a page asked for and complained of."""
+    """Console errors of a page, and requests to other hosts."""
 
     def __init__(self, page: Page) -> None:
         self.complaints: list[str] = []
         self.outside: list[str] = []
         page.on("console", self._console)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.on("request", lambda request: self._asked(request.url))
+        page.on("request", lambda request: self._requested(request.url))
 
     def _console(self, message: object) -> None:
         if getattr(message, "type", "") in ("error", "warning"):
             self.complaints.append(str(getattr(message, "text", message)))
 
-    def _asked(self, url: str) -> None:
+    def _requested(self, url: str) -> None:
         if not url.startswith(("http://127.0.0.1:", "blob:http://127.0.0.1:", "data:")):
             self.outside.append(url)
 
@@ -94,9 +94,9 @@ def looked_at(address: str) -> Iterator[tuple[Page, Said]]:
         )
         page = chromium.new_page(viewport={"width": 1280, "height": 900})
         page.set_default_timeout(PATIENCE_MS)
-        said = Said(page)
+        messages = Said(page)
         page.goto(address)
         try:
-            yield page, said
+            yield page, messages
         finally:
             chromium.close()

@@ -11,7 +11,6 @@ from rigsim import (
     Noise,
     draw_base,
     draw_foreign,
-    multisine,
     simulate_campaign,
     simulate_run,
     sine,
@@ -25,7 +24,7 @@ SHORT = Campaign("short", (sine("bi", 7.0, 0.127, 1.0), triangle("tri", 5.0, 0.1
 
 
 @pytest.mark.parametrize("name", ["full", "heldout", "slow", "steady"])
-def test_motions_are_consistent(name):
+def test_speed_is_the_derivative_of_position_within_and_between_pieces(name):
     for motion in standard(name).motions:
         edges = [motion.pieces[0].t0, *(p.t1 for p in motion.pieces)]
         assert edges[0] == 0.0
@@ -42,12 +41,7 @@ def test_motions_are_consistent(name):
             assert a.position(a.t1) == pytest.approx(b.position(b.t0), abs=1e-12)
 
 
-def test_multisine_starts_at_zero_position():
-    motion = multisine("m", 5.0, [(0.05, 0.3, 0.4), (0.02, 1.7, 2.0)])
-    assert motion.pieces[0].position(0.0) == pytest.approx(0.0, abs=1e-15)
-
-
-def test_seed_reproduces_and_matters():
+def test_same_seed_repeats_the_record_and_another_seed_does_not():
     one, truth = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     two, again = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     other, _ = simulate_campaign(4, ["coulomb_drag"], campaign=SHORT)
@@ -56,7 +50,7 @@ def test_seed_reproduces_and_matters():
     assert not np.array_equal(one["bi"].friction_n, other["bi"].friction_n)
 
 
-def test_one_seed_is_one_rig():
+def test_rig_of_a_seed_does_not_depend_on_the_effects():
     _, alone = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     _, both = simulate_campaign(3, ["sensor_lag", "coulomb_drag"], campaign=SHORT)
     assert alone["base"] == both["base"]
@@ -64,7 +58,7 @@ def test_one_seed_is_one_rig():
     assert alone["effects"]["coulomb_drag"] == both["effects"]["coulomb_drag"]
 
 
-def test_truth_reports_the_noise_that_is_there():
+def test_reported_noise_is_that_of_the_record():
     records, truth = simulate_campaign(6, campaign=SHORT)
     gap = np.concatenate([r.friction_n - r.clean_friction_n for r in records.values()])
     assert np.std(gap) == pytest.approx(truth["noise_n"], rel=0.1)
@@ -72,7 +66,7 @@ def test_truth_reports_the_noise_that_is_there():
     assert all(w == 0.0 for w in truth["effect_to_noise"].values())
 
 
-def test_coloured_noise_is_correlated():
+def test_coloured_noise_has_its_variance_and_lag_one_correlation():
     rng = np.random.default_rng(1)
     noisy = Noise(1.0, coloured_share=0.5).friction(np.zeros(50_000), 0.02, rng)
     assert np.std(noisy) == pytest.approx(np.sqrt(1.25), rel=0.03)
@@ -80,7 +74,7 @@ def test_coloured_noise_is_correlated():
     assert lag_one == pytest.approx(0.2 * np.exp(-0.1), abs=0.03)
 
 
-def test_speed_has_no_noise_at_rest_and_angle_is_counted():
+def test_speed_at_rest_is_exact_and_angle_is_in_encoder_counts():
     rng = np.random.default_rng(1)
     record = simulate_run(Base(), {}, SHORT.motions[0], noise=Noise(0.1), rng=rng)
     assert record.velocity_m_s[0] == 0.0
@@ -89,7 +83,7 @@ def test_speed_has_no_noise_at_rest_and_angle_is_counted():
 
 
 @pytest.mark.parametrize("name", FOREIGN)
-def test_foreign_effects_show_and_repeat(name):
+def test_foreign_effect_changes_the_record_and_repeats_with_its_seed(name):
     strange = [draw_foreign(name, np.random.default_rng(2))]
     motion = SHORT.motions[0]
     base = draw_base(1)
@@ -102,7 +96,7 @@ def test_foreign_effects_show_and_repeat(name):
     assert np.sqrt(np.mean(gap**2)) > 0.02
 
 
-def test_files_have_the_contract_columns(tmp_path):
+def test_written_csv_has_the_documented_columns_and_digits(tmp_path):
     truth = write_campaign(tmp_path, 2, ["sensor_offset"], campaign=SHORT)
     lines = (tmp_path / "bi.csv").read_text().splitlines()
     assert lines[0] == "time_s,angle_rad,velocity_m_s,friction_n,load_n"
@@ -113,7 +107,7 @@ def test_files_have_the_contract_columns(tmp_path):
     assert f"normal_n = {truth['base']['load_n']}" in rig
 
 
-def test_command_line(tmp_path, capsys):
+def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path, capsys):
     truth_file = tmp_path / "truth.json"
     hidden = ["--effects", "coulomb_drag", "--foreign", "hum", "--seed", "3"]
     places = ["--heldout", str(tmp_path / "b"), "--truth", str(truth_file)]

@@ -1,4 +1,4 @@
-"""Stick and slip behind a compliant drive."""
+"""A journal behind a compliant drive: stick, slip, and the limits of a stiff drive."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def fixed_step(motion, step, every):
     return np.array(out)
 
 
-def test_events_agree_with_a_fine_fixed_step():
+def test_event_integration_agrees_with_a_fine_fixed_step():
     _, exact = force(STOP)
     coarse = np.abs(fixed_step(STOP, 2e-4, 100) - exact)
     fine = np.abs(fixed_step(STOP, 5e-5, 400) - exact)
@@ -54,7 +54,8 @@ def test_events_agree_with_a_fine_fixed_step():
     assert np.sqrt(np.mean(fine**2)) < 0.5 * np.sqrt(np.mean(coarse**2))
 
 
-def test_stiff_drive_is_rigid():
+@pytest.mark.extended
+def test_stiff_drive_converges_to_the_rigid_record():
     motion = sine("swing", 4.0, 0.127, 2.0)
     _, stiff = force(motion, k=2e4, c=5.0)
     rigid = simulate_run(BASE, {}, motion)
@@ -62,14 +63,14 @@ def test_stiff_drive_is_rigid():
     assert np.max(np.abs(stiff - rigid.friction_n)[moving]) < 0.02
 
 
-def test_friction_at_rest_is_held_below_the_static_limit():
+def test_friction_at_rest_is_constant_and_below_the_static_limit():
     t, f = force(STOP)
     held = f[(t > 3.5) & (t < 5.0)]
     assert np.ptp(held) < 1e-6
     assert 0.0 < held[0] < BASE.f_m * BASE.load_n
 
 
-def test_twist_holds_the_spring_torque():
+def test_torque_before_breakaway_is_that_of_spring_and_damper():
     motion = polyline("creep", [(0.0, 0.0), (20.0, 0.0), (20.1, 1e-4), (22.0, 1e-4)])
     t, f = force(motion)
     i = int(np.argmin(np.abs(t - 21.0)))
@@ -78,8 +79,8 @@ def test_twist_holds_the_spring_torque():
     assert f[i] == pytest.approx((DRIVE["k"] * moved + DRIVE["c"] * rate) / ARM, rel=1e-9)
 
 
-def test_drive_does_not_make_energy():
-    """Work put in by the motor covers friction losses plus what the spring may store."""
+def test_drive_creates_no_energy():
+    """The work of the motor is the friction loss plus at most the energy of the spring."""
     motion = sine("swing", 13.0, 0.127, 1.0)
     record = simulate_run(BASE, {"drive_compliance": DRIVE}, motion, rate_hz=500.0)
     rigid = simulate_run(BASE, {}, motion, rate_hz=500.0)
@@ -90,7 +91,7 @@ def test_drive_does_not_make_energy():
     assert abs(loss - lossless) < stored + 0.2 * lossless
 
 
-def test_bristle_behind_a_drive_settles_on_base_friction():
+def test_presliding_behind_a_drive_settles_on_the_base_friction():
     motion = polyline("run", [(0.0, 0.0), (1.0, 0.03), (20.0, 0.03)])
     both = {"drive_compliance": DRIVE, "presliding": {"sigma": 2000.0}}
     with_both = simulate_run(BASE, both, motion).friction_n[-1]

@@ -1,4 +1,4 @@
-"""Each effect's form: null, order of magnitude, and what defines it."""
+"""Each effect of the simulator against its null, its usual size and its closed form."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ def drawn(name):
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_null_parameters_leave_the_base(name):
+def test_null_parameters_reproduce_the_base_law_exactly(name):
     np.testing.assert_array_equal(force({name: drawn(name) | NULLS[name]}), force({}))
 
 
@@ -42,7 +42,7 @@ SMALL = {
 @pytest.mark.parametrize(
     "name", [name for name in CATALOGUE if name not in ("drive_compliance", "backlash")]
 )
-def test_fades_towards_its_null(name):
+def test_effect_vanishes_as_its_parameter_approaches_the_null(name):
     small = SMALL.get(name) or dict.fromkeys(NULLS[name], 1e-9)
     plain = simulate_run(BASE, {}, STOP)
     moving = plain.velocity_m_s != 0.0  # at rest a bristle holds its force however stiff
@@ -50,17 +50,7 @@ def test_fades_towards_its_null(name):
     assert np.max(np.abs(gap[moving])) < 1e-3
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
-def test_standard_strength_shows(name):
-    motion = STOP if name == "dwell_stiction" else SWING
-    load = 83.5 if name == "load_dependence" else None
-    cold = Warmth(18.0) if name == "vogel_viscosity" else None
-    hidden = force({name: drawn(name)}, motion, load_n=load, warmth=cold)
-    gap = hidden - force({}, motion, load_n=load)
-    assert np.sqrt(np.mean(gap**2)) > 0.05
-
-
-def test_drags_and_leak_add_their_force():
+def test_drags_and_inertia_add_their_closed_forms():
     extra = {
         "coulomb_drag": {"F_d": 0.7},
         "quadratic_drag": {"c": 50.0},
@@ -72,7 +62,7 @@ def test_drags_and_leak_add_their_force():
     np.testing.assert_allclose(record.friction_n - force({}), expected, atol=1e-9)
 
 
-def test_lag_is_a_first_order_filter():
+def test_sensor_lag_is_a_first_order_filter():
     lagged = force({"sensor_lag": {"tau": 0.1}}, rate_hz=2000.0)
     plain = simulate_run(BASE, {}, SWING, rate_hz=2000.0)
     rate = np.gradient(lagged, 1.0 / 2000.0)
@@ -80,13 +70,13 @@ def test_lag_is_a_first_order_filter():
     np.testing.assert_allclose((lagged + 0.1 * rate)[inner], plain.friction_n[inner], atol=2e-3)
 
 
-def test_bristle_settles_on_the_model_friction():
+def test_presliding_settles_on_the_base_friction():
     motion = polyline("start", [(0.0, 0.0), (1.0, 0.03), (30.0, 0.03)])
     bristled = force({"presliding": {"sigma": 2000.0}}, motion)
     assert bristled[-1] == pytest.approx(force({}, motion)[-1], rel=1e-6)
 
 
-def test_bristle_holds_its_force_at_rest():
+def test_presliding_force_is_constant_at_rest():
     motion = polyline("stop", [(0.0, 0.03), (3.0, 0.03), (4.0, 0.0), (9.0, 0.0)])
     record = simulate_run(BASE, {"presliding": {"sigma": 2000.0}}, motion)
     rest = record.friction_n[record.time_s >= 4.0]
@@ -94,7 +84,7 @@ def test_bristle_holds_its_force_at_rest():
     np.testing.assert_allclose(rest, rest[0], rtol=1e-9)
 
 
-def test_dwell_waits_for_a_rest_and_ages():
+def test_dwell_stiction_grows_with_the_duration_of_a_rest():
     p = {"a": 0.06, "t_0": 4.0, "m": 0.65, "s_0": 0.002}
     np.testing.assert_array_equal(force({"dwell_stiction": p}), force({}))
     gap = force({"dwell_stiction": p}, STOP) - force({}, STOP)
@@ -106,7 +96,7 @@ def test_dwell_waits_for_a_rest_and_ages():
         assert gap[i] == pytest.approx(sign * BASE.load_n * aged, rel=1e-6)
 
 
-def test_heat_balances_at_a_steady_speed():
+def test_thermal_thinning_satisfies_the_steady_heat_balance():
     p = {"beta_q": 0.1, "tau": 2.0}
     final = force({"thermal_thinning": p}, hold(0.1, 60.0))[-1]
     heat = 0.1 * 2.0 * final * 0.1
@@ -114,7 +104,7 @@ def test_heat_balances_at_a_steady_speed():
     assert final == pytest.approx(thinner, rel=1e-6)
 
 
-def test_ripple_and_asymmetry_multiply_the_bearing_friction_only():
+def test_ripple_and_asymmetry_scale_the_bearing_friction_only():
     effects = {
         "position_ripple": {"a": 0.2, "theta_0": 1.0},
         "direction_asymmetry": {"a": 0.1},
@@ -127,13 +117,13 @@ def test_ripple_and_asymmetry_multiply_the_bearing_friction_only():
     np.testing.assert_allclose(record.friction_n, expected, atol=1e-9)
 
 
-def test_a_late_record_is_the_record_of_before():
-    late = force({"time_delay": {"tau": 0.1}})
-    np.testing.assert_allclose(late[5:], force({})[:-5], atol=1e-9)
-    assert np.all(late[:5] == late[0])
+def test_time_delay_shifts_the_record_by_whole_samples():
+    delayed = force({"time_delay": {"tau": 0.1}})
+    np.testing.assert_allclose(delayed[5:], force({})[:-5], atol=1e-9)
+    assert np.all(delayed[:5] == delayed[0])
 
 
-def test_a_gap_holds_the_journal_until_it_is_crossed():
+def test_backlash_holds_the_journal_until_the_gap_is_crossed():
     gap = 0.2  # rad; the drive turns round at pi
     record = simulate_run(BASE, {"backlash": {"gap": gap}}, SWING)
     plain = simulate_run(BASE, {}, SWING)
@@ -145,7 +135,7 @@ def test_a_gap_holds_the_journal_until_it_is_crossed():
     np.testing.assert_array_equal(record.velocity_m_s, plain.velocity_m_s)
 
 
-def test_load_dependence_turns_one_table_into_the_other():
+def test_load_dependence_maps_one_published_table_onto_the_other():
     share = math.log(83.5 / 104.0)
     p = {"p": math.log(0.05 / 0.06) / share, "q": math.log(6.25e5 / 7.5e5) / share}
     other = simulate_run(Base(load_n=83.5, U_tr=0.05, K0=6.25e5), {}, SWING).friction_n
@@ -153,13 +143,13 @@ def test_load_dependence_turns_one_table_into_the_other():
     np.testing.assert_array_equal(force({"load_dependence": p}), force({}))
 
 
-def test_a_cell_with_hysteresis_has_two_branches():
+def test_sensor_hysteresis_has_two_branches_of_its_half_width():
     width = 0.8
     record, plain = force({"sensor_hysteresis": {"w": width}}), force({})
     gap = record - plain
     assert record[0] == plain[0]
     assert np.max(np.abs(gap)) <= width + 1e-6
-    # Once the force has gone far enough one way, the record trails it by all of the gap's half.
+    # After a long enough monotonic change the record trails the force by the half width.
     way = np.convolve(np.diff(plain), np.ones(25))[24:-24]
     for sign in (1.0, -1.0):
         far = np.flatnonzero(sign * way > 3.0 * width) + 25
@@ -171,30 +161,30 @@ def test_a_cell_with_hysteresis_has_two_branches():
     )
 
 
-def test_a_cell_bends_after_its_play_and_before_its_zero():
+def test_sensor_effects_act_in_the_order_hysteresis_nonlinearity_offset():
     play, bend = {"sensor_hysteresis": {"w": 0.8}}, {"sensor_nonlinearity": {"c": -3e-4}}
     zero = {"sensor_offset": {"b": 0.5}}
     held = force(play)
     np.testing.assert_allclose(force(play | bend | zero), held - 3e-4 * held**3 + 0.5, atol=1e-6)
 
 
-def test_a_bent_cell_is_filtered_and_late_as_a_straight_one():
-    """By another way: a grid, not a state."""
+def test_lag_and_delay_agree_between_grid_and_state_implementation():
+    """A nonlinear sensor is computed on a grid instead of by a state."""
     straight = {"sensor_nonlinearity": {"c": 1e-12}}
     for other in ({"sensor_lag": {"tau": 0.1}}, {"time_delay": {"tau": 0.1}}):
         gap = np.abs(force(straight | other) - force(other))
         assert np.max(gap) < 5e-3
 
 
-def test_wrong_names_are_refused():
+def test_unknown_names_are_refused():
     with pytest.raises(ValueError, match="no effect named"):
         force({"magic": {}})
     with pytest.raises(ValueError, match="takes F_d"):
         force({"coulomb_drag": {"force": 1.0}})
 
 
-def test_a_warm_film_is_that_of_a_thinner_oil():
-    """At a steady temperature: another oil, and with it another transition speed."""
+def test_vogel_viscosity_at_a_steady_temperature_equals_a_thinner_oil():
+    """A thinner oil also has a higher transition speed."""
     thin = math.exp(800.0 / (45.0 + 95.0) - 800.0 / (25.0 + 95.0))
     oil = replace(BASE.bearing, viscosity_pa_s=BASE.bearing.viscosity_pa_s * thin)
     other = replace(BASE, U_tr=BASE.U_tr / thin, bearing=oil)
@@ -204,8 +194,8 @@ def test_a_warm_film_is_that_of_a_thinner_oil():
     assert np.max(np.abs(warm - force({}))) > 0.5
 
 
-def test_a_film_follows_a_temperature_that_changes():
-    """Cold at first and warm at last; in between it is neither."""
+def test_vogel_viscosity_follows_a_changing_temperature():
+    """Cold at first, warm at the end, between both meanwhile."""
     hidden = {"vogel_viscosity": {"B": 900.0}}
     speed = hold(0.03)
     cold, warm = (force(hidden, speed, warmth=Warmth(c)) for c in (15.0, 40.0))

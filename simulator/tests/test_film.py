@@ -1,4 +1,4 @@
-"""The base law against the printed Table 4.2 and the steady balance."""
+"""The base law against the published Table 4.2 and the steady force balance."""
 
 import math
 
@@ -34,36 +34,36 @@ def balance(base: Base, speed: float) -> float:
     ("load", "u_tr", "eps_tr"),
     [(104.0, 0.06, 0.97235), (83.5, 0.05, 0.97183), (104.0, 0.05, 0.97475)],
 )
-def test_transition_eccentricity(load, u_tr, eps_tr):
+def test_transition_eccentricity_agrees_with_the_published_table(load, u_tr, eps_tr):
     assert Base(load_n=load, U_tr=u_tr).transition_eccentricity() == pytest.approx(eps_tr, abs=6e-6)
 
 
-def test_transition_eccentricity_to_eight_digits():
+def test_transition_eccentricity_agrees_to_eight_digits():
     assert BASE.transition_eccentricity() == pytest.approx(0.97235049, abs=5e-9)
 
 
 @pytest.mark.parametrize(
     ("speed", "f"), [(0.001, 0.21635118), (0.02, 0.05782938), (0.127, 0.00860)]
 )
-def test_steady_friction(speed, f):
+def test_steady_friction_agrees_with_reference_values(speed, f):
     record = simulate_run(BASE, {}, hold(speed))
     digits = 5e-6 if speed > 0.1 else 1e-7
     assert record.friction_n[-1] / BASE.load_n == pytest.approx(f, abs=digits)
 
 
 @pytest.mark.parametrize("speed", [0.003, 0.05, 0.2])
-def test_steady_friction_meets_the_force_balance(speed):
+def test_steady_friction_satisfies_the_force_balance(speed):
     record = simulate_run(BASE, {}, hold(speed))
     assert record.friction_n[-1] / BASE.load_n == pytest.approx(balance(BASE, speed), rel=1e-7)
 
 
 def test_friction_is_odd_in_speed():
-    there = simulate_run(BASE, {}, sine("there", 10.0, 0.127, 1.0))
-    back = simulate_run(BASE, {}, sine("back", 10.0, -0.127, 1.0))
-    np.testing.assert_allclose(there.friction_n, -back.friction_n, atol=1e-9)
+    forward = simulate_run(BASE, {}, sine("forward", 10.0, 0.127, 1.0))
+    backward = simulate_run(BASE, {}, sine("backward", 10.0, -0.127, 1.0))
+    np.testing.assert_allclose(forward.friction_n, -backward.friction_n, atol=1e-9)
 
 
-def test_reverse_half_period_mirrors_the_forward_one():
+def test_backward_half_period_mirrors_the_forward_one():
     motion = sine("bi", 4.0 * math.pi, 0.127, 2.0)
     record = simulate_run(BASE, {}, motion, rate_hz=100 / math.pi)
     half = 50
@@ -71,7 +71,7 @@ def test_reverse_half_period_mirrors_the_forward_one():
     np.testing.assert_allclose(tail[1:half], -tail[half + 1 :][: half - 1], atol=1e-4)
 
 
-def test_no_friction_at_rest():
+def test_friction_is_zero_at_rest_before_the_first_motion():
     record = simulate_run(BASE, {}, polyline("rest", [(0.0, 0.0), (2.0, 0.0), (3.0, 0.05)]))
     assert np.all(record.friction_n[record.time_s <= 2.0] == 0.0)
     assert record.friction_n[-1] > 0.0

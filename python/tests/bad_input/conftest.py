@@ -1,4 +1,4 @@
-"""Every test here works in a folder of its own that holds a small campaign."""
+"""Every test runs in a temporary folder with a minimal campaign."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-pytest.register_assert_rewrite("bad_input.checking")
+pytest.register_assert_rewrite("input_checks")
 
-from bad_input.checking import campaign  # noqa: E402
+from input_checks import campaign  # noqa: E402
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""What may stand on the command line: told before the work, and no input is ever written over."""
+"""Command lines: wrong words, numbers and outputs are refused, and no input is overwritten."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-import jbf.diagnosis
+import jbf
 import pytest
-from bad_input.checking import RMS_N, Capture, accepted, compared, one_line, refused
-from jbf import Limits
+from input_checks import (
+    RMS_N,
+    Capture,
+    accepted,
+    cases,
+    compared,
+    refused,
+    table,
+    with_cell,
+)
 from jbf.cli import main
 
 OWN = """\
@@ -31,134 +39,65 @@ REFUSED: dict[str, tuple[str, str]] = {
     # Words
     "nothing": ("", "required: COMMAND"),
     "command misspelt": ("diagnos", 'there is no command "diagnos"; did you mean "diagnose"?'),
-    "command in capitals": ("FIT", 'there is no command "FIT"; did you mean "fit"?'),
-    "command unknown": ("xyzzy", "known: demo, workbench, import"),
     "option misspelt": ("compare model.toml a.csv --jsn x", "did you mean --json?"),
-    "option misspelt with =": ("compare model.toml a.csv --reprot=x", "did you mean --report?"),
-    "option of another command": ("compare model.toml a.csv --bootstrap 20", "unrecognized argum"),
-    "option cut short": (f"{FIT} --boot 20", "did you mean --bootstrap?"),
     "option twice removed": (f"{DIAGNOSE} --false-alarm 0.1", "did you mean --false-alarms?"),
     "value missing": ("compare model.toml a.csv --json", "--json: expected one argument"),
     "runs missing": ("compare model.toml", "the following arguments are required: RUN"),
-    "rig missing": ("diagnose", "RIG and RUN are missing; name the rig's TOML"),
-    "run missing": ("fit rig.toml --out new.toml", "RUN is missing"),
-    "out missing": ("fit rig.toml a.csv", "required: --out"),
     "swapped": ("compare a.csv model.toml", "is a CSV file where MODEL should be"),
-    "swapped fit": ("fit a.csv rig.toml --out n", "is a CSV file where RIG should be"),
     "law unknown": (f"{FIT} --law stribek", 'there is no law "stribek"; did you mean "stribeck"'),
-    "law empty": (f"{FIT} --law=", 'there is no law ""'),
-    "clock unknown": (f"{FIT} --clock wall", "--clock: invalid choice"),
     "effect unknown": (f"{FIT} --effects sensor_ofset", 'did you mean "sensor_offset"?'),
-    "effect of another law": (f"{FIT} --effects dry_load_dependence", "dry_load_dependence"),
-    "effect not asked": ("effects nope", 'there is no effect "nope"'),
     # Numbers
     "bootstrap a word": (f"{FIT} --bootstrap many", "invalid int value: 'many'"),
-    "bootstrap a half": (f"{FIT} --bootstrap 20.5", "invalid int value: '20.5'"),
     "bootstrap few": (f"{FIT} --bootstrap 3", "--bootstrap 3 is too few to tell an error"),
-    "bootstrap negative": (f"{FIT} --bootstrap -5", "--bootstrap is -5; give a whole number"),
-    "bootstrap huge": (f"{FIT} --bootstrap 1000000000", "--bootstrap 1000000000 is too many"),
-    "fix nothing": (f"{FIT} --fix f_m", "--fix f_m: has no value; write NAME=VALUE"),
-    "fix text": (f"{FIT} --fix f_m=much", '"much" is not a number'),
     "fix nan": (f"{FIT} --fix f_m=nan", "--fix f_m=nan: is out of range"),
-    "fix inf": (f"{FIT} --fix f_m=inf", "--fix f_m=inf: is out of range; choose from"),
     "fix twice": (f"{FIT} --fix f_m=0.2 --fix f_m=0.3", "f_m is fixed twice; fix it once"),
     "fix unknown": (f"{FIT} --fix fm=0.2", "--fix fm=0.2: there is no parameter"),
-    "share nan": (f"{DIAGNOSE} --false-alarms nan", "--false-alarms: nan is no share"),
+    "fix below": (f"{FIT} --fix f_m=-1", "--fix f_m=-1: is out of range; choose from"),
+    "fix of an effect not fitted": (f"{FIT} --fix coulomb_drag.F_d_n=1", "there is no parameter"),
+    "law of a model": ("power model.toml a.csv --law coulomb", "--law"),
     "share zero": (f"{DIAGNOSE} --false-alarms 0", "--false-alarms: 0 is no share; choose from"),
-    "share two": (f"{DIAGNOSE} --false-alarms 2", "--false-alarms: 2 is no share"),
-    "indifference nan": (f"{DIAGNOSE} --indifference-n nan", "--indifference-n: nan is no size"),
     "indifference below": (f"{DIAGNOSE} --indifference-n -1", "--indifference-n: -1 is no size"),
     "loads nan": (f"{DIAGNOSE} --loads-n 5 nan", "the limit load_n = nan; must be above zero"),
-    "loads nan first": (f"{DIAGNOSE} --loads-n nan 5", "the limit load_n = nan"),
-    "loads inf": (f"{DIAGNOSE} --loads-n 5 inf", "the limit load_n = inf"),
-    "loads zero": (f"{DIAGNOSE} --loads-n 0 5", "the limit load_n = 0; must be above zero"),
     "loads turned": (f"{DIAGNOSE} --loads-n 9 5", "give the smaller load first"),
-    "one load": (f"{DIAGNOSE} --loads-n 5", "--loads-n: expected 2 arguments"),
-    "temperatures nan": (f"{DIAGNOSE} --temperatures-c 5 nan", "the limit temperature_c"),
-    "temperatures turned": (f"{DIAGNOSE} --temperatures-c 9 5", "the lower first"),
-    "speed zero": (f"{DIAGNOSE} --max-velocity-m-s 0", "the limit velocity_m_s = 0; must be"),
-    "speed inf": (f"{DIAGNOSE} --max-velocity-m-s inf", "the limit velocity_m_s = inf"),
     "speed 1e300": (f"{DIAGNOSE} --max-velocity-m-s 1e300", "velocity_m_s = 1e+300 is beyond"),
-    "sharp nan": (f"{DIAGNOSE} --max-acceleration-m-s2 nan", "the limit acceleration_m_s2 = nan"),
     "long": (f"{DIAGNOSE} --next-duration-s 1e9", "duration_s = 1e+09 is more than a day; ask"),
-    "endless": (f"{DIAGNOSE} --next-duration-s 1e300", "the limit duration_s = 1e+300 is"),
-    "never": (f"{DIAGNOSE} --next-duration-s nan", "the limit duration_s = nan; must be above"),
-    "no time": (f"{DIAGNOSE} --next-duration-s 0", "the limit duration_s = 0; must be above"),
-    "plan minutes nan": (f"{PLAN} --minutes nan", "minutes: nan is not above zero"),
-    "plan minutes zero": (f"{PLAN} --minutes 0", "minutes: 0 is not above zero"),
-    "plan for ever": (f"{PLAN} --minutes 1e300", "minutes"),
     "plan no noise": ("plan rig.toml --max-velocity-m-s 0.2", "--noise-n is missing; say how"),
-    "plan noise nan": ("plan rig.toml --max-velocity-m-s 0.2 --noise-n nan", "noise_n: nan is"),
-    "plan run long": (f"{PLAN} --run-s 1e9", "duration_s = 1e+09 is more than a day"),
-    "plan step zero": (f"{PLAN} --step-s 0", "step_s: 0 is not above zero"),
-    "plan for a week": (f"{PLAN} --minutes 1e4", "hold more than 200 runs of 60 s; give less"),
     "power noise zero": ("power rig.toml a.csv --noise-n 0", "noise_n"),
-    "power noise nan": ("power rig.toml a.csv --noise-n nan", "noise_n"),
-    "power noise 1e300": ("power rig.toml a.csv --noise-n 1e300", "noise_n"),
     "jobs none": ("diagnose --many many --jobs 0", "--jobs: 0 campaigns at a time; 1 or more"),
-    "check none": ("check model.toml a.csv -n 0 --jobs 1", "campaigns"),
-    "held out none": (f"{FIT} --hold-out x*", "--hold-out x*: fits no run; there are a"),
-    "held out all": (f"{FIT} --hold-out *", "--hold-out *: fits every run; leave some"),
-    "task unknown": ("control run --task wobble", 'there is no task "wobble"'),
-    "noise negative": ("control run --noise-times -1", "--noise-times -1 is no factor"),
-    "counts zero": ("control run --counts-per-rad 0 --seconds 1", "counts_per_rad"),
-    "seconds nan": ("control run --seconds nan", "nan s with 2.0 s left out is no run; give up to"),
-    "seconds 1e300": ("control run --seconds 1e300", "1e+300 s with 2.0 s left out is no run"),
-    "motor nan": ("control run --volts-per-n nan --seconds 1", "volts_per_n"),
     # Many rigs
     "many none": ("diagnose --many nowhere", "nowhere: holds no campaign"),
-    "many a file": ("diagnose --many a.csv", "a.csv: holds no campaign"),
     "many and a rig": ("diagnose rig.toml --many many", "takes neither RIG nor RUN nor --next-run"),
     # Outputs
     "onto the run": ("compare model.toml a.csv --json a.csv", "--json a.csv: is also an input"),
-    "onto the run by a detour": ("compare model.toml a.csv --json many/../a.csv", "also an input"),
     "onto the run by a link": ("compare model.toml a.csv --json link.csv", "is also an input"),
     "onto the model": ("compare model.toml a.csv --report model.toml", "is also an input"),
-    "onto the map": ("compare model.toml a.csv --map map.toml --json map.toml", "also an input"),
-    "onto the rig": ("fit rig.toml a.csv --out rig.toml", "--out rig.toml: is also an input"),
-    "onto a rig in a folder": ("diagnose many/one --json many/one/rig.toml", "is also an input"),
-    "onto a run in a folder": ("diagnose many/one --out many/one/a.csv", "is also an input"),
-    "onto own effects": (f"{DIAGNOSE} --effects-from own.py --json own.py", "is also an input"),
-    "plan onto the rig": (f"{PLAN} --json rig.toml", "--json rig.toml: is also an input"),
-    "power onto a run": ("power rig.toml many/one --noise-n 1 --json many/one/a.csv", "an input"),
-    "check onto a run": ("check model.toml many/one --resume many/one/a.csv", "an input"),
-    "cut onto the map": ("import a.csv --map map.toml --plot map.toml", "is also an input"),
-    "export onto the model": ("export model.toml --rust model.toml", "is also an input"),
-    "many onto a rig": ("diagnose --many many --json many/one/rig.toml", "is also an input"),
     "many onto a run": ("diagnose --many many --json many/one/a.csv", "is also an input"),
-    "many onto the only rig": ("diagnose --many rigs --out rigs/rig", "is also an input"),
     "motion onto itself": ("predict model.toml a.csv --out ./a.csv", "is also an input"),
     "two of one": ("compare model.toml a.csv --json x --report x", "the file of another option"),
-    "nameless": ("compare model.toml a.csv --json=", "--json : is not a file name; name a file"),
-    "a folder": ("compare model.toml a.csv --json many", "--json many: is a folder; name a file"),
     "no folder": ("compare model.toml a.csv --json no/x", "its folder does not exist; make"),
-    "a file as folder": ("compare model.toml a.csv --json a.csv/x", "its folder does not exist"),
     "a loop": (
         "compare model.toml a.csv --json loop",
         "--json loop: is a link that leads to itself; name another",
     ),
     "a full disk": ("predict model.toml a.csv --out /dev/full", "no space left on device"),
-    "a full disk beside": (
-        "compare model.toml a.csv --json new.json --report /dev/full",
-        "/dev/full: cannot be written (no space left on device)",
-    ),
-    "a long name": (f"compare model.toml a.csv --json {'n' * 300}", "file name too long"),
-    "no picture": ("import a.csv --map map.toml --plot new.txt", "new.txt"),
     "import onto a file": ("import a.csv --map map.toml --out a.csv", "is a file, not a folder"),
     "import onto others": ("import a.csv --map map.toml --out many", "many: holds other files"),
-    "import a folder": ("import many --map map.toml --out new", "many: is a folder"),
-    "demo onto a file": ("demo a.csv", "DIR a.csv: is a file, not a folder"),
+    # Kinds of files
+    "model misspelt": ("compare modle.toml a.csv", 'not exist; did you mean "model.toml"?'),
+    "run for a rig": ("diagnose rig.toml rig.toml", "where a run should be"),
+    "folder for a motion": ("predict model.toml many --out new.csv", "many: is a folder"),
+    "same run twice": ("compare model.toml a.csv a.csv", "is given twice"),
+    "demo in no folder": ("demo no/such", "its parent folder does not exist"),
     # Own effects
     "own absent": (f"{DIAGNOSE} --effects-from no.py", "no.py: is no file; name a Python file"),
-    "own a model": (f"{DIAGNOSE} --effects-from model.toml", "model.toml, row"),
     "own that ends": (f"{DIAGNOSE} --effects-from ends.py", "ends.py, row 1: fails: SystemExit"),
     "own that exits": (f"{FIT} --law coulomb --effects-from own.py --effects rude", "rude fails"),
 }
 
 
 @pytest.fixture(autouse=True)
-def more(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Folders of campaigns, links, effects; and no diagnosis, which is long, is ever begun."""
+def more(folder: Path) -> None:
+    """Folders of campaigns, links and files with effects."""
     (folder / "many" / "one").mkdir(parents=True)
     for name in ("rig.toml", "a.csv"):
         shutil.copy(folder / name, folder / "many" / "one" / name)
@@ -168,49 +107,74 @@ def more(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "own.py").write_text(OWN)
     (folder / "ends.py").write_text("raise SystemExit(3)\n")
 
-    def work(*_: object, **__: object) -> None:
-        raise AssertionError("the long work began")
-
-    monkeypatch.setattr(jbf.diagnosis, "diagnose", work)
-    monkeypatch.setattr(jbf.diagnosis, "diagnose_many", work)
-
 
 @pytest.fixture(autouse=True)
 def forgotten() -> Iterator[None]:
-    """What a command has registered stays: no other test may meet it."""
+    """Remove the effect that a command may have registered in this process."""
     yield
     with suppress(jbf.InputError):
         jbf.forget_effect("rude")
 
 
-@pytest.mark.parametrize("name", REFUSED)
-def test_one_line_and_nothing_written(name: str, capfd: Capture) -> None:
-    words, fragment = REFUSED[name]
+FAST = (
+    "nothing", "command misspelt", "option misspelt", "value missing", "runs missing", "swapped",
+    "law unknown", "effect unknown", "bootstrap a word", "bootstrap few", "fix nan", "fix twice",
+    "share zero", "indifference below", "loads nan", "loads turned", "speed 1e300", "long",
+    "plan no noise", "power noise zero", "jobs none", "many none", "onto the run",
+    "onto the run by a link", "onto the model", "many onto a run", "two of one", "no folder",
+    "a loop", "a full disk", "import onto others", "model misspelt", "run for a rig", "own absent",
+    "own that ends", "own that exits", "fix of an effect not fitted", "same run twice",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("words", "fragment"), cases(REFUSED, FAST))
+def test_bad_command_line_is_refused_in_one_line(words: str, fragment: str, capfd: Capture) -> None:
     refused(words.split(), fragment, capfd)
 
 
-def test_a_second_answer_is_written_over_the_first(folder: Path, capfd: Capture) -> None:
-    for _ in range(2):
-        accepted(
-            ["compare", "model.toml", "a.csv", "--json", "out.json", "--report", "out.html"], capfd
-        )
+@pytest.mark.parametrize("command", ["fit", "compare", "diagnose", "predict"])
+def test_every_command_refuses_a_bad_run(command: str, capfd: Capture) -> None:
+    Path("bad.csv").write_text(with_cell(17, "velocity_m_s", "nan"))
+    first = "model.toml" if command in ("compare", "predict") else "rig.toml"
+    out = "--json" if command == "compare" else "--out"
+    line = refused([command, first, "bad.csv", out, "new"], "nan is not a finite", capfd)
+    assert line.startswith("jbf: bad.csv, row 17, column velocity_m_s: ")
+
+
+def test_misspelt_friction_column_of_a_motion_is_refused(capfd: Capture) -> None:
+    """A motion to predict may lack friction, but not misspell it."""
+    Path("bad.csv").write_text(table().replace("friction_n", "fricton_n"))
+    words = ["predict", "model.toml", "bad.csv", "--out", "new.csv"]
+    refused(words, "column fricton_n: is not a known column; did you mean", capfd)
+
+
+def test_column_that_an_effect_needs_is_named(capfd: Capture) -> None:
+    words = ["fit", "rig.toml", "a.csv", "--effects", "position_ripple", "--out", "new.toml"]
+    refused(words, "column angle_rad: is missing, and the effect position_ripple", capfd)
+
+
+def test_run_without_motion_is_refused(capfd: Capture) -> None:
+    rows = ["time_s,velocity_m_s,friction_n", *(f"{i / 50},0,0" for i in range(100))]
+    Path("still.csv").write_text("\n".join(rows))
+    words = ["fit", "rig.toml", "still.csv", "--out", "new.toml"]
+    refused(words, "still.csv: the shaft never moves", capfd)
+
+
+def test_second_result_replaces_the_first(folder: Path, capfd: Capture) -> None:
+    words = ["compare", "model.toml", "a.csv", "--json", "out.json"]
+    accepted(words, capfd)
+    accepted([*words, "--report", "out.html"], capfd)
     assert json.loads((folder / "out.json").read_text())["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
     assert "</html>" in (folder / "out.html").read_text()
     assert [p.name for p in folder.iterdir() if p.name.startswith(".")] == []
 
 
-def test_an_output_may_be_a_device(capfd: Capture) -> None:
+def test_output_may_be_a_device(capfd: Capture) -> None:
     accepted(["predict", "model.toml", "a.csv", "--out", "/dev/null"], capfd)
     assert compared("a.csv", capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
 
 
-def test_help_and_version(capfd: Capture) -> None:
+def test_help_and_version_print_nothing_on_standard_error(capfd: Capture) -> None:
     for words in (["--help"], ["--version"], ["fit", "--help"]):
         assert main(words) == 0
         assert capfd.readouterr().err == ""
-
-
-def test_limits_in_python() -> None:
-    one_line(lambda: Limits(load_n=(5.0, float("nan"))), "load_n = nan")
-    one_line(lambda: Limits(duration_s=1e300), "duration_s = 1e+300")
-    assert Limits(duration_s=86400.0).duration_s == 86400.0

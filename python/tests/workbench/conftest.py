@@ -1,4 +1,4 @@
-"""A folder with a small campaign, a session over it, and a client that may ask."""
+"""A folder with a small campaign, a session on it, and an authorised client."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from workbench_parts import client_of
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a rig and three runs with dry friction that the law lacks."""
+    """A folder with a rig and three runs with a Coulomb drag that the law lacks."""
     folder = tmp_path_factory.mktemp("bench")
     rig = files("jbf") / "data" / "demo" / "plain" / "rig.toml"
     (folder / "rig.toml").write_text(rig.read_text())
@@ -31,7 +31,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def session(campaign: Path) -> Iterator[Session]:
-    """A session over the folder, with nothing on the bench."""
+    """A session on the folder without a loaded campaign."""
     made = Session(Folder.of(campaign))
     yield made
     made.close()
@@ -39,20 +39,20 @@ def session(campaign: Path) -> Iterator[Session]:
 
 @pytest.fixture
 def on_bench(session: Session, campaign: Path) -> Session:
-    """The same with the campaign on the bench."""
+    """A session with the loaded campaign."""
     session.open("rig.toml", sorted(path.name for path in campaign.glob("*.csv")))
     return session
 
 
 @pytest.fixture
 def client(session: Session) -> TestClient:
-    """A client that has the right host and the token."""
+    """A client with the correct host and token."""
     return client_of(session)
 
 
 @pytest.fixture
 def ended() -> Callable[[Session], None]:
-    """Waits until no fit runs."""
+    """A function that waits until no fit runs."""
 
     def wait(session: Session) -> None:
         limit = time.monotonic() + 120.0

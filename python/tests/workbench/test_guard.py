@@ -1,4 +1,4 @@
-"""Who may ask the workbench: each way in that other local servers left open, shut."""
+"""Access to the workbench: foreign hosts, origins, tokens, uploads and paths are refused."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PATHS = ["/", "/api/state", "/api/files", "/static/main.js"]
     "host",
     ["evil.example", f"evil.example:{PORT}", "127.0.0.1", f"127.0.0.1:{PORT + 1}", "0.0.0.0"],
 )
-def test_a_foreign_host_is_refused_everywhere(client: TestClient, path: str, host: str) -> None:
+def test_foreign_host_is_refused(client: TestClient, path: str, host: str) -> None:
     answer = client.get(path, headers={"host": host})
     assert answer.status_code == 400
     assert "token" not in answer.text.lower()
@@ -32,26 +32,26 @@ def test_a_foreign_host_is_refused_everywhere(client: TestClient, path: str, hos
     "origin", ["http://evil.example", "null", f"https://{OWN}", "http://127.0.0.1:1"]
 )
 @pytest.mark.parametrize("method", ["GET", "POST"])
-def test_a_foreign_origin_is_refused_even_with_the_token(
+def test_foreign_origin_is_refused_even_with_the_token(
     client: TestClient, origin: str, method: str
 ) -> None:
     path = "/api/state" if method == "GET" else "/api/undo"
     assert client.request(method, path, headers={"origin": origin}).status_code == 403
 
 
-def test_a_foreign_page_s_image_or_script_is_refused(client: TestClient) -> None:
+def test_cross_site_image_or_script_is_refused(client: TestClient) -> None:
     for site in ("cross-site", "same-site"):
         assert client.get("/static/main.js", headers={"sec-fetch-site": site}).status_code == 403
 
 
-def test_its_own_page_may_ask(client: TestClient) -> None:
+def test_own_page_is_served(client: TestClient) -> None:
     own = {"origin": f"http://{OWN}", "sec-fetch-site": "same-origin"}
     assert client.get("/api/state", headers=own).status_code == 200
     assert client.get("/api/state", headers={"host": f"localhost:{PORT}"}).status_code == 200
 
 
 @pytest.mark.parametrize("token", ["", "wrong", TOKEN[:-1], TOKEN + "x", "ä"])
-def test_without_the_token_nothing_is_told_or_done(client: TestClient, token: str) -> None:
+def test_wrong_token_is_refused(client: TestClient, token: str) -> None:
     headers = {"x-jbf-token": token.encode("latin-1")}
     for method, path in (("GET", "/api/state"), ("POST", "/api/open"), ("GET", "/api/events")):
         answer = client.request(method, path, headers=headers)
@@ -59,16 +59,14 @@ def test_without_the_token_nothing_is_told_or_done(client: TestClient, token: st
         assert TOKEN not in answer.text
 
 
-def test_the_page_itself_holds_no_token(client: TestClient) -> None:
+def test_page_does_not_contain_the_token(client: TestClient) -> None:
     page = client.get("/", headers={"x-jbf-token": ""})
     assert page.status_code == 200
     assert TOKEN not in page.text
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_every_answer_says_what_a_page_may_load_and_allows_no_other_origin(
-    client: TestClient, path: str
-) -> None:
+def test_every_response_has_the_security_headers(client: TestClient, path: str) -> None:
     answer = client.get(path)
     assert answer.headers["content-security-policy"] == POLICY
     assert answer.headers["x-content-type-options"] == "nosniff"
@@ -76,7 +74,7 @@ def test_every_answer_says_what_a_page_may_load_and_allows_no_other_origin(
     assert not [name for name in answer.headers if name.startswith("access-control-")]
 
 
-def test_the_policy_allows_nothing_but_this_server() -> None:
+def test_content_policy_allows_only_this_server() -> None:
     parts = dict(part.split(" ", 1) for part in POLICY.split("; "))
     assert parts["default-src"] == "'none'"
     assert parts["script-src"] == "'self'"
@@ -85,20 +83,20 @@ def test_the_policy_allows_nothing_but_this_server() -> None:
     assert "http" not in POLICY
 
 
-def test_a_preflight_request_is_granted_nothing(client: TestClient) -> None:
+def test_preflight_request_is_refused(client: TestClient) -> None:
     headers = {"origin": "http://evil.example", "access-control-request-method": "POST"}
     answer = client.options("/api/open", headers=headers)
     assert answer.status_code == 403
     assert "access-control-allow-origin" not in answer.headers
 
 
-def test_a_web_socket_finds_nobody(client: TestClient) -> None:
+def test_web_socket_is_refused(client: TestClient) -> None:
     with pytest.raises(Exception), client.websocket_connect("/api/events"):  # noqa: B017, PT011
         pass
 
 
 @pytest.mark.parametrize("declared", [True, False])
-def test_an_upload_has_a_largest_size(session: Session, campaign: Path, declared: bool) -> None:
+def test_too_large_upload_is_refused(session: Session, campaign: Path, declared: bool) -> None:
     client = client_of(session, largest=1000)
     body = b"x" * 4000
     content = body if declared else iter([body[:500], body[500:]])
@@ -112,7 +110,7 @@ def test_an_upload_has_a_largest_size(session: Session, campaign: Path, declared
     ["../up.csv", "a/b.csv", "..", "", "/etc/x.csv", ".hidden.csv", "run.py", "run.html",
      "a\\b.csv", "model.so", "x.csv\0.toml", "rig.toml"],
 )  # fmt: skip
-def test_an_upload_goes_under_a_new_bare_name_or_not_at_all(
+def test_upload_with_an_unsafe_name_is_refused(
     client: TestClient, campaign: Path, name: str
 ) -> None:
     before = sorted(campaign.parent.rglob("*"))
@@ -122,7 +120,7 @@ def test_an_upload_goes_under_a_new_bare_name_or_not_at_all(
     assert sorted(campaign.parent.rglob("*")) == before
 
 
-def test_an_upload_arrives_whole(client: TestClient, campaign: Path) -> None:
+def test_upload_is_written_completely(client: TestClient, campaign: Path) -> None:
     assert client.post("/api/upload?name=new.csv", content=b"time_s\n1\n").status_code == 200
     assert (campaign / "new.csv").read_bytes() == b"time_s\n1\n"
     (campaign / "new.csv").unlink()
@@ -132,7 +130,7 @@ def test_an_upload_arrives_whole(client: TestClient, campaign: Path) -> None:
     "name", ["../secret.toml", "/etc/passwd", "link/rig.toml", "..%2fsecret.toml"]
 )
 @pytest.mark.parametrize("address", ["open", "look", "try", "import"])
-def test_no_path_of_the_page_leads_outside_the_folder(
+def test_path_outside_the_folder_is_refused(
     client: TestClient, campaign: Path, name: str, address: str
 ) -> None:
     outside = campaign.parent / "outside"
@@ -142,7 +140,7 @@ def test_no_path_of_the_page_leads_outside_the_folder(
     link = campaign / "link"
     if not link.exists():
         link.symlink_to(outside)
-    asked = {
+    request = {
         "rig": name,
         "runs": [name],
         "file": name,
@@ -150,7 +148,7 @@ def test_no_path_of_the_page_leads_outside_the_folder(
         "into": "new",
         "map": '[columns]\ntime_s = "`t`"\n',
     }
-    answer = client.post(f"/api/{address}", json=asked)
+    answer = client.post(f"/api/{address}", json=request)
     assert answer.status_code == 422
     assert "not a name in the folder" in answer.json()["error"] or "does not exist" in answer.text
     assert "secret = 1" not in answer.text
@@ -159,7 +157,7 @@ def test_no_path_of_the_page_leads_outside_the_folder(
 
 @pytest.mark.parametrize("name", ["../secret.toml", "/etc/passwd", "link/rig.toml"])
 @pytest.mark.parametrize("address", ["try", "import"])
-def test_no_map_of_the_page_names_a_file_outside_the_folder(
+def test_map_that_names_a_file_outside_the_folder_is_refused(
     client: TestClient, campaign: Path, name: str, address: str
 ) -> None:
     (campaign.parent / "secret.toml").write_text("secret = 1\n")
@@ -178,5 +176,5 @@ def test_no_map_of_the_page_names_a_file_outside_the_folder(
     "path",
     ["/static/../app.py", "/static/%2e%2e/app.py", "/vendored/..%2fapp.py", "/vendored/guard.py"],
 )
-def test_no_source_is_served(client: TestClient, path: str) -> None:
+def test_source_files_are_not_served(client: TestClient, path: str) -> None:
     assert client.get(path).status_code == 404

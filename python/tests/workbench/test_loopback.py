@@ -1,4 +1,4 @@
-"""The workbench listens on loopback alone, and nothing that a page sends is run."""
+"""The workbench listens on the loopback address only and runs no code that a page sends."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from starlette.testclient import TestClient
 
 
 def others() -> list[str]:
-    """Addresses of this machine that others can reach."""
-    found = {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)}
+    """Addresses of this machine that other machines can reach."""
+    result = {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # sends nothing
-            found.add(str(probe.getsockname()[0]))
+            result.add(str(probe.getsockname()[0]))
         except OSError:
             pass
-    return sorted(a for a in found if not a.startswith("127.") and ":" not in a)
+    return sorted(a for a in result if not a.startswith("127.") and ":" not in a)
 
 
-def test_it_listens_on_loopback_and_nowhere_else() -> None:
+def test_server_listens_on_loopback_only() -> None:
     listener = listening(0)
     listener.listen()
     try:
@@ -40,7 +40,7 @@ def test_it_listens_on_loopback_and_nowhere_else() -> None:
         listener.close()
 
 
-def test_a_port_that_is_taken_is_said_in_a_line() -> None:
+def test_occupied_port_is_reported() -> None:
     listener = listening(0)
     listener.listen()
     port = int(listener.getsockname()[1])
@@ -55,7 +55,7 @@ CODE = "__import__('pathlib').Path('run.txt').write_text('x')"
 
 
 @pytest.mark.parametrize(
-    ("address", "asked"),
+    ("address", "request_body"),
     [
         ("try", {"files": ["new.csv"], "map": f'[columns]\ntime_s = "{CODE}"\n'
                  'position_m = "`x`"\nfriction_n = "`f`"\n[drive]\nmotion = "linear"\n'
@@ -67,18 +67,18 @@ CODE = "__import__('pathlib').Path('run.txt').write_text('x')"
         ("keep", {"what": CODE}),
     ],
 )  # fmt: skip
-def test_no_code_of_a_page_is_run(
+def test_code_in_a_request_is_not_run(
     client: TestClient,
     campaign: Path,
     monkeypatch: pytest.MonkeyPatch,
     address: str,
-    asked: dict[str, object],
+    request_body: dict[str, object],
 ) -> None:
     monkeypatch.chdir(campaign)
     (campaign / "new.csv").write_text("t,x,f\n0,0,1\n1,1,1\n")
     (campaign / "code.toml").write_text(f'[drive]\nmotion = "{CODE}"\n')
     client.post("/api/open", json={"rig": "rig.toml", "runs": ["stopgo.csv"]})
-    answer = client.post(f"/api/{address}", json=asked)
+    answer = client.post(f"/api/{address}", json=request_body)
     for name in ("new.csv", "code.toml"):
         (campaign / name).unlink()
     assert answer.status_code == 422 or answer.json()["problem"]

@@ -1,4 +1,4 @@
-"""What the plots are sent: no extreme lost, every sample counted, selections everywhere."""
+"""Data of the plots: thinned series, density of samples, selections."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from jbf.workbench.thinning import Stretch, ranges_of, thinned
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.integers(1, 5000), st.integers(1, 800), st.integers(0, 10))
-def test_thinning_keeps_every_extreme(samples: int, pixels: int, seed: int) -> None:
+def test_thinned_series_keeps_every_extreme(samples: int, pixels: int, seed: int) -> None:
     y = np.random.default_rng(seed).normal(size=samples)
     time = np.arange(samples) * 0.02
     stretch = Stretch.between(time, time[0], time[-1], pixels)
-    found = thinned(time, {"y": y}, stretch)
-    assert len(found["time_s"]) == len(found["y"]) <= max(2 * pixels + 2, 2 * pixels)
-    assert found["y"].min() == y.min()
-    assert found["y"].max() == y.max()
-    assert np.all(np.diff(found["time_s"]) >= 0.0)
-    # Each pair lies within the time of its own group.
+    result = thinned(time, {"y": y}, stretch)
+    assert len(result["time_s"]) == len(result["y"]) <= max(2 * pixels + 2, 2 * pixels)
+    assert result["y"].min() == y.min()
+    assert result["y"].max() == y.max()
+    assert np.all(np.diff(result["time_s"]) >= 0.0)
+    # Each pair lies within its own group of samples.
     if stretch.stride > 2:
         k = int(np.argmax(y)) // stretch.stride
-        assert found["y"][2 * k : 2 * k + 2].max() == y.max()
+        assert result["y"][2 * k : 2 * k + 2].max() == y.max()
 
 
 SIZE = (100, 80)
 
 
-def test_a_gap_stays_a_gap() -> None:
+def test_gap_of_a_series_is_kept() -> None:
     y = np.ones(1000)
     y[400:600] = np.nan
-    found = thinned(np.arange(1000.0), {"y": y}, Stretch(0, 1000, 100))
-    assert np.all(np.isnan(found["y"][84:116]))
-    assert listed(found["y"])[90] is None
+    result = thinned(np.arange(1000.0), {"y": y}, Stretch(0, 1000, 100))
+    assert np.all(np.isnan(result["y"][84:116]))
+    assert listed(result["y"])[90] is None
 
 
-def test_a_zoom_has_one_sample_more_at_either_end() -> None:
+def test_zoomed_stretch_includes_one_neighbour_on_each_side() -> None:
     time = np.arange(100.0)
     assert Stretch.between(time, 10.5, 20.5, 500) == Stretch(10, 22, 500)
     assert Stretch.between(time, -5.0, 500.0, 500) == Stretch(0, 100, 500)
@@ -55,21 +55,21 @@ def test_a_zoom_has_one_sample_more_at_either_end() -> None:
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.lists(st.booleans(), max_size=300), st.integers(1, 12))
-def test_ranges_hold_every_sample_of_a_mask(mask: list[bool], most: int) -> None:
-    there = np.array(mask, dtype=bool)
-    exact = np.zeros(len(there), dtype=bool)
-    for a, b in ranges_of(there, most=1000):
+def test_ranges_cover_every_selected_sample(mask: list[bool], most: int) -> None:
+    selected = np.array(mask, dtype=bool)
+    exact = np.zeros(len(selected), dtype=bool)
+    for a, b in ranges_of(selected, most=1000):
         exact[a:b] = True
-    assert np.array_equal(exact, there)
-    joined = ranges_of(there, most=most)
-    covered = np.zeros(len(there), dtype=bool)
+    assert np.array_equal(exact, selected)
+    joined = ranges_of(selected, most=most)
+    covered = np.zeros(len(selected), dtype=bool)
     for a, b in joined:
         covered[a:b] = True
-    assert np.all(covered[there])
+    assert np.all(covered[selected])
     assert len(joined) <= most
 
 
-def test_the_plane_counts_every_sample_once() -> None:
+def test_density_agrees_with_a_histogram() -> None:
     random = np.random.default_rng(4)
     x, y = random.normal(size=3000), random.normal(size=3000)
     frame = Frame.around([x], [y], 50, 40)
@@ -86,82 +86,82 @@ def test_the_plane_counts_every_sample_once() -> None:
     assert levels.max() == 255
 
 
-def test_a_constant_force_has_a_plane() -> None:
+def test_constant_force_has_a_density() -> None:
     frame = Frame.around([np.zeros(5)], [np.full(5, 3.0)], 10, 10)
     assert frame.counts([frame.places(np.zeros(5), np.full(5, 3.0))]).sum() == 5
 
 
-def test_what_lies_outside_or_is_no_number_is_in_no_pixel() -> None:
+def test_samples_outside_the_frame_and_nan_are_not_counted() -> None:
     frame = Frame(0.0, 1.0, 0.0, 1.0, 10, 10)
     x = np.array([0.5, -0.01, 1.0, np.nan, 0.5, 0.5, np.inf, 0.99])
     y = np.array([0.5, 0.5, 0.5, 0.5, np.nan, -0.01, 0.5, 0.99])
     assert frame.counts([frame.places(x, y)]).sum() == 2
 
 
-def test_a_box_selects_in_every_run(on_bench: Session) -> None:
+def test_box_selects_samples_of_every_run(on_bench: Session) -> None:
     runs = on_bench.on_bench().runs
     box = (-0.02, 0.02, -20.0, 0.0)
-    found = views.brushed(on_bench, None, {"box": box}, [r.name for r in runs], SIZE)
+    result = views.brushed(on_bench, None, {"box": box}, [r.name for r in runs], SIZE)
     inside = [within(r.velocity_m_s, r.friction_n, box) for r in runs if r.friction_n is not None]
-    assert found["samples"] == sum(int(mask.sum()) for mask in inside)
-    assert found["rms_n"] is None
+    assert result["samples"] == sum(int(mask.sum()) for mask in inside)
+    assert result["rms_n"] is None
     for run, mask in zip(runs, inside, strict=True):
-        for first, last in found["by_run"].get(run.name, {}).get("stretches_s", []):
+        for first, last in result["by_run"].get(run.name, {}).get("stretches_s", []):
             assert mask[np.searchsorted(run.time_s, first)]
             assert mask[np.searchsorted(run.time_s, last)]
 
 
-def test_the_picture_of_a_selection_is_that_of_its_samples(on_bench: Session) -> None:
+def test_selected_density_is_that_of_the_selected_samples(on_bench: Session) -> None:
     box = (-0.02, 0.02, -20.0, 0.0)
     run = on_bench.on_bench().run("stopgo")
     assert run.friction_n is not None
-    whole = views.plane(on_bench, None, ["stopgo"], SIZE)
-    found = views.brushed(on_bench, None, {"box": box}, ["stopgo"], SIZE)
+    complete = views.plane(on_bench, None, ["stopgo"], SIZE)
+    result = views.brushed(on_bench, None, {"box": box}, ["stopgo"], SIZE)
     mask = within(run.velocity_m_s, run.friction_n, box)
-    frame = Frame(**whole["frame"])
-    assert found["selected"] == frame.picture(
+    frame = Frame(**complete["frame"])
+    assert result["selected"] == frame.picture(
         [frame.places(run.velocity_m_s[mask], run.friction_n[mask])]
     )
-    assert found["selected"] != whole["measured"]
+    assert result["selected"] != complete["measured"]
 
 
-def test_a_stretch_selects_in_its_run_alone(on_bench: Session) -> None:
+def test_time_span_selects_samples_of_its_run_only(on_bench: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
-    found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
-    assert list(found["by_run"]) == ["stopgo"]
-    assert found["samples"] == 51
+    result = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
+    assert list(result["by_run"]) == ["stopgo"]
+    assert result["samples"] == 51
 
 
-def test_an_open_box_of_one_run_is_a_band_of_its_speeds(on_bench: Session) -> None:
+def test_half_open_box_selects_a_range_of_speeds(on_bench: Session) -> None:
     selection = {"run": "stopgo", "box": [0.01, None, None, None]}
-    found = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
+    result = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
     run = on_bench.on_bench().run("stopgo")
-    assert list(found["by_run"]) == ["stopgo"]
-    assert found["samples"] == int((run.velocity_m_s >= 0.01).sum())
-    low, high = found["speeds_m_s"]
+    assert list(result["by_run"]) == ["stopgo"]
+    assert result["samples"] == int((run.velocity_m_s >= 0.01).sum())
+    low, high = result["speeds_m_s"]
     assert low >= 0.01
     assert high == run.velocity_m_s.max()
-    # Its cells lie in its row of the map, on the right of standstill.
+    # Its cells lie in its row of the map, right of zero speed.
     row = [r.name for r in on_bench.on_bench().runs].index("stopgo")
-    assert {cell[0] for cell in found["cells"]} == {row}
-    assert min(cell[1] for cell in found["cells"]) >= views.MAP_SPEEDS // 2
+    assert {cell[0] for cell in result["cells"]} == {row}
+    assert min(cell[1] for cell in result["cells"]) >= views.MAP_SPEEDS // 2
 
 
-def test_every_selection_is_refused_in_words_where_it_names_nothing(on_bench: Session) -> None:
+def test_selection_of_a_missing_model_is_refused(on_bench: Session) -> None:
     with pytest.raises(InputError, match="no such model"):
         views.brushed(on_bench, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
-def test_raw_records_are_there_without_any_model(on_bench: Session) -> None:
-    found = views.series(on_bench, None, "stopgo", (None, None), 1000)
-    assert "model_n" not in found
+def test_records_are_shown_without_a_model(on_bench: Session) -> None:
+    result = views.series(on_bench, None, "stopgo", (None, None), 1000)
+    assert "model_n" not in result
     run = on_bench.on_bench().run("stopgo")
-    assert found["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
+    assert result["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
     picture = views.plane(on_bench, None, ["stopgo"], SIZE)
     assert "model" not in picture
 
 
-def test_numbers_are_rounded_to_what_a_screen_shows() -> None:
+def test_numbers_are_rounded_and_nan_becomes_null() -> None:
     assert listed([1.23456789, -0.000123456]) == [1.23457, -0.00012]
     assert listed([float("nan"), float("inf"), 1.0]) == [None, None, 1.0]
     assert listed([]) == []

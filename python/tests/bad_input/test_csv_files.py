@@ -1,0 +1,119 @@
+"""CSV files: bad content names file, row and column; unusual content is read correctly."""
+
+from __future__ import annotations
+
+import gzip
+import math
+from pathlib import Path
+
+import pytest
+from input_checks import (
+    HEADER,
+    RMS_N,
+    ROWS,
+    Capture,
+    compared,
+    refused,
+    table,
+    with_cell,
+    with_column,
+)
+
+GOOD = table()
+LINES = GOOD.splitlines()
+UNITS = "\n".join([LINES[0], "s,m/s,N", *LINES[1:]])
+EMPTY_COLUMN = table([(*r, "") for r in ROWS], (*HEADER, "load_n"))
+T = [float(r[0]) for r in ROWS]
+
+
+def rms_of_scaled(factor: float) -> float:
+    """RMS (N) of the residual when the recorded friction is multiplied by a factor."""
+    pairs = [(5.0 + 20.0 * float(v), float(f)) for _, v, f in ROWS]
+    return math.sqrt(sum((factor * f - model) ** 2 for model, f in pairs) / len(pairs))
+
+
+def with_times(time_s: list[float]) -> str:
+    """The run with other time stamps."""
+    return table([(repr(t), *r[1:]) for t, r in zip(time_s, ROWS, strict=True)])
+
+
+REFUSED: dict[str, tuple[str | bytes, str]] = {
+    # Encodings
+    "utf-16 with mark": (GOOD.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
+    "latin-1": (GOOD.replace("friction_n", "friction_n,µ").encode("latin-1"), "is not UTF-8"),
+    # Not text
+    "gzip": (gzip.compress(GOOD.encode(), mtime=0), "is compressed (gzip), not text; unpack it"),
+    "a NUL": (with_cell(9, "friction_n", "5\0"), "is binary, not text; name a text file"),
+    # Shapes
+    "empty": ("", "is empty; start with a header"),
+    "header alone": (LINES[0], "has a header but no samples; add the samples"),
+    "nine rows": ("\n".join(LINES[:10]), "has 9 samples; a run needs at least 10"),
+    "no header": ("\n".join(LINES[1:]), "row 1: holds numbers where the header should be"),
+    "a short row": (GOOD + "1.2,0.1\n", "row 62: has 2 cells where the header has 3"),
+    "a quote in a cell": (with_cell(9, "friction_n", '"5'), "row 9: a quote is not closed"),
+    # Headers
+    "time missing": (GOOD.replace("time_s", "when"), "row 1, column time_s: is missing; add it"),
+    "a unit in the name": (GOOD.replace("time_s", "time_ms"), 'did you mean "time_ms"?'),
+    "twice": (GOOD.replace("velocity_m_s", "time_s"), "column time_s: stands twice in the header"),
+    # Cells
+    "text": (with_cell(9, "friction_n", "abc"), 'row 9, column friction_n: "abc" is not a number'),
+    "escapes": (with_cell(9, "friction_n", "\x1b[31m"), "\\x1b[31m"),
+    "empty cell": (
+        with_cell(9, "friction_n", ""),
+        "row 9, column friction_n: the cell is empty; fill",
+    ),
+    "nan": (with_cell(9, "friction_n", "NaN"), "row 9, column friction_n: nan is not a finite"),
+    "1e400": (with_cell(9, "friction_n", "1e400"), "row 9, column friction_n: inf is not"),
+    "decimal comma": (
+        table([(r[0], r[1], r[2].replace(".", ",")) for r in ROWS], sep=";"),
+        'row 2, column friction_n: "7,500000" has a decimal comma',
+    ),
+    # Times
+    "unsorted": (table([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
+    "repeated": (table([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
+    # Sizes that no machine has
+    "1e160 N": (with_cell(9, "friction_n", "1e160"), "row 9, column friction_n: 1e+160"),
+    "nanoseconds of an epoch": (with_column("time_s", lambda t: 1.7e18 + 1e9 * t), "column time_s"),
+    # Loads
+    "no load": (table([(*r, "0") for r in ROWS], (*HEADER, "load_n")), "a load of 0.0 N"),
+}
+
+ACCEPTED: dict[str, tuple[str | bytes, float]] = {
+    "as it is": (GOOD, RMS_N),
+    "a mark first": (b"\xef\xbb\xbf" + GOOD.encode(), RMS_N),
+    "crlf": (GOOD.replace("\n", "\r\n"), RMS_N),
+    "cr alone": (GOOD.replace("\n", "\r"), RMS_N),
+    "semicolons": (GOOD.replace(",", ";"), RMS_N),
+    "tabs": (GOOD.replace(",", "\t"), RMS_N),
+    "quoted": (GOOD.replace(LINES[0], ",".join(f'"{c}"' for c in HEADER)), RMS_N),
+    "blanks round cells": (GOOD.replace(",", " , "), RMS_N),
+    "blank lines": (GOOD.replace("\n", "\n\n"), RMS_N),
+    "columns turned": (table([r[::-1] for r in ROWS], HEADER[::-1]), RMS_N),
+    "a comment column": (table([(*r, "good") for r in ROWS], (*HEADER, "remark")), RMS_N),
+    "exponents": (with_column("time_s", lambda t: t).replace("0.02,", "2.0E-02,"), RMS_N),
+    "epoch": (with_column("time_s", lambda t: 1.7e9 + t), RMS_N),
+    "milliseconds": (with_column("time_s", lambda t: 1e3 * t), RMS_N),
+    "ten rows": ("\n".join(LINES[:11]), RMS_N),
+    "friction turned": (with_column("friction_n", lambda f: -f), rms_of_scaled(-1.0)),
+    "friction of 1e-300": (with_column("friction_n", lambda f: 1e-300 * f), rms_of_scaled(0.0)),
+    "turned": (table([(r[0], "-" + r[1], repr(-float(r[2]))) for r in ROWS]), RMS_N),
+}
+
+
+def write(content: str | bytes) -> None:
+    data = content if isinstance(content, bytes) else content.encode()
+    Path("bad.csv").write_bytes(data)
+
+
+@pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
+def test_bad_csv_is_refused_with_file_row_and_column(
+    content: str | bytes, fragment: str, capfd: Capture
+) -> None:
+    write(content)
+    assert refused(["compare", "model.toml", "bad.csv"], fragment, capfd).startswith("jbf: bad.csv")
+
+
+@pytest.mark.parametrize(("content", "rms_n"), ACCEPTED.values(), ids=ACCEPTED)
+def test_unusual_csv_is_read_correctly(content: str | bytes, rms_n: float, capfd: Capture) -> None:
+    write(content)
+    assert compared("bad.csv", capfd)["rms_n"] == pytest.approx(rms_n, rel=5e-3)

@@ -1,0 +1,67 @@
+"""Error messages, suggestions, and text files that are written completely or not at all."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from pathlib import Path
+
+import pytest
+from jbf.errors import InputError, closest, did_you_mean, printable, quoted
+from jbf.text_files import read_text, write_text, write_texts
+
+
+def test_message_names_place_problem_and_remedy() -> None:
+    error = InputError(
+        file="a.csv", row=17, column="friction_n", problem="is wrong", mend="correct it"
+    )
+    assert str(error) == "a.csv, row 17, column friction_n: is wrong; correct it"
+    assert str(InputError(problem="is wrong")) == "is wrong"
+    assert str(InputError(key="load", problem="is\n wrong")) == "key load: is wrong"
+
+
+def test_caller_adds_file_and_key_prefix() -> None:
+    error = InputError(key="radius_m", problem="is missing").within(
+        file="rig.toml", key_prefix="bearing."
+    )
+    assert (error.file, error.key) == ("rig.toml", "bearing.radius_m")
+    assert error.within(file="other.toml").file == "rig.toml"
+
+
+def test_error_survives_pickling() -> None:
+    error = InputError(file="a", row=3, column="c", key="k", problem="p", mend="m")
+    copy = pickle.loads(pickle.dumps(error))
+    assert (str(copy), copy.row, copy.mend) == (str(error), 3, "m")
+
+
+def test_suggestion_ignores_case_and_rejects_unlike_words() -> None:
+    assert closest("STRIBEK", ["coulomb", "Stribeck"]) == "Stribeck"
+    assert closest("xyz", ["coulomb", "stribeck"]) is None
+    assert did_you_mean("stribek", ["coulomb", "stribeck"]) == 'did you mean "stribeck"?'
+    assert did_you_mean("xyz", ["coulomb", "stribeck"]) == "known: coulomb, stribeck"
+
+
+def test_quoted_text_is_printable_and_limited() -> None:
+    assert quoted("a\x1b[31m") == '"a\\x1b[31m"'
+    assert quoted("x" * 40) == f'"{"x" * 40}"'
+    assert quoted("x" * 41) == f'"{"x" * 37}..."'
+    assert printable("a\x07b\nc") == "a\\x07b\nc"
+
+
+def test_several_files_are_written_together_or_not_at_all(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.txt", tmp_path / "no" / "second.txt"
+    first.write_text("old")
+    before = sorted(os.listdir(tmp_path))
+    with pytest.raises(InputError, match="its folder does not exist"):
+        write_texts({first: "new", second: "new"})
+    assert first.read_text() == "old"
+    assert sorted(os.listdir(tmp_path)) == before
+    second.parent.mkdir()
+    write_texts({first: "new", second: "µ"})
+    assert first.read_text() == "new"
+    assert second.read_bytes() == "µ".encode()
+
+
+def test_written_text_is_read_without_its_byte_order_mark(tmp_path: Path) -> None:
+    write_text(tmp_path / "a.txt", "\ufeffµ = 1\n")
+    assert read_text(tmp_path / "a.txt") == "µ = 1\n"

@@ -1,0 +1,89 @@
+"""Model files on the command line: bad content is refused, unusual notation is read."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from input_checks import MODEL, RMS_N, Capture, compared, refused
+from jbf.models.catalogue import parameters_of
+
+F_C = "F_c_n = {value = 5.0, stderr = 0.1}"
+DRAG = MODEL.replace("effects = []", 'effects = ["sensor_offset"]')
+
+
+def model(old: str, new: str) -> str:
+    assert old in MODEL
+    return MODEL.replace(old, new)
+
+
+def value(text: str) -> str:
+    return model(F_C, f"F_c_n = {text}")
+
+
+REFUSED: dict[str, tuple[str | bytes, str]] = {
+    "key twice": (model("format = 1", "format = 1\nformat = 1"), "is not TOML"),
+    "no format": (model("format = 1\n", ""), "key format: is"),
+    "effect of a bearing": (model("[]", '["film_memory"]'), "film_memory"),
+    "section unknown": (MODEL + "[colour]\na = 1\n", "key colour: is not known"),
+    "parameter of another law": (MODEL + "gamma = 3.0\n", "key parameters.gamma: is not known"),
+    "true": (value("true"), "key parameters.F_c_n.value: a bool is not a number"),
+    "inf": (value("inf"), "key parameters.F_c_n"),
+    "1e300": (value("1e300"), "key parameters.F_c_n"),
+    "a long integer": (value("9" * 400), "key parameters.F_c_n.value: is too large"),
+    "held with error": (
+        value("{value = 5.0, stderr = 1, held = true}"),
+        "what is held has no error",
+    ),
+    "rig a text": (
+        model("[parameters]", 'rig = "rig.toml"\n[parameters]'),
+        "key rig: is not a table",
+    ),
+    "a bearing's law": (model('"coulomb"', '"journal"'), "parameters."),
+}
+
+ACCEPTED = {
+    "bare numbers": MODEL.replace("{value = 5.0, stderr = 0.1}", "5.0"),
+    "an integer": MODEL.replace("{value = 5.0, stderr = 0.1}", "5"),
+    "error nan": MODEL.replace("stderr = 0.1", "stderr = nan"),
+    "crlf": MODEL.replace("\n", "\r\n"),
+    "held": MODEL.replace("stderr = 0.1", "held = true"),
+    "no clock": MODEL.replace('clock = "journal"\n', ""),
+    "no effects": MODEL.replace("effects = []\n", ""),
+    "effect without numbers": DRAG,
+    "a fit's words": MODEL + "[fit]\nrms_n = 0.5\n",
+}
+
+
+def write(content: str | bytes) -> None:
+    Path("bad.toml").write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+@pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
+def test_bad_model_file_is_refused_with_file_and_key(
+    content: str | bytes, fragment: str, capfd: Capture
+) -> None:
+    write(content)
+    line = refused(["compare", "bad.toml", "a.csv"], fragment, capfd)
+    assert line.startswith("jbf: bad.toml")
+
+
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_unusual_notation_gives_the_same_model(name: str, capfd: Capture) -> None:
+    write(ACCEPTED[name])
+    assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
+
+
+def test_missing_parameter_has_the_starting_value_of_the_catalogue(capfd: Capture) -> None:
+    write(model(F_C + "\n", ""))
+    start_n = parameters_of("coulomb", ())["F_c_n"].starts[0]
+    expected_rms_n = math.hypot(start_n - 5.0, RMS_N)
+    assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(expected_rms_n, rel=5e-3)
+
+
+def test_time_column_with_a_unit_of_speed_is_refused(capfd: Capture) -> None:
+    text = Path("a.csv").read_text().replace("time_s", "time_m_s", 1)
+    Path("odd.csv").write_text(text)
+    Path("map.toml").unlink()
+    refused(["import", "odd.csv", "--out", "new"], "odd.csv", capfd)

@@ -1,0 +1,138 @@
+"""Rig files: bad content is refused with file and key; unusual notation gives the same rig."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from input_checks import (
+    MODEL,
+    RIG,
+    Capture,
+    accepted,
+    compared,
+    raises_one_line,
+    refused,
+)
+from jbf import read_rig
+
+DRIVE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
+CURRENT = '[drive]\nmotion = "rotary"\nfriction = "current"\ntorque_constant_n_m_a = 0.1\n'
+
+
+def rig(old: str, new: str, text: str = RIG) -> str:
+    assert old in text
+    return text.replace(old, new)
+
+
+def size(key: str, value: str) -> str:
+    """The rig with another value of a key."""
+    line = next(li for li in RIG.splitlines() if li.startswith(f"{key} "))
+    return rig(line, f"{key} = {value}")
+
+
+REFUSED: dict[str, tuple[str | bytes, str]] = {
+    # Not TOML
+    "open table": (RIG + "[", "row 13: is not TOML"),
+    "utf-16": (RIG.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
+    # Keys
+    "section misspelt": (rig("[lubricant]", "[lubricnat]"), "key lubricnat: is not known; did you"),
+    "a unit in mm": (rig("radius_m = 0.0127", "radius_mm = 12.7"), 'did you mean "radius_m"?'),
+    "no bearing": (RIG[RIG.index("[lub") :], "the rig has no [bearing]"),
+    "no mass": (
+        rig("mass_kg = 2.27\n", ""),
+        "key bearing.mass_kg: is missing; add it to [bearing]",
+    ),
+    # Kinds
+    "text": (size("viscosity_pa_s", '"thin"'), 'key lubricant.viscosity_pa_s: "thin" is not a num'),
+    "true": (size("radius_m", "true"), "key bearing.radius_m: a bool is not a number"),
+    # Sizes
+    "nan": (size("radius_m", "nan"), "key bearing.radius_m: nan is not above zero and finite"),
+    "count 2^32": (size("count", "4294967296"), "4294967296 bearings are more than a shaft has"),
+    "clearance above radius": (
+        size("clearance_m", "0.02"),
+        "0.02 m is not below the radius of 0.0",
+    ),
+    "cold": (rig("= 0.002", "= 0.002\ntemperature_c = -300"), "-300.0 is not from -100 to 1000"),
+    **{
+        f"{key} of {value}": (
+            size(key, value),
+            f"{key}: {float(value)} is beyond what any machine has",
+        )
+        for key in ("radius_m", "length_m", "mass_kg", "viscosity_pa_s", "normal_n")
+        for value in ("1e300", "5e-324")
+    },
+    # Drives
+    "both": (RIG + DRIVE, "key drive: stands beside a [bearing]"),
+    "constant missing": (CURRENT.replace("torque_c", "#"), "torque_constant_n_m_a"),
+    "of another motion": (CURRENT + "mass_kg = 1.0\n", "mass_kg: means nothing of a rotary drive"),
+}
+
+ACCEPTED = {
+    "crlf": RIG.replace("\n", "\r\n"),
+    "a mark first": "\ufeff" + RIG,
+    "underscores": rig("104.0", "1_0_4.0"),
+    "inline": "bearing = {radius_m = 0.0127, length_m = 0.0254, clearance_m = 2.5e-5, "
+    "mass_kg = 2.27, count = 4}\nlubricant.viscosity_pa_s = 0.002\nload.normal_n = 104.0\n",
+    "quoted keys": rig("count", '"count"'),
+}
+
+
+def write(content: str | bytes, name: str = "bad.toml") -> None:
+    Path(name).write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+@pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
+def test_bad_rig_file_is_refused_with_file_and_key(
+    content: str | bytes, fragment: str, capfd: Capture
+) -> None:
+    write(content)
+    law = "coulomb" if b"[drive]" in Path("bad.toml").read_bytes() else "journal"
+    words = ["fit", "bad.toml", "a.csv", "--out", "new.toml", "--law", law]
+    assert refused(words, fragment, capfd).startswith("jbf: bad.toml")
+
+
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_unusual_notation_gives_the_same_rig(name: str) -> None:
+    write(ACCEPTED[name])
+    assert read_rig("bad.toml") == read_rig("rig.toml")
+
+
+EXTENDED = pytest.mark.extended
+
+
+@pytest.mark.parametrize(
+    "value",
+    ["1e-12", *(pytest.param(v, marks=EXTENDED) for v in ("1e-6", "1.0", "1e6")), "1e12"],
+)
+@pytest.mark.parametrize("key", ["radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_pa_s",
+                                 "normal_n"])  # fmt: skip
+def test_every_accepted_size_predicts_finite_friction(key: str, value: str, capfd: Capture) -> None:
+    """No size that is accepted overflows in the model, and no library warns."""
+    text = size(key, value)
+    if key == "clearance_m" and float(value) > 0.0127:
+        text = text.replace("radius_m = 0.0127", "radius_m = 1e12") if value != "1e12" else ""
+    elif key == "radius_m" and float(value) < 2.5e-5:
+        text = (
+            text.replace("clearance_m = 2.5e-5", "clearance_m = 1e-12") if value != "1e-12" else ""
+        )
+    if not text:
+        pytest.skip("this clearance exceeds the radius")
+    write(
+        "".join(f"[rig.{li[1:]}\n" if li.startswith("[") else f"{li}\n" for li in text.split("\n"))
+    )
+    law = "f_m = 0.26\nU_tr_m_s = 0.055\nK0 = 6.5e5\ngamma = 33.0\n"
+    head = 'format = 1\nlaw = "journal"\nclock = "journal"\n[parameters]\n'
+    write(head + law + Path("bad.toml").read_text())
+    result = compared("a.csv", capfd, "bad.toml")
+    assert result["rms_n"] is not None
+    assert 0.0 <= float(result["rms_n"]) < 1e40
+
+
+def test_rig_and_model_files_are_not_confused(capfd: Capture) -> None:
+    refused(["compare", "rig.toml", "a.csv"], "rig.toml: is a rig, not a model file", capfd)
+    refused(["fit", "model.toml", "a.csv", "--out", "n.toml"], "is a model file, not a rig", capfd)
+    refused(["fit", "map.toml", "a.csv", "--out", "map.toml"], "is also an input", capfd)
+    write(MODEL)
+    accepted(["compare", "bad.toml", "a.csv"], capfd)
+    raises_one_line(lambda: read_rig("bad.toml"), "key format: is not known")

@@ -1,0 +1,23 @@
+"""A small campaign of a linear slide on disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from by_hand import coulomb, four_runs
+
+MASS_KG = 0.05
+"""Moved mass that the Coulomb law lacks; its force is half the noise."""
+NOISE_N = 0.1
+
+
+@pytest.fixture(scope="session")
+def slide(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with rig.toml and four runs with Coulomb and viscous friction and a small mass."""
+    folder = tmp_path_factory.mktemp("campaign") / "slide"
+    folder.mkdir()
+    for run in four_runs(lambda t, v, a: coulomb(t, v, a) + MASS_KG * a, noise_n=NOISE_N):
+        run.write_csv(folder / f"{run.name}.csv")
+    (folder / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
+    return folder

@@ -1,0 +1,181 @@
+"""`jbf fit`, `compare`, `predict` and `effects`: results, files, standard output and exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from conftest import DRAG_N, NOISE_N
+from jbf.cli import COMMANDS, main
+
+posix = pytest.mark.skipif(os.name != "posix", reason="needs pipes and terminals of POSIX")
+
+
+@pytest.fixture
+def model(campaign: Path, full_fit: jbf.Fit) -> Path:
+    """The fitted model with the hidden effect, saved in the folder of the campaign."""
+    full_fit.model.save(campaign / "model.toml")
+    return campaign / "model.toml"
+
+
+def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    shown = capsys.readouterr().out
+    assert all(f"\n    {name}" in shown for name in COMMANDS)
+
+
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"jbf {jbf.__version__}\n"
+
+
+def test_effects_prints_names_and_parameters(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["effects"]) == 0
+    assert "coulomb_drag" in capsys.readouterr().out
+    assert main(["effects", "coulomb_drag"]) == 0
+    assert "F_d_n" in capsys.readouterr().out
+
+
+def test_effects_of_a_law_separates_those_that_do_not_apply(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["effects", "--law", "lugre"]) == 0
+    applicable, refused = capsys.readouterr().out.split("[not with lugre")
+    assert "sensor_lag" in applicable
+    assert "thermal_thinning" not in applicable
+    assert "thermal_thinning" in refused
+    assert "presliding" in refused
+
+
+def test_effects_json_is_strict_and_complete(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["effects", "--json", "-"]) == 0
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(constant)
+
+    data = json.loads(capsys.readouterr().out, parse_constant=refuse)
+    assert [page["name"] for page in data["effects"]] == list(jbf.effects())
+
+
+def test_fit_writes_a_model_with_the_hidden_effect(
+    campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = campaign / "fitted.toml"
+    command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs")]
+    assert main([*command, "--effects", "coulomb_drag", "--out", str(out)]) == 0
+    printed = capsys.readouterr()
+    assert "[[Parameters]]" in printed.out
+    assert printed.err == ""
+    drag = jbf.Model.load(out).parameters["coulomb_drag.F_d_n"]
+    assert drag.stderr is not None
+    assert abs(drag.value - DRAG_N) < 4.0 * drag.stderr
+
+
+def test_fixed_parameters_keep_their_values(campaign: Path) -> None:
+    out = campaign / "fitted.toml"
+    command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs" / "*.csv")]
+    command += ["--effects", "coulomb_drag", "--fix", "f_m=0.25", "--fix", "coulomb_drag.F_d=1"]
+    assert main([*command, "--out", str(out)]) == 0
+    parameters = jbf.Model.load(out).parameters
+    assert parameters["f_m"].value == 0.25
+    assert parameters["coulomb_drag.F_d_n"].value == 1.0
+
+
+def test_compare_writes_json_and_report(
+    model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs = [str(path) for path in sorted((campaign / "runs").iterdir())]
+    result, page = campaign / "c.json", campaign / "c.html"
+    assert main(["compare", str(model), *runs, "--json", str(result), "--report", str(page)]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.startswith("RMS 0.30")
+    assert printed.err == ""
+    data = json.loads(result.read_text())
+    assert data["rms_n"] == pytest.approx(NOISE_N, abs=0.02)
+    assert data["failures"] == []
+    assert [run["run"] for run in data["runs"]] == ["sine_w0.5", "sine_w2.0", "stopgo"]
+    assert page.read_text().startswith("<!doctype html>")
+
+
+def test_json_on_standard_output_is_the_only_output(
+    model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["compare", str(model), str(campaign / "runs"), "--json", "-"]) == 0
+    assert "rms_n" in json.loads(capsys.readouterr().out)
+
+
+def test_predict_needs_no_recorded_friction(
+    model: Path, campaign: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = runs[0]
+    motion, out = campaign / "motion.csv", campaign / "p.csv"
+    jbf.Run.from_arrays(
+        source.time_s, source.velocity_m_s, angle_rad=source.angle_rad, load_n=source.load_n
+    ).write_csv(motion)
+    assert main(["predict", str(model), str(motion), "--out", str(out)]) == 0
+    header, *rows = out.read_text().splitlines()
+    assert header == "time_s,friction_n"
+    table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    assert np.array_equal(table[:, 0], source.time_s)
+    assert np.array_equal(table[:, 1], jbf.Model.load(model).predict(source))
+    capsys.readouterr()
+    assert main(["predict", str(model), str(motion), "--out", "-"]) == 0
+    assert capsys.readouterr().out == out.read_text()
+
+
+def test_warning_of_a_fast_film_is_one_line(
+    tmp_path: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
+) -> None:
+    rig = jbf.Rig.thesis("4.2")
+    jbf.Model(rig, parameters={"U_tr": 100.0}).save(tmp_path / "fast.toml")
+    runs[0].write_csv(tmp_path / "run.csv")
+    files = [str(tmp_path / name) for name in ("fast.toml", "run.csv", "out.csv")]
+    assert main(["predict", *files[:2], "--out", files[2]]) == 0
+    message = capsys.readouterr().err
+    assert message.startswith("jbf: the film of this model answers at ")
+    assert message.count("\n") == 1
+
+
+def test_module_runs_as_a_program() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "jbf", "effects"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "coulomb_drag" in done.stdout
+
+
+@posix
+def test_closed_pipe_ends_without_a_message() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "jbf", "effects"], stdout=write, stderr=subprocess.PIPE, check=False
+    )
+    os.close(write)
+    assert done.stderr == b""
+    assert done.returncode == 141
+
+
+@posix
+def test_progress_is_shown_on_a_terminal_and_not_on_standard_output(campaign: Path) -> None:
+    import pty
+
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "jbf", "fit", str(campaign / "rig.toml")]
+    command += [str(campaign / "runs"), "--out", str(campaign / "m.toml")]
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "80"}
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=theirs, env=environment, check=False
+    )
+    os.close(theirs)
+    assert done.returncode == 0
+    assert b"fitting" in os.read(ours, 65536)
+    assert b"\x1b" not in done.stdout
+    assert b"[[Parameters]]" in done.stdout
+    os.close(ours)

@@ -1,0 +1,40 @@
+"""`jbf demo`: a diagnosis of the shipped data, and the commands that it suggests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from jbf import Model
+from jbf.cli.demo import called
+from jbf.demo import run
+
+
+@pytest.mark.extended
+def test_demo_finds_the_hidden_effects_and_writes_report_and_model(tmp_path: Path) -> None:
+    lines: list[str] = []
+    d = run(tmp_path / "demo", lines.append, jbf="bin/jbf")
+    assert d.verdict == "missing"
+    assert set(d.effects) == {"coulomb_drag", "sensor_lag"}
+    text = "\n".join(lines)
+    assert "adequate (nothing added)" in text
+    assert "coulomb_drag: F_d" in text
+    # The last line is the suggested next command.
+    assert text.splitlines()[-1] == f"  bin/jbf workbench {tmp_path / 'demo'}"
+    assert (tmp_path / "demo" / "report.html").stat().st_size > 50_000
+    assert Model.load(tmp_path / "demo" / "model.toml") == d.model
+
+
+def test_suggested_command_can_be_typed_in_this_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "my venv" / "bin" / "jbf"
+    program.parent.mkdir(parents=True)
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", "/usr/bin")
+    assert called(str(program)) == "'my venv/bin/jbf'"
+    monkeypatch.setenv("PATH", str(program.parent))
+    assert called(str(program)) == "jbf"
+    assert called("/somewhere/jbf/__main__.py").endswith(" -m jbf")

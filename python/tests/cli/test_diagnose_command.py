@@ -1,0 +1,160 @@
+"""`jbf diagnose` and `jbf power`: files, false-alarm rate, minimum effect size, held-out runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jbf
+import numpy as np
+import pytest
+from jbf.cli import main
+
+LAW = ["--law", "coulomb"]
+NOISE_N = 0.1
+
+
+def diagnosed(slide: Path, out: Path, *options: str) -> dict[str, Any]:
+    """The JSON result of a diagnosis of the slide."""
+    assert main(["diagnose", str(slide), *LAW, "--json", str(out), *options]) == 0
+    result: dict[str, Any] = json.loads(out.read_text())
+    return result
+
+
+def test_diagnosis_writes_model_json_and_report(
+    slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model, page = tmp_path / "m.toml", tmp_path / "d.html"
+    options = ["--out", str(model), "--report", str(page)]
+    result = diagnosed(slide, tmp_path / "d.json", *options)
+    printed = capsys.readouterr()
+    assert printed.out.startswith("Verdict: missing")
+    assert printed.err == ""
+    assert result["verdict"] == "missing"
+    assert result["effects"] == ["inertia_leak"]
+    assert set(result) >= {"alternatives", "failures", "unexplained", "next_experiment"}
+    assert set(result["steps"][0]) >= {"effects", "rms_n", "holdout_rms_n", "noise_n"}
+    assert jbf.Model.load(model).effects == ("inertia_leak",)
+    assert "Diagnosis: missing" in page.read_text()
+    level = result["level"]
+    assert level["false_alarms"] == 0.01
+    assert level["blocks"] > 0
+    assert level["chance"] <= 0.01 / level["candidates"]
+
+
+@pytest.mark.extended
+def test_false_alarm_rate_raises_the_threshold(slide: Path, tmp_path: Path) -> None:
+    strict = diagnosed(slide, tmp_path / "d.json", "--false-alarms", "1e-15")
+    assert strict["effects"] == []
+    assert strict["level"]["critical"] > 60.0
+
+
+@pytest.mark.extended
+def test_clean_recording_has_no_artefact_margin(slide: Path, tmp_path: Path) -> None:
+    clean = diagnosed(slide, tmp_path / "d.json", "--clean-recording")
+    assert clean["effects"] == ["inertia_leak"]
+    assert clean["level"]["imperfection"] == 0.0
+
+
+@pytest.mark.extended
+def test_effect_below_the_minimum_size_is_not_reported(slide: Path, tmp_path: Path) -> None:
+    result = diagnosed(slide, tmp_path / "d.json", "--indifference-n", "0.2")
+    assert result["effects"] == []
+    assert result["level"]["worth"] > result["level"]["critical"]
+
+
+def detectable_kg(slide: Path, out: Path, noise_n: float, *options: str) -> float:
+    """Mass that runs of the slide reveal with a power of 80 %."""
+    command = ["power", str(slide / "rig.toml"), *map(str, slide.glob("*.csv")), *LAW]
+    assert main([*command, "--noise-n", str(noise_n), "--json", str(out), *options]) == 0
+    rows = {row["effect"]: row for row in json.loads(out.read_text())["power"]}
+    assert 0.0 < rows["inertia_leak"]["found_80"] < rows["inertia_leak"]["found_95"]
+    return float(rows["inertia_leak"]["found_80"])
+
+
+def test_detectable_size_scales_with_noise_and_threshold(slide: Path, tmp_path: Path) -> None:
+    out = tmp_path / "power.json"
+    usual = detectable_kg(slide, out, 0.1)
+    assert detectable_kg(slide, out, 0.05) == pytest.approx(0.5 * usual, rel=0.15)
+    assert detectable_kg(slide, out, 0.1, "--false-alarms", "1e-9") > 1.3 * usual
+
+
+@pytest.mark.extended
+def test_power_of_a_fitted_model_uses_its_noise(
+    slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model, out = tmp_path / "model.toml", tmp_path / "power.json"
+    fit = ["fit", str(slide), *LAW, "--effects", "inertia_leak", "--out", str(model)]
+    assert main(fit) == 0
+
+    def result(*options: str) -> dict[str, Any]:
+        assert main(["power", str(model), str(slide), "--json", str(out), *options]) == 0
+        data: dict[str, Any] = json.loads(out.read_text())
+        return data
+
+    fitted = result()
+    assert fitted["noise_n"] == pytest.approx(NOISE_N, rel=0.05)
+    assert "inertia_leak" not in [row["effect"] for row in fitted["power"]]
+    assert result("--noise-n", "0.5")["noise_n"] == 0.5
+
+
+def test_power_of_a_rig_requires_the_noise(slide: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["power", str(slide / "rig.toml"), str(slide), *LAW]) == 2
+    assert "--noise-n is missing" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four runs of a slide; the force of the last one is three times as large."""
+    folder = tmp_path_factory.mktemp("odd")
+    random = np.random.default_rng(5)
+    time = np.arange(0.0, 20.0, 0.01)
+    for k in range(4):
+        v = 0.1 * np.sin((0.9 + 0.3 * k) * time + k)
+        force = (3.0 if k == 3 else 1.0) * (2.0 * np.sign(v) + 15.0 * v)
+        force += NOISE_N * random.standard_normal(len(time))
+        jbf.Run.from_arrays(time, v, force, name=f"r{k}").write_csv(folder / f"r{k}.csv")
+    (folder / "rig.toml").write_text("")
+    return folder
+
+
+def test_fit_ignores_held_out_runs(
+    odd_run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, rig = tmp_path / "m.toml", str(odd_run / "rig.toml")
+    assert main(["fit", rig, str(odd_run), *LAW, "--hold-out", "r3", "--out", str(out)]) == 0
+    model = jbf.Model.load(out)
+    assert model.parameters["F_c_n"].value == pytest.approx(2.0, abs=0.02)
+    expected = jbf.compare(model, [jbf.read_run(odd_run / "r3.csv")]).rms_n
+    assert expected > 20.0 * NOISE_N
+    assert f"RMS {expected:.4g} N" in capsys.readouterr().out
+
+
+@pytest.mark.extended
+def test_diagnosis_reports_the_rms_of_held_out_runs(odd_run: Path, tmp_path: Path) -> None:
+    patterns = ["--hold-out", "r1", "--hold-out", "*3.csv"]
+    result = diagnosed(odd_run, tmp_path / "d.json", *patterns)
+    assert (result["verdict"], result["effects"]) == ("adequate", [])
+    rms_n = {run["run"]: run["rms_n"] for run in result["hold_out"]["runs"]}
+    assert set(rms_n) == {"r1", "r3"}
+    assert rms_n["r1"] == pytest.approx(NOISE_N, rel=0.1)
+    assert rms_n["r3"] > 20.0 * NOISE_N
+
+
+@pytest.mark.parametrize(
+    ("pattern", "fragment"),
+    [("x*", "--hold-out x*: fits no run; there are r0, r1, r2, r3"), ("r*", "fits every run")],
+)
+def test_hold_out_pattern_of_no_run_or_all_runs_is_refused(
+    odd_run: Path,
+    tmp_path: Path,
+    pattern: str,
+    fragment: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    out = tmp_path / "m.toml"
+    command = ["fit", str(odd_run / "rig.toml"), str(odd_run), *LAW, "--hold-out", pattern]
+    assert main([*command, "--out", str(out)]) == 2
+    assert fragment in capsys.readouterr().err
+    assert not out.exists()

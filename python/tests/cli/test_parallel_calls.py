@@ -1,0 +1,86 @@
+"""Concurrent calls from several threads give the same bits as sequential calls."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import sysconfig
+from concurrent.futures import ThreadPoolExecutor
+
+import jbf
+import pytest
+from by_hand import coulomb, four_runs
+from jbf.threads import one_blas_thread
+from threadpoolctl import threadpool_info, threadpool_limits  # type: ignore[import-untyped]
+
+THREADS = 4
+
+
+def as_text(diagnosis: jbf.Diagnosis) -> str:
+    return json.dumps({**diagnosis.to_dict(), "elapsed_s": None}, sort_keys=True)
+
+
+@pytest.fixture(scope="module")
+def campaigns() -> list[list[jbf.Run]]:
+    return [four_runs(coulomb, noise_n=0.1, seed=seed) for seed in range(THREADS)]
+
+
+@pytest.mark.extended
+def test_concurrent_diagnoses_equal_sequential_ones(campaigns: list[list[jbf.Run]]) -> None:
+    def work(runs: list[jbf.Run]) -> str:
+        return as_text(jbf.diagnose(jbf.Rig(), runs, law="stribeck"))
+
+    sequential = [work(runs) for runs in campaigns[:2]]
+    assert len(set(sequential)) == 2
+    with ThreadPoolExecutor(THREADS) as pool:
+        assert list(pool.map(work, campaigns[:2])) == sequential
+
+
+def test_concurrent_predictions_and_fits_equal_sequential_ones(
+    campaigns: list[list[jbf.Run]],
+) -> None:
+    def fitted(runs: list[jbf.Run]) -> jbf.Model:
+        return jbf.fit(jbf.Rig(), runs, law="coulomb").model
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        models = list(pool.map(fitted, campaigns[:2]))
+    assert models == [fitted(runs) for runs in campaigns[:2]]
+    model = models[0]
+    runs = [run for campaign in campaigns for run in campaign]
+    with ThreadPoolExecutor(THREADS) as pool:
+        result = list(pool.map(model.predict, runs))
+    assert [f.tobytes() for f in result] == [model.predict(run).tobytes() for run in runs]
+
+
+@pytest.mark.skipif(
+    not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="this interpreter has a lock"
+)
+def test_extension_does_not_enable_the_interpreter_lock() -> None:
+    # In a separate process, because another library of the tests may enable the lock.
+    code = "import sys, jbf; jbf.effects(); print(sys._is_gil_enabled())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+    assert "lock" not in done.stderr
+
+
+def blas_threads() -> set[int]:
+    """Numbers of threads of the loaded BLAS libraries."""
+    return {lib["num_threads"] for lib in threadpool_info() if lib["user_api"] == "blas"}
+
+
+def test_blas_uses_one_thread_during_a_fit_and_is_restored_after_an_error() -> None:
+    @one_blas_thread
+    def work(depth: int) -> set[int]:
+        if depth:
+            assert work(depth - 1) <= {1}
+        if depth == 2:
+            raise RuntimeError
+        return blas_threads()
+
+    with threadpool_limits(2, "blas"):
+        before = blas_threads()
+        assert work(1) <= {1}
+        with pytest.raises(RuntimeError):
+            work(2)
+        assert blas_threads() == before

@@ -1,0 +1,134 @@
+"""Parts of a model's force: what effects add, and what the other parameters cannot replace."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from by_hand import LAW, coulomb, four_runs, there_and_back
+from jbf import Comparison, Model, ParameterValue, Rig, Run, compare
+from jbf.comparison.parts import added_by, beside_friction, friction_alone, made_of, without
+
+Array = npt.NDArray[np.float64]
+OFFSET = {"sensor_offset.b_n": 2.0}
+DRIFT = {"sensor_drift.d_n_s": 0.5}
+HELD_STATIC = {"F_s_n": ParameterValue(5.0, None, held=True)}
+
+
+def model_of(effects: list[str], **values: ParameterValue | float) -> Model:
+    """Coulomb's law with effects; breakaway force held at the Coulomb force."""
+    return Model(Rig(), "coulomb", effects, {**LAW, **HELD_STATIC, **values})
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    """Coulomb and viscous friction, read with a zero error of 2 N and a drift of 0.5 N/s."""
+    return there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0 + 0.5 * t)
+
+
+@pytest.fixture(scope="module")
+def full(runs: list[Run]) -> Comparison:
+    """The true model."""
+    return compare(model_of(["sensor_offset", "sensor_drift"], **OFFSET, **DRIFT), runs)
+
+
+def test_model_without_an_effect_keeps_law_parameters_and_held_flags() -> None:
+    held = {"F_c_n": ParameterValue(4.0, 0.25), "F_v_n_s_m": ParameterValue(9.0, None, held=True)}
+    values = {"sensor_offset.b_n": 0.5, "sensor_drift.d_n_s": 0.01}
+    model = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**held, **values})
+    reduced = without(model, ["sensor_offset"])
+    assert tuple(reduced.effects) == ("sensor_drift",)
+    assert reduced.law == "coulomb"
+    kept = {n: p for n, p in model.parameters.items() if n != "sensor_offset.b_n"}
+    assert dict(reduced.parameters) == kept
+    assert tuple(without(model, model.effects).effects) == ()
+
+
+def test_offset_and_drift_add_their_own_force(full: Comparison) -> None:
+    """A drift is relative to the middle of a run or to its start: its rate is 0.5 N/s."""
+    drift = added_by(full, ["sensor_drift"])
+    offset = added_by(full, ["sensor_offset"])
+    both = added_by(full, full.model.effects)
+    for i, p in enumerate(full.campaign.prepared):
+        assert np.gradient(drift[i], p.run.time_s) == pytest.approx(np.full(501, 0.5))
+        assert offset[i] == pytest.approx(np.full(501, 2.0))
+        assert both[i] == pytest.approx(offset[i] + drift[i])
+
+
+def test_effects_that_the_model_lacks_add_nothing(full: Comparison) -> None:
+    assert [a.tolist() for a in added_by(full, ["sensor_lag"])] == [[0.0] * 501] * 2
+    mixed = added_by(full, ["sensor_offset", "sensor_lag"])
+    assert mixed[0] == pytest.approx(np.full(501, 2.0))
+
+
+def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
+    heavy = compare(model_of(["inertia_leak"], **{"inertia_leak.m_e_kg": 3.0}), runs)
+    for added, p in zip(added_by(heavy, ["inertia_leak"]), heavy.campaign.prepared, strict=True):
+        inside = slice(5, -5)
+        mass = 3.0 * p.motion.acceleration_m_s2
+        assert added[inside] == pytest.approx(mass[inside], abs=1e-3)
+
+
+def test_friction_alone_is_the_record_without_offset_and_drift(full: Comparison) -> None:
+    assert beside_friction(full) == ("sensor_offset", "sensor_drift")
+    for found, p in zip(friction_alone(full), full.campaign.prepared, strict=True):
+        v = p.motion.velocity_m_s
+        drift = added_by(full, ["sensor_drift"])[0]
+        assert np.ptp(found - p.friction_n + drift) == pytest.approx(0.0, abs=1e-9)
+        assert found == pytest.approx(5.0 * np.sign(v) + 20.0 * v, abs=2e-3)
+
+
+def test_effects_of_friction_are_not_removed() -> None:
+    effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
+    found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
+    assert set(beside_friction(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
+
+
+def residual_of_least_squares(
+    added: list[Array], columns: list[Array], counted: list[npt.NDArray[np.bool_]]
+) -> list[Array]:
+    """`added` less its least-squares fit by `columns` on the counted samples."""
+    target = np.concatenate([a[c] for a, c in zip(added, counted, strict=True)])
+    matrix = np.concatenate([w[c] for w, c in zip(columns, counted, strict=True)])
+    coefficients = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    return [a - w @ coefficients for a, w in zip(added, columns, strict=True)]
+
+
+@pytest.mark.parametrize("free", [("F_c_n", "F_v_n_s_m"), ("F_c_n",), ("F_v_n_s_m",)])
+def test_part_of_an_effect_is_its_least_squares_residual_on_the_free_parameters(
+    full: Comparison, runs: list[Run], free: tuple[str, ...]
+) -> None:
+    """The derivatives are sign(v) and v; held parameters and uncounted samples have no part."""
+    held = {n: ParameterValue(x, None, held=n not in free) for n, x in LAW.items()}
+    before = compare(model_of([], **held), runs)
+    masks = [np.arange(501) < 400, np.arange(501) >= 250]
+    before = replace(before, samples=before.samples.within(masks))
+    velocities = [p.motion.velocity_m_s for p in before.campaign.prepared]
+    derivatives = {"F_c_n": [np.sign(v) for v in velocities], "F_v_n_s_m": velocities}
+    columns = [np.column_stack(pair) for pair in zip(*(derivatives[n] for n in free), strict=True)]
+    found = made_of(before, full)
+    assert list(found) == ["sensor_offset", "sensor_drift"]
+    for name, parts in found.items():
+        expected = residual_of_least_squares(added_by(full, [name]), columns, masks)
+        for part, reference in zip(parts, expected, strict=True):
+            assert part == pytest.approx(reference, abs=5e-3)
+
+
+def test_only_new_effects_have_a_part(full: Comparison, runs: list[Run]) -> None:
+    assert made_of(full, compare(model_of([]), runs)) == {}
+    assert made_of(full, full) == {}
+
+
+def test_parameters_without_any_influence_are_ignored() -> None:
+    """A time constant of a change of zero has a derivative of zero."""
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
+    idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
+    before = Model(Rig(), "coulomb", ["warm_up"], idle)
+    after = Model(
+        Rig(), "coulomb", ["warm_up", "sensor_offset"], {**idle, "sensor_offset.b_n": 0.5}
+    )
+    (parts,) = made_of(compare(before, runs), compare(after, runs)).values()
+    for part in parts:
+        assert np.mean(part) == pytest.approx(0.5, rel=0.05)

@@ -1,0 +1,154 @@
+"""Robustness of a compensator whose model is wrong: the cases, the ratios and the verdict."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from jbf import Model, Rig
+from jbf.control import TASKS, THESIS_BENCH, NoCompensation, Observed, run, thesis_model, tune
+from jbf.control.bench import with_noise
+from jbf.control.robustness import HARM, HELP, STRONG, Case, Outcome, cases, misled, robustness
+from jbf.models.catalogue import find_effect
+from shared import shared
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "control.md"
+SQUARE = {"position square": TASKS["position square"]}
+
+
+def base() -> Model:
+    """The rigid bearing that the compensator carries."""
+    return thesis_model(elastic="nothing")
+
+
+@shared
+def all_cases() -> dict[str, Case]:
+    """The cases of the rigid bearing by name."""
+    return {case.name: case for case in cases(base())}
+
+
+@shared
+def square_outcomes() -> dict[str, Outcome]:
+    """The outcome of each case for the square in position, by name."""
+    return {o.name: o for o in robustness(tasks=SQUARE)}
+
+
+@pytest.mark.parametrize(
+    ("ratios", "worst", "verdict"),
+    [
+        ((0.1, 0.94), 0.94, "help"),
+        ((HELP, 0.1), HELP, "neutral"),
+        ((HARM, 0.1), HARM, "neutral"),
+        ((1.03, 0.1), 1.03, "harm"),
+    ],
+)
+def test_verdict_is_that_of_the_worst_task(
+    ratios: tuple[float, ...], worst: float, verdict: str
+) -> None:
+    assert (HELP, HARM) == (0.95, 1.02)
+    outcome = Outcome("", {str(i): ratio for i, ratio in enumerate(ratios)})
+    assert (outcome.worst, outcome.verdict) == (worst, verdict)
+
+
+def test_hidden_effects_are_in_the_plant_at_their_strength() -> None:
+    hidden = {n.removeprefix("hidden "): c for n, c in all_cases().items() if "hidden" in n}
+    assert set(STRONG) <= set(hidden)
+    assert len(hidden) > 15
+    for name, case in hidden.items():
+        page = find_effect(name)
+        assert "journal" not in page.refused
+        if page.stage == "instrument":
+            continue
+        assert case.carried is None
+        assert set(case.plant.effects) == {name}
+        for p in page.parameters:
+            expected = STRONG.get(name, {}).get(p.name, p.starts[0])
+            assert case.plant.parameters[f"{name}.{p.name}"].value == expected
+        # An effect of the load shows only under another load.
+        assert case.load_factor == (1.5 if name == "load_dependence" else 1.0)
+
+
+def test_effects_of_the_instrument_mislead_the_carried_model_only() -> None:
+    offset = all_cases()["hidden sensor_offset"]
+    assert offset.plant == base()
+    assert offset.carried is not None
+    assert offset.carried.effects == ()
+    assert offset.carried.parameters["f_m"].value != base().parameters["f_m"].value
+
+
+def test_fit_of_records_without_a_hidden_effect_recovers_the_model() -> None:
+    found, true = misled(base(), base()).parameters, base().parameters
+    for name in ("f_m", "U_tr_m_s", "gamma"):
+        assert found[name].value == pytest.approx(true[name].value, rel=0.05), name
+        stderr = found[name].stderr
+        assert stderr is not None
+        assert abs(found[name].value - true[name].value) < 4.0 * stderr
+
+
+def test_cases_of_wrong_numbers_are_wrong_by_the_stated_factor() -> None:
+    found, model = all_cases(), base()
+
+    def factor(name: str, field: str) -> float:
+        return float(getattr(found[name].bench, field) / getattr(THESIS_BENCH, field))
+
+    assert factor("friction half as large again", "volts_per_n") == pytest.approx(3 / 2)
+    assert factor("friction a third smaller", "volts_per_n") == pytest.approx(2 / 3)
+    assert factor("motor gain 10 % larger", "input_rad_s2_v") == pytest.approx(1.1)
+    assert factor("motor gain 10 % smaller", "input_rad_s2_v") == pytest.approx(0.9)
+    assert factor("noise four times", "input_noise_v") == pytest.approx(4.0)
+    assert (found["load doubled"].load_factor, found["load halved"].load_factor) == (2.0, 0.5)
+    assert model.rig.lubricant is not None
+    for word, times in (("doubled", 2.0), ("halved", 0.5)):
+        oil = found[f"viscosity {word}"].plant.rig.lubricant
+        assert oil is not None
+        assert oil.viscosity_pa_s == pytest.approx(times * model.rig.lubricant.viscosity_pa_s)
+
+
+def test_effects_of_the_model_and_viscosity_without_a_film_are_no_cases() -> None:
+    names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["wear_in"]))}
+    assert "hidden wear_in" not in names
+    assert "hidden coulomb_drag" not in names  # the law has it already
+    assert not any("viscosity" in name for name in names)
+    assert "load doubled" in names
+
+
+@pytest.mark.parametrize("name", ["load doubled", "friction a third smaller", "hidden wear_in"])
+def test_ratio_is_the_error_with_over_that_without_compensation(name: str) -> None:
+    """27 s after the skipped seconds; both loops are designed for the undisturbed bench."""
+    case, model = all_cases()[name], base()
+    assert model.rig.load is not None
+    task = replace(TASKS["position square"], seconds=27.0)
+    load_n = case.load_factor * model.rig.load.normal_n
+    without, with_ = (
+        run(case.plant, s, task, bench=case.bench, told=THESIS_BENCH, load_n=load_n).true_rms
+        for s in (NoCompensation(), Observed(model, tune(model)))
+    )
+    assert square_outcomes()[name].ratios == {"position square": pytest.approx(with_ / without)}
+
+
+def test_ratios_agree_with_the_table_of_the_documentation() -> None:
+    """The worst task of every case is the square in position."""
+    section = PAGE.read_text(encoding="utf-8").partition("## When the model is wrong")[2]
+    rows = re.findall(r"\| `?([a-z_][\w %]*?)`? \| (\d\.\d{3}) ", section)
+    printed = {name: float(ratio) for name, ratio in rows}
+    found = {n.removeprefix("hidden "): o.worst for n, o in square_outcomes().items()}
+    assert found == pytest.approx(printed, abs=6e-4)
+    assert set(printed) == {n.removeprefix("hidden ") for n in all_cases()}
+    assert max(found.values()) < HELP
+
+
+def test_ratio_without_compensation_is_one() -> None:
+    task = {"velocity sine": TASKS["velocity sine"]}
+    found = robustness(Model(Rig(), "coulomb"), tasks=task, scheme=NoCompensation())
+    assert {dict(o.ratios)["velocity sine"] for o in found} == {1.0}
+    assert {o.verdict for o in found} == {"neutral"}
+
+
+@pytest.mark.extended
+def test_no_case_harms_at_four_times_the_noise() -> None:
+    rows = {row: TASKS[row] for row in ("position sine", "velocity triangle")}
+    found = robustness(bench=with_noise(THESIS_BENCH, 4.0), tasks=rows)
+    assert len(found) > 20
+    assert {o.name for o in found if o.worst > HARM} == set()

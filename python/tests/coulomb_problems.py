@@ -1,0 +1,81 @@
+"""Real problems, samples and solutions whose least squares are textbook regressions.
+
+Coulomb's law on motions without reversals (`by_hand.four_runs`) is linear in its parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from by_hand import LAW, Array
+from jbf import Rig, Run
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import WHITE, Noise
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.estimation.solution import Solution
+from scipy import signal
+
+STEP_S = 0.02
+HELD = {"F_s_n": 6.0}
+"""Breakaway friction, which motions without reversals do not show."""
+VALUES = {**LAW, **HELD}
+
+
+def coulomb_problem(runs: Sequence[Run], effects: Sequence[str] = ()) -> Problem:
+    """Coulomb's law with effects; breakaway friction is held."""
+    return Problem(Campaign.prepare(Rig(), list(runs)), "coulomb", "journal", effects, HELD)
+
+
+def values_of(problem: Problem, **changed: float) -> Array:
+    """The true values of the law, with changes; effects at their first starting value."""
+    pages = problem.parameters
+    known = {name: page.starts[0] for name, page in pages.items()} | VALUES | changed
+    return np.array([known[name] for name in problem.names])
+
+
+def solution_at(problem: Problem, values: Array, noise: Noise = WHITE) -> Solution:
+    """The solution at given values, on the campaign's samples."""
+    return problem.solution(values, problem.campaign.samples, noise)
+
+
+def samples_of(
+    weight: Sequence[Array],
+    counted: Sequence[npt.NDArray[np.bool_]] | None = None,
+    step_s: float = STEP_S,
+) -> Samples:
+    """Samples with these weights, one array a run; samples with weight count by default."""
+    masks = [w > 0.0 for w in weight] if counted is None else counted
+    names = tuple(f"run {i}" for i in range(len(weight)))
+    return Samples(names, (step_s,) * len(weight), tuple(masks), tuple(weight))
+
+
+def solution_of(
+    residuals: Sequence[Array],
+    samples: Samples,
+    jacobian: Sequence[Array] | None = None,
+    noise: Noise = WHITE,
+) -> Solution:
+    """A solution that leaves these residuals."""
+    slopes = [np.zeros((len(r), 0)) for r in residuals] if jacobian is None else list(jacobian)
+    values = np.zeros(slopes[0].shape[1])
+    cost = samples.cost(residuals, noise)
+    return Solution((), values, list(residuals), slopes, noise, cost, True, "", samples)
+
+
+def autoregressive(seed: int, memory_s: float, sd: float, n: int, step_s: float = STEP_S) -> Array:
+    """First-order autoregressive noise of a correlation time and standard deviation."""
+    phi = float(np.exp(-step_s / memory_s))
+    kicks = np.random.default_rng(seed).normal(0.0, sd * np.sqrt(1.0 - phi**2), n + 500)
+    noise: Array = signal.lfilter([1.0], [1.0, -phi], kicks)[500:]
+    return noise
+
+
+def arma_innovations(values: Array, step_s: float, noise: Noise) -> Array:
+    """`e_t = r_t - phi r_t-1 + phi (1 - colour) e_t-1` by scipy, along the first axis."""
+    phi = float(np.exp(-step_s / noise.memory_s)) if noise.colour else 0.0
+    numerator, denominator = [1.0, -phi], [1.0, -phi * (1.0 - noise.colour)]
+    found: Array = signal.lfilter(numerator, denominator, values, axis=0)
+    return found

@@ -1,0 +1,173 @@
+"""`check`: how often diagnoses of simulated campaigns like the one at hand are right."""
+
+from __future__ import annotations
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from by_hand import coulomb, four_runs
+from jbf import Check, InputError, Model, Rig, Run, check, fit
+from jbf.cli import main
+from jbf.diagnosis.check import Answer, Rate, answer_of, identity
+from jbf.diagnosis.policy import Policy
+from linear_campaigns import mass
+from scipy import stats
+from shared import shared
+
+NOISE_N, MASS_KG = 0.1, 1.0
+
+
+def _runs() -> list[Run]:
+    return four_runs(mass(MASS_KG), noise_n=NOISE_N)
+
+
+@shared
+def _model() -> Model:
+    return fit(Rig(), _runs(), ["inertia_leak"], law="coulomb").model
+
+
+@shared
+def _checked(campaigns: int) -> Check:
+    with ThreadPoolExecutor(1) as executor:
+        return check(_model(), _runs(), campaigns=campaigns, executor=executor)
+
+
+# ---- rates --------------------------------------------------------------------------------------
+
+
+def _assert_always_right(checked: Check, campaigns: int) -> None:
+    hidden = [answer.hidden for answer in checked.answers]
+    assert hidden == [()] * campaigns + [("inertia_leak",)] * campaigns
+    assert all(answer.right for answer in checked.answers)
+    assert not any(answer.false for answer in checked.answers)
+    rates = {rate.what: rate for rate in checked.rates}
+    assert rates["nothing hidden: adequate"].count == campaigns
+    assert rates["nothing hidden: a false name"].count == 0
+    assert rates["inertia_leak hidden: named, and nothing else"].count == campaigns
+    assert {rate.campaigns for rate in checked.rates} == {campaigns}
+
+
+def test_strong_effect_is_named_if_hidden_and_not_otherwise() -> None:
+    _assert_always_right(_checked(1), 1)
+
+
+@pytest.mark.extended
+def test_strong_effect_is_named_in_every_campaign() -> None:
+    _assert_always_right(_checked(8), 8)
+
+
+def test_interval_of_a_rate_is_that_of_clopper_and_pearson() -> None:
+    rare = Rate.of("x", [False] * 200)
+    assert rare.low == 0.0
+    assert rare.high == pytest.approx(1.0 - 0.025 ** (1.0 / 200.0))
+    some = Rate.of("x", [True] * 3 + [False] * 17)
+    assert (some.count, some.campaigns) == (3, 20)
+    assert some.low == pytest.approx(stats.beta.ppf(0.025, 3, 18))
+    assert some.high == pytest.approx(stats.beta.ppf(0.975, 4, 17))
+
+
+@pytest.mark.parametrize(
+    ("named", "alternatives", "right", "false"),
+    [
+        (("a",), {}, True, False),
+        (("b",), {}, False, True),
+        (("b",), {"b": ("a",)}, False, False),
+        (("a", "b"), {}, False, True),
+        ((), {}, False, False),
+    ],
+)
+def test_answer_is_false_only_if_neither_name_nor_alternative_is_hidden(
+    named: tuple[str, ...], alternatives: dict[str, tuple[str, ...]], right: bool, false: bool
+) -> None:
+    answer = Answer(("a",), 0, "missing", named, alternatives)
+    assert (answer.right, answer.false) == (right, false)
+    assert answer_of(json.loads(json.dumps(answer.to_dict()))) == answer
+
+
+def test_failed_diagnosis_is_not_right_even_if_nothing_is_hidden() -> None:
+    assert not Answer((), 0, "failed", (), {}).right
+    assert Answer((), 0, "adequate", (), {}).right
+
+
+def test_answers_of_an_earlier_check_are_not_computed_again() -> None:
+    done = [
+        Answer((), 0, "adequate", (), {}),
+        Answer(("inertia_leak",), 0, "ambiguous", ("sensor_lag",), {}),
+    ]
+    new: list[Answer] = []
+    found = check(_model(), _runs(), campaigns=1, done=done, keep=new.append)
+    assert (found.answers, new) == (tuple(done), [])
+    (false,) = (r for r in found.rates if r.what == "inertia_leak hidden: a false name")
+    assert false.count == 1
+
+
+def test_check_requires_a_campaign() -> None:
+    with pytest.raises(InputError, match="0 campaigns"):
+        check(_model(), _runs(), campaigns=0)
+
+
+def test_identity_depends_on_model_runs_and_policy() -> None:
+    model, runs = _model(), _runs()
+    bare = fit(Rig(), runs, law="coulomb").model
+    names = {
+        identity(model, runs),
+        identity(bare, runs),
+        identity(model, runs[1:]),
+        identity(model, runs, Policy(false_alarms=0.1)),
+    }
+    assert len(names) == 4
+    assert identity(model, runs) == identity(model, _runs())
+
+
+# ---- command line -------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> list[str]:
+    """`jbf check` of a bare law and two runs, with a file of kept answers."""
+    paths = []
+    for run in four_runs(coulomb, noise_n=NOISE_N)[:2]:
+        paths.append(str(tmp_path / f"{run.name}.csv"))
+        run.write_csv(paths[-1])
+    (tmp_path / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
+    model = str(tmp_path / "model.toml")
+    assert main(["fit", str(tmp_path), "--law", "coulomb", "--out", model]) == 0
+    return ["check", model, *paths, "--jobs", "1", "--resume", str(tmp_path / "kept.jsonl")]
+
+
+def test_kept_answers_are_read_again_and_not_mixed_with_those_of_another_policy(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kept, answers = tmp_path / "kept.jsonl", tmp_path / "check.json"
+    assert main([*command, "-n", "1"]) == 0
+    first = kept.read_text()
+    assert len(first.splitlines()) == 1
+    capsys.readouterr()
+    assert main([*command, "-n", "1", "--json", str(answers)]) == 0
+    assert kept.read_text() == first
+    (answer,) = json.loads(answers.read_text())["answers"]
+    assert answer.items() <= json.loads(first).items()
+    capsys.readouterr()
+    assert main([*command, "-n", "2", "--false-alarms", "0.1"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    kept.write_text("no answer\n" + first)
+    assert main([*command, "-n", "2"]) == 2
+    assert "kept.jsonl, row 1" in capsys.readouterr().err
+
+
+@pytest.mark.extended
+def test_interrupted_check_continues_from_its_file(command: list[str], tmp_path: Path) -> None:
+    kept = tmp_path / "kept.jsonl"
+    assert main([*command, "-n", "1"]) == 0
+    first = kept.read_text()
+    # A half-written answer is computed again.
+    kept.write_text(first[: len(first) // 2])
+    assert main([*command, "-n", "1"]) == 0
+    assert kept.read_text() == first
+    # The line break of the last answer may be missing.
+    kept.write_text(first.rstrip("\n"))
+    assert main([*command, "-n", "2"]) == 0
+    assert kept.read_text().startswith(first)
+    assert len(kept.read_text().splitlines()) == 2

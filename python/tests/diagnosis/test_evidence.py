@@ -1,0 +1,247 @@
+"""Evidence for an effect and its alternatives, against textbook least squares."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from jbf import Diagnosis, Rig, Run
+from jbf.diagnosis import Trial
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
+from jbf.diagnosis.level import score_test
+from jbf.diagnosis.selection import weights
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.likelihood import effective_share, likelihood_gain, share_of_gain
+from jbf.estimation.noise import WHITE
+from linear_campaigns import (
+    CANDIDATES,
+    Textbook,
+    fit_from_truth,
+    linear_diagnosis,
+    linear_runs,
+    threshold,
+)
+
+
+def trial(found: Diagnosis, effect: str, step: int = 0) -> Trial:
+    """The trial of an effect in one step of the ledger."""
+    return next(t for t in found.steps[step].trials if t.effect == effect)
+
+
+# ---- ledger -------------------------------------------------------------------------------------
+
+
+def test_evidence_is_twice_the_log_likelihood_gain_less_the_threshold() -> None:
+    found, book = linear_diagnosis("weak mass"), Textbook(linear_runs("weak mass"))
+    assert len(found.steps[0].trials) == CANDIDATES
+    assert 35.0 < book.gain() < 80.0
+    expected = book.gain() - threshold(1, book.samples)
+    assert trial(found, "inertia_leak").evidence == pytest.approx(expected, abs=0.5)
+    assert (found.verdict, found.effects) == ("missing", ("inertia_leak",))
+
+
+def test_effect_that_gains_nothing_has_minus_its_threshold_as_evidence() -> None:
+    found, samples = linear_diagnosis("nothing"), Textbook(linear_runs("nothing")).samples
+    thresholds = {round(threshold(k, samples), 2) for k in range(4)}
+    for each in found.steps[0].trials:
+        assert each.outcome == "no gain"
+        assert each.evidence < -5.0
+        if each.rms_n == found.steps[0].rms_n:
+            assert round(-each.evidence, 2) in thresholds, each.effect
+    assert (found.verdict, found.effects) == ("adequate", ())
+
+
+@pytest.mark.parametrize("hidden", ["nothing", "weak mass"])
+def test_fit_error_and_held_out_error_are_those_of_least_squares(hidden: str) -> None:
+    found, book = linear_diagnosis(hidden), Textbook(linear_runs(hidden))
+    for step, columns in zip(found.steps, (2, 3), strict=False):
+        # jbf smooths the recorded speed, which changes both errors alike.
+        assert step.rms_n == pytest.approx(book.rms(columns), rel=1e-3)
+        excess = step.holdout_rms_n / step.rms_n - 1.0
+        expected = book.held_out_rms(columns) / book.rms(columns) - 1.0
+        assert excess == pytest.approx(expected, rel=0.05)
+        assert excess > 5e-4
+
+
+def test_two_effects_are_added_one_after_the_other() -> None:
+    found = linear_diagnosis("offset and drag")
+    assert found.effects == ("sensor_offset", "quadratic_drag")
+    assert [step.effects for step in found.steps] == [(), found.effects[:1], found.effects]
+    assert found.steps[-1].rms_n == pytest.approx(0.1, rel=0.05)
+    for name, true in (("sensor_offset.b_n", 0.5), ("quadratic_drag.c_n_s2_m2", 150.0)):
+        estimate = found.fit.parameters[name]
+        assert estimate.stderr is not None
+        assert abs(estimate.value - true) < 4.0 * estimate.stderr
+
+
+def test_effect_that_helps_in_one_run_only_is_not_added_and_is_reported_as_structure() -> None:
+    found, runs = linear_diagnosis("mass in one run"), linear_runs("mass in one run")
+    book = Textbook(runs)
+    assert book.rms(3) < 0.99 * book.rms(2)
+    assert book.held_out_rms(3) > book.held_out_rms(2)
+    assert trial(found, "inertia_leak").outcome in ("no gain", "rejected")
+    assert (found.verdict, found.effects) == ("unexplained", ())
+    assert any(remainder.where.endswith(f"in {runs[0].name}") for remainder in found.unexplained)
+    assert any("inertia_leak" in r.where for r in found.unexplained if r.axis == "run")
+
+
+def test_effect_keeps_its_name_next_to_a_tone_that_nothing_explains() -> None:
+    found = linear_diagnosis("offset and tone")
+    assert (found.verdict, found.effects) == ("unexplained", ("sensor_offset",))
+    assert found.confounders == ()
+    assert found.model.effects == ("sensor_offset",)
+    tones = [r.where for r in found.unexplained if r.axis == "frequency"]
+    assert any("3.00 Hz" in where for where in tones)
+
+
+# ---- alternatives -------------------------------------------------------------------------------
+
+
+def test_weights_of_tied_effects_are_their_likelihood_odds() -> None:
+    found = linear_diagnosis("lag")
+    first, second = found.steps[0].trials[:2]
+    assert {first.effect, second.effect} == {"sensor_lag", "time_delay"}
+    assert (first.outcome, second.outcome) == ("added", "ties")
+    assert found.verdict == "ambiguous"
+    assert found.alternatives == {first.effect: (second.effect,)}
+    of_effect = found.weights[first.effect]
+    odds = np.exp(0.5 * (first.evidence - second.evidence))
+    assert of_effect[first.effect] / of_effect[second.effect] == pytest.approx(odds, rel=1e-6)
+    assert sum(of_effect.values()) == pytest.approx(1.0)
+    assert found.next_experiment
+
+
+def test_effects_with_the_same_derivative_share_the_weight_equally() -> None:
+    """No run reverses: an offset and a difference of the dry level between directions are one."""
+    found = linear_diagnosis("offset and drag")
+    assert found.verdict == "ambiguous"
+    assert found.alternatives == {"sensor_offset": ("dry_asymmetry",), "quadratic_drag": ()}
+    assert found.weights["sensor_offset"]["dry_asymmetry"] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_effect_that_does_not_fit_has_no_weight_against_one_that_does() -> None:
+    """A mass that is not there against an offset that is."""
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.03, noise_n=0.1)
+    candidates = Candidates(Campaign.prepare(Rig(), runs), "coulomb", "journal")
+    of_mass = weights(candidates, ("inertia_leak",))["inertia_leak"]
+    assert of_mass["inertia_leak"] < 1e-6
+    assert of_mass["sensor_offset"] == pytest.approx(of_mass["dry_asymmetry"], rel=1e-3)
+    of_offset = weights(candidates, ("sensor_offset",))["sensor_offset"]
+    assert "inertia_leak" not in of_offset
+
+
+# ---- evidence of two solutions ------------------------------------------------------------------
+
+
+def _offset_runs(offset_n: float) -> list[Run]:
+    return four_runs(lambda t, v, a: coulomb(t, v, a) + offset_n, noise_n=0.1)
+
+
+def test_evidence_of_two_solutions_is_their_weighted_gain_less_the_threshold() -> None:
+    """A mass that only one run has: its score varies far more than in white noise."""
+    campaign = Campaign.prepare(Rig(), linear_runs("mass in one run"))
+    candidates = Candidates(campaign, "coulomb", "journal")
+    simple, rich = candidates.converge(()), candidates.converge(("inertia_leak",))
+    gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
+    found = evidence(candidates, rich, simple)
+    anywhere = evidence(candidates, rich, simple, anywhere=True)
+    assert found == pytest.approx(gain * share_of_gain(rich, simple) - price)
+    assert anywhere == pytest.approx(gain * effective_share(rich) - price)
+    assert found < 0.0 < anywhere <= gain - price
+    assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))
+
+
+def test_gain_from_samples_that_an_effect_sets_aside_is_not_its_evidence() -> None:
+    """A law fitted badly because of three samples that only the delay excludes."""
+    t = np.arange(0.0, 20.0, 0.02)
+    runs = []
+    for i in range(2):
+        v = 0.1 * np.sin((1.0 + 0.2 * i) * t + 0.4)
+        noise = 0.1 * np.random.default_rng(i).standard_normal(len(t))
+        runs.append(Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=str(i)))
+    candidates = Candidates(Campaign.prepare(Rig(), runs), "coulomb", "journal")
+    problem, right = candidates.fitted(()).problem, candidates.converge(())
+    masks = [np.ones(len(t), dtype=bool) for _ in runs]
+    masks[0][500:503] = False
+    fewer = right.samples.within(masks)
+    wrong = right.values * np.where(np.array(problem.names) == "F_c_n", 1.02, 1.0)
+    simple = problem.solution(wrong, right.samples, WHITE)
+    rich = replace(
+        candidates.converge(("time_delay",)),
+        values=np.append(right.values, 1e-4),
+        residuals=right.residuals,
+        noise=WHITE,
+        samples=fewer,
+        cost=fewer.cost(right.residuals, WHITE),
+    )
+    assert evidence(candidates, rich, simple) > 60.0
+    assert evidence_alone(candidates, rich, simple) < 0.0
+    # With the same samples in both the gain counts.
+    cost = simple.samples.cost(right.residuals, WHITE)
+    same = replace(rich, samples=simple.samples, cost=cost)
+    assert evidence_alone(candidates, same, simple) == evidence(candidates, same, simple) > 60.0
+
+
+@pytest.mark.parametrize(("step_n", "counts"), [(0.0, True), (0.6, False)])
+def test_difference_below_the_quantisation_error_is_not_evidence(
+    step_n: float, counts: bool
+) -> None:
+    """An offset of 0.03 N in noise of 0.1 N, exact and read in steps of 0.6 N."""
+    runs = []
+    for run in _offset_runs(0.03):
+        force = np.asarray(run.friction_n)
+        read = step_n * np.round(force / step_n) if step_n else force
+        runs.append(replace(run, friction_n=read))
+    campaign = Campaign.prepare(Rig(), runs)
+    assert (campaign.step_n > 0.0) == (step_n > 0.0)
+    candidates = Candidates(campaign, "coulomb", "journal")
+    simple, rich = candidates.converge(()), candidates.converge(("sensor_offset",))
+    found = evidence(candidates, rich, simple)
+    if counts:
+        assert found > 0.0
+    else:
+        assert likelihood_gain(rich, simple) > 0.0
+        assert found == pytest.approx(-price_of(candidates, 1))
+
+
+def test_fit_caught_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
+    campaign = Campaign.prepare(Rig(), linear_runs("mass"))
+    candidates = Candidates(campaign, "coulomb", "journal")
+    rich = candidates.converge(("inertia_leak", "sensor_offset"))
+    best = candidates.converge(("inertia_leak",))
+    fitted = candidates.fitted(("inertia_leak",))
+    values = np.where(np.array(fitted.problem.names) == "inertia_leak.m_e_kg", 0.0, best.values)
+    fitted.improve(fitted.problem.solution(values, best.samples, best.noise))
+    assert fitted.found().cost > best.cost + 50.0
+    found = candidates.refit_from(("inertia_leak",), rich.effects)
+    assert found.cost == pytest.approx(best.cost, abs=0.5)
+    assert candidates.converge(("inertia_leak",)) is found
+
+
+# ---- score test ---------------------------------------------------------------------------------
+
+
+def test_score_test_promises_the_gain_of_a_linear_effect() -> None:
+    campaign = Campaign.prepare(Rig(), _offset_runs(0.03))
+    bare, near = fit_from_truth(campaign)
+    near = replace(near, noise=WHITE, cost=near.samples.cost(near.residuals, WHITE))
+    problem, fitted = fit_from_truth(campaign, "sensor_offset")
+    null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b_n": 0.0}
+    start = np.array([null[name] for name in problem.names])
+    gain, directions, stepped = score_test(problem, [start], near, ("sensor_offset",))
+    real_gain = likelihood_gain(fitted, near)
+    assert real_gain > 50.0
+    assert gain == pytest.approx(real_gain, rel=0.1)
+    place = problem.names.index("sensor_offset.b_n")
+    assert stepped[place] == pytest.approx(fitted.values[place], rel=0.1)
+    score = float(directions.ways[:, 0] @ directions.innovations)
+    assert score**2 == pytest.approx(gain, rel=0.1)
+    # Half of the samples have about half of the gain.
+    halves = [
+        score_test(problem, [start], replace(near, samples=half), ("sensor_offset",))[0]
+        for half in near.samples.halves()
+    ]
+    assert sum(halves) == pytest.approx(gain, rel=0.35)

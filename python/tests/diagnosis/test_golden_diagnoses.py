@@ -1,0 +1,119 @@
+"""Diagnoses of the twelve reference campaigns against the truth of their simulations."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+from golden import GOLDEN, golden, golden_campaign
+from rigsim import axis_campaign
+
+EXPLAINED = [name for name, expected in GOLDEN.items() if expected.verdict != "unexplained"]
+MISSING = [name for name, expected in GOLDEN.items() if expected.verdict == "missing"]
+
+
+@pytest.mark.parametrize("name", GOLDEN)
+def test_diagnosis_agrees_with_the_truth_of_the_simulation(name: str) -> None:
+    expected, found = GOLDEN[name], golden(name)
+    assert found.verdict == expected.verdict, found.summary()
+    if expected.verdict == "ambiguous":
+        (effect,) = found.effects
+        candidates = {effect, *found.alternatives[effect]}
+        assert candidates == {*expected.effects, *expected.alternatives}
+    else:
+        assert set(found.effects) == expected.effects
+        assert not any(found.alternatives.values())
+    assert expected.findings <= {finding.kind for finding in found.findings}
+
+
+@pytest.mark.parametrize("name", EXPLAINED)
+def test_error_of_the_final_model_is_the_noise(name: str) -> None:
+    noise_n = golden_campaign(name)[2]
+    last = golden(name).steps[-1]
+    assert last.noise_n == pytest.approx(noise_n, rel=0.1)
+    assert last.rms_n == pytest.approx(noise_n, rel=0.06)
+    assert last.holdout_rms_n < 1.1 * noise_n
+
+
+@pytest.mark.parametrize("name", EXPLAINED)
+def test_errors_of_the_last_step_are_those_of_the_final_fit(name: str) -> None:
+    found = golden(name)
+    assert found.steps[-1].effects == found.model.effects
+    assert found.steps[-1].rms_n == pytest.approx(found.fit.rms_n, rel=1e-6)
+    assert found.after.rms_n == pytest.approx(found.fit.rms_n, rel=0.02)
+    if found.effects:
+        assert found.before.rms_n > found.after.rms_n
+
+
+@pytest.mark.parametrize("name", MISSING)
+def test_each_added_effect_reduces_fit_error_and_held_out_error(name: str) -> None:
+    steps = golden(name).steps
+    assert steps[0].effects == ()
+    assert len(steps) == 1 + len(GOLDEN[name].effects)
+    for before, after in pairwise(steps):
+        assert after.rms_n < before.rms_n
+        assert after.holdout_rms_n < before.holdout_rms_n
+
+
+@pytest.mark.parametrize("name", GOLDEN)
+def test_weights_of_an_effect_and_its_alternatives_sum_to_one(name: str) -> None:
+    found = golden(name)
+    assert set(found.weights) == set(found.effects)
+    for effect, weights in found.weights.items():
+        assert sum(weights.values()) == pytest.approx(1.0)
+        assert tuple(weights)[1:] == found.alternatives[effect]
+        alternatives = [weights[other] for other in found.alternatives[effect]]
+        assert alternatives == sorted(alternatives, reverse=True)
+
+
+@pytest.mark.parametrize("name", GOLDEN)
+def test_outcomes_of_trials_agree_with_their_evidence(name: str) -> None:
+    """No effect without evidence is added or tied; the added one leads its step."""
+    for step in golden(name).steps:
+        evidence = [trial.evidence for trial in step.trials]
+        assert evidence == sorted(evidence, reverse=True)
+        for trial in step.trials:
+            assert trial.effect not in step.effects
+            if trial.outcome in ("added", "ties", "replaced"):
+                assert trial.evidence > 0.0
+            if trial.outcome == "no gain":
+                assert trial.evidence <= 0.0
+
+
+def test_offset_and_drag_are_alternatives_of_equal_weight_if_nothing_reverses() -> None:
+    found = golden("bearing_one_direction")
+    (effect,) = found.effects
+    assert list(found.weights[effect].values()) == pytest.approx([0.5, 0.5], abs=0.2)
+    assert found.next_experiment is not None
+    assert found.experiment is not None
+
+
+def test_frequency_of_a_tone_that_no_effect_explains_is_reported() -> None:
+    found = golden("bearing_hum")
+    tones = [r for r in found.unexplained if r.axis == "frequency"]
+    assert tones
+    assert 0.0 < max(r.share for r in tones) <= 1.0
+    assert "Hz" in tones[0].where
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters"),
+    [
+        ("joint_gravity", {"gravity.G": "G"}),
+        ("slide_load_dependence", {"dry_load_dependence.mu": "mu", "zero_load_dependence.k": "k"}),
+    ],
+)
+def test_parameters_of_the_effects_of_a_drive_are_recovered(
+    name: str, parameters: dict[str, str]
+) -> None:
+    seeds = {"joint_gravity": (14, 8.0), "slide_load_dependence": (15, 1.0)}
+    seed, swing = seeds[name]
+    effects = tuple(parameter.split(".")[0] for parameter in parameters)
+    _, truth = axis_campaign(seed, effects, swing=swing)
+    hidden = truth["effects"]
+    assert isinstance(hidden, dict)
+    for parameter, key in parameters.items():
+        estimate = golden(name).fit[parameter]
+        true = hidden[parameter.split(".")[0]][key]
+        assert estimate.stderr is not None
+        assert abs(estimate.value - true) < 4.5 * estimate.stderr + 0.01 * abs(true)

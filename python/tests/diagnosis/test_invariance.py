@@ -1,0 +1,162 @@
+"""Equivalent records of a campaign lead to the same diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from campaigns import SHORT, campaign
+from jbf import Diagnosis, ParameterValue, Rig, Run, diagnose, fit
+from jbf.records.findings.repeated_run import copies
+from linear_campaigns import linear_diagnosis, linear_runs
+
+Change = Callable[[list[Run]], list[Run]]
+FORCE_UNIT = 100.0
+
+
+def repeated(runs: list[Run]) -> list[Run]:
+    """Every run given twice."""
+    return [*runs, *(replace(run, name=f"{run.name} again") for run in runs)]
+
+
+def reordered(runs: list[Run]) -> list[Run]:
+    """The runs in reverse order with other names."""
+    return [replace(run, name=f"run {i}") for i, run in enumerate(reversed(runs))]
+
+
+def later(runs: list[Run]) -> list[Run]:
+    """Times that begin 1000 s later, and angles of seven more turns."""
+    return [
+        replace(
+            run,
+            time_s=run.time_s + 1000.0,
+            angle_rad=None if run.angle_rad is None else run.angle_rad + 14.0 * np.pi,
+        )
+        for run in runs
+    ]
+
+
+def mirrored(runs: list[Run]) -> list[Run]:
+    """Motion and force with the opposite sign."""
+    return [
+        replace(
+            run,
+            velocity_m_s=-run.velocity_m_s,
+            friction_n=-np.asarray(run.friction_n),
+            angle_rad=None if run.angle_rad is None else -run.angle_rad,
+        )
+        for run in runs
+    ]
+
+
+def in_other_units(runs: list[Run]) -> list[Run]:
+    """Forces a hundred times as large."""
+    return [replace(run, friction_n=FORCE_UNIT * np.asarray(run.friction_n)) for run in runs]
+
+
+def cut(runs: list[Run]) -> list[Run]:
+    """The run with most rests cut at a rest near its middle; if none rests, the first run."""
+    whole = max(runs, key=lambda run: int(np.sum(run.velocity_m_s == 0.0)))
+    middle = len(whole) // 2
+    resting = np.flatnonzero(whole.velocity_m_s == 0.0)
+    if len(resting):
+        middle = int(resting[np.argmin(np.abs(resting - middle))])
+    halves = [
+        replace(whole.select(part), name=f"{whole.name} {i}")
+        for i, part in enumerate((slice(0, middle), slice(middle, None)))
+    ]
+    return [new for run in runs for new in (halves if run is whole else [run])]
+
+
+CHANGES: dict[str, Change] = {
+    change.__name__: change
+    for change in (repeated, reordered, later, mirrored, in_other_units, cut)
+}
+VERDICTS = {
+    "nothing": "adequate",
+    "mass": "missing",
+    "lag": "ambiguous",
+    "offset and tone": "unexplained",
+}
+CASES = [
+    pytest.param(hidden, change, marks=() if hidden == "mass" else pytest.mark.extended)
+    for hidden in VERDICTS
+    for change in CHANGES
+]
+
+
+def assert_same(
+    changed: Diagnosis, first: Diagnosis, *, within: float, mirror: bool = False
+) -> None:
+    """Same verdict and effects; estimates within a share of their standard errors, and these."""
+    assert changed.verdict == first.verdict
+    assert changed.effects == first.effects
+    assert changed.alternatives == first.alternatives
+    assert {r.axis for r in changed.unexplained} == {r.axis for r in first.unexplained}
+    assert changed.confounders == first.confounders
+    assert list(changed.fit.parameters) == list(first.fit.parameters)
+    for name, new in changed.fit.parameters.items():
+        old = first.fit.parameters[name]
+        assert new.held == old.held, name
+        if new.stderr is None or old.stderr is None:
+            continue
+        expected = -old.value if mirror and name == "sensor_offset.b_n" else old.value
+        assert abs(new.value - expected) < within * old.stderr, name
+        assert new.stderr == pytest.approx(old.stderr, rel=max(within, 1e-3)), name
+
+
+def in_first_units(found: Diagnosis) -> Diagnosis:
+    """The parameters of a diagnosis of forces in other units, converted back."""
+
+    def convert(name: str, p: ParameterValue) -> ParameterValue:
+        unit = 1.0 if name == "time_delay.tau_s" else FORCE_UNIT
+        stderr = None if p.stderr is None else p.stderr / unit
+        return replace(p, value=p.value / unit, stderr=stderr)
+
+    parameters = {name: convert(name, p) for name, p in found.fit.parameters.items()}
+    return replace(found, fit=replace(found.fit, parameters=parameters))
+
+
+@pytest.mark.parametrize(("hidden", "change"), CASES)
+def test_equivalent_records_have_the_same_diagnosis(hidden: str, change: str) -> None:
+    first = linear_diagnosis(hidden)
+    assert first.verdict == VERDICTS[hidden]
+    changed = diagnose(Rig(), CHANGES[change](linear_runs(hidden)), law="coulomb")
+    if change == "in_other_units":
+        changed = in_first_units(changed)
+    # Only a cut changes which samples count.
+    within = 0.05 if change == "cut" else 1e-3
+    assert_same(changed, first, within=within, mirror=change == "mirrored")
+
+
+def test_run_given_twice_is_used_once_and_reported() -> None:
+    runs = linear_runs("mass")
+    again = later([replace(runs[1], name="b on another day")])[0]
+    assert copies([*runs, again]) == {4: 1}
+    assert copies([*runs, *repeated(runs)]) == {4 + i: i % 4 for i in range(8)}
+    noisier = replace(again, friction_n=np.asarray(again.friction_n) + 1e-12)
+    warmer = replace(again, temperature_c=np.full(len(again), 30.0))
+    faster = replace(again, time_s=1.001 * again.time_s)
+    assert copies([*runs, noisier, warmer, faster]) == {}
+    once, twice = (fit(Rig(), some, law="coulomb") for some in (runs, [*runs, again]))
+    assert twice.parameters == once.parameters
+    (found,) = [f for f in twice.findings if f.kind == "repeated_run"]
+    assert found.run == "b on another day"
+
+
+@pytest.mark.extended
+def test_equivalent_records_of_a_bearing_have_the_same_diagnosis() -> None:
+    rig, runs, _ = campaign(7, ("coulomb_drag",), motions=SHORT.motions[1:])
+    first = diagnose(rig, runs)
+    assert (first.verdict, first.effects) == ("missing", ("coulomb_drag",))
+    changed = diagnose(rig, repeated(later(mirrored(reordered(runs)))))
+    assert_same(changed, first, within=0.01)
+    assert len([f for f in changed.findings if f.kind == "repeated_run"]) == len(runs)
+    # The film is not settled after a cut, so that the boundary friction is known less well.
+    halves = diagnose(rig, cut(runs))
+    assert (halves.verdict, halves.effects) == (first.verdict, first.effects)
+    for name, new in halves.fit.parameters.items():
+        assert new.stderr is not None
+        assert abs(new.value - first.fit.parameters[name].value) < 2.0 * new.stderr, name

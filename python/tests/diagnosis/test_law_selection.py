@@ -1,0 +1,127 @@
+"""Selection of the base law by held-out error, and simpler laws in place of effects."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import Array
+from golden import golden, golden_campaign
+from jbf import Diagnosis, Rig, Run, diagnose
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.which_law import LawTried, allowed, compared
+from shared import shared
+
+SAMPLES, STRETCHES = 4000, 40
+
+
+def alternating(rms: float, stretch_variation: float = 0.0) -> list[Array]:
+    """Errors of two runs; their mean square varies by a share between stretches of the record."""
+    stretch = (np.arange(SAMPLES) // (SAMPLES // STRETCHES)) % 2
+    size = rms * np.sqrt(np.where(stretch, 1.0 + stretch_variation, 1.0 - stretch_variation))
+    return list(np.split(size * np.where(np.arange(SAMPLES) % 2, 1.0, -1.0), 2))
+
+
+def compare_errors(**errors: list[Array]) -> dict[str, LawTried]:
+    """Laws in the order of their held-out error."""
+    names = list(errors)
+    tried = compared(names, [len(name) for name in names], list(errors.values()), DEFAULT)
+    return {law.law: law for law in tried}
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_laws_are_sorted_by_held_out_error(unit: float) -> None:
+    found = compare_errors(
+        ab=alternating(2.0 * unit), c=alternating(unit), def_=alternating(3.0 * unit)
+    )
+    assert list(found) == ["c", "ab", "def_"]
+    assert [law.left_out_rms_n for law in found.values()] == pytest.approx(
+        [unit, 2.0 * unit, 3.0 * unit]
+    )
+    assert [law.parameters for law in found.values()] == [1, 2, 4]
+    assert [law.tied for law in found.values()] == [True, False, False]
+
+
+@pytest.mark.parametrize(("share", "tied"), [(0.98, True), (1.02, False)])
+def test_laws_within_half_a_percent_of_error_are_tied(share: float, tied: bool) -> None:
+    worse = np.sqrt(1.0 + share * (DEFAULT.law_same**2 - 1.0))
+    for unit in (1e-3, 1e3):
+        found = compare_errors(a=alternating(unit), b=alternating(unit * worse))
+        assert found["b"].tied == tied
+
+
+@pytest.mark.parametrize(("share", "tied"), [(0.98, True), (1.02, False)])
+def test_laws_within_two_standard_errors_of_the_stretches_are_tied(
+    share: float, tied: bool
+) -> None:
+    """The standard error of a mean of 40 stretches with standard deviation s is s / sqrt(40)."""
+    variation = 0.5
+    mean = 1.0 + share * DEFAULT.law_tie * variation / np.sqrt(STRETCHES)
+    other = alternating(np.sqrt(mean), variation / mean)
+    assert compare_errors(a=alternating(1.0), b=other)["b"].tied == tied
+
+
+def test_only_samples_that_count_for_every_law_are_compared() -> None:
+    a, b = alternating(1.0), alternating(2.0)
+    a[0][:500] = np.nan
+    b[0][:500] = 1e6
+    b[1][500:] = np.nan
+    found = compare_errors(a=a, b=b)
+    assert [law.left_out_rms_n for law in found.values()] == pytest.approx([1.0, 2.0])
+
+
+def test_laws_of_a_bearing_require_a_bearing() -> None:
+    assert "journal" not in allowed(Rig())
+    assert {"coulomb", "stribeck"} <= set(allowed(Rig()))
+    assert {"coulomb", "journal"} <= set(allowed(Rig.thesis()))
+
+
+# ---- diagnoses ----------------------------------------------------------------------------------
+
+
+def _with_offset(offset_n: float) -> list[Run]:
+    """The runs of the slide with a Stribeck curve, with an offset of the force sensor."""
+    _, runs, _ = golden_campaign("slide_law_selection")
+    return [replace(run, friction_n=np.asarray(run.friction_n) + offset_n) for run in runs]
+
+
+@shared
+def _diagnosis(law: str, offset_n: float) -> Diagnosis:
+    return diagnose(Rig(), _with_offset(offset_n), law=law)
+
+
+def test_data_select_the_law_that_made_them_with_its_noise_as_held_out_error() -> None:
+    found = golden("slide_law_selection")
+    noise_n = golden_campaign("slide_law_selection")[2]
+    assert found.model.law == found.laws[0].law == "stribeck"
+    laws = {law.law: law for law in found.laws}
+    assert laws["stribeck"].left_out_rms_n == pytest.approx(noise_n, rel=0.05)
+    assert not laws["coulomb"].tied
+    assert laws["coulomb"].left_out_rms_n > 3.0 * noise_n
+    # Among tied laws the one with the fewest parameters is taken.
+    assert all(law.parameters >= laws["stribeck"].parameters for law in found.laws if law.tied)
+    assert found.to_dict()["laws"][0]["law"] == "stribeck"
+
+
+@pytest.mark.extended
+def test_offset_of_the_sensor_does_not_change_the_selected_law() -> None:
+    found = _diagnosis("auto", 20.0)
+    assert (found.model.law, found.effects) == ("stribeck", ("sensor_offset",))
+    assert found.laws[0].left_out_rms_n == pytest.approx(0.2, rel=0.05)
+
+
+def test_simpler_law_is_reported_in_place_of_two_effects() -> None:
+    """The offset stays: no law has one."""
+    found = _diagnosis("coulomb", 20.0)
+    assert set(found.effects) == {"sensor_offset", "stribeck_excess"}
+    assert found.laws == ()
+    assert found.simpler_law is not None
+    assert found.simpler_law.law == "stribeck"
+    assert found.simpler_law.left_out_rms_n == pytest.approx(0.2, rel=0.05)
+
+
+@pytest.mark.extended
+def test_no_simpler_law_is_reported_in_place_of_one_effect() -> None:
+    found = _diagnosis("coulomb", 0.0)
+    assert (found.effects, found.simpler_law) == (("stribeck_excess",), None)

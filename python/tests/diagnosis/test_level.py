@@ -1,0 +1,284 @@
+"""The threshold of a gain: its formula, its calibration on the residual, and decoys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf.diagnosis.decoys import DRAWS, decoy_gains, rate_below
+from jbf.diagnosis.level import Directions, Level, calibrated, with_decoys
+from jbf.diagnosis.policy import DEFAULT
+from jbf.estimation.likelihood import independent_share
+from jbf.estimation.samples import Samples
+from linear_campaigns import linear_diagnosis
+from scipy import signal, stats
+
+N, STEP_S, RUNS, CANDIDATES = 2000, 0.02, 4, 8
+SAMPLES = Samples(
+    tuple(f"run {i}" for i in range(RUNS)),
+    (STEP_S,) * RUNS,
+    (np.ones(N, bool),) * RUNS,
+    (np.ones(N),) * RUNS,
+)
+TIME: Array = np.linspace(0.0, RUNS * N * STEP_S, RUNS * N, endpoint=False)
+LAW = np.stack([np.ones_like(TIME), np.cos(0.2 * TIME)], axis=1)
+NO_ENDS = np.array([], dtype=np.intp)
+
+
+# ---- formula ------------------------------------------------------------------------------------
+
+
+def test_false_alarm_rate_is_shared_among_candidates_and_minimum_size_grows_with_samples() -> None:
+    policy = replace(DEFAULT, false_alarms=0.02, indifference=0.05, imperfection=7.0)
+    level = Level.shared(policy, 8, 1000.0, 4.0)
+    assert level.chance == 0.02 / 8
+    assert level.imperfection == 7.0
+    assert level.worth == pytest.approx(0.05**2 * 1000.0)
+    # 1 N is a larger share of 4 N than 5 %, and a smaller one of 40 N.
+    in_newtons = replace(policy, indifference_n=1.0)
+    assert Level.shared(in_newtons, 8, 1000.0, 4.0).worth == pytest.approx(1000.0 / 16.0)
+    assert Level.shared(in_newtons, 8, 1000.0, 40.0).worth == pytest.approx(2.5)
+    assert Level.shared(policy, 0, 1000.0, 4.0).chance == 0.02
+
+
+def test_threshold_is_the_largest_of_chance_artefact_margin_and_minimum_effect_size() -> None:
+    level = Level(0.02, 8, 1e-4, imperfection=5.0, worth=3.0)
+    assert level.critical == pytest.approx(stats.chi2.isf(1e-4, 1))
+    assert level.white == pytest.approx(stats.chi2.isf(0.0025, 1))
+    assert level.price(1, 100) == pytest.approx(level.critical)
+    assert replace(level, imperfection=9.0).price(1, 100) == pytest.approx(level.white + 9.0)
+    assert replace(level, worth=50.0).price(1, 100) == 50.0
+
+
+def test_each_further_parameter_raises_the_threshold_by_the_log_of_the_samples() -> None:
+    level = Level(0.02, 8, 1e-4, imperfection=5.0, worth=3.0)
+    assert level.price(3, 100) == pytest.approx(level.price(1, 100) + 2.0 * np.log(100.0))
+    assert level.price(0, 100) == level.price(1, 100)
+
+
+def test_minimum_effect_size_dominates_in_a_long_recording() -> None:
+    assert Level.shared(DEFAULT, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(90.0)
+    in_newtons = replace(DEFAULT, indifference=0.0, indifference_n=0.02)
+    assert Level.shared(in_newtons, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(160.0)
+    short = Level.shared(in_newtons, 20, 1e3, 0.5).price(1, 1000)
+    assert short == pytest.approx(stats.chi2.isf(0.01 / 20, 1) + 22.0)
+
+
+# ---- directions in which an effect shows --------------------------------------------------------
+
+
+def _shapes() -> list[Array]:
+    """Derivatives of the force with respect to eight candidates: waves, a square, bumps."""
+    waves = [np.sin((0.3 + 0.1 * k) * TIME + k) for k in range(CANDIDATES - 2)]
+    bumps: Array = np.exp(-(((TIME % 40.0) - 20.0) ** 2))
+    return [*waves, np.sign(np.sin(0.4 * TIME)), bumps]
+
+
+def _directions(noise: Array, shapes: list[Array] | None = None) -> list[Directions]:
+    share = independent_share(np.split(noise, RUNS), SAMPLES.steps_s)
+    shapes = _shapes() if shapes is None else shapes
+    return [Directions.of(noise, shape[:, None], LAW, SAMPLES, share) for shape in shapes]
+
+
+def _white(random: np.random.Generator) -> Array:
+    return random.standard_normal(RUNS * N)
+
+
+def _heavy(random: np.random.Generator) -> Array:
+    return random.standard_t(3.0, RUNS * N)
+
+
+def _slow(random: np.random.Generator) -> Array:
+    """First-order noise with a memory of half a second."""
+    kicks = random.standard_normal(RUNS * N)
+    noise: Array = signal.lfilter([1.0], [1.0, -float(np.exp(-STEP_S / 0.5))], kicks)
+    return noise
+
+
+def _uneven(random: np.random.Generator) -> Array:
+    """Larger where the second and third candidates show."""
+    noise: Array = _white(random) * (0.2 + np.sin(0.4 * TIME) ** 4)
+    return noise
+
+
+def test_direction_of_an_effect_is_orthogonal_to_the_law() -> None:
+    noise = _white(np.random.default_rng(3))
+    own = (LAW @ [2.0, 3.0] + _shapes()[2])[:, None]
+    for unit in (1e-6, 1.0, 1e6):
+        ways = Directions.of(noise, unit * own, LAW, SAMPLES, 1.0).ways
+        assert ways.shape == own.shape
+        np.testing.assert_allclose(ways.T @ LAW, 0.0, atol=1e-9)
+        np.testing.assert_allclose(ways.T @ ways, 1.0)
+    # A derivative that the law contains leaves no direction.
+    assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
+
+
+def test_score_in_loud_parts_of_the_noise_counts_less() -> None:
+    """The effect shows only in a tenth of the samples, where the noise is five times as large."""
+    here = np.arange(RUNS * N) % 400 < 40
+    noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
+    one_run = Samples(("a",), (STEP_S,), (np.ones(RUNS * N, bool),), (np.ones(RUNS * N),))
+    found = Directions.of(noise, here[:, None].astype(float), LAW[:, :1], one_run, 1.0)
+    assert found.counted[0] == pytest.approx(np.mean(noise**2) / 25.0, rel=0.5)
+    even = Directions.of(_white(np.random.default_rng(2)), TIME[:, None], LAW, SAMPLES, 0.25)
+    assert even.counted[0] == pytest.approx(0.25, rel=0.1)
+
+
+# ---- calibration on the residual ----------------------------------------------------------------
+
+
+def _level(false_alarms: float = 0.01) -> Level:
+    policy = replace(DEFAULT, indifference=0.0, false_alarms=false_alarms)
+    return Level.shared(policy, CANDIDATES, RUNS * N, 1.0)
+
+
+def _false_names(noise: Callable[[np.random.Generator], Array], campaigns: int) -> int:
+    """In how many campaigns of noise the largest gain exceeds a calibrated level of 5 %."""
+    false = 0
+    for seed in range(campaigns):
+        directions = _directions(noise(np.random.default_rng(seed)))
+        gains = [float(np.sum((d.ways.T @ d.innovations) ** 2 * d.counted)) for d in directions]
+        false += bool(max(gains) > calibrated(_level(0.05), directions).critical)
+    return false
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("noise", [_white, _heavy, _slow, _uneven])
+def test_false_alarm_rate_holds_for_any_kind_of_noise(
+    noise: Callable[[np.random.Generator], Array],
+) -> None:
+    assert _false_names(noise, 120) <= stats.binom.ppf(0.999, 120, 0.05)
+
+
+def test_level_of_white_noise_is_that_of_a_shared_chi_square() -> None:
+    found = calibrated(_level(), _directions(_white(np.random.default_rng(0))))
+    assert 0.8 * 0.01 / CANDIDATES < found.chance <= 0.01 / CANDIDATES
+    assert found.blocks == RUNS * N * STEP_S
+
+
+def test_noise_that_is_large_where_an_effect_shows_raises_the_level() -> None:
+    noise = _white(np.random.default_rng(0)) * (0.1 + 3.0 * _shapes()[-1])
+    directions = [replace(d, counted=np.ones(1)) for d in _directions(noise)]
+    assert 3.0 < calibrated(_level(), directions).critical / _level().critical < 30.0
+
+
+def test_part_of_the_residual_that_a_candidate_explains_does_not_raise_the_level() -> None:
+    noise = _white(np.random.default_rng(1))
+    explained = noise + 5.0 * _shapes()[-1] + 3.0 * _shapes()[2]
+    assert calibrated(_level(), _directions(explained)).critical == pytest.approx(
+        calibrated(_level(), _directions(noise)).critical, rel=0.02
+    )
+
+
+def _one_direction(way: Array, noise: Array, blocks: list[int]) -> Directions:
+    return Directions(way[:, None], noise, np.ones(1), np.array(blocks), NO_ENDS)
+
+
+@pytest.mark.parametrize(
+    ("false_alarms", "gain"), [(0.10, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)]
+)
+def test_calibrated_level_is_the_quantile_of_gains_under_random_signs(
+    false_alarms: float, gain: float
+) -> None:
+    """Four block scores of one: their sum is 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
+    noise = np.repeat([1.0, 1.0, -1.0, -1.0], 4)
+    level = Level(false_alarms=false_alarms, candidates=1, chance=1.0)
+    found = calibrated(level, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
+    assert found.chance == pytest.approx(stats.chi2.sf(gain, 1), rel=1e-3)
+    assert found.blocks == 4
+    # A level that is already stricter stays.
+    strict = replace(level, chance=1e-80)
+    again = calibrated(strict, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
+    assert again.chance == 1e-80
+
+
+def test_candidate_with_two_parameters_is_compared_with_chi_square_of_two_degrees() -> None:
+    ways = np.zeros((8, 2))
+    ways[:4, 0] = ways[4:, 1] = 0.5
+    noise = np.tile([1.0, 1.0, -1.0, -1.0], 2)
+    one = Directions(ways, noise, np.ones(2), np.array([0, 2, 4, 6]), NO_ENDS)
+    found = calibrated(Level(false_alarms=0.2, candidates=1, chance=1.0), [one])
+    assert found.chance == pytest.approx(stats.chi2.sf(8.0, 2), rel=1e-3)
+
+
+def test_candidate_without_a_direction_keeps_its_share_of_the_level() -> None:
+    noise = np.array([1.0, 1.0, -1.0, -1.0])
+    one = _one_direction(np.full(4, 0.5), noise, [0, 2])
+    level = Level(false_alarms=0.01, candidates=2, chance=1.0)
+    chance = stats.chi2.sf(4.0, 1)
+    assert calibrated(level, [one]).chance == pytest.approx(0.5 * chance, rel=1e-3)
+    wide = replace(level, false_alarms=0.06)
+    assert calibrated(wide, [one]).chance == pytest.approx(chance, rel=1e-3)
+    assert calibrated(level, []) == level
+
+
+# ---- decoys -------------------------------------------------------------------------------------
+
+
+def _decoy(ways: Array, noise: Array, ends: list[int], counted: float = 1.0) -> Directions:
+    ways = np.linalg.qr(ways)[0]
+    share = np.full(ways.shape[1], counted)
+    return Directions(ways, noise, share, np.arange(0, len(noise), 50), np.array(ends, np.intp))
+
+
+@pytest.mark.parametrize("k", [1, 3])
+def test_gains_of_decoys_in_white_noise_follow_chi_square(k: int) -> None:
+    random = np.random.default_rng(k)
+    gains = np.concatenate(
+        [
+            decoy_gains(
+                [_decoy(random.standard_normal((4000, k)), random.standard_normal(4000), [1500])]
+            )[0]
+            for _ in range(20)
+        ]
+    )
+    assert np.mean(gains) == pytest.approx(k, rel=0.1)
+    assert np.mean(gains > stats.chi2.isf(0.05, k)) == pytest.approx(0.05, abs=0.015)
+
+
+@pytest.mark.parametrize("ends", [[300], [0, 300], [300, 300]])
+def test_decoy_is_the_shape_of_a_candidate_shifted_cyclically_within_each_run(
+    ends: list[int],
+) -> None:
+    """Also if a run has no samples."""
+    random = np.random.default_rng(4)
+    noise = random.standard_normal(700)
+    one = _decoy(random.standard_normal((700, 1)), noise, ends, counted=0.5)
+    scores = np.zeros(DRAWS)
+    draws = np.random.default_rng(DRAWS)
+    for way, e in zip(np.split(one.ways[:, 0], ends), np.split(noise, ends), strict=True):
+        if len(e):
+            by_shift = np.array([np.roll(way, shift) @ e for shift in range(len(e))])
+            scores += by_shift[draws.integers(0, len(e), DRAWS)]
+    np.testing.assert_allclose(decoy_gains([one])[0], 0.5 * scores**2, rtol=1e-9)
+
+
+def test_decoys_get_names_only_if_their_gain_exceeds_the_threshold() -> None:
+    """Every shift of a constant scores 16 in a residual of 2: a gain of 256."""
+    one = _one_direction(np.full(64, 0.125), np.full(64, 2.0), [0])
+    for threshold, named in ((255.9, DRAWS), (256.1, 0)):
+        level = Level(0.01, 1, 1.0, worth=threshold)
+        found = with_decoys(level, [one], 100)
+        assert (found.decoys, found.decoys_named) == (DRAWS, named)
+    level = Level(0.01, 1, 1.0)
+    assert with_decoys(level, [], 100) == level
+
+
+def test_upper_limit_of_a_rate_is_that_of_clopper_and_pearson() -> None:
+    assert rate_below(0, 200) == pytest.approx(1.0 - 0.05 ** (1.0 / 200.0))
+    assert stats.binom.cdf(3, 200, rate_below(3, 200)) == pytest.approx(0.05)
+    assert rate_below(200, 200) == 1.0
+
+
+def test_diagnosis_reports_the_level_of_its_tests() -> None:
+    found = linear_diagnosis("nothing")
+    level = found.level
+    assert level.candidates == len(found.steps[0].trials)
+    assert level.false_alarms == 0.01
+    assert level.chance <= 0.01 / level.candidates
+    assert level.blocks > 0
+    assert (level.decoys, level.decoys_named) == (DRAWS, 0)
+    assert found.to_dict()["level"]["critical"] == level.critical

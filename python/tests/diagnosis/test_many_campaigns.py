@@ -1,0 +1,160 @@
+"""Many campaigns at once: here, in threads, in other processes, from the command line."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import pickle
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import jbf
+import pytest
+from jbf import Diagnosis, InputError, Rig, diagnose_many
+from jbf.cli import main
+from jbf.errors import JbfError
+from linear_campaigns import linear_diagnosis, linear_runs
+
+SLIDE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
+
+
+def test_diagnosis_of_a_folder_is_that_of_its_runs_and_a_bad_folder_stops_no_other(
+    tmp_path: Path,
+) -> None:
+    for name in ("mass", "without_rig"):
+        (tmp_path / name).mkdir()
+        for run in linear_runs("mass"):
+            run.write_csv(tmp_path / name / f"{run.name}.csv")
+    (tmp_path / "mass" / "rig.toml").write_text(SLIDE)
+    progress: list[tuple[str, int, int]] = []
+    found = diagnose_many(
+        {"lost": tmp_path / "without_rig", "mass": tmp_path / "mass"},
+        progress=lambda *message: progress.append(message),
+        law="coulomb",
+    )
+    assert list(found) == ["lost", "mass"]
+    assert isinstance(found["lost"], InputError)
+    assert "rig.toml" in str(found["lost"])
+    diagnosis = found["mass"]
+    assert isinstance(diagnosis, Diagnosis)
+    expected = linear_diagnosis("mass")
+    assert diagnosis.effects == expected.effects
+    for name, estimate in expected.fit.parameters.items():
+        assert diagnosis.fit.parameters[name].value == pytest.approx(estimate.value, rel=1e-6)
+    assert [(done, total) for _, done, total in progress] == [(1, 2), (2, 2)]
+
+
+def test_results_of_threads_are_those_of_a_single_diagnosis() -> None:
+    expected = linear_diagnosis("mass")
+    with ThreadPoolExecutor(2) as executor:
+        found = diagnose_many(
+            {"b": (Rig(), linear_runs("mass")), "a": (Rig(), [])}, executor=executor, law="coulomb"
+        )
+    assert list(found) == ["b", "a"]
+    assert isinstance(found["a"], InputError)
+    assert isinstance(found["b"], Diagnosis)
+    assert found["b"].model.values.tolist() == expected.model.values.tolist()
+
+
+@pytest.mark.parametrize("start", ["fork", pytest.param("spawn", marks=pytest.mark.extended)])
+def test_results_of_other_processes_are_those_of_this_one(start: str) -> None:
+    """Also if a process whose threads have worked is forked."""
+    if start not in multiprocessing.get_all_start_methods():
+        pytest.skip(f"this system does not {start} processes")
+    expected = linear_diagnosis("mass")
+    context = multiprocessing.get_context(start)
+    with ProcessPoolExecutor(1, mp_context=context) as executor:
+        campaigns = {"a": (Rig(), linear_runs("mass"))}
+        found = diagnose_many(campaigns, executor=executor, law="coulomb")["a"]
+    assert isinstance(found, Diagnosis)
+    assert found.effects == expected.effects
+    assert found.model.values.tolist() == expected.model.values.tolist()
+
+
+class UnreadableCampaign(tuple[Any, ...]):
+    """A pair of a rig and runs whose length cannot be read."""
+
+    def __len__(self) -> int:
+        raise RuntimeError("out of memory")
+
+
+def test_worker_that_fails_loses_only_its_own_campaign() -> None:
+    campaigns: dict[str, Any] = {"a": UnreadableCampaign((Rig(), [])), "b": (Rig(), [])}
+    with ThreadPoolExecutor(1) as executor:
+        found = diagnose_many(campaigns, executor=executor, law="coulomb")
+    assert isinstance(found["a"], JbfError)
+    assert "RuntimeError: out of memory" in str(found["a"])
+    assert isinstance(found["b"], InputError)
+
+
+@pytest.mark.parametrize(
+    ("campaigns", "options", "named"),
+    [
+        ({}, {"lwa": "coulomb"}, "lwa"),
+        ({}, {"law": "coulom"}, "coulom"),
+        ({}, {"clock": "x"}, "x"),
+        ([], {}, "campaigns is a list"),
+        ({}, {"progress": 3}, "progress"),
+    ],
+)
+def test_wrong_argument_for_all_campaigns_is_rejected(
+    campaigns: Any, options: dict[str, Any], named: str
+) -> None:
+    with pytest.raises(InputError, match=named):
+        diagnose_many(campaigns, **options)
+
+
+def test_campaign_that_is_not_a_pair_is_reported() -> None:
+    wrong: Any = {"a": (Rig(), [], [])}
+    found = diagnose_many(wrong, law="coulomb")
+    assert isinstance(found["a"], InputError)
+    assert diagnose_many({}, law="auto") == {}
+
+
+def test_pickled_diagnosis_predicts_the_same_and_has_the_same_summary() -> None:
+    found = linear_diagnosis("mass")
+    again = pickle.loads(pickle.dumps(found))
+    run = linear_runs("mass")[0]
+    assert again.summary() == found.summary()
+    assert again.model.predict(run).tolist() == found.model.predict(run).tolist()
+
+
+# ---- command line -------------------------------------------------------------------------------
+
+
+def test_command_diagnoses_each_folder_and_writes_json_and_models(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, answers, models = tmp_path / "all", tmp_path / "all.json", tmp_path / "models"
+    for name in ("mass", "without_rig"):
+        (folder / name).mkdir(parents=True)
+        for run in linear_runs("mass"):
+            run.write_csv(folder / name / f"{run.name}.csv")
+    (folder / "mass" / "rig.toml").write_text(SLIDE)
+    words = ["diagnose", "--many", str(folder), "--jobs", "1", "--law", "coulomb"]
+    assert main([*words, "--json", str(answers), "--out", str(models)]) == 0
+    text = capsys.readouterr().out
+    assert "inertia_leak" in text
+    assert "without_rig: " in text
+    document = json.loads(answers.read_text())
+    assert document["mass"]["effects"] == ["inertia_leak"]
+    assert "rig.toml" in document["without_rig"]["error"]
+    assert [path.name for path in models.iterdir()] == ["mass.toml"]
+    assert jbf.Model.load(models / "mass.toml").effects == ("inertia_leak",)
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (["diagnose"], "RIG and RUN are missing"),
+        (["diagnose", "--many", "nowhere"], "holds no campaign"),
+        (["diagnose", "rig.toml", "--many", "."], "takes neither"),
+        (["diagnose", "--many", ".", "--jobs", "0"], "1 or more"),
+    ],
+)
+def test_wrong_arguments_of_the_command_end_with_code_two(
+    words: list[str], problem: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    assert problem in capsys.readouterr().err

@@ -1,0 +1,186 @@
+"""Residual structure as a whole: which kinds are reported, in which order, and in which size."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from campaigns import campaign as simulated
+from golden import golden
+from jbf import Rig, Run, diagnose
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.remainder import find_patterns, find_remainder
+from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import Noise
+from slides import slide, slides, solution_with, white_noise
+
+Array = npt.NDArray[np.float64]
+N = 1500
+TIME_S = 0.02 * np.arange(N)
+
+
+@cache
+def sines() -> Campaign:
+    """Two slides that reverse, with periods of 5 s and 3 s."""
+    return slides([0.1 * np.sin(2.0 * np.pi * TIME_S / period + 0.1) for period in (5.0, 3.0)])
+
+
+def velocities() -> list[Array]:
+    return [p.motion.velocity_m_s for p in sines().prepared]
+
+
+def friction() -> list[Array]:
+    problem, solution = solution_with(sines(), [])
+    return problem.predict(solution.values)
+
+
+def stroke_levels() -> list[Array]:
+    """A relative friction level of 0.15 RMS for each stroke."""
+    random = np.random.default_rng(1)
+    strokes = [np.cumsum(np.diff(np.sign(v), prepend=0.0) != 0.0) for v in velocities()]
+    levels = [0.15 * random.standard_normal(int(k.max()) + 1)[k] for k in strokes]
+    return [f * level for f, level in zip(friction(), levels, strict=True)]
+
+
+def axes_of(residuals: list[Array]) -> dict[str, float]:
+    """Axis to share of the structure that is found in residuals."""
+    return {r.axis: r.share for r in find_remainder(*solution_with(sines(), residuals))}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_white_noise_has_no_structure(seed: int) -> None:
+    assert axes_of(white_noise(sines(), seed)) == {}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_coloured_noise_that_the_model_describes_has_no_structure(seed: int) -> None:
+    noise = Noise(0.2, 0.5)
+    residuals = [noise.coloured(e, 0.02) for e in white_noise(sines(), seed)]
+    assert find_remainder(*solution_with(sines(), residuals, noise=noise)) == ()
+
+
+@pytest.mark.parametrize(
+    ("axis", "structure"),
+    [
+        ("direction", [0.5 * np.sign(v) for v in velocities()]),
+        ("velocity", [0.6 * np.sin(60.0 * v) for v in velocities()]),
+        ("force", [0.6 * np.sign(np.sin(6.0 * np.abs(f))) for f in friction()]),
+        ("run", [np.full(N, 0.4), np.full(N, -0.4)]),
+        ("frequency", [0.6 * np.sin(2.0 * np.pi * 7.3 * TIME_S)] * 2),
+        ("time", [np.where(np.abs(TIME_S - 11.0) < 0.1, 9.0, 0.0), np.zeros(N)]),
+        ("period", [0.5 * np.sign(np.sin(31.0 * v / 0.1)) for v in velocities()]),
+        ("parameters", [-0.8 * np.sign(velocities()[0]), 0.8 * np.sign(velocities()[1])]),
+        ("stroke", stroke_levels()),
+    ],
+)
+def test_each_kind_of_structure_is_found(axis: str, structure: list[Array]) -> None:
+    noise = white_noise(sines(), 3)
+    assert axis in axes_of([a + b for a, b in zip(structure, noise, strict=True)])
+
+
+def test_structure_is_ordered_by_its_share() -> None:
+    residuals = [
+        e + np.sign(v) + 0.5 * np.sin(2.0 * np.pi * 7.3 * TIME_S)
+        for e, v in zip(white_noise(sines(), 3), velocities(), strict=True)
+    ]
+    shares = list(axes_of(residuals).values())
+    assert len(shares) > 2
+    assert shares == sorted(shares, reverse=True)
+
+
+@pytest.mark.parametrize("size_n", [0.3, -0.3])
+def test_share_and_sign_of_a_pattern_along_the_direction(size_n: float) -> None:
+    noise = white_noise(sines(), 2)
+    residuals = [e + size_n * np.sign(v) for e, v in zip(noise, velocities(), strict=True)]
+    problem, solution = solution_with(sines(), residuals)
+    found = {f.axis: f for f in find_patterns(problem, solution, residuals, residuals, DEFAULT)}
+    direction = found["direction"]
+    assert direction.share == pytest.approx(0.3**2 / (1.0 + 0.3**2), rel=0.25)
+    # Bins are backwards, forwards: the mean is in the direction of motion where it is positive.
+    assert direction.means_n == pytest.approx([-size_n, size_n], abs=0.1)
+    for part, there in ((0.99, True), (1.01, False)):
+        policy = replace(DEFAULT, pattern_share=part * direction.share)
+        patterns = find_patterns(problem, solution, residuals, residuals, policy)
+        assert ("direction" in {f.axis for f in patterns}) == there
+
+
+def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() -> None:
+    """Of an error of 2 N the innovations of a noise with a memory hold a tenth."""
+    noise = Noise(0.2, 0.9)
+    residuals = [
+        noise.coloured(0.3 * e, 0.02) + 2.0 * np.sign(v)
+        for e, v in zip(white_noise(sines(), 6), velocities(), strict=True)
+    ]
+    problem, solution = solution_with(sines(), residuals, noise=noise)
+    innovations = solution.samples.innovations(solution.residuals, noise)
+    assert solution.samples.rms(innovations) < 0.6
+    where = {r.axis: r.where for r in find_remainder(problem, solution)}["direction"]
+    size = re.search(r"record above the model by ([\d.]+) N in the direction of motion", where)
+    assert size is not None
+    assert float(size[1]) == pytest.approx(2.0, abs=0.15)
+
+
+def test_burst_is_found_though_robust_weights_reduce_it() -> None:
+    residuals = white_noise(sines(), 4)
+    inside = np.abs(TIME_S - 11.0) < 0.1
+    residuals[0] = residuals[0] + 9.0 * inside
+    robust = [np.where(inside, 0.05, 1.0), np.ones(N)]
+    samples = sines().samples.weighed([np.ones(N)] * 2, robust, None)
+    found = find_remainder(*solution_with(sines(), residuals, samples=samples))
+    assert "time" in {r.axis for r in found}
+
+
+def test_deviation_of_a_run_that_the_model_describes_is_not_structure() -> None:
+    """It has no part in the share of other structure either: a tone has 0.18 of 1.18 N^2."""
+    tone = 0.6 * np.sin(2.0 * np.pi * 7.3 * TIME_S)
+    noise = white_noise(sines(), 5)
+    residuals = [e + tone + level for e, level in zip(noise, (5.0, -5.0), strict=True)]
+    assert "run" in axes_of(residuals)
+    between = BetweenRuns(("zero",), (np.full((N, 1), 10.0),) * 2, 1.0)
+    samples = replace(sines().samples, between=between)
+    (found,) = find_remainder(*solution_with(sines(), residuals, samples=samples))
+    assert found.axis == "frequency"
+    assert found.share == pytest.approx(0.18 / 1.18, rel=0.2)
+
+
+@pytest.mark.parametrize(("part", "found"), [(0.9, False), (1.15, True)])
+def test_structure_within_the_quantisation_of_the_converter_is_not_reported(
+    part: float, found: bool
+) -> None:
+    runs = []
+    for k, period in enumerate((5.0, 3.0)):
+        v = 0.1 * np.sin(2.0 * np.pi * TIME_S / period + 0.1)
+        exact = slide(v, "ab"[k], noise_n=0.05)
+        assert exact.friction_n is not None
+        runs.append(
+            Run.from_arrays(TIME_S, v, 0.8 * np.round(exact.friction_n / 0.8), name="ab"[k])
+        )
+    campaign = Campaign.prepare(Rig(), runs)
+    step_rms_n = campaign.steps_rms_n(0.05)
+    assert 0.05 < step_rms_n < 0.8
+    residuals = [
+        e + part * step_rms_n * np.sqrt(2.0) * np.sin(2.0 * np.pi * 7.3 * TIME_S)
+        for e in white_noise(campaign, 1, 0.05)
+    ]
+    problem, solution = solution_with(campaign, residuals)
+    reported = {r.axis for r in find_remainder(problem, solution)}
+    assert campaign.steps_rms_n(solution.rms_n) == pytest.approx(step_rms_n, rel=0.1)
+    assert ("frequency" in reported) == found
+
+
+def test_hum_of_the_supply_is_reported_by_the_diagnosis() -> None:
+    assert "frequency" in {r.axis for r in golden("bearing_hum").unexplained}
+    assert golden("bearing_nothing_missing").unexplained == ()
+
+
+@pytest.mark.extended
+def test_level_that_differs_between_runs_is_unexplained() -> None:
+    rig, runs, _ = simulated(21, foreign=("level_step",), strength=1.5)
+    result = diagnose(rig, runs)
+    assert result.verdict == "unexplained"
+    assert result.effects == ()

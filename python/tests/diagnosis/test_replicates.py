@@ -1,0 +1,160 @@
+"""Errors that recur with each period of the motion: lack of fit with replicates."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from jbf.diagnosis import Remainder
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.replicates import find_replicates
+from jbf.estimation.campaign import Campaign
+from scipy import signal
+from slides import Mask, slides, solution_with, white_noise
+
+Array = npt.NDArray[np.float64]
+PERIOD = 100
+
+
+def two_harmonics(n: int, period: int = PERIOD) -> Array:
+    """A periodic motion whose half periods differ."""
+    angle = 2.0 * np.pi * np.arange(n) / period
+    motion: Array = np.sin(angle) + 0.3 * np.sin(2.0 * angle + 0.5)
+    return motion
+
+
+@cache
+def periodic(*counts: int, step_s: float = 0.05) -> Campaign:
+    """Slides with a periodic velocity that never reverses."""
+    return slides([0.1 + 0.02 * two_harmonics(n) for n in counts], step_s=step_s)
+
+
+def wave(n: int, harmonic: int = 7) -> Array:
+    """A recurring error of mean square one; of opposite sign half a period later."""
+    error: Array = np.sqrt(2.0) * np.sin(2.0 * np.pi * harmonic * np.arange(n) / PERIOD + 0.3)
+    return error
+
+
+def not_recurring(n: int) -> Array:
+    """A wave of mean square one whose product with itself one period later averages to zero."""
+    signs = np.resize([1.0, 1.0, -1.0, -1.0], n // PERIOD + 1)
+    error: Array = wave(n, 9) * np.repeat(signs, PERIOD)[:n]
+    return error
+
+
+def recurring_in(
+    *residuals: Array,
+    campaign: Campaign | None = None,
+    counted: Sequence[Mask] | None = None,
+    **policy: float,
+) -> list[Remainder]:
+    given = periodic(*(len(r) for r in residuals)) if campaign is None else campaign
+    samples = given.samples if counted is None else given.samples.within(counted)
+    _, solution = solution_with(given, residuals, samples=samples)
+    return find_replicates(given.prepared, solution, replace(DEFAULT, **policy))
+
+
+def runs_named(found: Remainder) -> list[str]:
+    return found.where.rsplit(" in ", 1)[1].split(", ")
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_recurring_error_is_found_with_its_share(unit: float) -> None:
+    """1.44 of a mean square of 2.44 recurs: 77 % of the RMS."""
+    n = 9 * PERIOD
+    (found,) = recurring_in(unit * (1.2 * wave(n) + not_recurring(n)))
+    assert found.axis == "period"
+    assert found.share == pytest.approx(1.44 / 2.44, rel=1e-6)
+    percent = re.search(r"(\d+) % of the residual's RMS", found.where)
+    assert percent is not None
+    assert int(percent[1]) == 77
+    assert recurring_in(unit * not_recurring(n)) == []
+    for part, there in ((0.99, True), (1.01, False)):
+        residual = unit * (1.2 * wave(n) + not_recurring(n))
+        assert bool(recurring_in(residual, replicate_share=part * 1.44 / 2.44)) == there
+
+
+@pytest.mark.parametrize(("part", "found"), [(0.99, True), (1.01, False)])
+def test_significance_is_the_root_of_the_number_of_pairs(part: float, found: bool) -> None:
+    """Products of white noise have a standard deviation of the mean square."""
+    n = 9 * PERIOD
+    sigma = part * float(np.sqrt(n - PERIOD))
+    for unit in (1e-3, 1e3):
+        assert bool(recurring_in(unit * wave(n), replicate_sigma=sigma)) == found
+
+
+def test_error_in_part_of_the_record_is_less_significant() -> None:
+    """The products then have a long-run variance above that of white noise."""
+    n = 9 * PERIOD
+    residual = wave(n) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
+    (found,) = recurring_in(residual, replicate_sigma=1.0)
+    white = found.share * float(np.sqrt(n - PERIOD))
+    assert recurring_in(residual, replicate_sigma=0.9 * white) == []
+
+
+def test_constant_level_does_not_recur() -> None:
+    """A level of 1.5 is remembered half a period later; a wave of 1 is reversed there."""
+    n = 9 * PERIOD
+    assert recurring_in(np.full(n, 1.5)) == []
+    (found,) = recurring_in(1.5 + wave(n))
+    assert found.share == pytest.approx(2.0 / 3.25, rel=1e-6)
+
+
+@pytest.mark.parametrize("lag", [0.5, 0.6, 0.7, 0.8, 0.9])
+def test_noise_memory_is_the_least_correlation_between_half_a_period_and_one(lag: float) -> None:
+    """The mean product of 1 + cos is 1 - 1/2 at its least, 1 + cos(pi / lag) / 2 a period later."""
+    residual = 1.0 + np.cos(np.pi * np.arange(20_000) / (lag * PERIOD))
+    (found,) = recurring_in(residual, replicate_share=1e-3, replicate_sigma=1e-6)
+    expected = 0.5 * (1.0 + np.cos(np.pi / lag)) / 1.5
+    assert found.share == pytest.approx(expected, abs=5e-3)
+
+
+@pytest.mark.parametrize("memory_s", [0.2, 4.0, 20.0])
+def test_coloured_noise_does_not_recur(memory_s: float) -> None:
+    """Also where its memory is longer than a period of five seconds."""
+    keep = float(np.exp(-0.05 / memory_s))
+    campaign = periodic(3000, 3000)
+    for seed in range(5):
+        white, kicks = white_noise(campaign, seed), white_noise(campaign, 100 + seed)
+        slow = [signal.lfilter([np.sqrt(1.0 - keep**2)], [1.0, -keep], e) for e in kicks]
+        assert recurring_in(*(a + b for a, b in zip(white, slow, strict=True))) == []
+
+
+def test_only_runs_with_the_error_are_named() -> None:
+    noise = white_noise(periodic(4000, 4000, 4000), 3)
+    (found,) = recurring_in(noise[0] + wave(4000), noise[1], noise[2] + wave(4000))
+    assert runs_named(found) == ["a", "c"]
+    assert found.share == pytest.approx(2.0 / 5.0, abs=0.04)
+
+
+def test_run_without_a_period_is_skipped() -> None:
+    n = 9 * PERIOD
+    ramp = np.linspace(0.1, 0.2, n)
+    residual = 1.2 * wave(n) + not_recurring(n)
+    assert recurring_in(residual, campaign=slides([ramp], step_s=0.05)) == []
+    motions = [ramp, 0.1 + 0.02 * two_harmonics(n)]
+    (found,) = recurring_in(100.0 * residual, residual, campaign=slides(motions, step_s=0.05))
+    assert runs_named(found) == ["b"]
+    assert found.share == pytest.approx(1.44 / 2.44, rel=1e-6)
+
+
+@pytest.mark.parametrize(("pairs", "found"), [(99, False), (100, True)])
+def test_run_with_fewer_than_100_pairs_is_skipped(pairs: int, found: bool) -> None:
+    n = PERIOD + pairs
+    assert bool(recurring_in(5.0 * wave(n))) == found
+    (both,) = recurring_in(5.0 * wave(n), wave(3000))
+    assert runs_named(both) == (["a", "b"] if found else ["b"])
+
+
+def test_pairs_are_of_samples_that_both_count() -> None:
+    n = 4000
+    bad = np.arange(n) % (2 * PERIOD) < 30
+    noise = white_noise(periodic(n), 5)[0]
+    assert recurring_in(np.where(bad, 100.0, noise), counted=[~bad]) == []
+    (found,) = recurring_in(np.where(bad, 100.0, noise + wave(n)), counted=[~bad])
+    assert found.share == pytest.approx(0.5, abs=0.05)

@@ -1,0 +1,188 @@
+"""Friction levels that differ from stroke to stroke, against an analysis of variance."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from jbf.diagnosis import Remainder
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.strokes import find_stroke_levels, stroke_of
+from jbf.estimation.campaign import Campaign
+from scipy import signal, stats
+from slides import slides, solution_with, white_noise
+
+Array = npt.NDArray[np.float64]
+FRICTION_N = 7.0
+"""Coulomb friction of the slides at 0.1 m/s."""
+
+
+def square_wave(lengths: list[int]) -> Array:
+    """Strokes at 0.1 m/s forwards and backwards with these numbers of samples."""
+    return np.concatenate([np.full(n, 0.1 * (-1.0) ** k) for k, n in enumerate(lengths)])
+
+
+@cache
+def strokes(*lengths: int) -> Campaign:
+    return slides([square_wave(list(lengths))])
+
+
+@cache
+def sines() -> Campaign:
+    """Strokes whose friction differs between and within them."""
+    t = 0.02 * np.arange(1500)
+    envelope = 1.0 + 0.6 * np.sin(0.23 * t)
+    return slides([0.1 * envelope * np.sin(w * t) for w in (1.1, 1.7)])
+
+
+def levels_in(campaign: Campaign, residuals: list[Array], **policy: float) -> list[Remainder]:
+    problem, solution = solution_with(campaign, residuals)
+    return find_stroke_levels(problem, solution, replace(DEFAULT, **policy))
+
+
+def friction_of(campaign: Campaign) -> list[Array]:
+    problem, solution = solution_with(campaign, [])
+    return problem.predict(solution.values)
+
+
+def level_residuals(shares: list[float], wobble: float, each: int = 40) -> list[Array]:
+    """Residuals of a square wave whose strokes have these shares more friction.
+
+    The second half of each stroke has `wobble` more than the first, or less, in turn.
+    """
+    friction = FRICTION_N * np.sign(square_wave([each] * len(shares)))
+    half = np.where(np.arange(len(friction)) % each < each // 2, -0.5, 0.5)
+    turn = np.repeat([(-1.0) ** k for k in range(len(shares))], each)
+    return [friction * (np.repeat(shares, each) + wobble * half * turn)]
+
+
+def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int]:
+    """F ratio, share of the mean square, and degrees of freedom between the strokes."""
+    between = within = 0.0
+    degrees = 0
+    counted = campaign.samples.counted
+    for p, f, r, c in zip(
+        campaign.prepared, friction_of(campaign), residuals, counted, strict=True
+    ):
+        stroke = np.cumsum(np.diff(np.sign(p.motion.velocity_m_s[c]), prepend=0.0) != 0.0)
+        rows = [np.flatnonzero(c)[stroke == k] for k in np.unique(stroke)]
+        halves = [np.array_split(at, 2) for at in rows if len(at) >= 16]
+        weight = np.array([[f[h] @ f[h] for h in pair] for pair in halves])
+        level = np.array([[f[h] @ r[h] / (f[h] @ f[h]) for h in pair] for pair in halves])
+        whole = np.average(level, axis=1, weights=weight)
+        between += float(np.cov(whole, aweights=weight.sum(1), ddof=0) * weight.sum())
+        own = 1.0 / (1.0 / weight[:, 0] + 1.0 / weight[:, 1])
+        within += float(np.cov(level[:, 1] - level[:, 0], aweights=own, ddof=0) * own.sum())
+        degrees += len(halves) - 1
+    square = sum(float(r[c] @ r[c]) for r, c in zip(residuals, counted, strict=True))
+    return between / within, (between - within) / square, degrees
+
+
+def with_levels(campaign: Campaign, share: float, seed: int, memory: float = 0.0) -> list[Array]:
+    """Noise of 0.3 N, and a relative level of its own for each stroke."""
+    random = np.random.default_rng(seed)
+    residuals = []
+    noise = white_noise(campaign, seed, 0.3)
+    for p, f, e in zip(campaign.prepared, friction_of(campaign), noise, strict=True):
+        stroke = stroke_of(p)
+        level = share * random.standard_normal(int(stroke.max()) + 1)
+        coloured = signal.lfilter([1.0], [1.0, -memory], e)
+        residuals.append(np.where(stroke >= 0, f * level[stroke], 0.0) + coloured)
+    return residuals
+
+
+def test_strokes_end_where_the_motion_reverses() -> None:
+    assert stroke_of(strokes(30, 20, 40).prepared[0]).tolist() == [0] * 30 + [1] * 20 + [2] * 40
+    for p in sines().prepared:
+        stroke = stroke_of(p)
+        for k in range(int(stroke.max()) + 1):
+            signs = np.sign(p.motion.velocity_m_s[stroke == k])
+            assert np.all(signs == (-1.0) ** k * np.sign(p.motion.velocity_m_s[stroke == 0][0]))
+
+
+def test_rest_is_in_no_stroke_and_ends_none() -> None:
+    v = np.concatenate([np.full(60, x) for x in (0.0, 0.1, 0.0, 0.1, -0.1, 0.0)])
+    p = slides([v]).prepared[0]
+    stroke = stroke_of(p)
+    assert np.all(stroke[p.motion.resting] == -1)
+    assert p.motion.resting[[30, 150, 330]].all()
+    assert stroke[[90, 210, 270]].tolist() == [0, 0, 1]
+
+
+def test_ratio_and_share_agree_with_a_weighted_analysis_of_variance() -> None:
+    """Where the friction varies, a level is weighted by the sum of squares of the friction."""
+    campaign = sines()
+    residuals = with_levels(campaign, 0.08, 1)
+    ratio, share, degrees = anova(campaign, residuals)
+    (found,) = levels_in(campaign, residuals)
+    assert found.share == pytest.approx(share)
+    number = re.search(r"\((\d+) times", found.where)
+    assert number is not None
+    assert int(number[1]) == round(ratio)
+    chance = float(stats.f.sf(ratio, degrees, degrees))
+    assert len(levels_in(campaign, residuals, constancy_chance=1.01 * chance)) == 1
+    assert levels_in(campaign, residuals, constancy_chance=0.99 * chance) == []
+    assert len(levels_in(campaign, residuals, pattern_share=0.99 * share)) == 1
+    assert levels_in(campaign, residuals, pattern_share=1.01 * share) == []
+
+
+def test_standard_deviation_of_the_levels_is_recovered() -> None:
+    campaign = sines()
+    sizes = []
+    for seed in range(10):
+        (found,) = levels_in(campaign, with_levels(campaign, 0.08, seed))
+        number = re.search(r"by ([\d.]+) % from stroke to stroke", found.where)
+        assert number is not None
+        sizes.append(float(number[1]))
+    assert np.mean(sizes) == pytest.approx(8.0, rel=0.15)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.9])
+def test_noise_has_no_levels(memory: float) -> None:
+    campaign = sines()
+    for seed in range(10):
+        assert levels_in(campaign, with_levels(campaign, 0.0, seed, memory)) == []
+
+
+def test_errors_that_are_alike_in_all_strokes_are_not_levels() -> None:
+    t = 0.02 * np.arange(1500)
+    campaign = slides([0.1 * np.sin(w * t) for w in (1.1, 1.7)])
+    friction = friction_of(campaign)
+    for seed in range(5):
+        noise = with_levels(campaign, 0.0, seed)
+        by_run = [e + 0.05 * i * f for i, (e, f) in enumerate(zip(noise, friction, strict=True))]
+        assert levels_in(campaign, by_run) == []
+        velocities = [p.motion.velocity_m_s for p in campaign.prepared]
+        by_speed = [
+            e + 20.0 * np.sin(30.0 * v) * np.abs(v) for e, v in zip(noise, velocities, strict=True)
+        ]
+        assert levels_in(campaign, by_speed) == []
+
+
+@pytest.mark.parametrize(
+    ("shares", "each", "found"),
+    [
+        ([0.1, -0.1], 40, 0),
+        ([0.1, -0.1, 0.1], 15, 0),
+        ([0.1, -0.1, 0.1], 16, 1),
+        ([0.0] * 6, 40, 0),
+    ],
+)
+def test_three_strokes_of_sixteen_samples_are_required(
+    shares: list[float], each: int, found: int
+) -> None:
+    campaign = strokes(*[each] * len(shares))
+    residuals = level_residuals(shares, 1e-6 if any(shares) else 0.0, each)
+    assert len(levels_in(campaign, residuals, constancy_chance=0.5)) == found
+
+
+def test_short_strokes_and_runs_of_few_strokes_do_not_hide_the_others() -> None:
+    campaign = slides([square_wave([10, 40, 40, 40]), square_wave([40, 40])])
+    level = np.repeat([0.0, 0.1, -0.1, 0.1], [10, 40, 40, 40]) + 1e-6 * (np.arange(130) % 7)
+    first, second = friction_of(campaign)
+    residuals = [first * level, second * np.repeat([0.1, -0.1], 40)]
+    assert len(levels_in(campaign, residuals, constancy_chance=0.5)) == 1

@@ -1,0 +1,239 @@
+"""Errors from repeated fits of simulated records: parametric bootstrap (Efron 1979) and wild
+bootstrap (Wu 1986)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import LAW, Array, coulomb, four_runs
+from campaigns import campaign
+from jbf import Fit, InputError, Model, Parameter, ParameterValue, Rig, Run, fit
+from jbf.estimation.bootstrap import (
+    LEAST_REPEATS,
+    MOST_REPEATS,
+    bootstrap,
+    check_repeats,
+    innovation_sizes,
+    read_again,
+    recorded_again,
+    with_error,
+)
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.determined import undetermined
+from jbf.estimation.noise import Noise
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.wild_bootstrap import recorded_by
+
+PAGE = Parameter("b_n", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
+SCALE = Parameter("F_c_n", lower=0.0, upper=1e5, starts=(1.0,))
+ANGLE = Parameter("phase", lower=-np.pi, upper=np.pi, starts=(0.0,), period=2.0 * np.pi)
+MIDDLE = 0.84134 - 0.15866
+"""Probability within one standard deviation of a normal distribution."""
+
+
+@pytest.mark.parametrize("shift", [-3.0, 100.0])
+def test_error_is_half_the_width_of_the_middle_68_percent(shift: float) -> None:
+    """A few answers on a far peak do not widen it."""
+    answers = 5.0 + shift + np.append(np.linspace(0.0, 1.0, 100_001), np.full(50, 1e6))
+    found = with_error(ParameterValue(5.0, 1e-3), answers, PAGE)
+    assert found.stderr == pytest.approx(0.5 * MIDDLE, rel=2e-3)
+    assert (found.value, found.held, found.note) == (5.0, False, None)
+
+
+def test_error_is_not_below_that_of_the_curvature() -> None:
+    answers = np.linspace(4.9, 5.1, 1001)
+    assert with_error(ParameterValue(5.0, 0.5), answers, PAGE).stderr == 0.5
+    held = ParameterValue(5.0, None, "held fixed", held=True)
+    assert with_error(held, answers, PAGE) is held
+
+
+def test_scale_below_its_new_error_is_held() -> None:
+    found = with_error(ParameterValue(5.0, 1.0), np.linspace(0.0, 40.0, 1001), SCALE)
+    assert (found.stderr, found.held) == (None, True)
+    assert found.note == undetermined(SCALE, 5.0, 20.0 * MIDDLE)
+
+
+def test_angles_are_compared_modulo_their_period() -> None:
+    answers = np.linspace(3.0, 3.2, 1001)
+    turned = np.where(np.arange(1001) % 2, answers, answers - 2.0 * np.pi)
+    found = with_error(ParameterValue(3.1, 1e-3), turned, ANGLE)
+    assert found.stderr == pytest.approx(0.1 * MIDDLE, rel=0.01)
+    plain = with_error(ParameterValue(3.1, 1e-3), turned, PAGE)
+    assert plain.stderr == pytest.approx(np.pi, rel=0.1)
+
+
+def test_count_of_repeats_is_limited() -> None:
+    for repeats in (LEAST_REPEATS, MOST_REPEATS):
+        check_repeats(repeats)
+    for repeats in (LEAST_REPEATS - 1, MOST_REPEATS + 1):
+        with pytest.raises(InputError, match=f"draws {repeats} "):
+            check_repeats(repeats, "draws")
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return four_runs(coulomb, noise_n=0.2, seed=3)[:2]
+
+
+@pytest.fixture(scope="module")
+def fitted(runs: list[Run]) -> Fit:
+    return fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0})
+
+
+def with_errors(fitted: Fit, times: float) -> Fit:
+    """The fit with its standard errors multiplied."""
+    parameters = {
+        n: p if p.stderr is None else replace(p, stderr=times * p.stderr)
+        for n, p in fitted.parameters.items()
+    }
+    return replace(fitted, parameters=parameters)
+
+
+def test_bootstrap_of_a_linear_fit_finds_the_errors_of_linear_regression(
+    fitted: Fit, runs: list[Run]
+) -> None:
+    """With fit errors that are far too small, so that the answers determine the result."""
+    v = np.concatenate([r.velocity_m_s for r in runs])
+    x = np.column_stack([np.sign(v), v, np.ones(len(v))])
+    errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))
+    steps: list[tuple[int, int]] = []
+    found = bootstrap(
+        with_errors(fitted, 1e-3),
+        runs,
+        repeats=19,
+        seed=7,
+        progress=lambda text, done, of: steps.append((done, of)),
+    )
+    assert steps == [(k, 19) for k in range(19)]
+    for name, error in zip(("F_c_n", "F_v_n_s_m", "sensor_offset.b_n"), errors, strict=True):
+        # The half width of the middle 68 % of 19 answers is known to 22 %, their spread to 16 %.
+        assert found.fit.parameters[name].stderr == pytest.approx(error, rel=0.6), name
+        assert np.std(found.values[name]) == pytest.approx(error, rel=0.45), name
+        assert abs(np.mean(found.values[name]) - fitted.parameters[name].value) < 0.8 * error
+    assert found.fit.model.parameters == found.fit.parameters
+    # What was fixed stays fixed.
+    assert set(found.values["F_s_n"]) == {6.0}
+    assert found.fit.parameters["F_s_n"].stderr is None
+
+
+def test_innovation_size_is_of_each_run_or_pooled_where_a_run_is_short() -> None:
+    runs = [four_runs(coulomb, noise_n=0.1 * (k + 1), seed=k)[k] for k in range(3)]
+    runs[2] = runs[2].select(np.arange(501) < 99)
+    found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0})
+    innovations = [found.noise.innovations(r, 0.02) for r in found.residuals]
+    own = [float(np.sqrt(np.mean(e**2))) for e in innovations]
+    pooled = float(np.sqrt(np.mean(np.concatenate(innovations) ** 2)))
+    sizes = innovation_sizes(found, Campaign.prepare(Rig(), runs))
+    assert sizes == pytest.approx([own[0], own[1], pooled])
+
+
+@pytest.fixture(scope="module", params=["slide", "bearing"])
+def prepared(request: pytest.FixtureRequest) -> Prepared:
+    """A run with rests, noisy speed and noisy position."""
+    t = 0.01 * np.arange(3000)
+    phase = np.mod(t, 10.0)
+    v = np.where(phase < 8.0, 0.1 * np.sin(0.25 * np.pi * phase) ** 3, 0.0)
+    x = np.concatenate(([0.0], np.cumsum(0.005 * (v[1:] + v[:-1]))))
+    random = np.random.default_rng(3)
+    speed = np.where(v == 0.0, 0.0, v + 1e-4 * random.standard_normal(len(t)))
+    run = Run.from_arrays(
+        t,
+        speed,
+        coulomb(t, v, v) + 0.1 * random.standard_normal(len(t)),
+        position_m=x + 2e-6 * random.standard_normal(len(t)),
+        name="a",
+    )
+    rig = Rig.thesis() if request.param == "bearing" else Rig()
+    return Campaign.prepare(rig, [run]).prepared[0]
+
+
+def test_motion_read_again_has_the_recorded_errors_with_other_signs(prepared: Prepared) -> None:
+    run, motion = prepared.run, prepared.motion
+    again = read_again(prepared, np.full(len(run), 3.0), np.random.default_rng(1))
+    moving = ~motion.resting
+    assert 0.1 < np.mean(motion.resting) < 0.4
+    position, recorded = again.position_m, run.position_m
+    bearing = prepared.rig.bearing
+    arm_m = 1.0 if bearing is None else bearing.radius_m
+    assert position is not None
+    assert recorded is not None
+    for new, old, true in (
+        (again.velocity_m_s, run.velocity_m_s, motion.velocity_m_s),
+        (position, recorded, arm_m * motion.angle_rad),
+    ):
+        np.testing.assert_allclose(
+            np.abs(new - true)[moving], np.abs(old - true)[moving], atol=1e-12
+        )
+        turned = np.sign(new - true) != np.sign(old - true)
+        assert 0.4 < turned[moving].mean() < 0.6
+        # Rests are read as they were.
+        np.testing.assert_array_equal(new[~moving], old[~moving])
+
+
+def test_friction_of_unknown_sign_or_not_measured_stays_as_it_was(prepared: Prepared) -> None:
+    known = prepared.motion.sign_known
+    friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction_n)
+    again = read_again(
+        replace(prepared, friction_n=friction), np.full(len(known), 99.0), np.random.default_rng(1)
+    )
+    assert again.friction_n is not None
+    unknown = ~known
+    assert 0 < np.count_nonzero(unknown) < len(known) // 2
+    np.testing.assert_array_equal(again.friction_n[unknown], friction[unknown])
+    kept = known & (np.arange(len(known)) != 57)
+    assert set(again.friction_n[kept]) == {99.0}
+    assert np.isnan(again.friction_n[57])
+
+
+def test_repeated_record_has_noise_of_the_fitted_size_and_colour(prepared: Prepared) -> None:
+    noise = Noise(0.3, 0.5)
+    n, known = len(prepared.run), prepared.motion.sign_known
+    again = recorded_again(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
+    kicks = np.random.default_rng(7).normal(0.0, 0.5, n)
+    assert again.friction_n is not None
+    wanted = 3.0 + noise.coloured(kicks, prepared.step_s)
+    np.testing.assert_allclose(again.friction_n[known], wanted[known])
+
+
+def test_encoder_is_read_again_in_its_steps_at_another_phase() -> None:
+    rig, some, _ = campaign(5)
+    (p,) = Campaign.prepare(rig, some[:1]).prepared
+    again = read_again(p, np.zeros(len(p.run)), np.random.default_rng(2)).angle_rad
+    assert p.run.angle_rad is not None
+    assert again is not None
+    recorded, moving = np.unwrap(p.run.angle_rad), ~p.motion.resting
+    changes = np.abs(np.diff(recorded))
+    size = np.min(changes[changes > 1e-12])
+    steps = np.diff(again[moving]) / size
+    assert np.quantile(np.abs(steps - np.round(steps)), 0.95) < 1e-6
+    assert np.max(np.abs(again - p.motion.angle_rad)[moving]) < 0.51 * size
+    shift = (again - recorded)[moving][0] / size
+    assert abs(shift - round(shift)) > 0.01
+
+
+def wild_errors(model: Model, runs: list[Run], hidden: tuple[str, ...], draw: int) -> list[Array]:
+    """Noise of new records: record minus the law with the hidden effects."""
+    known = {n: p for n, p in model.parameters.items() if n.partition(".")[0] in (n, *hidden)}
+    some = Model(model.rig, model.law, hidden, known)
+    again = recorded_by(model, runs, hidden, draw)
+    return [np.asarray(a.friction_n) - some.predict(r) for a, r in zip(again, runs, strict=True)]
+
+
+def test_wild_bootstrap_turns_signs_of_residuals_in_blocks_of_a_second() -> None:
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.1)[:2]
+    values = {**LAW, "F_s_n": 6.0, "sensor_offset.b_n": 0.5}
+    model = Model(Rig(), "coulomb", ["sensor_offset"], values)
+    residuals = [np.asarray(r.friction_n) - model.predict(r) for r in runs]
+    patterns = set()
+    for draw in range(2):
+        for hidden in (("sensor_offset",), ()):
+            for e, r in zip(wild_errors(model, runs, hidden, draw), residuals, strict=True):
+                np.testing.assert_allclose(np.abs(e), np.abs(r), atol=1e-3)
+                turns = np.diff(np.sign(e * r)[np.abs(r) > 0.01])
+                assert np.count_nonzero(turns) <= len(r) // 50 + 1
+                patterns.add(tuple(np.sign(e * r)[25::50]))
+    assert len(patterns) > 5
+    first, second = (wild_errors(model, runs, (), 5) for _ in range(2))
+    np.testing.assert_array_equal(first[0], second[0])

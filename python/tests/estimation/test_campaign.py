@@ -1,0 +1,264 @@
+"""A rig and its prepared runs: what they offer to effects, clocks of channels, quantisation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf import InputError, Rig, Run
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.converter import curve_rms_n, noise_before
+from jbf.estimation.prepared import Prepared
+from jbf.models.catalogue import find_effect
+from jbf.records.findings.finding import Finding
+
+N = 800
+TIME = 0.02 * np.arange(N)
+SPEED = 0.1 * np.sin(TIME)
+PATH = 0.1 * (1.0 - np.cos(TIME))
+
+
+def run(name: str = "a", force: Array | None = None, **columns: Any) -> Run:
+    friction = 5.0 * np.sign(SPEED) + 20.0 * SPEED if force is None else force
+    return Run.from_arrays(TIME, SPEED, friction, name=name, **columns)
+
+
+def other(name: str = "b", **columns: Any) -> Run:
+    """A run with another force, so that it is not a copy."""
+    return run(name, 6.0 * np.sign(SPEED), **columns)
+
+
+def prepared(*runs: Run) -> Campaign:
+    return Campaign.prepare(Rig(), list(runs))
+
+
+def test_campaign_needs_a_run_and_a_force_that_is_not_zero_throughout() -> None:
+    with pytest.raises(InputError, match="no run"):
+        prepared()
+    nothing = [run(name, np.zeros(N)) for name in "ab"]
+    nothing[1] = replace(nothing[1], path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
+    with pytest.raises(InputError) as refused:
+        prepared(*nothing)
+    # The first run is named.
+    assert (refused.value.file, refused.value.column) == ("a", "friction_n")
+    assert len(prepared(run(), run("b", np.zeros(N))).prepared) == 2
+
+
+def test_run_that_is_given_twice_is_used_once_and_reported() -> None:
+    campaign = prepared(run("a"), other(), run("c"))
+    assert [p.run.name for p in campaign.prepared] == ["a", "b"]
+    assert [f.kind for f in campaign.findings].count("repeated_run") == 1
+
+
+def test_only_and_without_select_runs_and_samples() -> None:
+    campaign = prepared(run("a"), other("b"), run("c", 7.0 * SPEED))
+    some = campaign.only([2, 0])
+    assert [p.run.name for p in some.prepared] == ["c", "a"]
+    assert some.samples.runs == ("c", "a")
+    assert some.most_noise_n == campaign.most_noise_n
+    fewer = campaign.without([np.arange(N) < 100] * 3)
+    for before, after in zip(campaign.samples.counted, fewer.samples.counted, strict=True):
+        assert not after[:100].any()
+        np.testing.assert_array_equal(after[100:], before[100:])
+
+
+def test_findings_of_runs_and_later_findings_are_reported_together() -> None:
+    campaign = prepared(run())
+    found = Finding("other", "friction_n", "a", 1.0, "1", "none", "text")
+    more = campaign.with_findings([found]).with_findings([found])
+    assert more.findings == (*campaign.findings, found, found)
+
+
+@pytest.mark.parametrize(("share", "differ"), [(0.049, False), (0.055, True)])
+def test_loads_differ_by_more_than_five_percent(share: float, differ: bool) -> None:
+    loads = (np.full(N, 100.0), np.full(N, 100.0 * (1.0 - share)))
+    assert prepared(run(load_n=loads[0]), other(load_n=loads[1])).has_loads == differ
+
+
+@pytest.mark.parametrize(
+    ("noise_n", "swing_n", "differ"),
+    # 90 % of a sine's samples lie within 0.988 of its amplitude.
+    [(4.0, 0.0, False), (1.5, 1.8, False), (0.0, 2.4, False), (0.0, 2.7, True), (1.0, 5.0, True)],
+)
+def test_load_within_a_run_differs_beyond_its_noise(
+    noise_n: float, swing_n: float, differ: bool
+) -> None:
+    noise = noise_n * np.random.default_rng(1).standard_normal(N)
+    load = 100.0 + swing_n * np.sin(np.pi * TIME / 8.0) + noise
+    assert prepared(run(load_n=load)).has_loads == differ
+
+
+def test_temperature_range_is_over_all_runs_where_each_has_one() -> None:
+    cold, warm = np.linspace(20.0, 22.0, N), np.linspace(25.0, 23.0, N)
+    campaign = prepared(run("a", temperature_c=cold), other(temperature_c=warm))
+    assert campaign.temperature_range_c == pytest.approx((20.0, 25.0), abs=0.1)
+    assert campaign.temperatures_k == pytest.approx(5.0, abs=0.2)
+    some = prepared(run("a", temperature_c=cold), other())
+    assert some.temperature_range_c is None
+    assert some.temperatures_k is None
+
+
+def lacking(effect: str, *runs: Run) -> str | None:
+    return prepared(*runs).lacking(find_effect(effect))
+
+
+def test_effects_need_loads_that_differ_and_positions_of_every_run() -> None:
+    loaded = [make(load_n=np.full(N, load)) for make, load in ((run, 80.0), (other, 120.0))]
+    assert lacking("zero_load_dependence", *loaded) is None
+    assert "one load" in str(lacking("zero_load_dependence", loaded[0]))
+    assert lacking("stroke_dependence", run(position_m=PATH), other(position_m=PATH)) is None
+    assert "position" in str(lacking("stroke_dependence", run(position_m=PATH), other()))
+    assert "angle" in str(lacking("position_ripple", run()))
+    assert lacking("sensor_offset", run()) is None
+
+
+@pytest.mark.parametrize(("span_k", "enough"), [(1.9, False), (2.1, True)])
+def test_temperature_effect_needs_two_kelvin(span_k: float, enough: bool) -> None:
+    effect = next(e for e in jbf.effects().values() if "temperatures" in e.needs)
+    campaign = prepared(run(temperature_c=np.linspace(20.0, 20.0 + span_k, N)))
+    assert (campaign.lacking(effect) is None) == enough
+    assert "temperature_c" in str(prepared(run()).lacking(effect))
+
+
+def test_quantisation_error_of_a_mean_follows_from_the_noise_of_the_readings() -> None:
+    """Readings in steps of twice the noise."""
+    noise = 0.1 * np.random.default_rng(5).standard_normal(N)
+    step = 0.2
+    campaign = prepared(run(force=step * np.round((5.0 * np.sign(SPEED) + noise) / step)))
+    assert campaign.step_n == pytest.approx(step, rel=1e-6)
+    (p,), (counted,) = campaign.prepared, campaign.samples.counted
+    raw = replace(campaign, prepared=(replace(p, friction_n=p.readings_n),))
+    noise_n = noise_before(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
+    assert raw.steps_rms_n(2.0) == pytest.approx(curve_rms_n(step, noise_n), rel=1e-6)
+    # A residual is no smaller than the noise.
+    assert raw.steps_rms_n(0.5 * noise_n) == pytest.approx(curve_rms_n(step, 0.5 * noise_n))
+    # Where a bias was already corrected, three tenths of the correction remain.
+    corrected = replace(campaign, prepared=(replace(p, friction_n=p.readings_n - 0.25 * step),))
+    assert corrected.steps_rms_n(2.0) == pytest.approx(0.3 * 0.25 * step)
+    plain = prepared(run(force=5.0 * np.sign(SPEED) + noise))
+    assert (plain.step_n, plain.steps_rms_n(1.0)) == (0.0, 0.0)
+
+
+STEP_S = 3.0 / 128.0
+INSTANTS = 5.0 + STEP_S * np.arange(400)
+
+
+def speed(time: Array) -> Array:
+    found: Array = 0.1 * np.sin(1.7 * time) + 0.02 * np.cos(4.1 * time)
+    return found
+
+
+def place(time: Array) -> Array:
+    found: Array = -0.1 / 1.7 * np.cos(1.7 * time) + 0.02 / 4.1 * np.sin(4.1 * time)
+    return found
+
+
+def swinging(**more: Any) -> Run:
+    v = speed(INSTANTS)
+    return Run.from_arrays(INSTANTS, v, 5.0 * np.sign(v) + 20.0 * v, name="slide", **more)
+
+
+@pytest.fixture(scope="module")
+def ready() -> Prepared:
+    return Prepared.of(Rig(), swinging())
+
+
+def test_run_that_never_moves_or_has_no_force_is_refused_with_its_name() -> None:
+    still = Run.from_arrays(INSTANTS, np.zeros(400), np.ones(400), name="still")
+    with pytest.raises(InputError, match="never moves") as refused:
+        Prepared.of(Rig(), still)
+    assert refused.value.file == "still"
+    with pytest.raises(InputError, match="friction_n"):
+        Prepared.of(Rig(), Run.from_arrays(INSTANTS, speed(INSTANTS), name="no force"))
+
+
+def test_largest_step_and_rate_of_the_findings_are_used(ready: Prepared) -> None:
+    """A duration is no rate, and only steps are steps."""
+    assert (ready.converter_step_n, ready.drawn_at_hz) == (0.0, 0.0)
+    found = [("steps", 0.25, "N"), ("steps", 0.5, "N"), ("late", 70.0, "Hz")]
+    found += [
+        ("interpolated", size, unit) for size, unit in ((50.0, "Hz"), (20.0, "Hz"), (9e2, "s"))
+    ]
+    some = ready.finding([Finding(k, "friction_n", "a", x, u, "none", k) for k, x, u in found])
+    assert (some.converter_step_n, some.drawn_at_hz) == (0.5, 50.0)
+
+
+def test_force_with_its_own_clock_is_compared_at_its_readings() -> None:
+    """Readings before the motion begins and after it ends are not used; at its ends they are."""
+    instants, force = INSTANTS[10:301], INSTANTS[::5]
+    channels = {
+        "velocity_m_s": (instants, speed(instants)),
+        "position_m": (instants, place(instants)),
+        "friction_n": (force, 5.0 * np.sign(speed(force))),
+    }
+    found = Prepared.of(Rig(), Run.from_channels(channels, name="slide"))
+    np.testing.assert_array_equal(found.run.time_s, INSTANTS[10:301:5])
+    assert found.step_s == pytest.approx(5.0 * STEP_S)
+    np.testing.assert_allclose(found.motion.velocity_m_s, speed(found.run.time_s), atol=2e-3)
+    assert found.recorded is not None
+    np.testing.assert_array_equal(found.recorded[0], instants)
+
+
+def interpolated(rate_hz: float, seed: int, length: int = 3000) -> Run:
+    """A force that was read at this rate and interpolated to 50 Hz."""
+    t = 0.02 * np.arange(length)
+    ticks = np.arange(-0.3 / rate_hz, t[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    noise = 0.3 * np.random.default_rng(seed).standard_normal(len(ticks))
+    force = 20.0 * np.tanh(50.0 * np.sin(0.3 * ticks)) + noise
+    v = 0.1 * np.sin(0.3 * t)
+    return Run.from_arrays(t, v, np.interp(t, ticks, force), name=f"{seed}")
+
+
+def test_interpolated_force_is_compared_at_its_readings() -> None:
+    found = Prepared.of(Rig(), interpolated(20.0, 1))
+    assert found.drawn_at_hz == pytest.approx(20.0, rel=1e-3)
+    assert found.step_s == pytest.approx(0.05, rel=1e-3)
+    assert len(found.run) == len(found.motion.velocity_m_s) == pytest.approx(1200, abs=3)
+    np.testing.assert_allclose(
+        found.motion.velocity_m_s, 0.1 * np.sin(0.3 * found.run.time_s), atol=1e-4
+    )
+    # The motion is that of its own instants.
+    assert found.recorded is not None
+    assert len(found.recorded[0]) == 3000
+
+
+def test_short_run_of_the_same_logger_is_read_at_the_rate_of_the_others() -> None:
+    short = interpolated(43.3, 3, length=300)
+    assert Prepared.of(Rig(), short).drawn_at_hz == 0.0
+    campaign = Campaign.prepare(Rig(), [interpolated(43.3, 1), short])
+    assert [p.drawn_at_hz for p in campaign.prepared] == pytest.approx([43.3] * 2, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("steps", "drift", "first", "last"),
+    # Readings at the ends of the motion can be compared; a drift is zero in mid-run.
+    [(2.0, 0.0, 2, 400), (-3.0, 0.0, 0, 397), (2.5, 0.0, 3, 400), (0.0, -(2.0**-7), 2, 398)],
+)
+def test_shifted_force_is_compared_with_the_motion_before(
+    ready: Prepared, steps: float, drift: float, first: int, last: int
+) -> None:
+    found = ready.shifted(steps * STEP_S, drift)
+    read = INSTANTS - steps * STEP_S - drift * (INSTANTS - 0.5 * (INSTANTS[0] + INSTANTS[-1]))
+    np.testing.assert_allclose(found.run.time_s, read[first:last], atol=1e-12)
+    np.testing.assert_array_equal(found.friction_n, ready.friction_n[first:last])
+    np.testing.assert_array_equal(found.examined.usable, ready.examined.usable[first:last])
+    speeds = found.motion.velocity_m_s[5:-5]
+    np.testing.assert_allclose(speeds, speed(read[first:last])[5:-5], atol=1e-4)
+
+
+@pytest.mark.parametrize(("times", "finer"), [(1.45, False), (1.6, True)])
+def test_core_uses_a_motion_that_was_read_one_and_a_half_times_as_often(
+    ready: Prepared, times: float, finer: bool
+) -> None:
+    instants = INSTANTS[0] - 0.25 + STEP_S / times * np.arange(int(460 * times))
+    fine = Run.from_arrays(instants, speed(instants), np.ones(len(instants)))
+    core = replace(ready, recorded=(instants, Prepared.of(Rig(), fine).motion)).core
+    assert (core.kept is not None) == finer
+    if core.kept is not None:
+        inside = instants[(instants > INSTANTS[0]) & (instants < INSTANTS[-1])]
+        np.testing.assert_array_equal(np.union1d(inside, INSTANTS)[core.kept], INSTANTS)

@@ -1,0 +1,293 @@
+"""Correction of delays and clock drifts: when runs are shifted, by how much, and when they are not.
+
+`late_channels.on_time` returns the campaign with every force at its instant, or None.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import Array, coulomb
+from delayed_runs import (
+    DELAY,
+    DURATION_S,
+    NOISE_N,
+    ONE_WAY_NOISE_N,
+    TAU,
+    fitted,
+    one_way_acceleration,
+    one_way_campaign,
+    one_way_speed,
+    reversing_campaign,
+    value,
+)
+from jbf import Rig, Run
+from jbf.diagnosis.late_channels import bought_by_lateness, on_time
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.shifted import (
+    SETTLED,
+    Shifted,
+    beside_its_motion,
+    by_one_clock,
+    jointly,
+    moved,
+    without_delay,
+)
+from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.joint_lateness import LINEAR_S, drift_step
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
+
+DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
+LARGE_DELAYS_S = (24e-3, -6e-3, 31e-3, 9e-3)
+
+
+def unshifted(problem: Problem, solution: Solution) -> Shifted:
+    """The runs as they are recorded."""
+    return Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+
+
+def sizes(campaign: Campaign | None, kind: str) -> list[float]:
+    """Sizes of the findings of a corrected campaign, all of one kind."""
+    assert campaign is not None
+    assert {f.kind for f in campaign.more_findings} == {kind}
+    assert [f.run for f in campaign.more_findings] == [p.run.name for p in campaign.prepared]
+    assert {f.done for f in campaign.more_findings} == {"shifted"}
+    return [f.size for f in campaign.more_findings]
+
+
+# ---- shifting runs -------------------------------------------------------------------------------
+
+
+def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
+    drift = 4e-4
+    middles = np.array(DELAYS_S) + 0.5 * drift * DURATION_S
+    problem = fitted(reversing_campaign(middles.tolist(), drift))[0]
+    again = moved(problem, middles, drift)
+    for p, q, middle in zip(problem.campaign.prepared, again.prepared, middles, strict=True):
+        t = p.run.time_s
+        acted = t - middle - drift * (t - 10.0)
+        kept = (acted >= t[0]) & (acted <= t[-1])
+        np.testing.assert_allclose(q.run.time_s, acted[kept], atol=1e-12)
+        np.testing.assert_array_equal(q.friction_n, p.friction_n[kept])
+    assert fitted(again)[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("late_s", "drift", "possible"),
+    [
+        ((5.0, 10.0), 0.0, True),
+        ((0.0, -10.1), 0.0, False),
+        ((0.0, 0.0), -1.01, False),
+        ((2.4, 4.9), 0.5, True),
+        ((2.6, 0.0), -0.5, False),
+    ],
+)
+def test_half_of_each_run_must_keep_its_motion(
+    late_s: tuple[float, float], drift: float, possible: bool
+) -> None:
+    """Runs of 10 s and 20 s; at its ends a run has half its length times the drift more."""
+    problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
+    assert beside_its_motion(problem, np.array(late_s), drift) == possible
+
+
+# ---- delays and law together ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "start_s",
+    [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=pytest.mark.extended)],
+)
+def test_delays_larger_than_a_step_are_found_from_any_start(start_s: tuple[float, ...]) -> None:
+    problem = fitted(one_way_campaign(LARGE_DELAYS_S))[0]
+    start = np.array(start_s)
+    there = fitted(moved(problem, start, 0.0))
+    found = jointly(problem, Shifted(*there, start, 0.0))
+    assert max(LARGE_DELAYS_S) > 3.0 * LINEAR_S
+    np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
+    assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
+
+
+def test_delay_of_the_model_becomes_the_delays_of_the_runs() -> None:
+    problem, solution = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
+    found = jointly(problem, unshifted(problem, solution))
+    assert found.problem.effects == ()
+    np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
+
+
+def test_mass_in_one_run_is_no_delay_of_a_tenth_of_a_second() -> None:
+    """At F_v = 20 N s/m, 2 kg more have the force of a delay of -100 ms."""
+    random, runs = np.random.default_rng(0), []
+    t = np.arange(0.0, 20.01, 0.02)
+    for i in range(4):
+        v = one_way_speed(i, t)
+        mass = 2.0 * one_way_acceleration(i, t) if i == 0 else 0.0
+        force = coulomb(t, v, v) + mass + ONE_WAY_NOISE_N * random.standard_normal(len(t))
+        runs.append(Run.from_arrays(t, v, force, name=f"run {i}"))
+    problem, solution = fitted(Campaign.prepare(Rig(), runs))
+    before = unshifted(problem, solution)
+    assert jointly(problem, before) is before
+    assert on_time(problem, solution, DEFAULT) is None
+
+
+@pytest.mark.parametrize("drift", [1.2e-4, pytest.param(3e-3, marks=pytest.mark.extended)])
+def test_drift_of_one_clock_is_found_together_with_the_law(drift: float) -> None:
+    """At the end of the longer run the error is 2.4 ms or 60 ms, of at most 8 ms a step."""
+    durations = (20.0, 10.0)
+    problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
+    found = by_one_clock(problem, unshifted(problem, solution))
+    step = drift_step(found.problem, found.solution)
+    assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
+    np.testing.assert_allclose(found.late_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
+    assert step.square <= SETTLED**2
+    assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
+
+
+# ---- correction of a campaign --------------------------------------------------------------------
+
+
+def test_delays_that_differ_are_corrected_and_reported() -> None:
+    problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
+    again = on_time(problem, solution, DEFAULT)
+    # One standard error is 0.2 ms.
+    np.testing.assert_allclose(sizes(again, "late_channel"), DELAYS_S, atol=0.6e-3)
+    assert again is not None
+    there = fitted(again)
+    assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+    assert fitted(problem.campaign)[1].rms_n > 5.0 * there[1].rms_n
+    assert on_time(*there, DEFAULT) is None
+
+
+def test_drifting_clock_is_corrected_and_reported() -> None:
+    drift = 1e-3
+    again = on_time(
+        *fitted(reversing_campaign((0.5 * drift * DURATION_S,) * 4, drift), DELAY), DEFAULT
+    )
+    found = sizes(again, "drifting_clock")
+    np.testing.assert_allclose(found, drift, rtol=0.03)
+    # One number for all runs.
+    assert np.ptp(found) == 0.0
+    assert again is not None
+    there = fitted(again)
+    assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+    # A clock is corrected once.
+    assert on_time(*there, DEFAULT) is None
+
+
+def test_common_delay_under_a_drifting_clock_is_left_to_the_model() -> None:
+    drift, delay_s = 5e-4, 15e-3
+    delays = [0.5 * drift * DURATION_S + delay_s] * 4
+    again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
+    np.testing.assert_allclose(sizes(again, "drifting_clock"), drift, rtol=0.05)
+    assert again is not None
+    there = fitted(again, DELAY)
+    assert value(*there, TAU) == pytest.approx(delay_s, rel=0.03)
+    assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
+
+
+@pytest.mark.parametrize(("delay_s", "effects"), [(0.0, ()), (25e-3, DELAY)])
+def test_common_delay_is_not_corrected(delay_s: float, effects: tuple[str, ...]) -> None:
+    assert on_time(*fitted(reversing_campaign((delay_s,) * 4), effects), DEFAULT) is None
+
+
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(s, marks=pytest.mark.extended) for s in (1, 2))]
+)
+def test_common_delay_that_the_law_resists_is_not_corrected(seed: int) -> None:
+    """On the way to 30 ms in all runs the runs seem to differ."""
+    assert on_time(*fitted(one_way_campaign((30e-3,) * 4, seed=seed)), DEFAULT) is None
+
+
+def test_common_early_force_is_corrected() -> None:
+    again = on_time(*fitted(reversing_campaign((-6e-3,) * 4)), DEFAULT)
+    np.testing.assert_allclose(sizes(again, "late_channel"), -6e-3, atol=0.6e-3)
+
+
+def test_noise_that_grows_with_the_force_is_no_delay() -> None:
+    random, runs = np.random.default_rng(0), []
+    for p in reversing_campaign((0.0,) * 4).prepared:
+        sd = 0.3 * np.maximum(np.abs(p.friction_n) - 5.0, 0.0)
+        force = p.friction_n + sd * random.standard_normal(len(sd))
+        runs.append(replace(p.run, friction_n=force))
+    assert on_time(*fitted(Campaign.prepare(Rig(), runs)), DEFAULT) is None
+
+
+@pytest.mark.extended
+def test_correct_clocks_are_not_corrected_in_forty_campaigns() -> None:
+    squares = []
+    for seed in range(40):
+        there = fitted(one_way_campaign((0.0, 0.0), seed=seed, durations_s=(20.0, 10.0)))
+        squares.append(drift_step(*there).square)
+        assert on_time(*there, DEFAULT) is None
+    # Wald's statistic is chi-square of one degree: its mean is 1, its median 0.45.
+    assert 0.5 < np.mean(squares) < 1.7
+    assert 0.2 < np.median(squares) < 0.9
+
+
+def test_remaining_delays_are_added_to_those_reported_before() -> None:
+    """The first correction was estimated with a wrong model and is off by up to 3 ms."""
+    campaign = one_way_campaign(LARGE_DELAYS_S)
+    problem = fitted(campaign)[0]
+    wrong = np.array(LARGE_DELAYS_S) - np.array((3e-3, -2e-3, 1e-3, 0.0))
+    findings = [
+        Finding("late_channel", "friction_n", p.run.name, size, "s", "shifted", "")
+        for p, size in zip(campaign.prepared, wrong.tolist(), strict=True)
+    ]
+    before = moved(problem, wrong, 0.0).with_findings(findings)
+    again = on_time(*fitted(before), DEFAULT)
+    np.testing.assert_allclose(sizes(again, "late_channel"), LARGE_DELAYS_S, atol=4e-4)
+    assert again is not None
+    assert fitted(again)[1].rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
+
+
+# ---- compared with another explanation -----------------------------------------------------------
+
+
+def test_delay_effect_is_preferred_to_equal_delays_and_rejected_for_different_ones() -> None:
+    for delays, corrected in (((12e-3,) * 4, False), (DELAYS_S, True)):
+        campaign = reversing_campaign(delays)
+        bare, delayed = fitted(campaign), fitted(campaign, DELAY)[1]
+        again = on_time(*bare, DEFAULT, richer=delayed)
+        assert (again is not None) == corrected
+
+
+@pytest.mark.parametrize(("share", "corrected"), [(0.7, False), (1.5, True)])
+def test_delays_must_differ_by_a_share_of_a_sample_where_an_effect_explains_them(
+    share: float, corrected: bool
+) -> None:
+    """Half of the runs are off the median delay by at least that share."""
+    apart_s = share * DEFAULT.late_apart * 0.02
+    delays = 5e-3 + apart_s * np.array([1.0, -1.0, 1.0, -1.0])
+    campaign = one_way_campaign(delays.tolist(), noise_n=5e-4)
+    bare = fitted(campaign)
+    lagging = fitted(campaign, ("sensor_lag",))[1]
+    again = on_time(*bare, DEFAULT, richer=lagging, more=10.0)
+    assert (again is not None) == corrected
+
+
+@pytest.mark.parametrize("explained", [True, False])
+def test_known_deviations_between_runs_that_leave_less_are_preferred(explained: bool) -> None:
+    """Here the deviations have the shape of a delay, or are offsets, which explain nothing."""
+    problem, solution = fitted(one_way_campaign((3e-3, -2e-3, 4e-3, -1e-3)))
+    directions: list[Array] = []
+    for i, p in enumerate(problem.campaign.prepared):
+        shape = one_way_acceleration(i, p.run.time_s) if explained else np.ones(len(p.run))
+        directions.append(shape[:, None])
+    between = BetweenRuns(("deviation",), tuple(directions), ONE_WAY_NOISE_N)
+    samples = replace(solution.samples, between=between)
+    campaign = replace(problem.campaign, samples=samples)
+    there = Problem(campaign, "coulomb", "journal", (), problem.fixed)
+    given = there.solution(solution.values, samples, solution.noise)
+    assert (on_time(there, given, DEFAULT) is None) == explained
+
+
+def test_effects_that_a_delay_may_have_imitated() -> None:
+    """Those of the instrument, and those that move the instants of jumps."""
+    found = set(bought_by_lateness(("sensor_offset", "time_delay", "sensor_lag", "backlash")))
+    assert {"time_delay", "sensor_lag", "sensor_offset", "backlash"} <= found
+    assert bought_by_lateness(("quadratic_drag", "inertia_leak")) == ()
+    assert without_delay(("sensor_lag", "time_delay", "backlash")) == ("sensor_lag", "backlash")

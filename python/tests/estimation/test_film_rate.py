@@ -1,0 +1,135 @@
+"""Films that are too fast for the sampling of the records, and the reuse of followed films."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jbf
+import numpy as np
+import pytest
+from jbf import InputError, Lubricant, Rig, Run
+from jbf.diagnosis.which_law import followed
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_rate import ANY_STEPS, MOST_STEPS, check_film
+from jbf.estimation.problem import Problem
+from jbf.models.chain import chain
+
+
+def sine_run(step_s: float, rate_rad_s: float, samples: int = 3000) -> Run:
+    """A sine with dry and viscous friction."""
+    t = step_s * np.arange(samples)
+    v = 0.05 * np.sin(rate_rad_s * t)
+    return Run.from_arrays(t, v, 20.0 * np.sign(v) + 30.0 * v, name="sine")
+
+
+IN_SECONDS = sine_run(0.02, 0.8)
+IN_MILLISECONDS = sine_run(20.0, 0.8e-3)
+
+
+def film_rate_1_s(run: Run, seed: dict[str, float] | None = None) -> float:
+    """The slowest film among the starting points of a search."""
+    problem = Problem(Campaign.prepare(Rig.thesis(), [run]), "journal", "journal", ())
+    motions = problem.campaign.motions
+    return min(problem.chain.film_rate_1_s(s, motions) for s in problem.starts(seed or {}))
+
+
+@pytest.mark.parametrize("call", [jbf.fit, jbf.diagnose])
+def test_times_in_milliseconds_are_refused(call: Any) -> None:
+    """Taken for seconds, a fit would take hours."""
+    with pytest.raises(InputError, match="check that times are in seconds") as refusal:
+        call(Rig.thesis(), [IN_MILLISECONDS], law="journal")
+    assert (refusal.value.column, refusal.value.file) == ("time_s", "sine")
+    assert "\n" not in str(refusal.value)
+
+
+def test_laws_without_a_film_accept_any_sampling() -> None:
+    campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
+    for law in ("coulomb", "stribeck", "lugre"):
+        check_film(campaign, law, "journal")
+    candidates, refused = followed(campaign, "journal")
+    assert "stribeck" in candidates
+    assert not {"journal", "journal_full"} & set(candidates)
+    assert "law journal" in refused
+
+
+@pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
+def test_limit_is_in_steps_of_the_film_from_sample_to_sample(share: float, accepted: bool) -> None:
+    step_s = share * MOST_STEPS / film_rate_1_s(IN_SECONDS)
+    campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 0.01)])
+    if accepted:
+        check_film(campaign, "journal", "journal")
+    else:
+        with pytest.raises(InputError, match="time_s"):
+            check_film(campaign, "journal", "journal")
+
+
+@pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
+def test_short_record_with_few_steps_in_all_is_accepted(share: float, accepted: bool) -> None:
+    samples = 30
+    duration_s = share * ANY_STEPS / film_rate_1_s(IN_SECONDS)
+    step_s = duration_s / (samples - 1)
+    assert step_s * film_rate_1_s(IN_SECONDS) > MOST_STEPS
+    campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 3.0 / duration_s, samples)])
+    if accepted:
+        check_film(campaign, "journal", "journal")
+    else:
+        with pytest.raises(InputError, match="time_s"):
+            check_film(campaign, "journal", "journal")
+
+
+def test_start_that_the_user_gives_determines_the_rate() -> None:
+    seed = {"U_tr_m_s": 1e-5}
+    slower = film_rate_1_s(IN_MILLISECONDS, seed)
+    assert slower != film_rate_1_s(IN_MILLISECONDS)
+    campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
+    with pytest.raises(InputError, match=f"{1.0 / slower:.1g} s"):
+        check_film(campaign, "journal", "journal", seed)
+
+
+# ---- a motion keeps the films that were followed along it ----------------------------------------
+
+VALUES = np.array([0.26, 0.06, 7.5e5, 33.0])
+THICKER = Rig(Rig.thesis().bearing, Lubricant(viscosity_pa_s=0.003), Rig.thesis().load)
+CHANGES: dict[str, tuple[Rig, Any, list[float]]] = {
+    "reference": (Rig.thesis(), "journal", [1.0, 1.0, 1.0, 1.0]),
+    "transition speed": (Rig.thesis(), "journal", [1.0, 1.1, 1.0, 1.0]),
+    "stiffness": (Rig.thesis(), "journal", [1.0, 1.0, 1.1, 1.0]),
+    "friction level": (Rig.thesis(), "journal", [1.1, 1.0, 1.0, 0.9]),
+    "viscosity": (THICKER, "journal", [1.0] * 4),
+    "clock": (Rig.thesis(), "thesis", [1.0] * 4),
+}
+
+
+def film_campaign() -> Campaign:
+    """A campaign whose motion has kept nothing."""
+    return Campaign.prepare(Rig.thesis(), [sine_run(0.02, 1.0, 600)])
+
+
+def test_kept_film_is_not_used_for_other_parameters() -> None:
+    """One motion under each change, twice in turn, against a motion that has kept nothing."""
+    used, answers = film_campaign().motions, set()
+    for rig, clock, scale in [*CHANGES.values(), *CHANGES.values()]:
+        model = chain(rig, "journal", clock, ())
+        (found,) = model.predict(VALUES * scale, used)
+        (fresh,) = model.predict(VALUES * scale, film_campaign().motions)
+        np.testing.assert_array_equal(found, fresh)
+        answers.add(found.tobytes())
+    assert len(answers) == len(CHANGES)
+
+
+@pytest.mark.parametrize("effects", [(), ("coulomb_drag", "sensor_lag"), ("film_memory",)])
+def test_derivatives_after_a_prediction_are_central_differences(effects: tuple[str, ...]) -> None:
+    model, used = chain(Rig.thesis(), "journal", "journal", effects), film_campaign().motions
+    count = len(model.parameter_names)
+    values = np.concatenate([VALUES, [1.0, 0.05][: count - 4]])
+    (value,) = model.predict(values, used)
+    [(again, slopes)] = model.jacobian(values, used, range(count))
+    np.testing.assert_array_equal(again, value)
+    for k in range(count):
+        step = 1e-5 * values[k] * (np.arange(count) == k)
+        above, below = (
+            model.predict(values + sign * step, film_campaign().motions)[0] for sign in (1.0, -1.0)
+        )
+        expected = (above - below) / (2.0 * step[k])
+        assert np.max(np.abs(expected)) > 0.0
+        assert np.max(np.abs(slopes[:, k] - expected)) < 1e-4 * np.max(np.abs(expected))

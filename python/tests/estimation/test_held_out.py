@@ -1,0 +1,221 @@
+"""Held-out errors: runs predicted from fits in which they had no part.
+
+Coulomb's law on one-way runs is linear, so that every fit without a run is a linear regression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import LAW, Array, coulomb, four_runs, one_way, wandering
+from jbf import Parameter, Rig, Run, forget_effect, register_effect
+from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import (
+    INSENSITIVE,
+    MOST_FITS,
+    LeftOut,
+    errors_by_run,
+    halves_left_out,
+    left_out,
+    left_out_by_run,
+    left_out_residuals,
+    left_out_rms,
+    only_witnesses,
+)
+from jbf.estimation.minimum import minimum
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+
+NOISE_N = 0.1
+PUSH_N = 3.0
+
+
+def pushed(push: Array, k_n: float) -> Array:
+    """A force in proportion to a recorded column; a run in which that is zero does not show it."""
+    return k_n * push
+
+
+@pytest.fixture
+def push_effect() -> Iterator[None]:
+    """Registers the effect `pushed`."""
+    parameter = Parameter("k_n", "N", lower=-10.0, upper=10.0, null=0.0, starts=(0.5,))
+    register_effect(pushed, parameters=[parameter])
+    yield
+    forget_effect("pushed")
+
+
+def solved(runs: list[Run], *effects: str, law: str = "coulomb") -> tuple[Problem, Solution]:
+    """A fit to all runs."""
+    problem = Problem(Campaign.prepare(Rig(), runs), law, "journal", effects)
+    return problem, minimum(problem, [{}])
+
+
+def pushed_runs(others: float = 0.0, second_half: float = 1.0) -> list[Run]:
+    """Four runs, the first with a push (in its second half times a factor), the others a share."""
+    runs = []
+    for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
+        push = np.sign(np.sin(9.0 * run.time_s)) * (1.0 if i == 0 else others)
+        actual = push * np.where((i == 0) & (run.time_s > 5.0), second_half, 1.0)
+        force = np.asarray(run.friction_n) + PUSH_N * actual
+        runs.append(replace(run, friction_n=force, extra={"push": push}))
+    return runs
+
+
+# ---- one run at a time ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("off_n", [0.0, 3.0])
+def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) -> None:
+    """Also where one run is far off the others, which no single Gauss-Newton step crosses."""
+    runs = four_runs(coulomb, noise_n=NOISE_N)
+    force = np.asarray(runs[0].friction_n) + off_n * np.sign(runs[0].velocity_m_s)
+    problem, solution = solved([replace(runs[0], friction_n=force), *runs[1:]])
+    design = [
+        np.column_stack([np.sign(p.motion.velocity_m_s), p.motion.velocity_m_s])
+        for p in problem.campaign.prepared
+    ]
+    forces = [p.friction_n for p in problem.campaign.prepared]
+    expected = []
+    for i in range(4):
+        rest = [k for k in range(4) if k != i]
+        x = np.concatenate([design[k] for k in rest])
+        values = np.linalg.lstsq(x, np.concatenate([forces[k] for k in rest]), rcond=None)[0]
+        expected.append(forces[i] - design[i] @ values)
+    # The colour of the noise, known from the common solution, changes the regression a little; a
+    # single step in the logarithm of the friction would be off by half of the noise.
+    atol = (0.03 if off_n == 0.0 else 0.3) * NOISE_N
+    for found, wanted in zip(left_out_by_run(problem, solution), expected, strict=True):
+        np.testing.assert_allclose(found, wanted, atol=atol)
+    together = np.concatenate(expected)
+    np.testing.assert_allclose(left_out_residuals(problem, solution), together, atol=atol)
+    rms_n = float(np.sqrt(np.mean(together**2)))
+    assert left_out_rms(problem, solution) == pytest.approx(rms_n, rel=0.01)
+
+
+def test_halves_of_a_single_run_predict_each_other() -> None:
+    """The second half has 1 N more, so that each half misses by 1 N."""
+    run = one_way(
+        "only", lambda t, v, a: coulomb(t, v, a) + (t > 5.0), rate=2.0 * np.pi, noise_n=NOISE_N
+    )
+    problem, solution = solved([run])
+    assert left_out_rms(problem, solution) == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.02)
+    first, second = left_out(problem, solution)
+    count = len(run.time_s)
+    assert np.flatnonzero(first.left[0])[0] == count // 2
+    assert np.array_equal(first.left[0], ~second.left[0])
+    assert (first.runs, second.runs) == ((0,), (0,))
+
+
+def test_many_runs_are_held_out_in_twelve_groups_that_their_order_does_not_change() -> None:
+    runs = [
+        wandering(f"{k:02d}", coulomb, way=(-1.0) ** k, rate=10.0 + k, noise_n=NOISE_N, seed=k)
+        for k in range(14)
+    ]
+    groups = []
+    for some in (runs, runs[::-1]):
+        parts = left_out(*solved(some))
+        assert len(parts) == MOST_FITS
+        groups.append([sorted(some[i].name for i in part.runs) for part in parts])
+    assert groups[0] == groups[1]
+    assert groups[0][0] == ["00", "12"]
+    assert sorted(name for group in groups[0] for name in group) == [r.name for r in runs]
+
+
+# ---- parameters that only one run shows ----------------------------------------------------------
+
+
+@pytest.mark.usefixtures("push_effect")
+@pytest.mark.parametrize("others", [0.0, 1e-3])
+def test_parameter_that_only_the_held_out_run_shows_is_at_its_null(others: float) -> None:
+    """Also where the others show a thousandth: an estimate from that would be 5 N off by noise."""
+    problem, solution = solved(pushed_runs(others), "pushed")
+    value = solution.values[problem.names.index("pushed.k_n")]
+    assert value == pytest.approx(PUSH_N, rel=0.01)
+    missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
+    assert left_out_rms(problem, solution) == pytest.approx(missed, rel=0.02)
+    first = next(part for part in left_out(problem, solution) if part.runs == (0,))
+    names = [problem.names[i] for i in problem.open]
+    assert first.told.tolist() == [name != "pushed.k_n" for name in names]
+
+
+@pytest.mark.usefixtures("push_effect")
+@pytest.mark.parametrize(("share", "witnesses"), [(0.9, {0}), (1.1, set())])
+def test_run_with_nearly_all_information_on_a_parameter_is_the_only_witness(
+    share: float, witnesses: set[int]
+) -> None:
+    """The three others hold that share of the least part of the sum of squared derivatives."""
+    others = float(np.sqrt(share * INSENSITIVE / 3.0))
+    assert only_witnesses(*solved(pushed_runs(others), "pushed")) == witnesses
+
+
+@pytest.mark.usefixtures("push_effect")
+@pytest.mark.parametrize(("second_half", "missed_n"), [(1.0, 0.0), (3.0, 2.0 * PUSH_N)])
+def test_halves_of_the_only_witness_predict_each_other(second_half: float, missed_n: float) -> None:
+    """Where the push is three times as large in the second half, each misses the difference."""
+    problem, solution = solved(pushed_runs(0.0, second_half), "pushed")
+    parts = halves_left_out(problem, solution, 0)
+    assert all(part.told.all() for part in parts)
+    errors = errors_by_run(solution, parts)[0]
+    assert len(errors) == np.count_nonzero(solution.samples.counted[0])
+    assert np.std(errors) == pytest.approx(np.hypot(missed_n, NOISE_N), rel=0.1)
+
+
+@pytest.mark.usefixtures("push_effect")
+def test_half_of_a_run_without_information_holds_the_parameter_at_its_null() -> None:
+    first, *others = pushed_runs()
+    early = np.where(first.time_s < 4.9, first.extra["push"], 0.0)
+    force = np.asarray(first.friction_n) + PUSH_N * (early - first.extra["push"])
+    run = replace(first, friction_n=force, extra={"push": early})
+    problem, solution = solved([run, *others], "pushed")
+    k = problem.open.index(problem.names.index("pushed.k_n"))
+    without_first, without_second = halves_left_out(problem, solution, 0)
+    assert (without_first.told[k], without_second.told[k]) == (False, True)
+    half = without_first.left[0]
+    missed = without_first.residuals[0][half]
+    assert np.std(missed) == pytest.approx(np.hypot(PUSH_N, NOISE_N), rel=0.05)
+
+
+# ---- errors from parts ---------------------------------------------------------------------------
+
+
+def test_errors_take_each_sample_from_the_fit_without_it() -> None:
+    problem, solution = solved(four_runs(coulomb, noise_n=NOISE_N)[:2])
+    count = len(problem.campaign.prepared[0].run)
+    first, every = np.arange(count) < count // 2, np.ones(count, dtype=bool)
+    ramp, determined = np.arange(count, dtype=float), np.ones(solution.free, dtype=bool)
+    parts = [
+        LeftOut((1,), (first,), determined, (ramp,)),
+        LeftOut((0,), (every,), determined, (10.0 + ramp,)),
+        LeftOut((1,), (~first,), determined, (-ramp,)),
+    ]
+    counted = [every & (ramp > 2.0), every & (ramp < count - 5.0)]
+    errors = errors_by_run(solution, parts, counted=counted)
+    assert list(errors) == [0, 1]
+    np.testing.assert_array_equal(errors[0], 10.0 + ramp[3:])
+    np.testing.assert_array_equal(errors[1], np.where(first, ramp, -ramp)[:-5])
+    kept = parts[1].without((0,)), parts[0].without((3,))
+    assert [part.runs for part in kept] == [(), (1,)]
+    np.testing.assert_array_equal(kept[1].residuals[0], ramp)
+
+
+def test_deviations_of_runs_are_removed_where_models_are_compared() -> None:
+    """No model predicts the offset of a run's own; 2 N in a noise of 0.1 N."""
+    runs = four_runs(coulomb, noise_n=NOISE_N)
+    offsets = (2.0, -2.0, 2.0, -2.0)
+    off = [
+        replace(r, friction_n=np.asarray(r.friction_n) + b)
+        for r, b in zip(runs, offsets, strict=True)
+    ]
+    problem = Problem(Campaign.prepare(Rig(), off), "coulomb", "journal", (), LAW | {"F_s_n": 5.0})
+    directions = tuple(np.full((len(r), 1), 5.0) for r in off)
+    between = BetweenRuns(("offset",), directions, NOISE_N)
+    samples = replace(problem.campaign.samples, between=between)
+    values = problem.starts(problem.fixed)[0]
+    solution = problem.solution(values, samples, WHITE)
+    assert left_out_rms(problem, solution) == pytest.approx(np.hypot(2.0, NOISE_N), rel=0.02)
+    assert left_out_rms(problem, solution, apart=True) == pytest.approx(NOISE_N, rel=0.05)

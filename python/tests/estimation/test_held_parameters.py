@@ -1,0 +1,327 @@
+"""Parameters that the runs do not determine: the rule, and what they are held at."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import LAW, coulomb, there_and_back
+from jbf import Fit, Parameter, ParameterValue, Rig, fit
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.determined import (
+    HELD,
+    NEVER_MOVED,
+    NO_EFFECT,
+    NOT_SEPARATE,
+    at_null,
+    bound_note,
+    idle_effects,
+    undetermined,
+)
+from jbf.estimation.fit import finish
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.put_back import put_back
+from jbf.estimation.spread import spread
+
+RUNS = there_and_back(coulomb, noise_n=0.1)
+"""At 0.05 to 0.15 m/s without rests or reversals."""
+
+
+def ended_at(law: str, values: dict[str, float], effects: Sequence[str] = ()) -> Fit:
+    """A fit whose search ended at these values."""
+    problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", effects)
+    here = np.array([values[name] for name in problem.names])
+    return finish(problem, problem.solution(here, problem.samples_at(here), WHITE))
+
+
+def notes_of(found: Fit) -> dict[str, str]:
+    """Notes of the held parameters; everything that a fit reports of them is consistent."""
+    notes = {n: str(p.note) for n, p in found.parameters.items() if p.held}
+    for name, p in found.parameters.items():
+        assert (p.stderr is None) is (name in notes)
+        assert found.model.parameters[name] == p
+    free = len(found.parameters) - len(notes)
+    assert found.correlations.shape == (free, free)
+    np.testing.assert_allclose(np.diag(found.correlations), 1.0)
+    for run, residual in zip(RUNS, found.residuals, strict=True):
+        assert run.friction_n is not None
+        np.testing.assert_allclose(run.friction_n - found.model.predict(run), residual, atol=1e-9)
+    return notes
+
+
+def test_parameter_without_influence_is_held_at_its_start() -> None:
+    found = fit(Rig(), RUNS, law="coulomb")
+    assert notes_of(found) == {"F_s_n": NEVER_MOVED}
+    assert 5.0 < found.parameters["F_s_n"].value < 9.0
+    assert found.parameters["F_c_n"].value == pytest.approx(LAW["F_c_n"], abs=0.03)
+    given = fit(Rig(), RUNS, law="coulomb", start={"F_s": 8.0})
+    assert given.parameters["F_s_n"] == ParameterValue(8.0, None, NEVER_MOVED, held=True)
+
+
+def test_fixed_parameter_is_held_at_its_value() -> None:
+    found = fit(
+        Rig(), RUNS, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0, "sensor_offset.b": 0.25}
+    )
+    assert notes_of(found) == {"F_s_n": HELD, "sensor_offset.b_n": HELD}
+    assert found.fixed == ("F_s_n", "sensor_offset.b_n")
+    assert found.parameters["sensor_offset.b_n"].value == 0.25
+
+
+def test_parameters_with_a_double_are_held_and_the_others_are_not() -> None:
+    found = fit(Rig(), RUNS, law="seven_parameter")
+    notes = notes_of(found)
+    # The end of the search in its flat valley decides between the two notes.
+    assert notes["v_s_m_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s_m_s"]
+    assert notes["gamma_s"] == notes["k_t_n_m"] == NEVER_MOVED
+    friction = found.parameters["F_c_n"]
+    assert friction.stderr is not None
+    assert abs(friction.value - LAW["F_c_n"]) < 3.0 * friction.stderr < 0.3
+
+
+def test_viscous_coefficient_of_falling_friction_is_held_at_zero() -> None:
+    runs = there_and_back(lambda t, v, a: 5.0 * np.sign(v) - 0.5 * v, noise_n=0.05)
+    found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0}).parameters
+    assert (found["F_v_n_s_m"].value, found["F_v_n_s_m"].held) == (0.0, True)
+    assert "lower bound" in str(found["F_v_n_s_m"].note)
+    # The other parameter is the mean friction in the direction of motion.
+    along = [np.mean(r.friction_n * np.sign(r.velocity_m_s)) for r in runs]
+    assert found["F_c_n"].value == pytest.approx(np.mean(along), abs=8e-4)
+    assert not found["F_c_n"].held
+
+
+def test_asymmetry_beyond_its_upper_bound_is_held_there() -> None:
+    runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_n=0.05)
+    fixed = {"F_c": 5.0, "F_s": 6.0, "F_v": 0.0}
+    found = fit(Rig(), runs, ["direction_asymmetry"], law="coulomb", fixed=fixed)
+    assert found["direction_asymmetry.a"].value == pytest.approx(0.95)
+    assert "upper bound" in str(found["direction_asymmetry.a"].note)
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "put"),
+    [
+        ("presliding", {"sigma_1_m": 1e12}, {"sigma_1_m": math.inf}),
+        ("quadratic_drag", {"c_n_s2_m2": 0.0}, {"c_n_s2_m2": 0.0}),
+        # Parameters without a null go to their start: a slow speed of these runs.
+        (
+            "stribeck_excess",
+            {"a": 0.0, "v_s_m_s": 2e-5, "n": 7.9},
+            {"a": 0.0, "v_s_m_s": pytest.approx(0.0526, rel=1e-3), "n": 1.5},
+        ),
+    ],
+)
+def test_effect_at_its_null_is_no_effect(
+    effect: str, values: dict[str, float], put: dict[str, float]
+) -> None:
+    law = {**LAW, "F_s_n": 6.0}
+    found = ended_at("coulomb", law | {f"{effect}.{n}": v for n, v in values.items()}, [effect])
+    wanted = {"F_s_n": NEVER_MOVED} | {f"{effect}.{n}": NO_EFFECT for n in values}
+    assert notes_of(found) == wanted
+    assert {n: found.parameters[f"{effect}.{n}"].value for n in values} == put
+
+
+Walled = Callable[[float, float, float], str]
+WALL = [
+    Parameter("F_c_n", "N", lower=0.0, upper=1e4, starts=(5.0,)),
+    Parameter("p", lower=0.0, upper=1e4, starts=(4.0,)),
+    Parameter("q", lower=1e-7, upper=1e3, starts=(0.01,), log=True),
+]
+
+
+@pytest.fixture
+def walled() -> Iterator[Walled]:
+    """A law that changes by a jump (N) where p or q is below a wall, and is flat elsewhere."""
+    names: list[str] = []
+
+    def law(jump_n: float, wall_p: float, wall_q: float) -> str:
+        def walled_law(velocity_m_s, F_c_n, p, q):  # type: ignore[no-untyped-def]
+            below = (np.real(p) < wall_p) | (np.real(q) < wall_q)
+            return F_c_n * np.sign(velocity_m_s) + jump_n * below
+
+        names.append(jbf.register_law(walled_law, parameters=WALL).name)
+        return names[-1]
+
+    yield law
+    for name in names:
+        jbf.forget_law(name)
+
+
+def moved_back(
+    law: str, p: float, q: float, start: dict[str, float] | None = None
+) -> tuple[float, float, dict[str, str]]:
+    """Where p and q are put from these values in noise of 0.1 N, and the notes."""
+    problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", ())
+    here = np.array([5.0, p, q])
+    solution = problem.solution(here, problem.campaign.samples, WHITE)
+    found = put_back(problem, solution, spread(problem, solution), start or {})
+    for a, b in zip(found.residuals, problem.residuals(found.values), strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-12)
+    return float(found.values[1]), float(found.values[2]), found.notes
+
+
+@pytest.mark.parametrize(
+    ("wall_p", "wall_q", "there_p", "there_q"),
+    [
+        (0.0, 0.0, 4.0, 0.01),
+        # Half of the way from 900 to 4 is 452, a quarter leaves 676, an eighth 788.
+        (400.0, 0.0, 452.0, 0.01),
+        (500.0, 0.0, 676.0, 0.01),
+        (700.0, 0.0, 788.0, 0.01),
+        (800.0, 0.0, 900.0, 0.01),
+        # From 100 to 0.01 in the logarithm.
+        (0.0, 0.5, 4.0, 1.0),
+        (0.0, 20.0, 4.0, 10.0**1.5),
+    ],
+)
+def test_flat_parameters_go_home_by_shares_of_the_way(
+    walled: Walled, wall_p: float, wall_q: float, there_p: float, there_q: float
+) -> None:
+    p, q, notes = moved_back(walled(1.0, wall_p, wall_q), 900.0, 100.0)
+    assert (p, q) == pytest.approx((there_p, there_q))
+    home = {"p": there_p == 4.0, "q": there_q == 0.01}
+    assert {name: note == NEVER_MOVED for name, note in notes.items()} == home
+
+
+def test_start_of_the_user_is_home(walled: Walled) -> None:
+    p, _, notes = moved_back(walled(1.0, 0.0, 0.0), 0.7, 1.0, {"p": 0.1})
+    assert (p, notes["p"]) == (0.1, NEVER_MOVED)
+
+
+@pytest.mark.parametrize(("share", "same"), [(0.9, True), (1.1, False)])
+def test_predictions_are_the_same_within_1e_4_of_the_residual(
+    walled: Walled, share: float, same: bool
+) -> None:
+    residual = [r.friction_n - 5.0 * np.sign(r.velocity_m_s) for r in RUNS]
+    rms = float(np.sqrt(np.mean(np.concatenate(residual) ** 2)))
+    p, _, _ = moved_back(walled(share * 1e-4 * rms, 500.0, 0.0), 900.0, 1.0)
+    assert (p == 4.0) == same
+
+
+SCALE = Parameter("v_s_m_s", lower=1e-7, upper=1e3, starts=(0.01,), log=True)
+PLAIN = Parameter("F_v_n_s_m", lower=0.0, upper=1e7, starts=(10.0,))
+SIGNED = Parameter("b_n", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
+DRAG = Parameter("F_d_n", lower=0.0, upper=1e4, null=0.0, starts=(0.5,))
+STIFF = Parameter("sigma_1_m", lower=1.0, upper=1e12, null=math.inf, starts=(3e3,), log=True)
+FACTOR = Parameter("factor", lower=1e-3, upper=1e3, null=1.0, starts=(0.5,), log=True)
+SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
+
+
+@pytest.mark.parametrize(
+    ("page", "value", "error"),
+    [
+        (PLAIN, 0.003, 0.001),
+        (PLAIN, 3.0, 3.0),
+        (SCALE, 0.02, 0.019),
+        # A signed parameter may be zero within its error.
+        (SIGNED, -0.01, 0.1),
+        # Off its bound by more than a millionth of the logarithmic width, which is 23.
+        (SCALE, 1e-7 * math.exp(2.4e-5), 1e-12),
+    ],
+)
+def test_value_above_its_error_is_determined(page: Parameter, value: float, error: float) -> None:
+    assert undetermined(page, value, error) is None
+
+
+@pytest.mark.parametrize("error", [0.0, 3.0, math.nan])
+@pytest.mark.parametrize(
+    ("page", "value", "bound"),
+    [
+        (PLAIN, 0.0, "lower bound 0"),
+        (PLAIN, 1e7, "upper bound 1e+07"),
+        (SCALE, 1e-7 * math.exp(2.2e-5), "lower bound 1e-07"),
+        (SCALE, 1e3, "upper bound 1000"),
+        (SIGNED, -1e5, "lower bound -100000"),
+    ],
+)
+def test_value_at_a_bound_is_held(page: Parameter, value: float, bound: str, error: float) -> None:
+    note = undetermined(page, value, error)
+    assert bound in str(note)
+    # The bound is reported before another parameter that does the same.
+    assert (
+        undetermined(page, value, error, separate=False) == bound_note(page, value, error) == note
+    )
+
+
+@pytest.mark.parametrize(("share", "at_bound"), [(1.0, True), (1.1, False)])
+def test_linear_value_is_at_its_bound_within_a_millionth_of_its_error(
+    share: float, at_bound: bool
+) -> None:
+    error = 2.0**20
+    assert (bound_note(PLAIN, share * 1e-6 * error, error) is not None) == at_bound
+
+
+@pytest.mark.parametrize(
+    ("page", "value", "error", "largest"),
+    [
+        (PLAIN, 3.0, 4.0, 11.0),
+        (PLAIN, 2e6, 3.9e6, 9.8e6),
+        # Two errors reach the upper bound; the error of a logarithm is no interval.
+        (PLAIN, 2e6, 4e6, None),
+        (SCALE, 1e-4, 28.0, None),
+        (SCALE, 1.0, math.inf, None),
+    ],
+)
+def test_scale_below_its_error_has_only_a_largest_size_of_two_errors(
+    page: Parameter, value: float, error: float, largest: float | None
+) -> None:
+    note = str(undetermined(page, value, error))
+    assert "larger than itself" in note
+    if largest is None:
+        assert "below" not in note
+    else:
+        assert float(note.rpartition("below ")[2]) == pytest.approx(largest, rel=0.05)
+
+
+def test_parameter_without_influence_or_with_a_double_is_held() -> None:
+    assert undetermined(SCALE, 1e-7, math.nan, moved=False) == NEVER_MOVED
+    assert undetermined(PLAIN, 9.9, 0.1, separate=False) == NOT_SEPARATE
+
+
+@pytest.mark.parametrize(
+    ("page", "there", "elsewhere"),
+    [
+        (DRAG, (0.0, 1e-9), (0.01,)),
+        # The bound next to an infinite null.
+        (STIFF, (1e12, math.inf), (1e11, 1.0)),
+        # A null at the upper bound.
+        (SHARE, (1.0, 1.0 - 1e-9), (0.5, 0.0)),
+        # A null between the bounds stops no fit; no null.
+        (SIGNED, (), (0.0,)),
+        (FACTOR, (), (1.0,)),
+        (PLAIN, (), (0.0,)),
+    ],
+)
+def test_fitted_value_at_its_null(
+    page: Parameter, there: tuple[float, ...], elsewhere: tuple[float, ...]
+) -> None:
+    assert all(at_null(page, value, 0.1) for value in there)
+    assert not any(at_null(page, value, 0.1) for value in elsewhere)
+
+
+def test_fixed_value_is_at_its_null_only_exactly() -> None:
+    assert at_null(SIGNED, 0.0, fixed=True)
+    assert not at_null(DRAG, 1e-9, fixed=True)
+    assert not at_null(PLAIN, 0.0, fixed=True)
+
+
+def test_effect_is_idle_where_all_its_nulls_are_reached() -> None:
+    pages = {
+        "F_v_n_s_m": PLAIN,
+        "one.F_d_n": DRAG,
+        "one.v_s_m_s": SCALE,
+        "two.F_d_n": DRAG,
+        "two.b_n": SIGNED,
+        "three.sigma_1_m": STIFF,
+        "four.v_s_m_s": SCALE,
+    }
+    effects = ("one", "two", "three", "four")
+    values = [0.0, 0.0, 5.0, 0.0, 0.0, 1e12, 1e-7]
+    assert idle_effects(effects, pages, values) == ("one", "three")
+    assert idle_effects(effects, pages, values, fixed=("two.b_n",)) == ("one", "two", "three")
+    values[1] = 1e-9
+    assert idle_effects(effects, pages, values) == ("three",)
+    assert idle_effects(effects, pages, values, {"one.F_d_n": 0.1}) == ("one", "three")

@@ -1,0 +1,232 @@
+"""The minimum of a fit: the colour of its noise, other peaks of the likelihood, robust weights."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import LAW, Array, coulomb, four_runs
+from campaigns import campaign
+from coulomb_problems import HELD, STEP_S, autoregressive, coulomb_problem
+from jbf import Run
+from jbf.estimation.approach import approach
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.likelihood import likelihood_gain
+from jbf.estimation.minimum import MOST_FORGIVEN, minimum, search_peaks, settle
+from jbf.estimation.noise import Noise
+from jbf.estimation.peaks import other_peaks
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.estimation.weighting import best_weighting, huber, student
+
+NOISE_N = 0.1
+
+
+def read(more: Callable[[int, Run], Array], seed: int = 0) -> list[Run]:
+    """Runs of Coulomb's law in white noise, and more that was read in each."""
+    runs = four_runs(coulomb, noise_n=NOISE_N, seed=seed)
+    return [
+        replace(r, friction_n=np.asarray(r.friction_n) + more(i, r)) for i, r in enumerate(runs)
+    ]
+
+
+def fitted(runs: list[Run]) -> tuple[Problem, Solution]:
+    problem = coulomb_problem(runs)
+    return problem, minimum(problem, [HELD])
+
+
+def regression(
+    problem: Problem, noise: Noise | None = None, weights: Array | None = None
+) -> tuple[Array, Array]:
+    """Least squares for F_c and F_v, of samples or of innovations; values and residuals."""
+    rows, forces = [], []
+    for p, c in zip(problem.campaign.prepared, problem.campaign.samples.counted, strict=True):
+        v = p.motion.velocity_m_s[c]
+        rows.append(np.stack([np.sign(v), v], axis=1))
+        forces.append(p.friction_n[c])
+    j, y = np.concatenate(rows), np.concatenate(forces)
+    left, right = j, y
+    if noise is not None:
+        left = np.concatenate([noise.innovations(x, STEP_S) for x in rows])
+        right = np.concatenate([noise.innovations(x, STEP_S) for x in forces])
+    if weights is not None:
+        left, right = left * weights[:, None], right * weights
+    values, *_ = np.linalg.lstsq(left, right, rcond=None)
+    return values, y - j @ values
+
+
+def rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def test_fit_in_coloured_noise_is_generalised_least_squares() -> None:
+    """As far as its RMS is no more than 2 % above that of plain least squares."""
+    weighted = 0
+    for seed in (1, 3, 4, 6):
+        noise = [autoregressive(10 * seed + i, 0.3, 0.5, 501) for i in range(4)]
+        problem, found = fitted(read(lambda i, run, noise=noise: noise[i], seed))  # type: ignore[misc]
+        assert found.noise.colour > 0.0
+        assert 0.1 < found.noise.memory_s < 0.6
+        generalised, residual = regression(problem, found.noise)
+        plain, least = regression(problem)
+        allowed = rms(residual) < MOST_FORGIVEN * rms(least)
+        weighted += allowed
+        wanted, other = (generalised, plain) if allowed else (plain, generalised)
+        assert abs(found.values[2] - wanted[1]) < 0.1 * abs(found.values[2] - other[1])
+    assert weighted == 3
+
+
+@pytest.mark.parametrize("height", [1.0, 3.0])
+def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -> None:
+    """Friction that sinks during the run: smooth, and not part of Coulomb's law."""
+
+    def sinking(i: int, run: Run) -> Array:
+        found: Array = height * np.sign(run.velocity_m_s) * np.exp(-run.time_s / 2.0)
+        return found
+
+    problem, found = fitted(read(sinking))
+    assert found.noise.colour > 0.0
+    values, least = regression(problem)
+    _, coloured = regression(problem, found.noise)
+    # Weighted by this colour the fit would be far worse.
+    assert rms(coloured) > 1.1 * MOST_FORGIVEN * rms(least)
+    assert found.rms_n <= MOST_FORGIVEN * rms(least)
+    np.testing.assert_allclose(found.values[[0, 2]], values, rtol=1e-3)
+
+
+def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
+    """Minima near 2e-3 exp(k pi / 6); the search stands on k = 2."""
+    evaluated: list[float] = []
+
+    def square(values: Array) -> float:
+        evaluated.append(float(values[1]))
+        x = float(np.log(values[1] / 2e-3))
+        return (x - 0.01) ** 2 + 1.0 - float(np.cos(12.0 * x))
+
+    here = np.array([7.0, 2e-3 * np.exp(np.pi / 3.0)])
+    found = other_peaks(square, here, 1, 1e-6, 1e2)
+    places = [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in found]
+    assert places == pytest.approx([0.0, 1.0], abs=0.1)
+    assert all(v[0] == 7.0 for v in found)
+    # The peak on which the search stands is not among them.
+    at_best = other_peaks(square, np.array([7.0, 2e-3]), 1, 1e-6, 1e2)
+    assert [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in at_best] == pytest.approx([1, -1], abs=0.1)
+    # From a fifth to five times the value.
+    evaluated.clear()
+    other_peaks(square, here, 1, 1e-6, 1e2)
+    assert min(evaluated) == pytest.approx(here[1] / 5.0)
+    assert max(evaluated) == pytest.approx(here[1] * 5.0)
+    evaluated.clear()
+    inside = other_peaks(square, here, 1, 2.2e-3, 1e-2)
+    assert all(2.2e-3 < v[1] < 1e-2 for v in inside)
+    assert all(2.2e-3 < place < 1e-2 for place in evaluated)
+
+
+@pytest.mark.extended
+def test_resonance_of_a_drive_is_found_from_a_wrong_frequency() -> None:
+    name = "drive_compliance.J_kg_m2"
+    rig, runs, truth = campaign(8, ("drive_compliance",))
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("drive_compliance",))
+    right = truth["effects"]["drive_compliance"]["J"]
+    stuck = settle(problem, approach(problem, [{name: 5.0 * right}], 60))
+    found = search_peaks(problem, stuck)
+    which = problem.names.index(name)
+    assert problem.square(found.values) < problem.square(stuck.values)
+    # As high as the peak next to the truth: within one standard error.
+    assert likelihood_gain(minimum(problem, [{name: right}]), found) < 1.0
+    assert abs(found.values[which] / right - 1.0) < 0.2
+    assert abs(stuck.values[which] / right - 1.0) > 0.5
+    # Held parameters are not moved to another peak.
+    held = Problem(problem.campaign, "journal", "journal", problem.effects, {name: right})
+    start = settle(held, approach(held, [{}], 60))
+    assert search_peaks(held, start) is start
+
+
+def test_huber_weights_limit_the_pull_at_1_345_standard_deviations() -> None:
+    """Psi of Huber (1964): the residual up to 1.345, and 1.345 beyond."""
+    off = np.array([0.0, 0.5, 1.345, 2.69, 13.45])
+    np.testing.assert_allclose(off * huber(off) ** 2, [0.0, 0.5, 1.345, 1.345, 1.345])
+    np.testing.assert_array_equal(huber(off[:3]), 1.0)
+
+
+def test_student_weights_are_the_slope_of_the_log_density() -> None:
+    """Minus twice the log of t's density with 3 degrees of freedom (Lange et al. 1989)."""
+    off = np.linspace(0.1, 20.0, 50)
+    h = 1e-5
+    up, down = (4.0 * np.log(1.0 + (off + s * h) ** 2 / 3.0) for s in (1.0, -1.0))
+    np.testing.assert_allclose(2.0 * off * student(off) ** 2, (up - down) / (2.0 * h), rtol=1e-6)
+
+
+def test_plain_fit_is_kept_in_gaussian_noise() -> None:
+    for seed in range(3):
+        problem, plain = fitted(four_runs(coulomb, noise_n=NOISE_N, seed=seed))
+        assert best_weighting(problem, plain) is plain
+
+
+def outlying(seed: int) -> Callable[[int, Run], Array]:
+    """One run in which three samples of ten are off by ten standard deviations."""
+    random = np.random.default_rng(seed)
+
+    def more(i: int, run: Run) -> Array:
+        found: Array = (random.random(len(run)) < 0.3) * np.sign(run.velocity_m_s) * (i == 0)
+        return found
+
+    return more
+
+
+def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) -> Array:
+    """Four rounds of weighted least squares from the plain one; the scale is the median's."""
+    values, residual = regression(problem)
+    for _ in range(4):
+        scale = np.median(np.abs(residual)) / 0.6745
+        values, residual = regression(problem, weights=weights(np.abs(residual) / scale))
+    return values
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.extended)])
+def test_run_with_outliers_is_fitted_robustly_where_that_predicts_held_out_runs_better(
+    seed: int,
+) -> None:
+    runs = read(outlying(seed), seed)
+    early = np.arange(501) < 30
+    spoilt = [replace(r, friction_n=np.asarray(r.friction_n) + 20.0 * early) for r in runs]
+    # Samples that were set aside have no weight, however large their residual is.
+    kept = coulomb_problem(spoilt).campaign.without([early] * 4)
+    problem = Problem(kept, "coulomb", "journal", (), HELD)
+    plain = minimum(problem, [HELD])
+    found = best_weighting(problem, plain)
+    assert not any(w[early].any() for w in found.samples.weight)
+    assert left_out_rms(problem, found) < 0.97 * left_out_rms(problem, plain)
+    # Iteratively reweighted least squares by numpy, with either weights.
+    ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
+    assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3
+    # Nearer to the law that made the runs.
+    speed = np.linspace(0.05, 0.15, 11)
+    before, after = (
+        rms(s.values[0] - LAW["F_c_n"] + (s.values[2] - LAW["F_v_n_s_m"]) * speed)
+        for s in (plain, found)
+    )
+    assert after < 0.6 * before
+    far = np.abs(found.samples.flat(found.residuals)) > 6.0 * NOISE_N
+    weight = found.samples.flat(found.samples.weight)
+    assert weight[far].max() < weight[~far].min() + 0.2
+    assert found.samples.count == plain.samples.count
+
+
+def test_few_wild_samples_do_not_bias_the_slope() -> None:
+    """Their squares hide the improvement of all other held-out samples."""
+    random = np.random.default_rng(1)
+
+    def wild(i: int, run: Run) -> Array:
+        v = run.velocity_m_s
+        found: Array = 4.0 * (random.random(len(run)) < 0.05) * np.sign(v) * (np.abs(v) > 0.1)
+        return found
+
+    problem, plain = fitted(read(wild))
+    slope = LAW["F_v_n_s_m"]
+    assert abs(plain.values[2] / slope - 1.0) > 0.1
+    found = best_weighting(problem, plain)
+    assert abs(found.values[2] - slope) < 0.3 * abs(plain.values[2] - slope)

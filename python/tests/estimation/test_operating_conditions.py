@@ -1,0 +1,193 @@
+"""Load and temperature on record: their use in predictions, and recovery of their effects."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from by_hand import Array
+from campaigns import campaign
+from jbf import Model, Rig, Run, diagnose, fit
+from jbf.errors import InputError
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.problem import Problem
+from jbf.records.rig import Lubricant
+from rigsim import axis_campaign
+
+TIME = 0.02 * np.arange(3000)
+BODY_C = 20.0 + 12.0 * (1.0 - np.exp(-TIME / 25.0))
+"""A body that warms with a time constant of 25 s."""
+DRY, VISCOUS = "dry_temperature_dependence", "viscous_temperature_dependence"
+COULOMB: dict[str, Any] = {"law": "coulomb"}
+EXTENDED = pytest.mark.extended
+
+
+def slide_run(celsius: Array | None, name: str = "run", seed: int = 3) -> Run:
+    """A slide under Coulomb friction, with a column of temperature."""
+    v = 0.1 * np.sin(0.5 * TIME)
+    noise = 0.2 * np.random.default_rng(seed).standard_normal(len(TIME))
+    force = 6.0 * np.sign(v) + 40.0 * v + noise
+    return Run.from_arrays(TIME, v, force, temperature_c=celsius, name=name)
+
+
+def drive_runs(seed: int, *effects: str, **options: Any) -> list[Run]:
+    """A campaign of the simulator of drives."""
+    return [
+        Run.from_arrays(
+            r.time_s,
+            r.velocity_m_s,
+            r.force_n,
+            position_m=r.path,
+            load_n=r.load_n,
+            temperature_c=r.temperature_c,
+            name=r.name,
+        )
+        for r in axis_campaign(seed, effects, **options)[0]
+    ]
+
+
+# ---- use of the record --------------------------------------------------------------------------
+
+
+def test_run_without_temperature_is_refused_by_a_model_that_needs_it() -> None:
+    model = Model(Rig(), effects=[DRY], **COULOMB)
+    assert np.isfinite(model.predict(slide_run(BODY_C))).all()
+    with pytest.raises(InputError, match=f"temperature_c.*{DRY}"):
+        model.predict(slide_run(None))
+    with pytest.raises(InputError, match="temperature_c"):
+        fit(Rig(), [slide_run(None)], [DRY], **COULOMB)
+
+
+def test_mean_of_a_noisy_load_is_used_in_predictions_and_where_a_run_is_resampled() -> None:
+    """Interpolated noise is not white, and would not be recognised again."""
+    v, model = 0.1 * np.sin(0.5 * TIME), Model(Rig.thesis())
+    load = 104.0 * (1.0 + 0.03 * np.random.default_rng(0).standard_normal(len(TIME)))
+    mean = np.full(len(TIME), np.mean(load))
+    found, expected = (model.predict(Run.from_arrays(TIME, v, load_n=n)) for n in (load, mean))
+    np.testing.assert_array_equal(found, expected)
+    force = 20.0 * np.tanh(v / 0.002) + 0.3 * np.random.default_rng(9).standard_normal(len(TIME))
+    run = Run.from_arrays(TIME, v, force, load_n=load)
+    (prepared,) = Campaign.prepare(Rig.thesis(), [run]).prepared
+    for other in (prepared.shifted(7e-3, 0.0).run, prepared.run.at(TIME[:-1] + 3e-3, TIME[:-1])):
+        np.testing.assert_allclose(np.asarray(other.load_n), np.mean(load))
+
+
+def test_prediction_scales_dry_and_viscous_friction_by_the_temperature() -> None:
+    """`F_c (1 + a (T - T_0)) sign(v) + F_v exp(B / (T + 95) - B / (T_0 + 95)) v`."""
+    run = slide_run(BODY_C)
+    values = {"F_c_n": 6.0, "F_s_n": 6.0, "F_v_n_s_m": 40.0}
+    own = {f"{DRY}.a": -0.01, f"{DRY}.T_0": 25.0, f"{VISCOUS}.B": 700.0, f"{VISCOUS}.T_0": 20.0}
+    model = Model(Rig(), effects=[DRY, VISCOUS], parameters={**values, **own}, **COULOMB)
+    law = Model(Rig(), parameters=values, **COULOMB)
+    v = (law.predict(run) - 6.0 * np.sign(run.velocity_m_s)) / 40.0
+    viscosity = np.exp(700.0 / (BODY_C + 95.0) - 700.0 / 115.0)
+    expected = 6.0 * (1.0 - 0.01 * (BODY_C - 25.0)) * np.sign(v) + 40.0 * viscosity * v
+    moving = np.abs(v) > 0.005
+    np.testing.assert_allclose(model.predict(run)[moving], expected[moving], atol=1e-9)
+
+
+def test_reference_is_that_of_the_lubricant_or_the_mean_on_record() -> None:
+    def fixed(rig: Rig, effect: str, law: str) -> dict[str, float]:
+        campaign_ = Campaign.prepare(rig, [slide_run(BODY_C)])
+        problem = Problem(campaign_, law, "journal", (effect,))
+        assert not {problem.names[i] for i in problem.open} & set(problem.fixed)
+        return problem.fixed
+
+    assert fixed(Rig(), DRY, "coulomb") == {f"{DRY}.T_0_c": round(float(np.mean(BODY_C)))}
+    rig = replace(Rig.thesis(), lubricant=Lubricant(0.002, 40.0))
+    expected = {"vogel_viscosity.C_c": -95.0, "vogel_viscosity.T_0_c": 40.0}
+    assert fixed(rig, "vogel_viscosity", "journal") == expected
+
+
+def test_other_reference_temperature_is_the_same_model() -> None:
+    """With a (T - T_0) the coefficient at another reference T_1 is `a / (1 + a (T_1 - T_0))`."""
+    runs = drive_runs(31, DRY)
+    found = fit(Rig(), runs, [DRY], **COULOMB)
+    reference = found[f"{DRY}.T_0"]
+    assert reference.held
+    assert reference.stderr is None
+    assert not found[f"{DRY}.a"].held
+    other = fit(Rig(), runs, [DRY], fixed={f"{DRY}.T_0": 10.0}, **COULOMB)
+    assert other.rms_n == pytest.approx(found.rms_n, rel=1e-6)
+    slope = found[f"{DRY}.a"].value
+    expected = slope / (1.0 + slope * (10.0 - reference.value))
+    assert other[f"{DRY}.a"].value == pytest.approx(expected, rel=1e-3)
+
+
+# ---- recovery ------------------------------------------------------------------------------------
+
+
+def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
+    """Three runs from cold, whose dry friction falls as the slide warms, and one that is warm."""
+    random = np.random.default_rng(1)
+    time = np.arange(0.0, 40.0, step_s)
+    runs = []
+    for k in range(4 if also_warm else 3):
+        v = (0.02 + 0.005 * k) * np.sin((0.9 + 0.2 * k) * time + k)
+        cold = np.exp(-time / 12.0) if k < 3 else np.zeros(len(time))
+        force = 6.0 * (1.0 + 0.25 * cold) * np.sign(v) + 0.2 * random.standard_normal(len(time))
+        path = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))))
+        celsius = 34.0 - 16.0 * cold
+        runs.append(
+            Run.from_arrays(time, v, force, position_m=path, temperature_c=celsius, name=f"run_{k}")
+        )
+    return runs
+
+
+def test_coefficient_of_dry_friction_is_recovered_within_its_error() -> None:
+    """`6 (1 + 0.25 (34 - T) / 16)`: at the reference T_0 the relative slope is known."""
+    found = fit(Rig(), warming_slide(0.04, also_warm=True), [DRY], **COULOMB)
+    reference = found[f"{DRY}.T_0"].value
+    level = 1.0 + 0.25 * (34.0 - reference) / 16.0
+    slope = found[f"{DRY}.a"]
+    assert slope.stderr is not None
+    assert abs(slope.value + 0.25 / 16.0 / level) < 4.0 * slope.stderr
+    assert slope.stderr < 0.1 * abs(slope.value)
+    assert found.rms_n == pytest.approx(0.2, rel=0.05)
+
+
+@EXTENDED
+def test_temperature_confounded_with_time_is_ambiguous() -> None:
+    found = diagnose(Rig(), warming_slide(0.08), **COULOMB)
+    assert found.verdict == "ambiguous"
+    (name,) = found.effects
+    assert {name, *found.alternatives[name]} >= {"warm_up", DRY}
+    assert found.next_experiment is not None
+
+
+@EXTENDED
+@pytest.mark.parametrize(("step_s", "also_warm"), [(0.08, True), (0.01, False)])
+def test_warm_start_or_many_samples_separate_temperature_from_time(
+    step_s: float, also_warm: bool
+) -> None:
+    found = diagnose(Rig(), warming_slide(step_s, also_warm=also_warm), **COULOMB)
+    assert (found.verdict, found.effects) == ("missing", (DRY,))
+
+
+@EXTENDED
+@pytest.mark.parametrize("course", ["wandering", "warming", "days"])
+def test_temperature_without_influence_is_not_found(course: str) -> None:
+    found = diagnose(Rig(), drive_runs(33, temperature=course), **COULOMB)
+    assert (found.verdict, found.effects) == ("adequate", ())
+    assert not {DRY, VISCOUS} & set(found.not_tried)
+
+
+@EXTENDED
+def test_dry_and_viscous_dependence_are_found_together() -> None:
+    found = diagnose(Rig(), drive_runs(32, DRY, VISCOUS, thermometer="coarse"), **COULOMB)
+    assert (found.verdict, set(found.effects)) == ("missing", {DRY, VISCOUS})
+    assert "held_samples" in {f.kind for f in found.findings if f.channel == "temperature_c"}
+
+
+@EXTENDED
+def test_viscosity_of_a_warm_bearing_is_recovered() -> None:
+    rig, runs, truth = campaign(71, ("vogel_viscosity",))
+    found = diagnose(rig, runs)
+    assert (found.verdict, found.effects) == ("missing", ("vogel_viscosity",))
+    assert not any(found.alternatives.values())
+    steepness = found.model.parameters["vogel_viscosity.B_k"]
+    assert steepness.stderr is not None
+    expected = truth["effects"]["vogel_viscosity"]["B"]
+    assert abs(steepness.value - expected) < 4.5 * steepness.stderr + 0.02 * expected

@@ -1,0 +1,80 @@
+"""Fits in parallel threads: the results of one after the other, in order, and an orderly end."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from jbf import Rig
+from jbf.diagnosis.side_by_side import FEW, fits_at_once, side_by_side
+from jbf.estimation.campaign import Campaign
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 4])
+def test_results_are_in_the_order_of_the_arguments(at_once: int) -> None:
+    def work(k: int) -> int:
+        time.sleep(0.002 * (5 - k))
+        return k * k
+
+    assert list(side_by_side(work, range(5), at_once)) == [0, 1, 4, 9, 16]
+
+
+def test_two_tasks_run_at_the_same_time() -> None:
+    """Each waits for the other."""
+    both = threading.Barrier(2, timeout=20.0)
+    assert len(list(side_by_side(lambda _: both.wait(), range(2), 2))) == 2
+
+
+@pytest.mark.parametrize("at_once", [1, 3])
+def test_first_exception_cancels_the_remaining_tasks(at_once: int) -> None:
+    started: list[int] = []
+
+    def work(k: int) -> int:
+        started.append(k)
+        if k == 1:
+            raise KeyboardInterrupt
+        time.sleep(0.01)
+        return k
+
+    with pytest.raises(KeyboardInterrupt):
+        list(side_by_side(work, range(200), at_once))
+    assert len(started) < 200
+
+
+@pytest.fixture
+def drag_effect() -> Iterator[None]:
+    """Registers a Python function as the effect `own_drag`."""
+    jbf.register_effect(
+        lambda velocity_m_s, c_n: c_n * np.sign(velocity_m_s),
+        parameters=[jbf.Parameter("c_n", "N", lower=-9.0, upper=9.0, null=0.0, starts=(0.5,))],
+        name="own_drag",
+    )
+    yield
+    jbf.forget_effect("own_drag")
+
+
+@pytest.mark.usefixtures("drag_effect")
+def test_number_of_parallel_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One for effects in Python, which may keep a state."""
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
+    for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
+        monkeypatch.setenv("RAYON_NUM_THREADS", threads)
+        assert fits_at_once(campaign, "coulomb", ["sensor_offset"]) == expected
+    monkeypatch.setenv("RAYON_NUM_THREADS", "4")
+    assert fits_at_once(campaign, "coulomb", ["own_drag"]) == 1
+
+
+def test_parallel_fits_are_equal_to_the_bit() -> None:
+    runs = four_runs(coulomb, noise_n=0.1)[:2]
+    effects = ["sensor_offset", "quadratic_drag", "inertia_leak"]
+
+    def fitted(effect: str) -> dict[str, float]:
+        return jbf.fit(Rig(), runs, [effect], law="coulomb").values
+
+    one_by_one, parallel = (list(side_by_side(fitted, effects, n)) for n in (1, 4))
+    assert one_by_one == parallel

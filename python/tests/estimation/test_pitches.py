@@ -1,0 +1,183 @@
+"""Pitches at which a force repeats along the path, and the stroke of a drive."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf import Rig, Run
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.pitches import LEAST_PERIODS, known_pitches, longest_pitch, pitches
+from jbf.estimation.problem import Problem
+from jbf.estimation.stroke import BEYOND, SHORTEST_M, stroke
+from jbf.records.drive import Drive
+
+STEP_S, NOISE_N = 0.01, 0.2
+EXTENDED = pytest.mark.extended
+Waves = Sequence[tuple[float, float]]
+"""Pitch in metres and amplitude in newtons of each wave along the path."""
+
+
+def waves_of(x: Array, waves: Waves) -> Array:
+    """Their sum along a path, N."""
+    total = np.zeros(len(x))
+    for pitch_m, amplitude_n in waves:
+        total += amplitude_n * np.sin(2.0 * np.pi * x / pitch_m - 0.7)
+    return total
+
+
+def axis_runs(
+    waves: Waves = (), *, along: bool = False, seed: int = 0, noise_n: float = NOISE_N
+) -> list[Run]:
+    """Two runs of an axis under dry and viscous friction, a mass and a weight that turns.
+
+    `along`: the waves act in the direction of motion.
+    """
+    runs = []
+    for i in range(2):
+        rng = np.random.default_rng([seed, i])
+        t = np.arange(0.0, 20.0, STEP_S)
+        v = 0.06 * np.sin(0.9 * t + i) + 0.03 * np.sin(2.3 * t + 2.0 * i)
+        a = 0.054 * np.cos(0.9 * t + i) + 0.069 * np.cos(2.3 * t + 2.0 * i)
+        x = -0.06 / 0.9 * np.cos(0.9 * t + i) - 0.03 / 2.3 * np.cos(2.3 * t + 2.0 * i)
+        force = (5.0 + i) * np.sign(v) + 30.0 * v + 3.0 * a + 20.0 * np.sin(x - 1.0)
+        force = force + waves_of(x, waves) * (np.sign(v) if along else 1.0)
+        force = force + noise_n * rng.standard_normal(len(t))
+        runs.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
+    return runs
+
+
+def path_m(campaign: Campaign) -> float:
+    """How far the runs go."""
+    return float(np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared])))
+
+
+def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign:
+    """A run to and fro at 0.05 m/s, every sample 0.5 mm further on."""
+    count = round(path_m / 0.05 / STEP_S)
+    way = np.tile(np.repeat([1.0, -1.0], count), periods)
+    t = STEP_S * np.arange(len(way))
+    x = np.concatenate(([0.0], np.cumsum(0.05 * STEP_S * way[:-1])))
+    noise = 0.01 * np.random.default_rng(1).standard_normal(len(t))
+    force = 5.0 * way + waves_of(x, waves) + noise
+    return Campaign.prepare(Rig(), [Run.from_arrays(t, 0.05 * way, force, position_m=x, name="s")])
+
+
+# ---- search --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("pitch_m", "along"),
+    [
+        (0.0041, False),
+        (0.0123, True),
+        *(pytest.param(p, a, marks=EXTENDED) for p, a in ((0.0041, True), (0.0123, False))),
+        *(pytest.param(0.031, a, marks=EXTENDED) for a in (True, False)),
+    ],
+)
+def test_pitch_of_a_wave_is_the_likeliest(pitch_m: float, along: bool) -> None:
+    """A fit that starts there finds the peak, half a period over the path wide on either side."""
+    campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
+    found = pitches(campaign, along=along)
+    assert abs(path_m(campaign) / found[0] - path_m(campaign) / pitch_m) < 0.25
+
+
+def test_waves_are_found_in_the_order_of_their_amplitudes() -> None:
+    """A weak one is lower than the side lobes of the strong ones."""
+    some = [(0.0123, 0.4), (0.0079, 0.2), (0.0043, 0.04)]
+    campaign = Campaign.prepare(Rig(), axis_runs(some, noise_n=0.05))
+    found = pitches(campaign, along=False)
+    assert found == pytest.approx([p for p, _ in some], rel=0.01)
+
+
+@pytest.mark.parametrize(("periods", "found"), [(3.7, False), (4.3, True)])
+def test_path_must_hold_four_periods(periods: float, found: bool) -> None:
+    lines = [0.2 / p for p in pitches(shuttle([(0.2 / periods, 1.0)]), along=False)]
+    assert (abs(lines[0] - periods) < 0.25) == found
+
+
+@pytest.mark.parametrize(("samples", "found"), [(3.8, False), (4.3, True)])
+def test_pitch_must_be_four_samples_of_the_path(samples: float, found: bool) -> None:
+    pitch_m = samples * 0.5e-3
+    likeliest = pitches(shuttle([(pitch_m, 1.0)]), along=False)[0]
+    assert (likeliest == pytest.approx(pitch_m, rel=2e-3)) == found
+
+
+def test_short_records_and_paths_have_no_pitch() -> None:
+    t = np.arange(0.0, 0.5, STEP_S)
+    v = np.full(len(t), 0.01)
+    run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)
+    assert pitches(Campaign.prepare(Rig(), [run]), along=False) == ()
+    # Fifteen samples of path hold no four of the shortest pitch.
+    assert pitches(shuttle([(3e-3, 1.0)], path_m=7e-3, periods=20), along=False) == ()
+
+
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 20), marks=EXTENDED)])
+def test_highest_line_of_noise_gains_less_than_its_parameters_must(seeds: range) -> None:
+    gains, samples = [], 0
+    for seed in seeds:
+        runs = axis_runs(seed=seed)
+        samples = sum(len(r) for r in runs)
+        noise = np.concatenate(
+            [np.random.default_rng([seed, i]).standard_normal(len(r)) for i, r in enumerate(runs)]
+        )
+        place = np.concatenate([np.asarray(r.position_m) for r in runs])
+        for pitch in pitches(Campaign.prepare(Rig(), runs), along=False):
+            phase = 2.0 * np.pi * place / pitch
+            pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
+            gains.append(float(np.sum((pair @ np.linalg.lstsq(pair, noise, rcond=None)[0]) ** 2)))
+    threshold = Level.shared(DEFAULT, 20, samples, NOISE_N).price(3, samples)
+    # Two parameters of a fixed pitch would gain 1.4 in the median.
+    assert 4.0 < np.median(gains) < 0.8 * threshold
+    assert max(gains) < threshold
+
+
+# ---- limits --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shaft", [False, True])
+def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
+    """A quarter of it, and a tenth more at either end; on a shaft it is angle times radius."""
+    rig = Rig.thesis() if shaft else Rig()
+    radius_m = rig.bearing.radius_m if rig.bearing is not None else 1.0
+    t = np.arange(0.0, 20.0, STEP_S)
+    v = 0.05 * np.sin(t)
+    noise = NOISE_N * np.random.default_rng(0).standard_normal(len(t))
+    place = {"angle_rad" if shaft else "position_m": (0.3 - 0.05 * np.cos(t)) / radius_m}
+    run = Run.from_arrays(t, v, 5.0 * np.sign(v) + 30.0 * v + noise, **place)
+    campaign = Campaign.prepare(rig, [run])
+    low, high = stroke(campaign)
+    assert longest_pitch(campaign) == pytest.approx(0.1 / LEAST_PERIODS, rel=0.02)
+    assert high - low == pytest.approx((1.0 + 2.0 * BEYOND) * 0.1, rel=0.02)
+    middle = float(np.mean(campaign.prepared[0].motion.angle_rad)) * radius_m
+    assert 0.5 * (low + high) == pytest.approx(middle, abs=0.004)
+    nothing = campaign.without([np.ones(len(t), dtype=bool)])
+    assert longest_pitch(nothing) == np.inf
+    assert stroke(nothing) == (-SHORTEST_M, SHORTEST_M)
+
+
+@pytest.mark.parametrize(
+    ("drive", "found"),
+    [
+        (Drive("linear", "force", pitch_m=0.02, gear_ratio=4.0), (0.02, 0.005)),
+        (Drive("linear", "force", pitch_m=0.02), (0.02,)),
+        (Drive("linear", "force"), ()),
+        (Drive("rotary", "torque", gear_ratio=100.0), (0.02 * np.pi,)),
+        (Drive("rotary", "torque"), ()),
+    ],
+)
+def test_pitches_of_screw_and_motor_follow_from_the_drive(
+    drive: Drive, found: tuple[float, ...]
+) -> None:
+    assert known_pitches(Rig(drive=drive)) == pytest.approx(found)
+
+
+def test_fit_of_cogging_starts_at_the_pitches_of_the_drive() -> None:
+    assert known_pitches(Rig()) == ()
+    rig = Rig(drive=Drive("linear", "force", pitch_m=0.02, gear_ratio=4.0))
+    problem = Problem(Campaign.prepare(rig, axis_runs()), "coulomb", "journal", ("cogging",))
+    assert {0.02, 0.005} <= set(problem.parameters["cogging.pitch_m"].starts)

@@ -1,0 +1,220 @@
+"""Search variables, predictions, derivatives and rows of a fit, on a law that is linear."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from coulomb_problems import VALUES, coulomb_problem, values_of
+from jbf import InputError, Parameter, Rig, Run
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import minimum
+from jbf.estimation.noise import WHITE, Noise
+from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
+from jbf.estimation.rows import (
+    MOST_SEARCHED,
+    every_so_many,
+    triangular,
+)
+
+OFFSET = "sensor_offset.b_n"
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    return coulomb_problem(four_runs(coulomb, noise_n=0.1), ["sensor_offset"])
+
+
+def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
+    problem = Problem(campaign, "stribeck", "journal", ["sensor_offset"], {"delta": 1.5})
+    values = problem.starts({})[0]
+    names = [n for n in problem.names if n != "delta"]
+    wanted = [
+        np.log(x) if problem.parameters[n].log else x
+        for n, x in zip(problem.names, values, strict=True)
+        if n in names
+    ]
+    assert [problem.names[i] for i in problem.open] == names
+    assert {problem.parameters[n].log for n in names} == {True, False}
+    np.testing.assert_allclose(problem.encode(values), wanted)
+    np.testing.assert_allclose(problem.decode(problem.encode(values), values), values)
+
+
+def test_decode_takes_fixed_parameters_from_the_base_and_keeps_bounds(problem: Problem) -> None:
+    values, base = values_of(problem), values_of(problem, F_s_n=9.0)
+    x = problem.encode(values)
+    back = problem.decode(x, base)
+    held = problem.names.index("F_s_n")
+    assert back[held] == base[held] == 9.0
+    np.testing.assert_allclose(np.delete(back, held), np.delete(values, held))
+    for far, bound in ((-1e9, problem.lower), (1e9, problem.upper)):
+        out = problem.decode(np.full(len(x), far), values)
+        np.testing.assert_array_equal(out[problem.open], bound[problem.open])
+    np.testing.assert_allclose(
+        problem.encode(np.full(len(values), 1e300)), problem.encode(problem.upper)
+    )
+
+
+def test_starts_are_every_combination_of_what_the_seed_lacks(problem: Problem) -> None:
+    pages = problem.parameters
+    starts = problem.starts({"F_s_n": 6.0, OFFSET: 0.125})
+    free = [n for n in problem.names if n not in ("F_s_n", OFFSET)]
+    assert len(starts) == np.prod([len(pages[n].starts) for n in free])
+    assert len({tuple(s.tolist()) for s in starts}) == len(starts)
+    assert {float(s[problem.names.index(OFFSET)]) for s in starts} == {0.125}
+    assert [starts[0][problem.names.index(n)] for n in free] == [pages[n].starts[0] for n in free]
+
+
+def test_angles_are_wrapped_into_half_a_turn() -> None:
+    problem = reversing(("cogging",))
+    (phase,) = [i for i, p in enumerate(problem.parameters.values()) if p.period is not None]
+    values = problem.starts({})[0]
+    values[phase] = 1.0
+    for turns in (-3, 0, 2):
+        turned = values + 2.0 * np.pi * turns * np.eye(len(values))[phase]
+        np.testing.assert_allclose(problem.wrapped(turned), values)
+
+
+def test_named_values_may_lie_within_their_bounds_or_at_their_null() -> None:
+    pages = {"b_n": Parameter("b_n", lower=1.0, upper=5.0, null=0.0)}
+    for value in (0.0, 1.0, 5.0):
+        assert named_values({"b": value}, pages) == {"b_n": value}
+    for wrong in (0.999, 5.001):
+        with pytest.raises(InputError, match="out of range"):
+            named_values({"b_n": wrong}, pages)
+
+
+def test_residual_is_record_minus_prediction(problem: Problem) -> None:
+    values = values_of(problem, F_c_n=5.2, **{OFFSET: 0.3})
+    predictions, residuals = problem.predict(values), problem.residuals(values)
+    for f, r, p in zip(predictions, residuals, problem.campaign.prepared, strict=True):
+        v = p.motion.velocity_m_s
+        np.testing.assert_allclose(f, 5.2 * np.sign(v) + 20.0 * v + 0.3)
+        np.testing.assert_allclose(r, p.friction_n - f)
+    for some, i in zip(problem.residuals(values, [2, 0]), (2, 0), strict=True):
+        np.testing.assert_array_equal(some, residuals[i])
+    wanted = problem.campaign.samples.square(residuals)
+    assert problem.square(values) == pytest.approx(wanted)
+
+
+def test_derivatives_are_of_the_prediction_by_the_search_variables(problem: Problem) -> None:
+    values = values_of(problem)
+    residuals, slopes = problem.linearise(values)
+    names = [problem.names[i] for i in problem.open]
+    for p, r, j in zip(problem.campaign.prepared, residuals, slopes, strict=True):
+        v = p.motion.velocity_m_s
+        columns = {"F_c_n": np.sign(v), "F_v_n_s_m": v, OFFSET: np.ones(len(v))}
+        for k, name in enumerate(names):
+            scale = VALUES[name] if problem.parameters[name].log else 1.0
+            np.testing.assert_allclose(j[:, k], scale * columns[name], atol=1e-9)
+        np.testing.assert_allclose(r, p.friction_n - coulomb(v, v, v) - values_of(problem)[-1])
+    some, by = problem.linearise(values, [1], [problem.names.index("F_v_n_s_m")])
+    np.testing.assert_array_equal(some[0], residuals[1])
+    np.testing.assert_array_equal(by[0][:, 0], slopes[1][:, names.index("F_v_n_s_m")])
+
+
+def test_derivatives_without_bound_are_zero() -> None:
+    wild = np.array([[1.0, 2.0 * BOUNDLESS], [np.nan, -4.0]])
+    assert bounded(wild, np.array([10.0, 0.5])).tolist() == [[10.0, 0.0], [0.0, -2.0]]
+    assert bounded(np.array([[1.0, 2.0]]), np.array([1e200, 1.0])).tolist() == [[0.0, 2.0]]
+
+
+@pytest.mark.parametrize("noise", [WHITE, Noise(0.1, 0.5)])
+def test_gauss_newton_rows_have_the_inner_products_of_all_rows(
+    problem: Problem, noise: Noise
+) -> None:
+    values, samples = values_of(problem), problem.campaign.samples
+    lines = problem.linearise(values)
+    r, j = samples.stacked(*lines, noise)
+    for given in (None, lines):
+        few, slopes, count = problem.gauss_newton_rows(values, samples, noise, given)
+        assert count == len(r)
+        assert few @ few == pytest.approx(r @ r)
+        np.testing.assert_allclose(slopes.T @ few, j.T @ r, atol=1e-9)
+        np.testing.assert_allclose(slopes.T @ slopes, j.T @ j, atol=1e-9)
+    found = problem.solution(values, samples, noise)
+    assert found.cost == pytest.approx(len(r) * np.log(float(r @ r) / len(r)))
+    np.testing.assert_allclose(found.stacked()[0], r)
+    assert found.free == 3
+    assert found.rms_n == pytest.approx(samples.rms(lines[0]))
+
+
+@cache
+def reversing_campaign() -> Campaign:
+    t = 0.01 * np.arange(3000)
+    v = 0.1 * np.sin(1.3 * t)
+    noise = 0.05 * np.random.default_rng(1).standard_normal(len(t))
+    run = Run.from_arrays(t, v, coulomb(t, v, v) + noise, position_m=-0.1 / 1.3 * np.cos(1.3 * t))
+    return Campaign.prepare(Rig(), [run])
+
+
+def reversing(effects: tuple[str, ...]) -> Problem:
+    return Problem(reversing_campaign(), "coulomb", "journal", effects)
+
+
+@pytest.mark.parametrize("effect", ["time_delay", "backlash", "sensor_hysteresis"])
+def test_effects_that_move_jumps_set_samples_at_reversals_aside(effect: str) -> None:
+    problem = reversing((effect,))
+    values = problem.starts({})[0]
+    before, after = problem.campaign.samples, problem.samples_at(values)
+    aside = before.counted[0] & ~after.counted[0]
+    assert 5 <= np.count_nonzero(aside) < 0.2 * before.count
+    assert np.all(after.weight[0] <= before.weight[0])
+    known = problem.samples_at(values, problem.linearise(values))
+    np.testing.assert_array_equal(known.counted[0], after.counted[0])
+    # At its null the effect moves nothing; nor does one that moves no jump.
+    nulls = [
+        v if p.null is None else p.null
+        for v, p in zip(values, problem.parameters.values(), strict=True)
+    ]
+    assert problem.samples_at(np.array(nulls)) is before
+    offset = reversing(("sensor_offset",))
+    assert offset.samples_at(offset.starts({})[0]) is before
+
+
+def test_triangular_rows_keep_all_inner_products() -> None:
+    random = np.random.default_rng(1)
+    r, j = random.standard_normal(500), random.standard_normal((500, 4))
+    few_r, few_j = triangular(r, j)
+    assert len(few_r) == 5
+    assert few_r @ few_r == pytest.approx(r @ r)
+    np.testing.assert_allclose(few_j.T @ few_j, j.T @ j)
+    np.testing.assert_allclose(few_j.T @ few_r, j.T @ r)
+    assert triangular(r[:0], j[:0])[1].shape == (0, 4)
+
+
+def test_search_uses_some_of_very_many_runs_by_name() -> None:
+    """With twice the limit of samples every fourth run, in whatever order the runs are given."""
+    names = [f"{k:02d}" for k in range(20)]
+    length = 2 * MOST_SEARCHED // 20
+    assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]
+    assert every_so_many([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
+    for lengths in ([length // 2] * 20, [10 * length] * 2):
+        assert every_so_many(lengths, names[: len(lengths)]) == list(range(len(lengths)))
+
+
+@pytest.mark.extended
+def test_fit_of_a_million_samples_is_the_regression_over_all_of_them() -> None:
+    """Derivatives are computed on demand, and the search uses every fifth run."""
+    t = 0.01 * np.arange(34_000)
+    runs = []
+    for k in range(30):
+        v = (-1.0) ** k * (0.1 + 0.03 * np.sin((0.5 + 0.1 * k) * t) + 0.02 * np.sin(0.31 * t))
+        noise = 0.1 * np.random.default_rng(k).standard_normal(len(t))
+        runs.append(Run.from_arrays(t, v, coulomb(t, v, v) + 0.3 + noise, name=f"{k:02}"))
+    problem = coulomb_problem(runs, ["sensor_offset"])
+    assert not problem.few_numbers
+    assert len(problem.thinned.campaign.prepared) == 5
+    found = minimum(problem, [{}])
+    assert found.converged
+    v = np.concatenate([p.motion.velocity_m_s for p in problem.campaign.prepared])
+    f = np.concatenate([p.friction_n for p in problem.campaign.prepared])
+    x = np.column_stack([np.sign(v), v, np.ones(len(v))])
+    wanted, (square,), *_ = np.linalg.lstsq(x, f, rcond=None)
+    at = [problem.names.index(n) for n in ("F_c_n", "F_v_n_s_m", "sensor_offset.b_n")]
+    errors = np.sqrt(square / len(v) * np.diag(np.linalg.inv(x.T @ x)))
+    assert np.all(np.abs(found.values[at] - wanted) < 0.05 * errors)
+    assert found.rms_n == pytest.approx(np.sqrt(square / len(v)), rel=1e-6)

@@ -1,0 +1,183 @@
+"""Bias of mean readings that come in coarse steps, and its removal by the model's force.
+
+The mean of readings in steps q of a force f with Gaussian noise s is off by
+`(q / pi) sum_k (-1)^k / k exp(-2 (k pi s / q)^2) sin(2 k pi f / q)` (Widrow 1956).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from by_hand import LAW, Array, coulomb
+from jbf import Rig, Run
+from jbf.diagnosis.converter_bias import without_bias
+from jbf.diagnosis.policy import DEFAULT
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.converter import MOST_NOISE, bias_n, curve_rms_n, noise_before, origin_n
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from scipy import integrate, stats
+
+LEVELS = np.arange(-60, 61)
+STEP_N, NOISE_N, ORIGIN_N = 0.5, 0.1, 0.13
+
+
+def mean_reading(step: float, noise: float, force: Array) -> Array:
+    """Readings to the nearest step, each with its Gaussian probability."""
+    upper = stats.norm.cdf((step * (LEVELS + 0.5) - force[:, None]) / noise)
+    lower = stats.norm.cdf((step * (LEVELS - 0.5) - force[:, None]) / noise)
+    found: Array = (upper - lower) @ (step * LEVELS)
+    return found
+
+
+# ---- formulas ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("step", [1e-3, 1.0, 40.0])
+@pytest.mark.parametrize("noise", [0.15, 0.3, 0.5])
+def test_bias_is_the_error_of_the_mean_reading(step: float, noise: float) -> None:
+    force = step * np.linspace(-2.3, 2.1, 97)
+    expected = mean_reading(step, noise * step, force) - force
+    np.testing.assert_allclose(bias_n(step, noise * step, force), expected, atol=2e-3 * step)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_bias_has_three_harmonics_of_a_saw_tooth(noise: float) -> None:
+    force = np.arange(64) / 64.0
+    sines = np.fft.rfft(bias_n(1.0, noise, force)).imag / -32.0
+    k = np.arange(1, 4)
+    expected = (-1.0) ** k / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise) ** 2)
+    np.testing.assert_allclose(sines[1:4], expected)
+    np.testing.assert_allclose(np.delete(sines, [1, 2, 3]), 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("step", [1e-3, 40.0])
+def test_rms_of_the_bias_is_that_of_its_first_harmonic(step: float) -> None:
+    force = step * np.linspace(0.0, 1.0, 1000, endpoint=False)
+    for noise in (0.3, 0.4):
+        rms = np.sqrt(np.mean(bias_n(step, noise * step, force) ** 2))
+        assert curve_rms_n(step, noise * step) == pytest.approx(rms, rel=1e-2)
+    assert curve_rms_n(step, 0.0) == pytest.approx(step / (np.pi * np.sqrt(2.0)))
+
+
+@pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
+@pytest.mark.parametrize("origin", [-0.4, 0.0, 0.25])
+def test_origin_is_the_distance_of_readings_from_multiples_of_the_step(
+    step: float, origin: float
+) -> None:
+    readings = step * (np.array([-3.0, 0.0, 1.0, 7.0, np.nan]) + origin)
+    assert origin_n(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
+
+
+def test_origin_of_noisy_readings_is_their_circular_mean() -> None:
+    readings = np.array([-40.1, 0.1, 3.1, 7.9, 50.0, 2e3 - 0.1, 2e3 + 0.1])
+    assert origin_n(1.0, readings) == pytest.approx(0.0, abs=1e-9)
+    assert origin_n(1.0, readings + 0.2) == pytest.approx(0.2)
+
+
+def repeat_probability(noise: float) -> float:
+    """`E max(0, 1 - |d|)` of the difference d of two noises, in steps."""
+    sd = np.sqrt(2.0) * noise
+    found, _ = integrate.quad(lambda d: (1.0 - d) * 2.0 * stats.norm.pdf(d, 0.0, sd), 0.0, 1.0)
+    return float(found)
+
+
+@pytest.mark.parametrize("step", [1e-3, 40.0])
+@pytest.mark.parametrize("noise", [0.05, 0.3, 1.0])
+def test_noise_follows_from_how_often_a_reading_repeats(step: float, noise: float) -> None:
+    n = 100_000
+    repeats = round(repeat_probability(noise) * n)
+    # A change of less than half a step is a repetition.
+    moves = step * np.concatenate((np.full(repeats, 0.49), np.full(n - repeats, -0.51)))
+    assert noise_before(step, moves) == pytest.approx(noise * step, rel=2e-3)
+
+
+def test_noise_is_limited_where_readings_always_or_never_repeat() -> None:
+    assert noise_before(2.0, np.zeros(100)) == 0.0
+    assert noise_before(2.0, np.zeros(0)) == 0.0
+    assert noise_before(2.0, np.full(100, 2.0)) == 2.0 * MOST_NOISE
+
+
+# ---- removal -------------------------------------------------------------------------------------
+
+
+@cache
+def quantised() -> tuple[Problem, list[Array]]:
+    """Coulomb friction of two runs read in steps, the second of them finely; and the true force."""
+    random, runs, forces = np.random.default_rng(1), [], []
+    t = np.arange(0.0, 60.0, 0.02)
+    for i, rate in enumerate((0.4, 0.5)):
+        v = 0.1 + 0.06 * np.sin(rate * t) + 0.02 * np.sin(0.618 * rate * t)
+        force = coulomb(t, v, v)
+        noisy = force + NOISE_N * random.standard_normal(len(t))
+        steps = ORIGIN_N + STEP_N * np.round((noisy - ORIGIN_N) / STEP_N)
+        runs.append(Run.from_arrays(t, v, steps if i == 0 else noisy, name="ab"[i]))
+        forces.append(force)
+    fixed = {"F_s_n": 6.0, "F_v_n_s_m": LAW["F_v_n_s_m"]}
+    return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed), forces
+
+
+def at_truth(problem: Problem) -> Solution:
+    """The true parameters, of which the dry friction is free."""
+    return problem.solution(
+        problem.starts({**LAW, "F_s_n": 6.0})[0], problem.campaign.samples, WHITE
+    )
+
+
+def test_bias_of_quantised_readings_is_removed() -> None:
+    """How large it is depends on the noise before the converter, which the bias itself shows."""
+    problem, forces = quantised()
+    assert problem.campaign.step_n == pytest.approx(STEP_N)
+    corrected = without_bias(problem, at_truth(problem), DEFAULT)
+    assert corrected is not None
+    coarse, fine = corrected.prepared
+    removed = coarse.readings_n - coarse.friction_n
+    expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
+    assert np.std(expected) > 0.05 * STEP_N
+    np.testing.assert_allclose(removed, expected, atol=0.015 * STEP_N)
+    np.testing.assert_array_equal(fine.friction_n, fine.readings_n)
+    # Of what is removed a share is taken to be left.
+    assert corrected.steps_rms_n(1.0) < 0.5 * problem.campaign.steps_rms_n(1.0)
+    again = Problem(corrected, "coulomb", "journal", (), problem.fixed)
+    assert without_bias(again, at_truth(again), DEFAULT) is None
+    # A shift in time begins with the readings.
+    np.testing.assert_array_equal(coarse.shifted(0.0, 0.0).friction_n, coarse.readings_n)
+
+
+def test_bias_is_removed_together_with_a_fit_of_the_model() -> None:
+    """The fit to biased readings has another force, and so another bias: both are repeated."""
+    problem, forces = quantised()
+    free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
+    start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]
+    corrected = without_bias(free, free.solution(start, free.campaign.samples, WHITE), DEFAULT)
+    assert corrected is not None
+    removed = corrected.prepared[0].readings_n - corrected.prepared[0].friction_n
+    expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
+    np.testing.assert_allclose(removed, expected, atol=0.03 * STEP_N)
+
+
+def test_bias_that_moves_less_than_the_policy_says_is_not_removed() -> None:
+    problem, _ = quantised()
+    solution = at_truth(problem)
+    corrected = without_bias(problem, solution, DEFAULT)
+    assert corrected is not None
+    off = [p.readings_n - p.friction_n for p in corrected.prepared]
+    moves = corrected.samples.rms(off) / problem.campaign.step_n
+    for share, removed in ((0.95, True), (1.05, False)):
+        policy = replace(DEFAULT, bias_moves=share * moves)
+        assert (without_bias(problem, solution, policy) is not None) == removed
+
+
+def test_model_that_is_off_by_steps_removes_little() -> None:
+    """It does not know where in a step its force lies."""
+    problem, _ = quantised()
+    right = at_truth(problem)
+    wave = [3.0 * STEP_N * np.sin(0.01 * np.arange(len(r))) for r in right.residuals]
+    wrong = replace(right, residuals=[r + w for r, w in zip(right.residuals, wave, strict=True)])
+    policy = replace(DEFAULT, bias_moves=0.35 * 0.1)
+    assert without_bias(problem, right, policy) is not None
+    assert without_bias(problem, wrong, policy) is None

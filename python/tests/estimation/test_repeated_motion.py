@@ -1,0 +1,65 @@
+"""Period of a motion that repeats itself, of motions with a known period."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf.estimation.replicates import period_samples
+
+
+def wave(count: int, period: int) -> Array:
+    """A sine with its second harmonic: no half of a period is like the other."""
+    turn = 2.0 * np.pi * np.arange(count) / period
+    found: Array = np.sin(turn) + 0.3 * np.sin(2.0 * turn + 0.5)
+    return found
+
+
+@pytest.mark.parametrize("period", [7, 20, 61, 150])
+@pytest.mark.parametrize("mean", [0.0, -2.0])
+def test_period_is_found_to_the_sample(period: int, mean: float) -> None:
+    """Whatever the mean speed; the first repetition, not a multiple of it."""
+    assert period_samples(mean + wave(5 * period + 130, period)) == period
+
+
+@pytest.mark.parametrize(("count", "found"), [(99, None), (100, 20)])
+def test_fewer_than_a_hundred_samples_have_no_period(count: int, found: int | None) -> None:
+    assert period_samples(wave(count, 20)) == found
+
+
+@pytest.mark.parametrize(
+    "velocity",
+    [
+        np.zeros(300),
+        np.full(300, -0.7),
+        np.linspace(-1.0, 1.0, 300),
+        np.random.default_rng(1).standard_normal(400),
+    ],
+    ids=["rest", "constant", "ramp", "noise"],
+)
+def test_motion_that_does_not_repeat_has_no_period(velocity: Array) -> None:
+    assert period_samples(velocity) is None
+
+
+@pytest.mark.parametrize(("noise", "found"), [(0.010, 100), (0.018, None)])
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_repetition_differs_by_less_than_a_fiftieth(
+    noise: float, found: int | None, unit: float
+) -> None:
+    """The difference of two noises has sqrt(2) times the standard deviation of one."""
+    sine = np.sqrt(2.0) * np.sin(2.0 * np.pi * np.arange(2000) / 100)
+    random = np.random.default_rng(2)
+    assert period_samples(unit * (sine + noise * random.standard_normal(2000))) == found
+
+
+@pytest.mark.parametrize(("second", "period"), [(0.5, 80), (0.8, 80), (0.995, 40)])
+def test_period_includes_both_of_two_different_strokes(second: float, period: int) -> None:
+    stroke = np.sin(2.0 * np.pi * np.arange(40) / 40)
+    assert period_samples(np.tile(np.concatenate((stroke, second * stroke)), 8)) == period
+
+
+@pytest.mark.parametrize(("period", "found"), [(150, 150), (240, None)])
+def test_repetition_must_lie_within_three_quarters_of_the_record(
+    period: int, found: int | None
+) -> None:
+    assert period_samples(wave(300, period)) == found

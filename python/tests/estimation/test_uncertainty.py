@@ -1,0 +1,268 @@
+"""Standard errors, correlations and doubtful errors against linear regression.
+
+Seber & Lee, Linear Regression Analysis (2003), ch. 3: `beta = (X'X)^-1 X'y`, its covariance
+`s^2 (X'X)^-1`, `s^2` the sum of squares over `n - k`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import LAW, Array, Friction, along, coulomb, four_runs, there_and_back
+from coulomb_problems import solution_at, values_of
+from jbf import Fit, Parameter, ParameterValue, Rig, Run, fit
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.curvature import doubtful_errors
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.spread import spread
+
+NOISE_N = 0.2
+TERMS: dict[str, Friction] = {
+    "F_c_n": lambda t, v, a: np.sign(v),
+    "F_v_n_s_m": lambda t, v, a: v,
+    "sensor_offset.b_n": lambda t, v, a: np.ones_like(v),
+    "sensor_drift.d_n_s": lambda t, v, a: t,
+    "inertia_leak.m_e_kg": lambda t, v, a: a,
+}
+"""Parameter to its regressor of time, speed and acceleration."""
+TRUTH = np.array([5.0, 20.0, -0.5, 0.04, 3.0])
+EFFECTS = ["sensor_offset", "sensor_drift", "inertia_leak"]
+
+
+def friction(t: Array, v: Array, a: Array) -> Array:
+    return coulomb(t, v, a) - 0.5 + 0.04 * t + 3.0 * a
+
+
+def covariance_of(x: Array, residual: Array) -> tuple[Array, Array]:
+    """Standard errors and correlations of a regression."""
+    covariance = np.linalg.inv(x.T @ x) * (residual @ residual) / (len(x) - x.shape[1])
+    sd = np.sqrt(np.diag(covariance))
+    return sd, covariance / np.outer(sd, sd)
+
+
+def regression(runs: list[Run]) -> tuple[Array, Array, Array]:
+    """Values, standard errors and correlations of the five terms."""
+    rows = []
+    for run, rate, way in zip(runs, (2.0, 3.0), (1.0, -1.0), strict=True):
+        a = way * 0.05 * rate * np.cos(rate * run.time_s)
+        rows.append(np.stack([f(run.time_s, run.velocity_m_s, a) for f in TERMS.values()], 1))
+    x = np.concatenate(rows)
+    y = np.concatenate([run.friction_n for run in runs if run.friction_n is not None])
+    values, *_ = np.linalg.lstsq(x, y, rcond=None)
+    return values, *covariance_of(x, y - x @ values)
+
+
+def fit_all_terms(seed: int) -> tuple[list[Run], Fit]:
+    runs = there_and_back(friction, noise_n=NOISE_N, seed=seed)
+    return runs, fit(Rig(), runs, EFFECTS, law="coulomb", fixed={"F_s": 6.0})
+
+
+@pytest.fixture(scope="module")
+def fitted() -> tuple[list[Run], Fit]:
+    return fit_all_terms(3)
+
+
+def test_values_errors_and_correlations_are_those_of_linear_regression(
+    fitted: tuple[list[Run], Fit],
+) -> None:
+    runs, found = fitted
+    values, errors, table = regression(runs)
+    for name, value, error in zip(TERMS, values, errors, strict=True):
+        # The acceleration is estimated from the speed.
+        assert found.parameters[name].value == pytest.approx(value, abs=0.1 * error), name
+        assert found.parameters[name].stderr == pytest.approx(error, rel=0.01), name
+    free = [n for n, p in found.parameters.items() if not p.held]
+    order = [list(TERMS).index(name) for name in free]
+    np.testing.assert_allclose(found.correlations, table[np.ix_(order, order)], atol=0.005)
+    assert found.rms_n == pytest.approx(NOISE_N, rel=0.07)
+    assert found.samples == 1002
+    assert found.doubtful == ()
+
+
+def test_parameters_of_a_fit_are_found_by_full_or_short_name(
+    fitted: tuple[list[Run], Fit],
+) -> None:
+    found = fitted[1]
+    assert found["F_c"] is found["F_c_n"] is found.parameters["F_c_n"]
+    assert [name in found for name in ("F_c_n", "F_c", "zz", 3)] == [True, True, False, False]
+    assert (found.values["F_s_n"], found.stderr["F_s_n"]) == (6.0, None)
+    with pytest.raises(jbf.InputError, match="zz"):
+        found["zz"]
+
+
+def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
+    """Of the search variable times the value; derivatives of a Stribeck curve written out."""
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
+    fixed = {"delta": 2.0, "F_v_n_s_m": 20.0}
+    problem = Problem(campaign, "stribeck", "journal", (), fixed)
+    values = problem.starts({"F_c_n": 5.0, "F_s_n": 7.0, "v_s_m_s": 0.1, **fixed})[0]
+    solution = problem.solution(values, campaign.samples, WHITE)
+    v = np.concatenate([p.motion.velocity_m_s for p in campaign.prepared])
+    bell = np.exp(-((v / 0.1) ** 2))
+    slopes = {
+        "F_c_n": np.sign(v) * (1.0 - bell),
+        "F_s_n": np.sign(v) * bell,
+        "v_s_m_s": np.sign(v) * 2.0 * bell * 2.0 * v**2 / 0.1**3,
+    }
+    assert problem.log[problem.names.index("v_s_m_s")]
+    x = np.column_stack([slopes[problem.names[i]] for i in problem.open])
+    sd, table = covariance_of(x, np.concatenate(solution.residuals))
+    found = spread(problem, solution)
+    np.testing.assert_allclose(found.sd * found.scale, sd, rtol=1e-6)
+    np.testing.assert_allclose(found.correlation, table, atol=1e-6)
+    errors = [found.error(k) for k in range(3)]
+    np.testing.assert_allclose(errors, sd * found.inflation, rtol=1e-6)
+
+
+def test_parameter_without_influence_and_parameters_with_a_double_are_recognised() -> None:
+    """In one direction dry friction and an offset are the same; breakaway is never shown."""
+    runs = four_runs(coulomb, noise_n=0.1)
+    campaign = Campaign.prepare(Rig(), [runs[0], runs[2]])
+    problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
+    found = spread(problem, solution_at(problem, values_of(problem)))
+    names = [problem.names[i] for i in problem.open]
+    moved, separate = (dict(zip(names, x, strict=True)) for x in (found.moved, found.separate))
+    assert moved == {n: n != "F_s_n" for n in names}
+    assert {n for n in names if not separate[n]} == {"F_c_n", "sensor_offset.b_n"}
+    assert np.isnan(found.error(names.index("F_s_n")))
+    assert np.isfinite(found.error(names.index("F_v_n_s_m")))
+
+
+def dry_level(runs: list[Run]) -> Problem:
+    """Only the dry friction is fitted: a mean in the direction of motion."""
+    fixed = {"F_s_n": 6.0, "F_v_n_s_m": 20.0}
+    return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed)
+
+
+def test_error_in_slow_noise_is_larger_by_its_long_run_variance() -> None:
+    """Noise that keeps its sign for ten samples: the variance of a mean is ten times as large."""
+    problem = dry_level(four_runs(coulomb, noise_n=0.0))
+    solution = solution_at(problem, values_of(problem))
+    random = np.random.default_rng(4)
+    slow = [np.repeat(random.choice([-1.0, 1.0], 51), 10)[:501] for _ in range(4)]
+    known = spread(problem, replace(solution, residuals=slow))
+    assert known.inflation[0] ** 2 == pytest.approx(10.0, rel=0.5)
+    swings = [np.where(np.arange(501) % 2, 1.0, -1.0) for _ in range(4)]
+    np.testing.assert_array_equal(
+        spread(problem, replace(solution, residuals=swings)).inflation, 1.0
+    )
+
+
+def test_error_under_offsets_of_runs_is_larger_by_their_scatter() -> None:
+    """Offsets in the direction of motion: a mean of eight runs is as uncertain as they scatter."""
+    offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
+    runs = [
+        replace(four_runs(along(z), noise_n=0.1, seed=k)[k % 4], name=f"{k}")
+        for k, z in enumerate(offsets.tolist())
+    ]
+    problem = dry_level(runs)
+    error = spread(problem, solution_at(problem, values_of(problem))).error(0)
+    assert error == pytest.approx(np.std(offsets, ddof=1) / np.sqrt(8.0), rel=0.15)
+
+
+KINDS: dict[str, Callable[[Array, Array], Array]] = {
+    "white": lambda f, e: 0.1 * e,
+    "growing with force": lambda f, e: (0.02 + 0.03 * np.abs(f)) * e,
+    "offset of each run": lambda f, e: 0.1 * e + 0.08 * e[0],
+    "two memories": lambda f, e: 0.05 * e + 0.03 * np.repeat(e[::20], 20)[: len(e)],
+}
+"""Noise from the friction (N) and from independent normal numbers."""
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("kind", KINDS)
+def test_parameters_are_off_by_as_much_as_their_errors_state(kind: str) -> None:
+    truth = {**LAW, "sensor_offset.b_n": 0.0}
+    t = np.arange(0.0, 24.0, 0.02)
+    off = []
+    for seed in range(12):
+        random, runs = np.random.default_rng(seed), []
+        for i in range(5):
+            rate = 1.0 + 0.17 * i
+            v = 0.12 * np.sin(rate * t) + 0.05 * np.sin(0.618 * rate * t + i)
+            f = coulomb(t, v, v)
+            noise = KINDS[kind](f, random.standard_normal(len(t)))
+            runs.append(Run.from_arrays(t, v, f + noise, name=f"run {i}"))
+        found = fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s_n": 6.0})
+        off.append([(found[n].value - x) / (found[n].stderr or np.inf) for n, x in truth.items()])
+    size = np.sqrt(np.mean(np.array(off) ** 2, axis=0))
+    # A mean of 12 squares is a fifth off by chance.
+    assert np.all((size > 0.4) & (size < 2.0)), size
+
+
+N = 501
+
+
+@pytest.fixture
+def bent() -> Callable[..., tuple[str, ...]]:
+    """Names of the doubtful parameters of a law whose dry level is `p + bend (p - 5)^2 / sd`, in
+    units of its standard error sd, and which has a viscous coefficient as a second parameter."""
+    t = 0.02 * np.arange(2 * N)
+    v = 0.1 + 0.03 * np.sin(12.0 * t) + 0.02 * np.sin(7.4 * t + 1.0)
+    noise = np.where(np.arange(2 * N) % 2, 1.0, -1.0)
+    sd = 1.0 / np.sqrt(2 * N)
+
+    def doubtful(
+        bend: float, bounds: tuple[float, float] = (-1e9, 1e9), held: bool = False
+    ) -> tuple[str, ...]:
+        def bent_law(velocity_m_s, p, q):  # type: ignore[no-untyped-def]
+            u = (p - 5.0) / sd
+            centred = np.where(np.arange(len(velocity_m_s)) < N, 1.0, -1.0)
+            return 5.0 + sd * (u + bend * u**2) + q * centred
+
+        pages = [
+            Parameter("p", lower=bounds[0], upper=bounds[1], starts=(5.0,)),
+            Parameter("q", lower=-1e9, upper=1e9, starts=(0.0,)),
+        ]
+        law = jbf.register_law(bent_law, parameters=pages).name
+        try:
+            run = Run.from_arrays(t, v, 5.0 + noise, name="run")
+            problem = Problem(Campaign.prepare(Rig(), [run]), law, "journal", ())
+            solution = problem.solution(np.array([5.0, 0.0]), problem.campaign.samples, WHITE)
+            values = {
+                "p": ParameterValue(5.0, None if held else sd, held=held),
+                "q": ParameterValue(0.0, sd),
+            }
+            return doubtful_errors(problem, solution, values)
+        finally:
+            jbf.forget_law(law)
+
+    return doubtful
+
+
+@pytest.mark.parametrize(
+    ("bend", "doubtful"),
+    # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
+    [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
+)
+def test_error_is_doubtful_where_the_rise_at_one_error_is_off_by_three_tenths(
+    bent: Callable[..., tuple[str, ...]], bend: float, doubtful: bool
+) -> None:
+    assert bent(bend) == (("p",) if doubtful else ())
+
+
+def test_held_parameters_and_sides_beyond_a_bound_are_not_judged(
+    bent: Callable[..., tuple[str, ...]],
+) -> None:
+    """At b = 0.155 only the upper side is off by more than three tenths."""
+    half = 0.5 / np.sqrt(2 * N)
+    assert bent(0.155, bounds=(-1e9, 5.0 + half)) == ()
+    # A rise of 0.49 on the lower side is too small.
+    assert bent(0.3, bounds=(-1e9, 5.0 + half)) == ("p",)
+    assert bent(0.155, bounds=(5.0 - half, 1e9)) == ("p",)
+    assert bent(0.5, held=True) == ()
+
+
+def test_parameters_of_an_effect_with_many_peaks_are_doubtful() -> None:
+    """A drive that rings: one standard error away may still be the same of many peaks."""
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
+    problem = Problem(campaign, "coulomb", "journal", ("drive_compliance",))
+    values = problem.starts({**LAW, "F_s_n": 6.0})[0]
+    solution = problem.solution(values, campaign.samples, WHITE)
+    found = doubtful_errors(problem, solution, dict.fromkeys(problem.names, ParameterValue(1.0)))
+    assert {n for n in problem.names if n.startswith("drive_compliance.")} <= set(found)

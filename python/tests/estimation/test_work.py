@@ -1,0 +1,100 @@
+"""The cost of fits in inner steps of the model, its limit, and what an interrupted fit returns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from campaigns import campaign
+from coulomb_problems import coulomb_problem, values_of
+from jbf import Parameter, Rig, fit
+from jbf.errors import Stopped, Unfinished
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import minimum
+from jbf.estimation.problem import Problem
+from jbf.estimation.work import ANY_STEPS, STEPS_A_SAMPLE, Work
+
+
+def test_steps_are_counted_up_to_the_limit() -> None:
+    work = Work(10.0)
+    work.take(4.0)
+    work.take(6.0)
+    with pytest.raises(Unfinished):
+        work.take(1.0)
+    assert work.part(0.5).most == 5.0
+    work.renew(3.0)
+    work.take(3.0)
+    with pytest.raises(Unfinished):
+        work.take(0.1)
+
+
+def test_limit_grows_with_the_samples_and_is_never_small() -> None:
+    assert Work.of(10).most == ANY_STEPS
+    assert Work.of(10**6).most == STEPS_A_SAMPLE * 1e6 > ANY_STEPS
+
+
+def test_prediction_costs_its_inner_steps_and_derivatives_twice_as_many() -> None:
+    rig, runs, _ = campaign(5)
+    prepared = Campaign.prepare(rig, runs[:2])
+    problem = Problem(prepared, "journal", "journal", ())
+    values = problem.starts({})[0]
+    steps = problem.chain.inner_steps(values, prepared.motions)
+    assert steps >= 2.0 * sum(len(p.run) for p in prepared.prepared)
+    for cost, call in ((steps, problem.predict), (2.0 * steps, problem.linearise)):
+        prepared.work.renew()
+        call(values)
+        assert prepared.work.taken == pytest.approx(cost)
+    # A part of a campaign uses up the work of the whole.
+    prepared.work.renew()
+    problem.predict(values, [1])
+    one = prepared.work.taken
+    Problem(prepared.only([1]), "journal", "journal", ()).predict(values)
+    assert one < steps
+    assert prepared.work.taken == pytest.approx(2.0 * one)
+
+
+def test_search_beyond_the_limit_is_unfinished_and_has_seen_a_best() -> None:
+    problem = coulomb_problem(four_runs(coulomb, noise_n=0.1))
+    once = problem.chain.inner_steps(values_of(problem), problem.campaign.motions)
+    problem.campaign.work.renew(12.0 * once)
+    with pytest.raises(Unfinished) as ended:
+        minimum(problem, [{}])
+    assert ended.value.steps > 12.0 * once
+    assert problem.best.values is not None
+    assert np.all(np.isfinite(problem.best.values))
+    assert "\n" not in str(ended.value)
+
+
+@pytest.fixture
+def interrupting() -> Iterator[str]:
+    """A law during whose 60th evaluation the user presses Ctrl-C."""
+    calls: list[int] = []
+
+    def interrupting_law(velocity_m_s, F_c_n, F_v_n_s_m, v_0_m_s):  # type: ignore[no-untyped-def]
+        calls.append(1)
+        if len(calls) == 60:
+            raise KeyboardInterrupt
+        return F_c_n * np.tanh(velocity_m_s / v_0_m_s) + F_v_n_s_m * velocity_m_s
+
+    pages = [
+        Parameter("F_c_n", "N", lower=0.0, upper=1e3, starts=(1.0,)),
+        Parameter("F_v_n_s_m", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
+        Parameter("v_0_m_s", "m/s", lower=1e-5, upper=1.0, starts=(0.3,), log=True),
+    ]
+    yield jbf.register_law(interrupting_law, parameters=pages).name
+    jbf.forget_law("interrupting_law")
+
+
+def test_interrupted_fit_returns_the_best_values_so_far(interrupting: str) -> None:
+    runs = four_runs(coulomb, noise_n=0.1)
+    with pytest.raises(Stopped) as stopped:
+        fit(Rig(), runs, law=interrupting)
+    best = stopped.value.fit
+    assert not best.converged
+    assert np.all(np.isfinite(list(best.values.values())))
+    start = jbf.Model(Rig(), interrupting)
+    at_start = jbf.compare(start, runs).rms_n
+    assert best.rms_n < at_start

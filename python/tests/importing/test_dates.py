@@ -1,0 +1,127 @@
+"""Dates and times of day as loggers write them, against the calendar of Python."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta, timezone
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from jbf import InputError
+from jbf.importing.formats.dates import (
+    DAY_FIRST,
+    MONTH_FIRST,
+    NO_INSTANT,
+    Instants,
+    as_date,
+    day_or_month_first,
+    seconds_since,
+)
+
+EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
+MOMENTS = st.datetimes(datetime(1970, 1, 2), datetime(2099, 12, 31))
+
+
+def ns(moment: datetime) -> int:
+    """Nanoseconds since 1970 by the calendar of the standard library."""
+    since = moment.replace(tzinfo=moment.tzinfo or timezone.utc) - EPOCH
+    return (since.days * 86_400 + since.seconds) * 10**9 + since.microseconds * 1000
+
+
+def parsed(cell: str, order: str = DAY_FIRST) -> int:
+    return int(Instants(order).parse([cell], [False])[0])
+
+
+@given(MOMENTS)
+def test_date_agrees_with_the_calendar_in_every_notation(moment: datetime) -> None:
+    fraction = f"{moment.microsecond:06d}"
+    day, clock = f"{moment:%d.%m.%Y}", f"{moment:%H:%M:%S}"
+    for cell in (
+        moment.isoformat(),
+        f"{day} {clock},{fraction}",
+        f"{moment:%Y/%m/%d} {clock}.{fraction}",
+        f"{moment:%d/%m/%Y}  {moment:%I:%M:%S}.{fraction} {moment:%p}",
+        f"{moment:%Y-%m-%d}T{clock}.{fraction}Z",
+    ):
+        assert parsed(cell) == ns(moment), cell
+    american = f"{moment:%m/%d/%Y} {moment:%I:%M:%S}.{fraction} {moment:%p}"
+    assert parsed(american, MONTH_FIRST) == ns(moment)
+
+
+@pytest.mark.parametrize(
+    ("cell", "hour"),
+    [
+        ("12:00:00 AM", 0),
+        ("12:30:00 a.m.", 0.5),
+        ("01:00:00 AM", 1),
+        ("11:59:59 am", 12 - 1 / 3600),
+        ("12:00:00 PM", 12),
+        ("01:00:00 p.m.", 13),
+        ("11:15 PM", 23.25),
+    ],
+)
+def test_twelve_hour_clock_has_twelve_at_midnight_and_noon(cell: str, hour: float) -> None:
+    assert parsed(cell) == round(hour * 3600) * 10**9
+
+
+@given(MOMENTS, st.integers(-12 * 4, 14 * 4))
+def test_time_zone_offset_gives_the_same_instant(moment: datetime, quarters: int) -> None:
+    zone = timezone(timedelta(minutes=15 * quarters))
+    local = moment.replace(microsecond=0, tzinfo=timezone.utc).astimezone(zone)
+    offset = local.strftime("%z")
+    for written in (offset, f"{offset[:3]}:{offset[3:]}"):
+        assert parsed(f"{local:%Y-%m-%d %H:%M:%S}{written}") == ns(local)
+
+
+def test_time_of_day_that_restarts_is_of_the_next_day() -> None:
+    cells = ["23:59:58", "23:59:59.5", "", "00:00:01", "12:00:01", "00:00:00"]
+    result = Instants().parse(cells, [not cell for cell in cells])
+    day = 86_400 * 10**9
+    assert result.tolist() == [
+        day - 2 * 10**9,
+        day - 5 * 10**8,
+        NO_INSTANT,
+        day + 10**9,
+        day + day // 2 + 10**9,
+        2 * day,
+    ]
+    seconds = seconds_since(result, int(result[0]))
+    assert np.isnan(seconds[2])
+    assert seconds[[0, 1, 3]].tolist() == [0.0, 1.5, 3.0]
+    # A small step back is not taken for a new day.
+    back = Instants().parse(["10:00:01", "10:00:00"], [False, False])
+    assert back[1] - back[0] == -(10**9)
+
+
+@pytest.mark.parametrize(
+    "cell", ["2026-02-30", "31.04.2026 10:00", "noon", "10", "2026-13-01", "12:00:00 XM", "1.2"]
+)
+def test_invalid_date_is_refused_with_its_row(cell: str) -> None:
+    with pytest.raises(InputError, match="is no date and no time of day") as refused:
+        Instants().parse(["2026-01-01", cell], [False, False])
+    assert refused.value.row == 1
+
+
+@pytest.mark.parametrize(
+    ("cells", "order"),
+    [
+        (["13/02/2026", "01/02/2026"], DAY_FIRST),
+        (["02/13/2026", "02/01/2026"], MONTH_FIRST),
+        (["01.02.2026", "02.03.2026"], DAY_FIRST),
+        (["01/02/2026", "02/03/2026"], None),
+        (["01/02/2026 10:00", "01/02/2026 11:00"], DAY_FIRST),
+        (["2026-01-02", "10:00:00"], DAY_FIRST),
+    ],
+)
+def test_order_of_day_and_month_is_found_where_it_is_unambiguous(
+    cells: list[str], order: str | None
+) -> None:
+    assert day_or_month_first(cells) == order
+
+
+def test_time_of_day_has_no_date() -> None:
+    assert as_date(3600 * 10**9) is None
+    assert as_date(ns(datetime(2026, 11, 24, 12, 30))) == "2026-11-24T12:30:00.000000000"
+    # A year of two digits is of this century.
+    assert parsed("24.11.26") == ns(datetime(2026, 11, 24))

@@ -1,0 +1,234 @@
+"""Units against their definitions, and column expressions against the arithmetic of Python."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from jbf.errors import InputError
+from jbf.importing.evaluation import converted, evaluate
+from jbf.importing.expression import parse_expression, references, written
+from jbf.importing.targets import wanted_unit
+from jbf.importing.units import ONE, parse_unit, unit_of_name
+
+# Definitions: SI brochure; international pound, inch and standard gravity.
+SIZES = {
+    "kN": 1e3, "lbf": 4.4482216152605, "kgf": 9.80665, "kp": 9.80665, "mm": 1e-3, "µm": 1e-6,
+    "in": 0.0254, "rpm": 2 * math.pi / 60, "U/min": 2 * math.pi / 60, "1/min": 2 * math.pi / 60,
+    "deg": math.pi / 180, "°/s": math.pi / 180, "rev": 2 * math.pi, "bar": 1e5,
+    "psi": 6894.757293168,
+    "N/mm^2": 1e6, "MPa": 1e6, "Nm": 1.0, "N·m": 1.0, "N-m": 1.0, "Ncm": 0.01,
+    "lbf in": 0.112984829,
+    "mm/s": 1e-3, "m/min": 1 / 60, "km/h": 1 / 3.6, "%": 0.01, "ms": 1e-3, "min": 60.0,
+    "kg m²": 1.0, "N/(mm s)": 1e3, "m s^-2": 1.0, "mA": 1e-3, "gon": math.pi / 200,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SIZES)
+def test_unit_agrees_with_its_definition(text: str) -> None:
+    unit = parse_unit(text)
+    assert unit is not None
+    assert unit.in_si == pytest.approx(SIZES[text], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "foo", "N//m", "m^", "(m", "m)", "N m ^2 x", "Kanal", "#", "1/"]
+)
+def test_text_that_is_no_unit_gives_none(text: str) -> None:
+    assert parse_unit(text) is None
+
+
+def test_temperature_scales_have_their_offsets() -> None:
+    celsius, fahrenheit, kelvin = (parse_unit(u) for u in ("°C", "°F", "K"))
+    assert celsius is not None
+    assert fahrenheit is not None
+    assert kelvin is not None
+    assert fahrenheit.converted(np.array([32.0, 212.0]), celsius) == pytest.approx([0.0, 100.0])
+    assert kelvin.converted(np.array([293.15]), celsius) == pytest.approx([20.0])
+    # No conversion leaves the bits unchanged.
+    assert celsius.converted(np.array([22.5]), celsius).tolist() == [22.5]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "wanted", "expected"),
+    [
+        (math.pi / 30, "rad/s", "rpm", 1.0),
+        (90.0, "deg", "rev", 0.25),
+        (180.0, "deg", "rad", math.pi),
+        (36.0, "km/h", "m/s", 10.0),
+    ],
+)
+def test_quantity_is_converted(value: float, unit: str, wanted: str, expected: float) -> None:
+    source, target = parse_unit(unit), parse_unit(wanted)
+    assert source is not None
+    assert target is not None
+    assert source.converted(np.array([value]), target)[0] == pytest.approx(expected)
+
+
+@given(st.integers(0, 10**9))
+def test_milliseconds_convert_to_the_nearest_double(count: int) -> None:
+    ms, s = parse_unit("ms"), parse_unit("s")
+    assert ms is not None
+    assert s is not None
+    assert ms.converted(np.array([float(count)]), s)[0] == float(Fraction(count, 1000))
+
+
+def test_suffix_of_a_name_is_a_unit() -> None:
+    assert unit_of_name("torque_n_m") == ("torque", parse_unit("N m"))
+    assert unit_of_name("speed") is None
+
+
+# Expressions.
+NAMES = ["F", "F2", "Torque [Nm]", "Kraft / kN", "a-b", "t(ms)", "Weg  links", "sin"]
+MEANT = {name: name for name in NAMES} | {"Torque": "Torque [Nm]"}
+UNITS = {"Torque [Nm]": "Nm", "Kraft / kN": "kN", "t(ms)": "ms"}
+VALUES = {name: np.array([i + 1.5, -2.0 * i - 1.0]) for i, name in enumerate(NAMES)}
+
+
+def value(text: str, key: str) -> np.ndarray:
+    node = parse_expression(text, MEANT)
+    return converted(evaluate(node, VALUES, UNITS), wanted_unit(key), key)
+
+
+FUNCTIONS = ["abs", "sign", "sqrt", "cos"]
+"""Without `sin`, which is the name of a column here."""
+BARE = {name: name for name in NAMES if name != "sin"}
+
+
+def trees() -> st.SearchStrategy[tuple[str, str]]:
+    """A column expression, and the same in Python."""
+    leaf = st.one_of(
+        st.sampled_from(NAMES).map(lambda n: (written(n), f"v[{n!r}]")),
+        # NumPy numbers, which can be divided by zero.
+        st.floats(0.01, 1e3).map(lambda x: (repr(x), f"float64({x!r})")),
+    )
+
+    def grow(inner: st.SearchStrategy[tuple[str, str]]) -> st.SearchStrategy[tuple[str, str]]:
+        pair = st.tuples(inner, st.sampled_from("+-*/"), inner)
+        return st.one_of(
+            pair.map(lambda p: (f"({p[0][0]} {p[1]} {p[2][0]})", f"({p[0][1]} {p[1]} {p[2][1]})")),
+            inner.map(lambda p: (f"-{p[0]}", f"(-{p[1]})")),
+            st.tuples(st.sampled_from(FUNCTIONS), inner).map(
+                lambda p: (f"{p[0]}({p[1][0]})", f"{p[0]}({p[1][1]})")
+            ),
+        )
+
+    return st.recursive(leaf, grow, max_leaves=8)
+
+
+@settings(deadline=None)
+@given(trees())
+@example(("-(1.0 / (1.0 - 1.0))", "(-(float64(1.0) / (float64(1.0) - float64(1.0))))"))
+def test_expression_agrees_with_python(tree: tuple[str, str]) -> None:
+    ours, python = tree
+    result = evaluate(parse_expression(ours, MEANT), VALUES, dict.fromkeys(NAMES, ""))
+    with np.errstate(all="ignore"):
+        functions = {name: getattr(np, name) for name in FUNCTIONS}
+        wanted = eval(python, {"v": VALUES, "float64": np.float64, **functions})
+    np.testing.assert_array_equal(np.asarray(result.value), wanted)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "known"),
+    [
+        ("sin(30 [deg])", "", 0.5),
+        ("cos(60 [deg])", "", 0.5),
+        ("sin(0.25 [rev])", "", 1.0),
+        ("sqrt(4 [mm] / 1 [m])", "", np.sqrt(0.004)),
+        ("sign(-3 [kN])", "", -1.0),
+        ("abs(-3 [kN])", "N", 3000.0),
+        ("2 [kN] * sign(0.1 [mm])", "N", 2000.0),
+    ],
+)
+def test_functions_convert_their_units(text: str, unit: str, known: float) -> None:
+    result = evaluate(parse_expression(text, BARE), VALUES, UNITS)
+    wanted = parse_unit(unit) if unit else ONE
+    assert wanted is not None
+    assert float(converted(result, wanted, "x")) == pytest.approx(known)
+
+
+@pytest.mark.parametrize(
+    ("text", "fragment"),
+    [
+        ("sin(3 [N])", "sin of N, which is no angle"),
+        ("cos(2 [rad] * 1 [rad])", "no angle"),
+        ("sqrt(4 [N])", "the root of N has no unit"),
+        ("abs(20 [C])", "has a zero of its own"),
+    ],
+)
+def test_functions_of_wrong_units_are_refused(text: str, fragment: str) -> None:
+    with pytest.raises(InputError, match=fragment):
+        evaluate(parse_expression(text, BARE), VALUES, UNITS)
+
+
+@given(st.text(max_size=40))
+@settings(deadline=None, max_examples=40)
+def test_arbitrary_text_is_an_expression_or_refused_in_one_line(text: str) -> None:
+    refused = None
+    try:
+        node = parse_expression(text, MEANT)
+    except InputError as error:
+        refused = str(error)
+    if refused is None:
+        assert all(r.column in NAMES for r in references(node))
+    else:
+        assert "\n" not in refused
+
+
+def test_column_names_may_contain_units_and_operators() -> None:
+    assert value("Torque [Nm] / 0.5 [m]", "friction_n").tolist() == [7.0, -10.0]
+    assert value("Torque / 0.5", "friction_n").tolist() == [7.0, -10.0]
+    assert value("Kraft / kN", "friction_n").tolist() == [4500.0, -7000.0]
+    assert value("Torque [Ncm]", "torque_n_m") == pytest.approx([0.035, -0.05])
+    assert value("a-b [mm]", "position_m") == pytest.approx([0.0055, -0.009])
+    assert value("F2 [N] - F [N]", "friction_n").tolist() == [1.0, -2.0]
+    assert value("`Weg  links` [rpm] * 10 [mm]", "velocity_m_s") == pytest.approx(
+        VALUES["Weg  links"] * 2 * math.pi / 60 * 0.01
+    )
+
+
+def test_counts_turns_pitch_and_percent_are_converted() -> None:
+    assert value("F [counts] / 4096 [counts/rev]", "angle_rad") == pytest.approx(
+        VALUES["F"] / 4096 * 2 * math.pi
+    )
+    assert value("F [mm] / 5 [mm/rev]", "angle_rad") == pytest.approx(VALUES["F"] / 5 * 2 * math.pi)
+    assert value("F [rev] * 5 [mm/rev]", "position_m") == pytest.approx(VALUES["F"] * 5e-3)
+    assert value("F [bar] * 314 [mm^2]", "friction_n") == pytest.approx(VALUES["F"] * 31.4)
+    assert value("F [%] * 2 [N m]", "torque_n_m") == pytest.approx(VALUES["F"] * 0.02)
+
+
+REFUSED = {
+    ("F", "friction_n"): "no N",
+    ("F [mm]", "friction_n"): "no N",
+    ("F [counts] / 4096", "angle_rad"): "turns, degrees or radians?",
+    ("F [mm] / 5 [mm]", "angle_rad"): "turns, degrees or radians?",
+    ("Kraft / kN * 1000", "friction_n"): "a second time",
+    ("t(ms) / 1000", "time_s"): "a second time",
+    ("t(ms) * 0.001", "time_s"): "a second time",
+    ("F [bar] + F2 [mm]", "friction_n"): "cannot be added",
+    ("F [kg]", "friction_n"): "no N",
+    ("F [?]", "friction_n"): "its unit is open",
+    ("F [foo]", "friction_n"): "is no known unit",
+    ("F [°C] * 2", "temperature_c"): "a zero of its own",
+    ("G", "friction_n"): 'no column "G"',
+    ("F +", "friction_n"): "ends where",
+    ("(F", "friction_n"): "not closed",
+    ("__import__('os')", "friction_n"): "no column",
+}
+
+
+@pytest.mark.parametrize(("text", "key"), REFUSED)
+def test_meaningless_expression_is_refused(text: str, key: str) -> None:
+    with pytest.raises(InputError) as refused:
+        value(text, key)
+    assert REFUSED[text, key] in str(refused.value)
+
+
+@pytest.mark.parametrize("key", ["fricton_n", "position_mm", "velocity_ms", "torque_nm"])
+def test_misspelt_target_is_refused_with_a_suggestion(key: str) -> None:
+    with pytest.raises(InputError, match="did you mean"):
+        wanted_unit(key)

@@ -1,0 +1,18 @@
+"""The `InputError` of a call, for tests that check which place of the input it names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from jbf import InputError
+
+
+def input_error(call: Callable[..., Any], *arguments: Any, **named: Any) -> InputError:
+    """Return the `InputError` that the call raises; its message must be one line with a remedy."""
+    with pytest.raises(InputError) as caught:
+        call(*arguments, **named)
+    assert "\n" not in str(caught.value)
+    assert caught.value.mend
+    return caught.value

@@ -1,0 +1,153 @@
+"""Simulated campaigns of Coulomb friction, which is linear in every parameter.
+
+The records come from closed forms written out here and in `by_hand`. `Textbook` computes fits,
+errors and likelihood gains by linear least squares, independently of jbf.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from by_hand import LAW, Array, Friction, coulomb, four_runs, wandering
+from jbf import Diagnosis, Rig, Run, diagnose, effects
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import settle
+from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from scipy import stats
+from shared import shared
+
+RECORDED_QUANTITIES = {"angle", "path", "position", "loads", "temperatures"}
+CANDIDATES = sum(
+    "coulomb" not in effect.refused and not RECORDED_QUANTITIES & set(effect.needs)
+    for effect in effects().values()
+)
+"""Number of effects that apply to Coulomb's law and need no column in addition to the motion."""
+
+
+def mass(kilograms: float) -> Friction:
+    """Coulomb friction and the inertia of a mass."""
+    return lambda t, v, a: coulomb(t, v, a) + kilograms * a
+
+
+def lag(seconds: float) -> Friction:
+    """Coulomb friction measured late, to first order: a lag and a delay are then the same."""
+    return lambda t, v, a: coulomb(t, v, a) - seconds * 20.0 * a
+
+
+def offset_and_tone(offset_n: float, amplitude_n: float) -> Friction:
+    """Coulomb friction, a sensor offset and a tone of 3 Hz."""
+    return lambda t, v, a: coulomb(t, v, a) + offset_n + amplitude_n * np.sin(2.0 * np.pi * 3.0 * t)
+
+
+def offset_and_drag(t: Array, v: Array, a: Array) -> Array:
+    """Coulomb friction, a sensor offset of 0.5 N and a drag of 150 N s^2/m^2."""
+    return coulomb(t, v, a) + 0.5 + 150.0 * v * np.abs(v)
+
+
+HIDDEN: dict[str, tuple[Friction, float]] = {
+    "nothing": (coulomb, 0.1),
+    "weak mass": (mass(0.06), 0.1),
+    "mass": (mass(0.2), 0.1),
+    "offset and drag": (offset_and_drag, 0.1),
+    "lag": (lag(0.005), 0.05),
+    "offset and tone": (offset_and_tone(0.5, 0.46), 0.3),
+}
+"""Friction and standard deviation of its white noise (N) by name of the campaign."""
+
+
+def linear_runs(hidden: str) -> list[Run]:
+    """Four runs of 10 s, each in one direction."""
+    if hidden == "mass in one run":
+        first = wandering("a", mass(3.2), way=1.0, rate=12.0, noise_n=0.1, seed=0)
+        return [first, *four_runs(coulomb, noise_n=0.1)[1:]]
+    friction, noise_n = HIDDEN[hidden]
+    return four_runs(friction, noise_n=noise_n)
+
+
+@shared
+def linear_diagnosis(hidden: str) -> Diagnosis:
+    """The diagnosis of one of these campaigns."""
+    return diagnose(Rig(), linear_runs(hidden), law="coulomb")
+
+
+def reversing_runs(
+    change: Callable[[int, Array, Array, np.random.Generator], Array],
+    *,
+    runs: int = 6,
+    duration_s: float = 30.0,
+    seed: int = 0,
+) -> list[Run]:
+    """Runs that reverse, each at times of its own, so that an offset is not dry friction.
+
+    Parameters
+    ----------
+    change
+        Recorded force from the number of the run, time (s), friction (N) and random generator.
+    """
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, duration_s, 0.02)
+    records = []
+    for i in range(runs):
+        rate = 1.0 + 0.17 * i
+        v = 0.12 * np.sin(rate * t) + 0.05 * np.sin(0.618 * rate * t + i)
+        force = change(i, t, coulomb(t, v, v), random)
+        records.append(Run.from_arrays(t, v, force, name=f"run {i}"))
+    return records
+
+
+def fit_from_truth(campaign: Campaign, *effects: str) -> tuple[Problem, Solution]:
+    """Coulomb's law fitted from its true values; these motions do not determine F_s."""
+    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
+    known = {"F_s_n": 6.0, **LAW, "sensor_offset.b_n": 0.0}
+    start = problem.starts({name: known[name] for name in problem.names})[0]
+    near = problem.solution(start, problem.samples_at(start), WHITE, False)
+    return problem, settle(problem, near)
+
+
+class Textbook:
+    """Linear least squares of the four runs on direction, speed and acceleration."""
+
+    def __init__(self, runs: list[Run]) -> None:
+        # The motions of `four_runs` do not depend on the friction.
+        accelerations = four_runs(lambda t, v, a: a, noise_n=0.0)
+        self.x = [
+            np.stack([np.sign(r.velocity_m_s), r.velocity_m_s, np.asarray(a.friction_n)], axis=1)
+            for r, a in zip(runs, accelerations, strict=True)
+        ]
+        self.y = [np.asarray(run.friction_n) for run in runs]
+        self.samples = sum(map(len, self.y))
+
+    def square(self, columns: int, fitted: list[int], predicted: list[int]) -> float:
+        """Sum of squared errors in `predicted` of a model fitted to the runs `fitted`."""
+        x = np.concatenate([self.x[i][:, :columns] for i in fitted])
+        y = np.concatenate([self.y[i] for i in fitted])
+        values = np.linalg.lstsq(x, y, rcond=None)[0]
+        errors = [self.y[i] - self.x[i][:, :columns] @ values for i in predicted]
+        return float(sum(np.sum(e**2) for e in errors))
+
+    def rms(self, columns: int) -> float:
+        """RMS error of a fit to all runs (N)."""
+        return float(np.sqrt(self.square(columns, [0, 1, 2, 3], [0, 1, 2, 3]) / self.samples))
+
+    def held_out_rms(self, columns: int) -> float:
+        """RMS error over runs that are predicted from the other three (N)."""
+        square = sum(self.square(columns, [k for k in range(4) if k != i], [i]) for i in range(4))
+        return float(np.sqrt(square / self.samples))
+
+    def gain(self) -> float:
+        """Twice the log-likelihood gain of the mass in white noise."""
+        return float(2.0 * self.samples * np.log(self.rms(2) / self.rms(3)))
+
+
+def threshold(parameters: int, samples: int) -> float:
+    """Gain that an effect of so many parameters must exceed under the default policy.
+
+    The larger of the chi-square quantile of a false-alarm rate of 1 % shared among the candidates
+    (Bonferroni) plus the artefact margin of 22, and of 3 % of the residual; log n for each
+    further parameter (Schwarz 1978).
+    """
+    least = max(float(stats.chi2.isf(0.01 / CANDIDATES, 1)) + 22.0, 0.03**2 * samples)
+    return least + max(parameters - 1, 0) * float(np.log(samples))

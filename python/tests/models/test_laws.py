@@ -1,0 +1,263 @@
+"""Friction laws of drives: parameters recovered from data of an independent implementation."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import friction_laws as independent
+import jbf
+import numpy as np
+import pytest
+from shared import shared
+
+NEWTONS = [law for law in jbf.laws().values() if not law.needs_bearing]
+T = np.arange(0.0, 20.0, 0.004)
+EXTENDED = pytest.mark.extended
+
+
+@shared
+def runs_of(law: str, amplitude_m: float, noise_n: float, **p: float) -> list[jbf.Run]:
+    """A slow and a fast run."""
+    result = []
+    for seed, omega in enumerate((0.8, 4.0)):
+        speed = independent.stroke_speed(amplitude_m, omega)
+        friction = getattr(independent, law)(speed, T, **p)
+        result.append(independent.record(speed, T, friction, noise_n, seed, f"run{seed}"))
+    return result
+
+
+def check(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within: float) -> None:
+    assert fit.rms_n < 1.05 * noise_n, fit.report()
+    for name, value in truth.items():
+        result = fit.parameters[name]
+        assert result.value == pytest.approx(value, rel=within), fit.report()
+
+
+@pytest.mark.parametrize("size", [0.02, pytest.param(1.0, marks=EXTENDED), 40.0])
+def test_stribeck_parameters_are_recovered_at_any_size(size: float) -> None:
+    p = {"fc": 6.0 * size, "fs": 9.0 * size, "vs": 0.004, "delta": 1.6, "fv": 40.0 * size}
+    fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="stribeck")
+    truth = {"F_c_n": p["fc"], "F_s_n": p["fs"], "v_s_m_s": 0.004, "F_v_n_s_m": p["fv"]}
+    check(fit, truth, 0.05 * size, 0.04)
+
+
+@pytest.mark.parametrize("size", [0.02, 40.0])
+def test_coulomb_parameters_are_recovered_from_a_flat_stribeck_curve(size: float) -> None:
+    p = {"fc": 6.0 * size, "fs": 6.0 * size, "vs": 0.004, "delta": 1.0, "fv": 40.0 * size}
+    fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="coulomb")
+    check(fit, {"F_c_n": p["fc"], "F_v_n_s_m": p["fv"]}, 0.05 * size, 0.01)
+    assert "never moved" in str(fit.parameters["F_s_n"].note)
+
+
+@pytest.mark.parametrize("exponent", [1.0, *(pytest.param(e, marks=EXTENDED) for e in (0.6, 1.8))])
+def test_dahl_parameters_are_recovered(exponent: float) -> None:
+    p = {"fc": 2.3, "s0": 5e4, "exponent": exponent, "fv": 20.0}
+    fit = jbf.fit(jbf.Rig(), runs_of("dahl", 2e-4, 0.02, **p), law="dahl")
+    truth = {"F_c_n": 2.3, "sigma_0_n_m": 5e4, "exponent": exponent}
+    check(fit, truth, 0.02, 0.03)
+
+
+def test_lugre_parameters_are_recovered() -> None:
+    p = {"fc": 6.0, "fs": 9.0, "vs": 0.003, "s0": 6e4, "s1": 150.0, "vd": 0.02, "fv": 40.0}
+    fit = jbf.fit(jbf.Rig(), runs_of("lugre", 1e-3, 0.03, **p), law="lugre")
+    truth = {"F_c_n": 6.0, "F_s_n": 9.0, "v_s_m_s": 0.003, "sigma_0_n_m": 6e4, "F_v_n_s_m": 40.0}
+    check(fit, truth, 0.03, 0.05)
+
+
+# Amplitude and level of a joint (rad, N m), of a machine slide (m, N), of a precision stage.
+SIZES = [
+    pytest.param(0.05, 40.0, marks=EXTENDED),
+    (2e-4, 2.3),
+    pytest.param(2e-6, 0.05, marks=EXTENDED),
+]
+
+
+@shared
+def presliding_runs(law: str, amplitude_m: float, fc: float, **shape: float) -> list[jbf.Run]:
+    """Two runs whose presliding displacement is a fifth of the amplitude."""
+    s0, fv = fc / (0.2 * amplitude_m), 0.02 * fc / amplitude_m
+    result = []
+    for seed, omega in enumerate((0.8, 4.0)):
+        speed = independent.stroke_speed(amplitude_m, omega)
+        friction = getattr(independent, law)(speed, T, fc=fc, s0=s0, fv=fv, **shape)
+        count = 1e-4 * amplitude_m
+        result.append(
+            independent.record(speed, T, friction, 0.02 * fc, seed, f"run{seed}", count_m=count)
+        )
+    return result
+
+
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+@pytest.mark.parametrize("exponent", [0.7, pytest.param(1.0 / 3.0, marks=EXTENDED)])
+def test_maxwell_slip_parameters_are_recovered(
+    amplitude_m: float, fc: float, exponent: float
+) -> None:
+    runs = presliding_runs("maxwell_slip", amplitude_m, fc, exponent=exponent)
+    fit = jbf.fit(jbf.Rig(), runs, law="maxwell_slip")
+    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check(fit, {"exponent": exponent, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+
+
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+@pytest.mark.parametrize("breakaway", [0.3, pytest.param(0.8, marks=EXTENDED)])
+def test_elasto_plastic_parameters_are_recovered(
+    amplitude_m: float, fc: float, breakaway: float
+) -> None:
+    runs = presliding_runs("elasto_plastic", amplitude_m, fc, breakaway=breakaway)
+    fit = jbf.fit(jbf.Rig(), runs, law="elasto_plastic")
+    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check(fit, {"breakaway": breakaway, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize(
+    ("law", "shape"),
+    [
+        ("maxwell_slip", {"exponent": 0.5}),
+        ("maxwell_slip", {"exponent": 1.0}),
+        ("elasto_plastic", {"breakaway": 0.6}),
+    ],
+)
+def test_presliding_law_is_adequate_for_its_own_data(law: str, shape: dict[str, float]) -> None:
+    diagnosis = jbf.diagnose(jbf.Rig(), presliding_runs(law, 2e-4, 2.3, **shape), law=law)
+    assert diagnosis.verdict == "adequate", diagnosis.summary()
+    assert diagnosis.effects == ()
+    tried = {t.effect for step in diagnosis.steps for t in step.trials}
+    assert not tried & {"presliding", "drive_compliance", "backlash"}
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
+def test_stribeck_excess_of_a_presliding_law_is_found(amplitude_m: float, fc: float) -> None:
+    """Generalised Maxwell slip is the law `maxwell_slip` with `stribeck_excess`."""
+    vs = 0.6 * amplitude_m
+    runs = presliding_runs("maxwell_slip", amplitude_m, fc, exponent=0.5, excess=0.4 * fc, vs=vs)
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
+    assert diagnosis.effects == ("stribeck_excess",), diagnosis.summary()
+    result = diagnosis.model.parameters
+    assert result["stribeck_excess.a"].value == pytest.approx(0.4 * fc, rel=0.05)
+    assert result["stribeck_excess.v_s_m_s"].value == pytest.approx(vs, rel=0.1)
+    assert result["F_c_n"].value == pytest.approx(fc, rel=0.02)
+
+
+def test_vibration_at_rest_causes_no_presliding_force() -> None:
+    """A vibration of nanometres at rest, then a stroke along the virgin curve."""
+    t = np.arange(0.0, 4.0, 0.005)
+    v = np.where(t < 1.0, -1e-9 * np.cos(40.0 * t), 2e-4 * np.minimum(2.0 * (t - 1.0), 1.0))
+    for law in ("dahl", "maxwell_slip", "elasto_plastic"):
+        force = jbf.Model(jbf.Rig(), law).predict(jbf.Run.from_arrays(t, v))
+        assert np.max(np.abs(force[t < 1.0])) < 1e-3, law
+        assert np.all(np.diff(force[t > 1.0]) > -1e-9), law
+    sliding = jbf.Run.from_arrays(t, np.where(t < 2.0, -2e-4, 2e-4))
+    # A level of 10 N and 2 mN of viscous friction.
+    assert jbf.Model(jbf.Rig(), "dahl").predict(sliding)[0] == pytest.approx(-10.002)
+
+
+@pytest.mark.extended
+def test_runs_cut_within_rests_are_adequate_with_unsettled_starts() -> None:
+    """Each run starts with the presliding deflection in which the previous one ended."""
+    p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
+
+    def speed(t: float) -> float:
+        # A stroke in each direction, followed by a rest.
+        phase = t % 2.0
+        way = 1.0 if (t // 2.0) % 2.0 == 0.0 else -1.0
+        return way * 2.5e-4 * np.sin(np.pi * min(phase, 1.0))
+
+    t = np.arange(0.0, 40.0, 0.005)
+    complete = independent.record(
+        speed, t, independent.maxwell_slip(speed, t, **p), 0.03, 0, count_m=1e-9
+    )
+    runs = []
+    for k in range(5):
+        part = complete.select((t >= 8.0 * k + 1.5) & (t < 8.0 * k + 9.5))
+        runs.append(dataclasses.replace(part, name=f"run{k}"))
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
+    assert diagnosis.verdict == "adequate", diagnosis.summary()
+    assert {f.kind for f in diagnosis.findings} == {"unsettled_start"}
+    assert diagnosis.model.parameters["F_c_n"].value == pytest.approx(2.3, rel=0.01)
+
+
+@pytest.mark.extended
+def test_seven_parameter_model_is_recovered() -> None:
+    p = {
+        "kt": 1e5,
+        "fc": 6.0,
+        "fv": 40.0,
+        "fs": 3.0,
+        "vs": 0.003,
+        "tau": 0.03,
+        "gamma": 0.8,
+    }
+    runs = runs_of("seven", 2e-3, 0.03, **p)
+    fit = jbf.fit(jbf.Rig(), runs, law="seven_parameter")
+    truth = {"k_t_n_m": 1e5, "F_c_n": 6.0, "F_v_n_s_m": 40.0, "tau_L_s": 0.03}
+    check(fit, truth, 0.03, 0.06)
+
+
+def test_lugre_prediction_agrees_with_scipy() -> None:
+    speed = independent.stroke_speed(1e-3, 3.0)
+    t = np.arange(0.0, 8.0, 1e-3)
+    v = np.array([speed(x) for x in t])
+    run = jbf.Run.from_arrays(t, v)
+    p = {"fc": 6.0, "fs": 9.0, "vs": 0.003, "s0": 6e4, "s1": 150.0, "vd": 0.02, "fv": 40.0}
+    names = ["F_c_n", "F_s_n", "v_s_m_s", "sigma_0_n_m", "sigma_1_n_s_m", "v_d_m_s", "F_v_n_s_m"]
+    values = dict(zip(names, p.values(), strict=True))
+    model = jbf.Model(jbf.Rig(), "lugre", parameters=values)
+    # The initial states differ: deflected in the direction of motion, and zero.
+    settled = t > 2.0
+    gap = model.predict(run) - independent.lugre(speed, t, **p)
+    assert float(np.max(np.abs(gap[settled]))) < 2e-3
+
+
+@pytest.mark.parametrize("law", [law.name for law in NEWTONS])
+def test_model_file_of_a_drive_law_reproduces_the_model(law: str, tmp_path: Path) -> None:
+    model = jbf.Model(jbf.Rig(), law)
+    model.save(tmp_path / "model.toml")
+    again = jbf.Model.load(tmp_path / "model.toml")
+    assert again.law == law
+    assert again.parameters == model.parameters
+    f = again.steady_friction([-0.02, 0.02])
+    assert f[1] == -f[0] > 0.0
+    assert "clock" not in again.law
+
+
+def test_effects_that_do_not_apply_to_a_law_are_refused() -> None:
+    with pytest.raises(jbf.InputError, match=r"thermal_thinning .* coulomb has no lubricant film"):
+        jbf.Model(jbf.Rig(), "coulomb", ["thermal_thinning"])
+    with pytest.raises(jbf.InputError, match="bristle of its own"):
+        jbf.Model(jbf.Rig(), "lugre", ["presliding"])
+
+
+def test_linear_axis_has_no_angle_and_needs_a_position() -> None:
+    run = runs_of("stribeck", 0.01, 0.05, fc=6.0, fs=6.0, vs=0.01, delta=1.0, fv=1.0)[0]
+    with pytest.raises(jbf.InputError, match="position_ripple"):
+        jbf.Model(jbf.Rig(), "coulomb", ["position_ripple"]).predict(run)
+    soft = jbf.Model(
+        jbf.Rig(),
+        "coulomb",
+        ["drive_compliance"],
+        {
+            "F_c_n": 6.0,
+            "F_s_n": 7.0,
+            "drive_compliance.k": 1e4,
+            "drive_compliance.c": 20.0,
+            "drive_compliance.J": 1.0,
+        },
+    )
+    assert np.all(np.isfinite(soft.predict(run)))
+    bare = jbf.Run.from_arrays(run.time_s, run.velocity_m_s, run.friction_n)
+    with pytest.raises(jbf.InputError, match="position_m"):
+        soft.predict(bare)
+
+
+@pytest.mark.extended
+def test_presliding_is_found_with_a_coulomb_law() -> None:
+    p = {"fc": 6.0, "s0": 3e4, "exponent": 1.0, "fv": 40.0}
+    runs = runs_of("dahl", 2e-3, 0.05, **p)
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law="coulomb")
+    assert diagnosis.effects == ("presliding",), diagnosis.summary()
+    tried = {t.effect for step in diagnosis.steps for t in step.trials}
+    assert not tried & {"thermal_thinning", "coulomb_drag", "position_ripple"}
+    assert all(f.axis != "regime" for f in diagnosis.failures)

@@ -1,0 +1,162 @@
+"""Predictions of the journal-bearing law against reference values; steady friction; refusals."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+import rigsim
+from jbf import Model, Rig, Run
+from jbf.models.catalogue import effects
+from rigsim.warmth import REFERENCE_C
+
+TABLE_4_2 = {"f_m": 0.26, "U_tr": 0.06, "K0": 7.5e5, "gamma": 33.0}
+
+# Time (s) and friction coefficient for U = 0.127 sin(t), thesis clock, order 8 at rtol 1e-13.
+REFERENCE = [
+    (0.0628318530717959, 0.00184398115947),
+    (0.125663706143592, 0.005914401230398),
+    (0.188495559215388, 0.01111386120857),
+    (0.251327412287183, 0.016243532861),
+]
+
+
+def sine_run(omega: float = 1.0, duration_s: float = 12.0) -> Run:
+    """A noiseless two-way sine, finely sampled."""
+    t = np.arange(0.0, duration_s, 0.002)
+    return Run.from_arrays(
+        t,
+        0.127 * np.sin(omega * t),
+        angle_rad=0.127 / omega * (1.0 - np.cos(omega * t)) / 0.0127,
+        load_n=np.full(len(t), 104.0),
+    )
+
+
+def test_prediction_agrees_with_reference_values() -> None:
+    run = sine_run()
+    force = Model(Rig.thesis(), parameters=TABLE_4_2, clock="thesis").predict(run)
+    for time, f in REFERENCE:
+        assert np.interp(time, run.time_s, force) / 104.0 == pytest.approx(f, abs=2e-5)
+
+
+def test_recorded_load_takes_precedence_over_that_of_the_rig() -> None:
+    run = sine_run()
+    heavy = Model(Rig.thesis("4.2"), parameters=TABLE_4_2).predict(run)
+    light_rig = Rig.thesis("4.3")
+    same = Model(light_rig, parameters=TABLE_4_2).predict(run)
+    np.testing.assert_allclose(heavy, same, rtol=1e-9, atol=1e-9)
+    without = Run.from_arrays(run.time_s, run.velocity_m_s, angle_rad=run.angle_rad)
+    light = Model(light_rig, parameters=TABLE_4_2).predict(without)
+    built_for_it = Model(light_rig, parameters=TABLE_4_2).predict(
+        Run.from_arrays(
+            run.time_s,
+            run.velocity_m_s,
+            angle_rad=run.angle_rad,
+            load_n=np.full(len(run), 83.5),
+        )
+    )
+    np.testing.assert_array_equal(light, built_for_it)
+    assert not np.allclose(light, heavy, rtol=1e-2)
+
+
+def test_steady_friction_agrees_with_reference_values_and_is_odd() -> None:
+    model = Model(Rig.thesis(), parameters=TABLE_4_2)
+    f = model.steady_friction([0.001, 0.02, 0.127, -0.02]) / 104.0
+    np.testing.assert_allclose(f[:2], [0.21635118264163442, 0.05782937675212433], rtol=1e-9)
+    assert f[2] == pytest.approx(0.0086, abs=1e-4)
+    assert f[3] == -f[1]
+
+
+def test_saved_model_predicts_the_same_bits(tmp_path: Path) -> None:
+    values = TABLE_4_2 | {"presliding.sigma": 1234.5678901234567, "sensor_lag.tau": 0.1 + 0.2}
+    model = Model(Rig.thesis(), effects=["sensor_lag", "presliding"], parameters=values)
+    model.save(tmp_path / "m.toml")
+    again = Model.load(tmp_path / "m.toml")
+    assert again == model
+    run = sine_run()
+    np.testing.assert_array_equal(model.predict(run), again.predict(run))
+
+
+def test_effects_are_sorted_in_the_order_of_the_signal_chain() -> None:
+    model = Model(Rig.thesis(), effects=["sensor_lag", "coulomb_drag", "drive_compliance"])
+    assert model.effects == ("drive_compliance", "coulomb_drag", "sensor_lag")
+
+
+STAGES = ("drive", "lubricant", "film", "contact", "other friction", "instrument")
+
+
+def test_catalogue_is_in_chain_order_and_complete() -> None:
+    stages = [STAGES.index(effect.stage) for effect in effects().values()]
+    assert stages == sorted(stages)
+    assert set(stages) == set(range(len(STAGES)))
+    for effect in effects().values():
+        assert effect.equation
+        assert effect.source
+        assert effect.limits
+        assert effect.parameters
+        for p in effect.parameters:
+            assert p.lower < p.upper
+            assert all(p.lower <= s <= p.upper for s in p.starts)
+
+
+def test_too_fast_film_is_a_warning_and_finite() -> None:
+    run = sine_run(duration_s=1.0)
+    usual = Model(Rig.thesis("4.2"), parameters=TABLE_4_2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        usual.predict(run)
+    # The transition speed is a thousand times the speed of the record.
+    fast = Model(Rig.thesis("4.2"), parameters={**TABLE_4_2, "U_tr": 100.0})
+    with pytest.warns(jbf.FilmWarning, match="U_tr_m_s, K0 and the load"):
+        friction = fast.predict(run)
+    assert np.all(np.isfinite(friction))
+
+
+def simulated(
+    effects: dict[str, dict[str, float]], motion: rigsim.Motion, celsius: float | None
+) -> tuple[Run, np.ndarray]:
+    """A run without noise and its friction (N), from the independent simulator."""
+    warmth = None if celsius is None else rigsim.Warmth(celsius, rise_k=20.0, tau_s=4.0)
+    load_n = 83.5 if "load_dependence" in effects else None
+    record = rigsim.simulate_run(
+        rigsim.Base(), effects, motion, rate_hz=200.0, warmth=warmth, load_n=load_n
+    )
+    run = Run.from_arrays(
+        record.time_s,
+        record.velocity_m_s,
+        angle_rad=record.angle_rad,
+        load_n=record.load_n,
+        temperature_c=record.temperature_c,
+    )
+    return run, record.clean_friction_n
+
+
+SINE = rigsim.sine("sine", 8.0, 0.127, 1.0)
+STOPS = rigsim.stop_and_go("stops", [(0.5, 1), (5.0, -1)], 0.05, 0.5, 1.0, 9.0)
+EVENTS = ("drive_compliance", "backlash")
+"""Effects with jumps, whose instants differ by a fraction of a sample."""
+
+
+@pytest.mark.parametrize("effect", [None, *rigsim.CATALOGUE])
+def test_prediction_agrees_with_the_independent_simulator(effect: str | None) -> None:
+    base = rigsim.Base()
+    law = {"f_m": base.f_m, "U_tr": base.U_tr, "K0": base.K0, "gamma": base.gamma}
+    values: dict[str, float] = {}
+    hidden: dict[str, dict[str, float]] = {}
+    if effect is not None:
+        hidden = {effect: rigsim.draw(effect, np.random.default_rng(5))}
+        values = {f"{effect}.{name}": value for name, value in hidden[effect].items()}
+    celsius = 18.0 if effect == "vogel_viscosity" else None
+    if celsius is not None:
+        values["vogel_viscosity.T_0"] = REFERENCE_C
+    motion = STOPS if effect == "dwell_stiction" else SINE
+    run, friction = simulated(hidden, motion, celsius)
+    model = Model(Rig.thesis("4.2"), effects=list(hidden), parameters=law | values)
+    _, bare = simulated({}, motion, None)
+    change = np.sqrt(np.mean((friction - bare) ** 2))
+    error = np.sqrt(np.mean((model.predict(run) - friction) ** 2))
+    assert error < 1e-5 + (0.1 if effect in EVENTS else 0.003) * change
+    assert effect is None or change > 0.02

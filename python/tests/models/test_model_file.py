@@ -1,0 +1,206 @@
+"""Model files: exact round trips, files written by hand, and refused content."""
+
+from __future__ import annotations
+
+import math
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jbf.errors import InputError
+from jbf.models.model_file import read_model_file, write_model_file
+from jbf.models.parameter_value import ParameterValue
+from jbf.models.vocabulary import ModelFile, Vocabulary
+from jbf.records.rig import Rig
+
+GOOD = """\
+format = 1
+law = "journal"
+clock = "journal"
+effects = ["coulomb_drag"]
+
+[parameters]
+f_m = { value = 0.26, stderr = 0.002 }
+gamma = 33
+
+[parameters.coulomb_drag]
+F_d_n = { value = 0.5, note = "guess" }
+
+[rig.bearing]
+radius_m = 0.0127
+length_m = 0.01905
+clearance_m = 5.08e-5
+mass_kg = 2.27
+count = 4
+[rig.lubricant]
+viscosity_pa_s = 0.002
+[rig.load]
+normal_n = 104.0
+
+[fit]
+rms_n = 0.42
+"""
+VOCABULARY = Vocabulary(
+    laws=("journal", "lugre"),
+    effects={"coulomb_drag": {"F_d_n": (0.0, 100.0)}, "sensor_lag": {"tau_s": (0.0, math.inf)}},
+    law_parameters={"journal": {"f_m": (0.0, 2.0), "gamma": (0.0, 1e4)}},
+)
+
+
+def refusal(path: Path, vocabulary: Vocabulary | None = VOCABULARY) -> str:
+    with pytest.raises(InputError) as caught:
+        read_model_file(path, vocabulary)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_hand_written_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(GOOD)
+    assert read_model_file(path, VOCABULARY) == ModelFile(
+        law="journal",
+        clock="journal",
+        effects=("coulomb_drag",),
+        parameters={
+            "f_m": ParameterValue(0.26, 0.002),
+            "gamma": ParameterValue(33.0),
+            "coulomb_drag.F_d_n": ParameterValue(0.5, None, "guess"),
+        },
+        rig=Rig.thesis(),
+        fit={"rms_n": 0.42},
+    )
+    path.write_text('format = 1\nlaw = "lugre"\n')
+    assert read_model_file(path, VOCABULARY) == ModelFile("lugre")
+
+
+BAD = [
+    ("format = 1", "format = 2", "key format", "is not one this jbf reads; write format = 1"),
+    ("format = 1", "format = true", "key format", "is not one this jbf reads"),
+    ("format = 1\n", "", "key format", "is missing; write format = 1"),
+    ('law = "journal"\n', "", "key law", 'is missing; write law = "NAME"'),
+    ('law = "journal"', "law = 3", "key law", "is not text"),
+    ('law = "journal"', 'law = "jornal"', "key law", '"jornal" is not known; did you mean "jour'),
+    ('clock = "journal"', 'clock = "thesys"', "key clock", 'did you mean "thesis"?'),
+    ("clock =", "clok =", "key clok", 'is not known; did you mean "clock"?'),
+    ('["coulomb_drag"]', '"coulomb_drag"', "key effects", "is not a list of names; write effects"),
+    ('["coulomb_drag"]', "[1]", "key effects", "is not a list of names"),
+    ('["coulomb_drag"]', '["coulomb_drag", "sensor_leg"]', "key effects", '"sensor_lag"?'),
+    ('["coulomb_drag"]', '["coulomb_drag", "coulomb_drag"]', "key effects", "name each once"),
+    (
+        '["coulomb_drag"]',
+        "[]",
+        "key parameters.coulomb_drag.F_d_n",
+        'the effect "coulomb_drag" is not in the list of effects; add it to effects or remove',
+    ),
+    ("gamma", "gama", "key parameters.gama", 'is not known; did you mean "gamma"?'),
+    ("F_d_n", "F_n", "key parameters.coulomb_drag.F_n", 'did you mean "F_d_n"?'),
+    ("0.26", "2.6", "key parameters.f_m", "2.6 is out of range; choose from 0.0 to 2.0"),
+    ("0.5,", "-0.5,", "key parameters.coulomb_drag.F_d_n", "-0.5 is out of range; choose from"),
+    ("0.26", '"0.26"', "key parameters.f_m.value", '"0.26" is not a number; write a plain number'),
+    ("0.26", "nan", "key parameters.f_m.value", "nan is not a value; write a number"),
+    ("33", "nan", "key parameters.gamma.value", "nan is not a value"),
+    ("33", "[1]", "key parameters.gamma.value", "a list is not a number"),
+    ("33", "{}", "key parameters.gamma.value", "is missing; write { value = 0.26 }"),
+    ("value = 0.26, ", "", "key parameters.f_m.value", "is missing; write { value"),
+    ("stderr", "stder", "key parameters.f_m.stder", 'did you mean "stderr"?'),
+    ("0.002 }", "-0.002 }", "key parameters.f_m.stderr", "is negative; drop the sign"),
+    ('"guess"', "3", "key parameters.coulomb_drag.F_d_n.note", "is not text; put it in quotes"),
+    ("radius_m = 0.0127", "radius_m = 0", "key rig.bearing.radius_m", "is not above zero"),
+    ("[rig.load]", "[rig.lod]", "key rig.lod", 'did you mean "load"?'),
+    ("normal_n = 104.0", "", "key rig.load.normal_n", "is missing; add it to [rig.load]"),
+    ("rms_n = 0.42", "rms_n = true", "key fit.rms_n", "a bool is not a number"),
+    ("law =", "law", "row 2", "is not TOML ("),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "place", "words"), BAD)
+def test_bad_content_is_refused_with_file_and_key(
+    tmp_path: Path, old: str, new: str, place: str, words: str
+) -> None:
+    path = tmp_path / "model.toml"
+    assert old in GOOD
+    path.write_text(GOOD.replace(old, new, 1))
+    message = refusal(path)
+    assert message.startswith(f"{path}, {place}: ")
+    assert words in message
+
+
+@pytest.mark.parametrize("key", ["parameters", "rig", "fit"])
+def test_section_that_is_not_a_table_is_refused(tmp_path: Path, key: str) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(f'format = 1\nlaw = "journal"\n{key} = 3\n')
+    assert refusal(path) == f"{path}, key {key}: is not a table; write it as [{key}] with keys"
+
+
+def test_names_are_not_checked_without_a_vocabulary(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(GOOD.replace("gamma", "anything").replace("journal", "some"))
+    assert read_model_file(path).law == "some"
+
+
+def test_model_file_object_checks_names() -> None:
+    assert ParameterValue(1, math.nan) == ParameterValue(1.0, None)
+    for name in ("a.b", "coulomb_drag.a.b", "coulomb_drag.", "coulomb_drag"):
+        with pytest.raises(InputError, match=r"^key parameters\.") as caught:
+            ModelFile("journal", effects=("coulomb_drag",), parameters={name: ParameterValue(1)})
+        assert caught.value.key == f"parameters.{name}"
+
+
+def test_written_file_is_readable_toml(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(GOOD)
+    write_model_file(path, read_model_file(path))
+    text = path.read_text()
+    assert text.startswith("# jbf model file.")
+    assert "\nf_m = {value = 0.26, stderr = 0.002}\n" in text
+    assert '\n[parameters.coulomb_drag]\nF_d_n = {value = 0.5, note = "guess"}\n' in text
+    assert "\n[rig.bearing]\nradius_m = 0.0127\n" in text
+    assert "\n[rig]\n" not in text
+
+
+def test_round_trip_is_exact(tmp_path: Path) -> None:
+    rng = random.Random(11)
+    path = tmp_path / "model.toml"
+    odd = [5e-324, 2.2e-308, 1e300, 1.7976931348623157e308, math.inf, 0.0, -0.0, 0.1, 1e22, 2.0**53]
+    text = ["", 'a "quoted" note', "two\nlines\ttab", "back\\slash", "gr\u00fcn \u00b5", "\x01#'''"]
+
+    def some() -> float:
+        return rng.choice([rng.choice(odd), rng.random() * 10.0 ** rng.randint(-320, 300)])
+
+    def parameter() -> ParameterValue:
+        held = rng.random() < 0.3
+        stderr = None if held else rng.choice([None, abs(some())])
+        value = rng.choice([-1, 1]) * some()
+        return ParameterValue(value, stderr, rng.choice([None, *text]), held)
+
+    for _ in range(100):
+        effects = rng.sample(["coulomb_drag", "sensor_lag", "wear_in"], rng.randint(0, 3))
+        names = ["f_m", "U_tr_m_s"] + [f"{e}.{p}" for e in effects for p in ("a", "s_0_m", "value")]
+        names = rng.sample(names, rng.randint(0, len(names)))
+        model = ModelFile(
+            law="journal",
+            clock=rng.choice(["journal", "thesis"]),
+            effects=tuple(effects),
+            parameters={name: parameter() for name in names},
+            rig=rng.choice([Rig(), Rig.thesis(), Rig(load=Rig.thesis().load)]),
+            fit={"rms_n": some(), "runs": rng.randint(-9, 9), "an odd key": rng.choice(text)},
+        )
+        write_model_file(path, model)
+        back = read_model_file(path)
+        assert back == model
+        # Equality does not distinguish -0.0 from 0.0; repr does.
+        assert repr(sorted(back.parameters.items())) == repr(sorted(model.parameters.items()))
+        assert repr(back.fit) == repr(model.fit)
+    assert [p.name for p in tmp_path.iterdir()] == ["model.toml"]
+
+
+def test_numpy_scalars_are_written_as_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    fit = {"rms_n": np.float64(0.1), "n": np.int64(3), "x": np.float32(0.5)}
+    model = ModelFile(
+        "j", parameters={"a": ParameterValue(np.float64(0.3), np.float32(1))}, fit=fit
+    )
+    write_model_file(path, model)
+    assert read_model_file(path) == model
+    assert "np." not in path.read_text()

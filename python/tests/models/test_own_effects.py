@@ -1,0 +1,345 @@
+"""User-defined effects: a Python function of recorded columns in fit, diagnosis and files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from by_hand import coulomb, four_runs
+from campaigns import campaign
+from conftest import make_runs
+from jbf import InputError, Model, Parameter, Rig, Run
+from jbf.cli import main
+from jbf.models import catalogue
+from jbf.models.chain import chain, core_motion, imposed
+from jbf.models.own_chain import BENDING
+
+HEAT = Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
+TRUTH = 0.35
+
+
+def cooler(temperature_c: np.ndarray, velocity_m_s: np.ndarray, k_n_k: float) -> np.ndarray:
+    """A seal whose friction grows with the temperature."""
+    return k_n_k * (temperature_c - 40.0) * np.tanh(velocity_m_s / 0.01)
+
+
+@pytest.fixture(autouse=True)
+def forget() -> Iterator[None]:
+    yield
+    for name in list(catalogue.own()):
+        jbf.forget_effect(name)
+
+
+def warm(run: Run, seed: int, size: float = TRUTH) -> Run:
+    """The run with a temperature column and the force of the cooler added to its friction."""
+    t = run.time_s
+    celsius = 42.0 + 2.0 * np.sin(0.7 * t + seed) + 0.05 * t
+    force = cooler(celsius, run.velocity_m_s, size)
+    assert run.friction_n is not None
+    return Run.from_arrays(
+        t,
+        run.velocity_m_s,
+        run.friction_n + force,
+        angle_rad=run.angle_rad,
+        load_n=run.load_n,
+        temperature_c=celsius,
+        extra={"humidity": 0.5 + 0.1 * np.cos(t)},
+        name=run.name,
+    )
+
+
+def warm_campaign() -> tuple[Rig, list[Run], float]:
+    """A simulated campaign with the cooler as its only effect, and its noise (N)."""
+    rig, runs, truth = campaign(34)
+    return rig, [warm(run, i) for i, run in enumerate(runs)], truth["noise_n"]
+
+
+def test_user_effect_is_fitted_and_compared() -> None:
+    rig, runs, noise_n = warm_campaign()
+    jbf.register_effect(cooler, parameters=[HEAT])
+    fitted = jbf.fit(rig, runs, ["cooler"])
+    result = fitted.parameters["cooler.k_n_k"]
+    assert result.stderr is not None
+    assert abs(result.value - TRUTH) < 4.0 * result.stderr < 0.1
+    assert fitted.rms_n < 1.03 * noise_n
+    assert jbf.compare(fitted.model, runs).rms_n == pytest.approx(fitted.rms_n)
+
+
+@pytest.mark.extended
+def test_user_effect_is_diagnosed() -> None:
+    rig, runs, _ = warm_campaign()
+    jbf.register_effect(cooler, parameters=[HEAT])
+    diagnosis = jbf.diagnose(rig, runs)
+    assert (diagnosis.verdict, diagnosis.effects) == ("missing", ("cooler",))
+
+
+@pytest.mark.extended
+def test_effect_without_its_column_is_not_a_candidate() -> None:
+    jbf.register_effect(cooler, parameters=[HEAT])
+    diagnosis = jbf.diagnose(Rig(), four_runs(coulomb, noise_n=0.1), law="coulomb")
+    assert "temperature_c" in diagnosis.not_tried["cooler"]
+
+
+def test_fit_of_an_effect_without_its_column_is_refused() -> None:
+    runs = four_runs(coulomb, noise_n=0.1)
+    jbf.register_effect(cooler, parameters=[HEAT])
+    with pytest.raises(InputError, match="column temperature_c: is missing, and the effect cooler"):
+        jbf.fit(Rig(), runs, ["cooler"], law="coulomb")
+
+
+def slopes_of(effects: list[str], values: np.ndarray, run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives of the chain, and central differences."""
+    rig = Rig.thesis()
+    core = chain(rig, "journal", "journal", effects)
+    motion = core_motion(rig, run, imposed(rig, run))
+    [(_, slopes)] = core.jacobian(values, [motion], list(range(len(values))))
+    result = np.empty_like(slopes)
+    for i in range(len(values)):
+        h = 1e-5 * max(abs(values[i]), 1e-3)
+        up, down = values.copy(), values.copy()
+        up[i] += h
+        down[i] -= h
+        result[:, i] = (core.predict(up, [motion])[0] - core.predict(down, [motion])[0]) / (2 * h)
+    return slopes, result
+
+
+@pytest.mark.parametrize("stage", ["other", "instrument"])
+def test_derivatives_include_the_instrument(stage: str) -> None:
+    run = warm(make_runs()[0], 0)
+    jbf.register_effect(cooler, parameters=[HEAT], stage=stage)
+    effects = ["sensor_lag", "time_delay", "sensor_offset", "cooler"]
+    values = np.array([0.26, 0.055, 6.5e5, 33.0, 0.12, 0.0233, 0.4, TRUTH])
+    slopes, result = slopes_of(effects, values, run)
+    scale = np.max(np.abs(result), axis=0)
+    assert np.all(scale > 0.0)
+    assert np.max(np.abs(slopes - result) / scale) < 1e-5
+
+
+def play(force: np.ndarray, w_n: float) -> np.ndarray:
+    """A play operator of half width `w_n`."""
+    reading = [float(force[0])]
+    for f in force[1:].tolist():
+        reading.append(min(max(reading[-1], f - w_n), f + w_n))
+    return np.array(reading)
+
+
+@pytest.mark.parametrize(
+    ("effect", "value", "read"),
+    [
+        ("sensor_nonlinearity.c_1_n2", -4e-4, lambda f: f - 4e-4 * f**3),
+        ("sensor_hysteresis.w_n", 0.7, lambda f: play(f, 0.7)),
+    ],
+)
+def test_nonlinear_sensor_measures_the_total_force(
+    effect: str, value: float, read: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    run = warm(make_runs()[0], 0)
+    jbf.register_effect(cooler, parameters=[HEAT])
+    own, name = {"cooler.k_n_k": 2.0}, effect.split(".")[0]
+    force = Model(Rig.thesis(), effects=["cooler"], parameters=own).predict(run)
+    both = Model(Rig.thesis(), effects=[name, "cooler"], parameters={**own, effect: value})
+    plain = Model(Rig.thesis(), effects=[name], parameters={effect: value}).predict(run)
+    got, expected = both.predict(run), read(force)
+    # jbf resolves peaks between two samples.
+    np.testing.assert_allclose(got, expected, atol=1e-2 if name == "sensor_hysteresis" else 1e-6)
+    # The response to the sum differs from the sum of the responses.
+    alone = Model(Rig.thesis(), effects=[]).predict(run)
+    assert np.max(np.abs(plain + force - alone - got)) > 0.1
+    values = np.array([0.26, 0.055, 6.5e5, 33.0, value, 2.0])
+    slopes, result = slopes_of([name, "cooler"], values, run)
+    wrong = np.abs(slopes - result) > 1e-4 * np.max(np.abs(result), axis=0)
+    # A difference quotient is wrong across a reversal of the force.
+    assert np.max(np.mean(wrong, axis=0)) < 0.02
+
+
+def test_sensor_lag_applies_to_friction_and_not_to_instrument_effects() -> None:
+    run = warm(make_runs()[0], 0)
+
+    def pull(time_s: np.ndarray, a_n: float) -> np.ndarray:
+        return a_n * (time_s >= 0.0)
+
+    page = Parameter("a_n", "N", lower=0.0, upper=9.0, null=0.0, starts=(1.0,))
+    tau = {"sensor_lag.tau_s": 0.5}
+    lagged = Model(Rig.thesis(), effects=["sensor_lag"], parameters=tau).predict(run)
+    for stage in ("other", "instrument"):
+        jbf.register_effect(pull, parameters=[page], stage=stage)
+        with_pull = Model(
+            Rig.thesis(), effects=["sensor_lag", "pull"], parameters={**tau, "pull.a_n": 3.0}
+        ).predict(run)
+        # The pull is constant from the start, so that the sensor is settled.
+        np.testing.assert_allclose(with_pull - lagged, 3.0, atol=1e-9)
+
+    def ramped(time_s: np.ndarray, s_n_s: float) -> np.ndarray:
+        return s_n_s * time_s
+
+    slope = Parameter("s_n_s", "N/s", lower=0.0, upper=9.0, null=0.0, starts=(1.0,))
+    jbf.register_effect(ramped, parameters=[slope])
+    with_ramp = Model(
+        Rig.thesis(), effects=["sensor_lag", "ramped"], parameters={**tau, "ramped.s_n_s": 1.0}
+    ).predict(run)
+    t = run.time_s
+    np.testing.assert_allclose(with_ramp - lagged, t - 0.5 * (1.0 - np.exp(-t / 0.5)), atol=1e-6)
+
+
+def test_real_function_is_differentiated_by_differences() -> None:
+    run = warm(make_runs()[0], 0)
+
+    def stepped(velocity_m_s: np.ndarray, a_n: float, v_m_s: float) -> np.ndarray:
+        out = np.zeros(len(velocity_m_s))
+        out += abs(a_n) * np.exp(-np.abs(velocity_m_s) / abs(v_m_s))  # fails with complex numbers
+        return out
+
+    pages = [
+        Parameter("a_n", "N", lower=0.0, upper=9.0, null=0.0, starts=(1.0,)),
+        Parameter("v_m_s", "m/s", lower=1e-3, upper=1.0, starts=(0.02,), log=True),
+    ]
+    effect = jbf.register_effect(stepped, parameters=pages)
+    assert isinstance(effect, jbf.models.own_effects.OwnEffect)
+    slopes, result = slopes_of(["stepped"], np.array([0.26, 0.055, 6.5e5, 33.0, 1.5, 0.03]), run)
+    assert np.max(np.abs(slopes - result)[:, 4:] / np.max(np.abs(result), axis=0)[4:]) < 1e-6
+    assert effect.analytic == {"a_n": False, "v_m_s": False}
+    # At the lower bound the differences are one-sided.
+    columns = {"velocity_m_s": run.velocity_m_s, "time_s": run.time_s}
+    edge = effect.slope(columns, [0.0, 0.03], 0)
+    np.testing.assert_allclose(edge, np.exp(-np.abs(run.velocity_m_s) / 0.03), rtol=1e-9)
+
+
+def test_analytic_function_is_differentiated_by_a_complex_step() -> None:
+    effect = jbf.register_effect(cooler, parameters=[HEAT])
+    assert isinstance(effect, jbf.models.own_effects.OwnEffect)
+    columns = {"temperature_c": np.array([41.0, 45.0]), "velocity_m_s": np.array([0.1, -0.01])}
+    columns["time_s"] = np.arange(2.0)
+    expected = np.array([1.0, 5.0]) * np.tanh(np.array([10.0, -1.0]))
+    np.testing.assert_allclose(effect.slope(columns, [0.2], 0), expected, rtol=1e-15)
+    assert effect.analytic == {"k_n_k": True}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"name": "coulomb_drag"}, "is in the catalogue already"),
+        ({"name": "no name"}, "has no proper name"),
+        ({"stage": "film"}, 'cannot act at the stage "film"; choose other or instrument'),
+        ({"parameters": []}, "has no parameters"),
+        ({"parameters": [Parameter("k_n_k", starts=(0.1,))]}, "without bounds"),
+        ({"parameters": [Parameter("k_n_k", lower=0, upper=1, null=0)]}, "starting value"),
+        ({"parameters": [Parameter("k_n_k", lower=0, upper=1, starts=(0.5,))]}, "never vanishes"),
+        ({"parameters": [HEAT, Parameter("b", lower=0, upper=1, starts=(0.5,))]}, "parameter b"),
+        ({"parameters": [HEAT, HEAT]}, "two parameters of one name"),
+    ],
+)
+def test_bad_registration_is_refused(change: dict[str, object], message: str) -> None:
+    good: dict[str, object] = {"parameters": [HEAT]}
+    with pytest.raises(InputError, match=message):
+        jbf.register_effect(cooler, **(good | change))  # type: ignore[arg-type]
+    assert not catalogue.own()
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        (lambda time_s, a: a * time_s[:-1], "gives shape"),
+        (lambda time_s, a: a / (time_s * 0.0), "gives (nan|inf|-inf) at sample 0 with a = 0.5"),
+        (lambda time_s, a: str(a), "gives <U"),
+        (lambda time_s, a: {}[a], "the effect bad fails: KeyError"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:divide by zero")
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_failing_function_is_reported_in_one_line(body: object, message: str) -> None:
+    page = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))
+    jbf.register_effect(body, name="bad", parameters=[page])  # type: ignore[arg-type]
+    model = Model(Rig.thesis(), effects=["bad"], parameters={"bad.a": 0.5})
+    with pytest.raises(InputError, match=message):
+        model.predict(make_runs()[0])
+
+
+FILE = """
+import numpy as np
+import jbf
+
+
+def cooler(temperature_c, velocity_m_s, k_n_k):
+    \"\"\"A seal that grips as it warms.\"\"\"
+    return k_n_k * (temperature_c - 40.0) * np.tanh(velocity_m_s / 0.01)
+
+
+jbf.register_effect(
+    cooler,
+    parameters=[jbf.Parameter("k_n_k", "N/K", lower=-5, upper=5, null=0.0, starts=(0.1,))],
+)
+"""
+
+
+def test_command_line_loads_an_effect_from_a_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.py").write_text(FILE)
+    Rig.thesis().write(tmp_path / "rig.toml")
+    for i, run in enumerate(make_runs()):
+        warm(run, i).write_csv(tmp_path / f"{run.name}.csv")
+    own = ["--effects-from", str(tmp_path / "mine.py")]
+    rig, model = str(tmp_path / "rig.toml"), str(tmp_path / "m.toml")
+    runs = [str(tmp_path / "*.csv")]
+    assert main(["effects", *own]) == 0
+    assert "[your own, other friction]" in capsys.readouterr().out
+    assert main(["effects", "cooler", *own, "--json", str(tmp_path / "page.json")]) == 0
+    assert "temperature_c" in capsys.readouterr().out
+    assert main(["fit", rig, *runs, "--effects", "cooler", "--out", model, *own]) == 0
+    assert "cooler.k_n_k" in capsys.readouterr().out
+    assert main(["compare", model, *runs, *own]) == 0
+    capsys.readouterr()
+    jbf.forget_effect("cooler")
+    assert main(["compare", model, *runs]) == 2
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1
+    assert '"cooler" is not known' in line
+    assert "--effects-from" in line
+
+
+def test_function_receives_the_columns_of_the_record() -> None:
+    seen: dict[str, np.ndarray] = {}
+
+    def look(humidity: np.ndarray, load_n: np.ndarray, angle_rad: np.ndarray, a: float) -> float:
+        seen.update(humidity=humidity, load_n=load_n, angle_rad=angle_rad)
+        return 0.0 * a
+
+    page = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))
+    jbf.register_effect(look, parameters=[page])
+    run = warm(make_runs()[0], 0)
+    Model(Rig.thesis(), effects=["look"], parameters={"look.a": 0.5}).predict(run)
+    np.testing.assert_array_equal(seen["humidity"], run.extra["humidity"])
+    np.testing.assert_array_equal(seen["load_n"], np.full(len(run), 104.0))
+    assert run.angle_rad is not None
+    assert np.max(np.abs(seen["angle_rad"] - run.angle_rad)) < 1e-3
+
+
+def test_nonlinear_instrument_effects_are_those_listed_in_bending() -> None:
+    """A linear instrument responds to a sum of forces with the sum of its responses."""
+    t = np.linspace(0.0, 10.0, 400)
+    run = Run.from_arrays(t, 0.1 * np.cos(t), position_m=0.1 * np.sin(t))
+
+    def two_waves(time_s: np.ndarray, a_n: float, b_n: float) -> np.ndarray:
+        return a_n * np.sin(time_s) + b_n * np.cos(2.7 * time_s)
+
+    pages = [
+        Parameter(name, "N", lower=-20.0, upper=20.0, null=0.0, starts=(1.0,))
+        for name in ("a_n", "b_n")
+    ]
+    jbf.register_effect(two_waves, parameters=pages)
+    for effect in catalogue.built_in().values():
+        if effect.stage != "instrument":
+            continue
+        usual = {f"{effect.name}.{p.name}": p.starts[0] for p in effect.parameters}
+
+        def reading(a_n: float, b_n: float, usual: dict[str, float] = usual) -> np.ndarray:
+            waves = {"two_waves.a_n": a_n, "two_waves.b_n": b_n}
+            effects = [next(iter(usual)).partition(".")[0], "two_waves"]
+            return Model(Rig(), "coulomb", effects, usual | waves).predict(run)
+
+        nonlinearity = reading(8.0, 3.0) - reading(8.0, 0.0) - reading(0.0, 3.0) + reading(0.0, 0.0)
+        is_linear = bool(np.max(np.abs(nonlinearity)) < 1e-9)
+        assert is_linear != (effect.name in BENDING), effect.name

@@ -1,0 +1,153 @@
+"""User-defined laws: a Python function in place of a law of the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from jbf import InputError, Parameter, Rig, Run, export
+
+NOISE_N = 0.05
+TRUE = {"F_c_n": 3.0, "v_0_m_s": 0.004, "F_v_n_s_m": 25.0}
+PARAMETERS = [
+    Parameter("F_c_n", "N", lower=0.0, upper=1e3, starts=(5.0,)),
+    Parameter("v_0_m_s", "m/s", lower=1e-5, upper=1.0, starts=(1e-3,), log=True),
+    Parameter("F_v_n_s_m", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
+]
+
+
+def smooth_coulomb(
+    velocity_m_s: np.ndarray, F_c_n: float, v_0_m_s: float, F_v_n_s_m: float
+) -> np.ndarray:
+    """Coulomb friction without a jump."""
+    return F_c_n * np.tanh(velocity_m_s / v_0_m_s) + F_v_n_s_m * velocity_m_s
+
+
+@pytest.fixture
+def law() -> Iterator[str]:
+    yield jbf.register_law(smooth_coulomb, parameters=PARAMETERS).name
+    jbf.forget_law("smooth_coulomb")
+
+
+def runs(mass_kg: float = 0.0, zero_n: float = 0.0) -> list[Run]:
+    result = []
+    for k, (top, period) in enumerate([(0.01, 4.0), (0.1, 3.0), (0.05, 2.5)]):
+        t = np.arange(0.0, 20.0, 0.01)
+        omega = 2.0 * np.pi / period
+        v, a = top * np.sin(omega * t), top * omega * np.cos(omega * t)
+        noise = NOISE_N * np.random.default_rng(k).standard_normal(len(t))
+        force = smooth_coulomb(v, **TRUE) + mass_kg * a + zero_n + noise
+        result.append(Run.from_arrays(t, v, force, name=f"run {k}"))
+    return result
+
+
+def test_prediction_is_the_function(law: str) -> None:
+    (run, *_) = runs()
+    model = jbf.Model(Rig(), law=law, parameters=TRUE)
+    np.testing.assert_allclose(
+        model.predict(run), smooth_coulomb(run.velocity_m_s, **TRUE), rtol=0.0, atol=2e-4
+    )
+    v = np.array([-0.1, -1e-3, 2e-3, 0.05])
+    np.testing.assert_array_equal(model.steady_friction(v), smooth_coulomb(v, **TRUE))
+
+
+def test_zero_law_has_no_force_and_leaves_effects_unchanged(law: str) -> None:
+    (run, *_) = runs()
+    none = {"F_c_n": 0.0, "F_v_n_s_m": 0.0}
+    assert np.max(np.abs(jbf.Model(Rig(), law=law, parameters=none).predict(run))) == 0.0
+    only = {"inertia_leak.m_e_kg": 2.0}
+    model = jbf.Model(Rig(), law=law, effects=["inertia_leak"], parameters=none | only)
+    motion = np.gradient(run.velocity_m_s, run.time_s)
+    np.testing.assert_allclose(model.predict(run)[5:-5], 2.0 * motion[5:-5], atol=2e-3)
+
+
+def test_jacobian_agrees_with_difference_quotients(law: str) -> None:
+    from jbf.estimation.campaign import Campaign
+    from jbf.models.chain import chain
+
+    campaign = Campaign.prepare(Rig(), runs())
+    core = chain(Rig(), law, "journal", ["inertia_leak", "sensor_lag"])
+    assert core.parameter_names[:3] == list(TRUE)
+    values = np.array([3.0, 0.004, 25.0, 1.5, 0.03])
+    assert len(core.parameter_names) == len(values)
+    rows = core.jacobian(values, campaign.motions, range(5))
+    for k, name in enumerate(core.parameter_names):
+        step = 1e-5 * values[k]
+        up, down = values.copy(), values.copy()
+        up[k] += step
+        down[k] -= step
+        highs, lows = (core.predict(v, campaign.motions) for v in (up, down))
+        for (_, slopes), high, low in zip(rows, highs, lows, strict=True):
+            quotient = (high - low) / (2.0 * step)
+            size = np.max(np.abs(quotient))
+            np.testing.assert_allclose(slopes[:, k], quotient, atol=1e-5 * size, err_msg=name)
+
+
+def test_parameters_and_effect_are_recovered_and_saved(law: str, tmp_path: Path) -> None:
+    fit = jbf.fit(Rig(), runs(mass_kg=2.0), ["inertia_leak"], law=law)
+    for name, value in (TRUE | {"inertia_leak.m_e_kg": 2.0}).items():
+        result = fit.parameters[name]
+        assert result.stderr is not None
+        assert abs(result.value - value) < 4.0 * result.stderr
+    assert fit.rms_n == pytest.approx(NOISE_N, rel=0.05)
+    path = tmp_path / "m.toml"
+    fit.model.save(path)
+    (run, *_) = runs()
+    np.testing.assert_array_equal(jbf.Model.load(path).predict(run), fit.model.predict(run))
+    jbf.forget_law(law)
+    with pytest.raises(InputError, match="smooth_coulomb"):
+        jbf.Model.load(path)
+    jbf.register_law(smooth_coulomb, parameters=PARAMETERS)
+
+
+@pytest.mark.extended
+def test_missing_effects_are_diagnosed_with_a_user_law(law: str) -> None:
+    result = jbf.diagnose(Rig(), runs(mass_kg=2.0, zero_n=0.7), law=law)
+    assert (result.verdict, set(result.effects)) == ("missing", {"inertia_leak", "sensor_offset"})
+
+
+@pytest.mark.extended
+def test_user_law_can_be_selected_automatically(law: str) -> None:
+    result = jbf.diagnose(Rig(), runs(), law="auto")
+    assert (result.model.law, result.effects) == (law, ())
+
+
+def test_effects_inside_a_law_do_not_apply_to_a_user_law(law: str) -> None:
+    with pytest.raises(InputError, match="is one of your own, and the effect changes parts"):
+        jbf.Model(Rig(), law=law, effects=["presliding"])
+    with pytest.raises(InputError, match="does not apply: the law smooth_coulomb"):
+        jbf.Model(Rig(), law=law, effects=["coulomb_drag"])
+
+
+def test_user_law_cannot_be_exported(law: str) -> None:
+    model = jbf.Model(Rig(), law=law, parameters=TRUE)
+    with pytest.raises(InputError, match="is written in Python, which no target runs"):
+        export.rust(model)
+
+
+@pytest.mark.parametrize(
+    ("options", "fragment"),
+    [
+        ({"name": "lugre"}, 'the law "lugre" is in the catalogue already'),
+        ({"name": "auto"}, "has no proper name"),
+        ({"name": "my law"}, "has no proper name"),
+        ({"parameters": PARAMETERS[:2]}, "takes|does not take|F_v_n_s_m"),
+        ({"parameters": [Parameter("F_c_n", "N", starts=(1.0,))]}, "without bounds"),
+    ],
+)
+def test_bad_registration_is_refused_in_one_line(options: dict, fragment: str) -> None:
+    given = {"parameters": PARAMETERS} | options
+    if given["parameters"] == PARAMETERS[:2]:
+        # An argument that is not a parameter is a column, which no run has.
+        page = jbf.register_law(smooth_coulomb, **given)
+        with pytest.raises(InputError, match="column F_v_n_s_m: is missing, and the law"):
+            jbf.Model(Rig(), law=page.name).predict(runs()[0])
+        jbf.forget_law(page.name)
+        return
+    with pytest.raises(InputError, match=fragment):
+        jbf.register_law(smooth_coulomb, **given)
+    with pytest.raises(InputError, match="is no law of your own"):
+        jbf.forget_law("smooth_coulomb")

@@ -1,0 +1,52 @@
+"""Judgement of diagnoses in the validation suite of recorded campaigns."""
+
+from __future__ import annotations
+
+import pytest
+from recorded.judge import FOUND_AS, OUTCOMES, found, judge
+from rigsim.recording import ARTEFACTS
+
+TIED = {"coulomb_drag": ["sensor_offset"]}
+
+
+@pytest.mark.parametrize(
+    ("hidden", "artefacts", "verdict", "named", "tied", "outcome"),
+    [
+        ((), ("spikes",), "adequate", [], {}, "right"),
+        ((), ("spikes",), "missing", ["wear_in"], {}, "named falsely"),
+        ((), ("spikes",), "unexplained", [], {}, "unexplained"),
+        ((), ("skew",), "missing", ["time_delay"], {}, "right"),
+        ((), ("spikes",), "missing", ["time_delay"], {}, "named falsely"),
+        ((), ("gaps",), "ambiguous", ["coulomb_drag"], TIED, "named falsely"),
+        (("coulomb_drag",), ("gaps",), "missing", ["coulomb_drag"], {}, "right"),
+        (("coulomb_drag",), ("gaps",), "unexplained", ["coulomb_drag"], {}, "unexplained"),
+        (("coulomb_drag",), ("gaps",), "adequate", [], {}, "missed"),
+        (("sensor_offset",), ("gaps",), "ambiguous", ["coulomb_drag"], TIED, "tied"),
+        (("coulomb_drag",), ("gaps",), "ambiguous", ["coulomb_drag"], TIED, "tied"),
+        (("wear_in",), ("gaps",), "ambiguous", ["coulomb_drag"], TIED, "named falsely"),
+        (("wear_in",), ("skew",), "missing", ["wear_in", "time_delay"], {}, "right"),
+        (("time_delay",), ("skew",), "missing", ["time_delay"], {}, "right"),
+        (("a", "b"), ("gaps",), "missing", ["a"], {}, "missed"),
+        (("a", "b"), ("gaps",), "missing", ["a", "c"], {}, "named falsely"),
+    ],
+)
+def test_diagnosis_is_judged_by_hidden_effects_and_artefacts(
+    hidden: tuple[str, ...],
+    artefacts: tuple[str, ...],
+    verdict: str,
+    named: list[str],
+    tied: dict[str, list[str]],
+    outcome: str,
+) -> None:
+    assert judge(hidden, artefacts, verdict, named, tied) == outcome
+    assert outcome in OUTCOMES
+
+
+def test_findings_are_matched_with_artefacts() -> None:
+    reported, missed, false = found(("spikes", "gaps", "off_grid"), ["glitches", "jitter"])
+    assert (reported, missed, false) == (["spikes"], ["gaps"], ["jitter"])
+    assert found(("off_grid",), ["unsettled_start"]) == ([], [], [])
+
+
+def test_every_artefact_has_a_finding() -> None:
+    assert set(FOUND_AS) == set(ARTEFACTS)

@@ -1,0 +1,40 @@
+"""Every program of `benches` starts and describes its options."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHES = Path(__file__).parents[3] / "benches"
+PROGRAMS = sorted(
+    path
+    for path in (*BENCHES.glob("*.py"), *BENCHES.glob("*/__main__.py"))
+    if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+)
+FAST = ("recovery.py",)
+
+
+def name_of(path: Path) -> str:
+    return path.relative_to(BENCHES).as_posix()
+
+
+def test_programs_are_found() -> None:
+    assert {"drives.py", "control_runs.py", *FAST} <= {name_of(path) for path in PROGRAMS}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(p, id=name_of(p), marks=() if name_of(p) in FAST else pytest.mark.extended)
+        for p in PROGRAMS
+    ],
+)
+def test_program_prints_its_usage(path: Path) -> None:
+    program = path.parent if path.name == "__main__.py" else path
+    command = [sys.executable, str(program), "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("usage: ")

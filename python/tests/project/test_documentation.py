@@ -1,0 +1,119 @@
+"""README and documentation: code runs, commands are valid, links lead to files, names exist."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import fields
+from pathlib import Path
+
+import jbf
+import pytest
+from jbf import Model, Rig
+from jbf.cli import main
+from jbf.importing.cutting.settings import WAYS, CutSettings
+from jbf.importing.expression import FUNCTIONS
+from jbf.importing.formats.registry import FORMATS
+from jbf.importing.formats.table import Options
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = (
+    "README.md",
+    "CONTRIBUTING.md",
+    "SECURITY.md",
+    "docs/control.md",
+    "docs/dependencies.md",
+    "docs/drives.md",
+    "docs/import.md",
+    "docs/versions.md",
+    "release/README.md",
+)
+
+
+def text_of(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def python_of(name: str) -> str:
+    (code,) = re.findall(r"```python\n(.*?)```", text_of(name), flags=re.DOTALL)
+    return str(code)
+
+
+def targets() -> set[str]:
+    """Targets of the Makefile."""
+    return set(re.findall(r"^([a-z][a-z-]*):", text_of("Makefile"), flags=re.MULTILINE))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_to_files(page: str) -> None:
+    links = re.findall(r"\]\(([^)#:]+)\)", text_of(page))
+    missing = [link for link in links if not (ROOT / page).parent.joinpath(link).exists()]
+    assert missing == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_targets_of_the_makefile_exist(page: str) -> None:
+    named = set(re.findall(r"(?:`|^)make ([a-z-]+)", text_of(page), flags=re.MULTILINE))
+    assert named <= targets()
+
+
+def test_make_help_lists_every_target() -> None:
+    listed = set(re.findall(r'@echo "make ([a-z-]+)', text_of("Makefile")))
+    assert listed | {"help", "bits-table"} == targets()
+
+
+def test_version_is_the_same_in_every_file() -> None:
+    version = jbf.__version__
+    assert f'\nversion = "{version}"\n' in text_of("Cargo.toml")
+    assert f"\nversion: {version}\n" in text_of("CITATION.cff")
+
+
+@pytest.mark.extended
+def test_python_of_the_readme_diagnoses_presliding(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec(compile(python_of("README.md"), "README.md", "exec"), {})
+    assert "missing ('presliding',)" in capsys.readouterr().out
+    assert Model.load("model.toml").effects == ("presliding",)
+
+
+def test_python_of_the_control_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    exec(compile(python_of("docs/control.md"), "docs/control.md", "exec"), {})
+    assert 0.0 < float(capsys.readouterr().out) < 0.1
+
+
+def control_commands() -> list[str]:
+    """The short commands of docs/control.md."""
+    text = text_of("docs/control.md").replace("\n--counts", " --counts")
+    commands = re.findall(r"^jbf (control (?:run|tune)[^#\n]*)", text, re.MULTILINE)
+    return commands + re.findall(r"`jbf (control run model.toml --damping[^`]*)`", text)
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("command", control_commands())
+def test_command_of_the_control_page_runs(
+    command: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("model.toml", "bare.toml"):
+        Model(Rig.thesis("4.2")).save(name)
+    rows = [f"{0.02 * i:.2f},{0.02 * (-1) ** (i // 40):.2f}" for i in range(300)]
+    Path("run.csv").write_text("\n".join(["time_s,velocity_m_s", *rows]) + "\n")
+    assert main(shlex.split(command)) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_import_page_names_every_option_function_and_format() -> None:
+    text = text_of("docs/import.md")
+    options = [f.name for f in (*fields(Options), *fields(CutSettings))]
+    assert [name for name in options if f"`{name}`" not in text] == []
+    words = [*WAYS, *FUNCTIONS]
+    assert [w for w in words if f'"{w}"' not in text and f"`{w}`" not in text] == []
+    extras = [known.extra for known in FORMATS if known.extra]
+    assert [extra for extra in extras if f"`jbf[{extra}]`" not in text] == []
+    project = text_of("pyproject.toml")
+    assert [e for e in extras if not re.search(rf"^{e} = \[", project, re.MULTILINE)] == []

@@ -1,0 +1,71 @@
+"""Optional and slow libraries are imported only where they are needed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import jbf
+import pytest
+
+EXTENDED = pytest.mark.extended
+HEAVY = (
+    "scipy", "matplotlib", "jinja2", "rich", "tomlkit", "threadpoolctl", "multiprocessing",
+    "concurrent.futures", "asyncio", "starlette", "pandas", "h5py", "pyarrow",
+)  # fmt: skip
+
+
+def imported(code: str) -> set[str]:
+    """Modules that are loaded after running code in a separate process."""
+    lines = f"{code}\nimport sys; print('|', *sys.modules)"
+    done = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, check=True)
+    return set(done.stdout.rpartition("|")[2].split())
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import jbf",
+        "from jbf.cli import main; main(['--help'])",
+        pytest.param("from jbf.cli import main; main(['--version'])", marks=EXTENDED),
+        pytest.param("from jbf.cli import main; assert main(['diagnoes']) == 2", marks=EXTENDED),
+    ],
+)
+def test_package_and_help_import_neither_numpy_nor_models(code: str) -> None:
+    modules = imported(code)
+    assert "jbf._core" in modules
+    assert not modules & {*HEAVY, "numpy", "jbf.models", "jbf.records"}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "from jbf.cli import main; main(['effects'])",
+        pytest.param("from jbf.cli import main; main(['diagnose', '--help'])", marks=EXTENDED),
+        "import jbf; jbf.Model(jbf.Rig.thesis(), parameters={'f_m': 0.26})",
+    ],
+)
+def test_commands_without_a_fit_do_not_import_scipy(code: str) -> None:
+    # Rigs and models are TOML files.
+    assert not imported(code) & ({*HEAVY} - {"tomlkit", "concurrent.futures", "multiprocessing"})
+
+
+def test_command_does_not_load_other_commands() -> None:
+    modules = imported("from jbf.cli import main; main(['effects'])")
+    assert "jbf.cli.effects" in modules
+    assert not modules & {"jbf.cli.fit", "jbf.cli.diagnose", "jbf.cli.control", "jbf.cli.workbench"}
+
+
+def test_every_public_name_is_importable() -> None:
+    for name in jbf.__all__:
+        assert getattr(jbf, name) is getattr(jbf, name)
+    assert set(jbf.__all__) <= set(dir(jbf))
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = jbf.no_such_name
+
+
+def test_diagnosis_imports_neither_scipy_stats_nor_signal() -> None:
+    # These two would add half a second to every command.
+    modules = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")
+    assert "scipy.optimize" in modules
+    assert not modules & {"scipy.stats", "scipy.signal"}

@@ -1,0 +1,117 @@
+"""Opening a model, a recording, a folder or a map runs no code and uses no network.
+
+Each command runs in a separate process. Its audit hook (PEP 578) stops whatever the execution of
+foreign code needs, in a folder with files that Python would import.
+"""
+
+from __future__ import annotations
+
+import pickle
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+
+REFUSED = (
+    "subprocess.Popen os.system os.exec os.posix_spawn os.fork socket.connect socket.getaddrinfo "
+    "pickle.find_class"
+)
+WATCHED = """
+import sys
+from pathlib import Path
+
+REFUSED, HERE = set(sys.argv.pop(1).split()), str(Path.cwd())
+
+def watch(event, arguments):
+    if event in REFUSED:
+        raise SystemExit(f"{event} {arguments}")
+    if event == "exec":
+        name = getattr(arguments[0], "co_filename", "<")
+        if not name.startswith("<") and str(Path(name).resolve()).startswith(HERE):
+            raise SystemExit(f"runs {name}")
+
+sys.path[:] = [p for p in sys.path if p not in ("", HERE)]
+from jbf.cli import main
+
+sys.addaudithook(watch)
+raise SystemExit(main(sys.argv[1:]))
+"""
+DECOYS = ("numpy", "scipy", "matplotlib", "jbf", "sitecustomize", "usercustomize", "conftest")
+
+
+class Bomb:
+    """An object that runs code when it is unpickled."""
+
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return print, ("it ran",)
+
+
+@pytest.fixture
+def hostile(tmp_path: Path, campaign: Path, full_fit: jbf.Fit) -> Path:
+    """A campaign folder with decoy modules, a pickle, and names that look like code."""
+    folder = tmp_path / "$(touch owned); __import__('os')"
+    folder.mkdir()
+    for file in (campaign / "rig.toml", *(campaign / "runs").glob("*.csv")):
+        shutil.copy(file, folder)
+    full_fit.model.save(folder / "model.toml")
+    for name in DECOYS:
+        (folder / f"{name}.py").write_text("raise SystemExit('a decoy ran')\n")
+    run = next(iter(sorted(folder.glob("*.csv"))))
+    run.rename(folder / "{{7*7}}__import__('os').system('id').csv")
+    np.save(folder / "bomb.npy", np.array([Bomb()], dtype=object), allow_pickle=True)
+    (folder / "bomb.pkl").write_bytes(pickle.dumps(Bomb()))
+    map_file = (
+        "[columns]\ntime_s = \"__import__('os').system('id')\"\nfriction_n = \"friction_n\"\n"
+    )
+    (folder / "map.toml").write_text(map_file)
+    return folder
+
+
+def watched(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-I", "-c", WATCHED, REFUSED, *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+
+
+def test_compare_and_report_run_no_code(hostile: Path) -> None:
+    runs = sorted(p.name for p in hostile.glob("*.csv"))
+    before = {p.name for p in hostile.iterdir()}
+    done = watched(hostile, "compare", "model.toml", *runs, "--json", "-", "--report", "page.html")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {p.name for p in hostile.iterdir()} == before | {"page.html"}
+    page = (hostile / "page.html").read_text()
+    assert "<script" not in page.lower()
+    assert "__import__(&#x27;os&#x27;)" in page or "__import__(&#39;os&#39;)" in page
+
+
+@pytest.mark.parametrize("file", ["bomb.npy", pytest.param("bomb.pkl", marks=pytest.mark.extended)])
+def test_pickle_is_refused_without_opening_it(hostile: Path, file: str) -> None:
+    done = watched(hostile, "import", file, "--out", "out")
+    assert done.returncode == 2
+    assert done.stderr.startswith("jbf: ")
+    assert "it ran" not in done.stdout + done.stderr
+
+
+def test_map_expression_is_not_run_as_code(hostile: Path) -> None:
+    run = next(iter(sorted(p.name for p in hostile.glob("*.csv") if "os" not in p.name)))
+    done = watched(hostile, "import", run, "--map", "map.toml", "--out", "out")
+    assert done.returncode == 2
+    assert done.stderr.startswith("jbf: ")
+    assert "uid=" not in done.stdout + done.stderr
+
+
+def test_file_of_user_effects_is_run_and_documented(hostile: Path) -> None:
+    (hostile / "own.py").write_text("print('own code ran')\n")
+    done = watched(hostile, "compare", "model.toml", "none.csv", "--effects-from", "own.py")
+    assert "SystemExit: runs own.py" in done.stderr
+    assert "own code ran" not in done.stdout
+    done = watched(hostile, "compare", "--help")
+    assert "run this Python file first" in " ".join(done.stdout.split())

@@ -1,0 +1,175 @@
+"""Channels with clocks of their own: combined at all instants, compared at their own readings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jbf
+import numpy as np
+import pytest
+from input_errors import input_error
+from jbf import Run
+from jbf.estimation.prepared import Prepared
+from jbf.records.channels import side_by_side, with_own_clock
+from jbf.records.findings.own_clock import own_clock
+
+LAW = {"F_c_n": 4.0, "F_v_n_s_m": 20.0}
+NOISE_N = 0.05
+FAST_S, SLOW_S = np.arange(0.0, 3.0, 0.1), np.arange(-0.35, 2.1, 0.2)
+
+
+def test_channels_are_combined_at_all_instants_of_the_motion() -> None:
+    columns, read = side_by_side(
+        {"velocity_m_s": (FAST_S, 2.0 * FAST_S), "friction_n": (SLOW_S, 5.0 * SLOW_S)}, "a"
+    )
+    time_s, slow = columns["time_s"], SLOW_S[SLOW_S >= 0.0]
+    assert list(columns) == ["time_s", "velocity_m_s", "friction_n"]
+    assert time_s.tolist() == sorted({*FAST_S.tolist(), *slow.tolist()})
+    np.testing.assert_allclose(columns["velocity_m_s"], 2.0 * time_s)
+    inside = time_s <= slow[-1]
+    np.testing.assert_allclose(columns["friction_n"][inside], 5.0 * time_s[inside])
+    assert time_s[read["velocity_m_s"]].tolist() == FAST_S.tolist()
+    assert time_s[read["friction_n"]].tolist() == slow.tolist()
+
+
+def test_motion_lasts_from_the_latest_start_to_the_earliest_end_of_its_channels() -> None:
+    columns, _ = side_by_side(
+        {
+            "velocity_m_s": (FAST_S, FAST_S),
+            "position_m": (FAST_S + 0.55, FAST_S),
+            "own": (FAST_S - 9.0, FAST_S),
+        },
+        "a",
+    )
+    assert columns["time_s"][[0, -1]] == pytest.approx([0.55, FAST_S[-1]])
+
+
+def test_channels_of_one_clock_need_no_masks() -> None:
+    run = Run.from_channels({"velocity_m_s": (FAST_S, FAST_S), "friction_n": (FAST_S, -FAST_S)})
+    assert run.read == {}
+    assert run.to_csv() == Run.from_arrays(FAST_S, FAST_S, -FAST_S).to_csv()
+
+
+@pytest.mark.parametrize(
+    ("column", "channel"),
+    [
+        ("velocity_m_s", (FAST_S, FAST_S[1:])),
+        ("friction_n", (FAST_S[:9], FAST_S[:9])),
+        ("friction_n", (FAST_S[::-1], FAST_S)),
+        ("own", ([], [])),
+        ("own", ([np.nan], [1.0])),
+        ("own", ([1.0], [np.inf])),
+        ("own", ([1.0, 1.0], [1.0, 1.0])),
+        ("load_n", (FAST_S, FAST_S)),
+    ],
+)
+def test_bad_channel_is_reported_by_name(column: str, channel: Any) -> None:
+    given = {"velocity_m_s": (FAST_S, FAST_S), column: channel}
+    error = input_error(Run.from_channels, given, name="a")
+    assert (error.file, error.column) == ("a", column)
+
+
+def test_channels_without_a_motion_are_rejected() -> None:
+    error = input_error(Run.from_channels, {"friction_n": (FAST_S, FAST_S)})
+    assert error.column == "velocity_m_s"
+
+
+@pytest.mark.parametrize(
+    ("samples", "missing", "own"),
+    [(100, 9, False), (100, 10, True), (400, 19, False), (400, 20, True)],
+)
+def test_column_with_a_twentieth_missing_has_its_own_clock(
+    samples: int, missing: int, own: bool
+) -> None:
+    time_s, values = np.arange(float(samples)), np.ones(samples)
+    values[:missing] = np.nan
+    clock, read = with_own_clock(time_s, values)
+    assert len(clock) == len(read) == (samples - missing if own else samples)
+    assert clock[0] == (missing if own else 0)
+
+
+def test_own_clock_is_reported_with_the_rate_of_the_force() -> None:
+    index = np.arange(1000)
+    run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
+    # Of several channels of the motion the fastest counts.
+    slow = {"velocity_m_s": index % 10 == 0, "angle_rad": index % 2 == 0}
+    assert "50 Hz" in own_clock(replace(run, read=slow))[0].words
+    for read, rate_hz in (
+        ({"friction_n": index % 4 == 0, "velocity_m_s": index % 5 == 0}, 25.0),
+        ({"friction_n": index % 4 == 0}, 25.0),
+        ({"velocity_m_s": index % 4 == 0}, 100.0),
+    ):
+        (finding,) = own_clock(replace(run, read=read))
+        assert (finding.kind, finding.channel, finding.unit) == ("own_clock", "friction_n", "Hz")
+        assert finding.size == pytest.approx(rate_hz)
+    assert own_clock(replace(run, read={"load_n": index % 4 == 0})) == own_clock(run) == []
+
+
+def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> dict[str, Any]:
+    """Channels of a slide in closed form: position and speed at one rate, force at another."""
+    random = np.random.default_rng(seed)
+    motion_s = np.arange(0.0, 30.0, 1.0 / motion_hz)
+    force_s = np.arange(0.0017, 29.99, 1.0 / force_hz)
+
+    def speed(t: Any) -> Any:
+        return 0.1 * np.sin(1.7 * t) + 0.05 * np.sin(4.1 * t + 1.0)
+
+    place = -0.1 / 1.7 * np.cos(1.7 * motion_s) - 0.05 / 4.1 * np.cos(4.1 * motion_s + 1.0)
+    v = speed(force_s)
+    friction = LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+    return {
+        "position_m": (motion_s, np.round(place, 6)),
+        "velocity_m_s": (motion_s, speed(motion_s) + 1e-4 * random.standard_normal(len(motion_s))),
+        "friction_n": (force_s, friction + NOISE_N * random.standard_normal(len(force_s))),
+    }
+
+
+def test_model_is_compared_at_the_readings_of_the_force() -> None:
+    channels = slide()
+    run = Run.from_channels(channels, name="slide")
+    prepared = Prepared.of(jbf.Rig(), run)
+    force_s, force_n = channels["friction_n"]
+    np.testing.assert_array_equal(prepared.run.time_s, force_s)
+    np.testing.assert_array_equal(prepared.friction_n, force_n)
+    assert "own_clock" in {finding.kind for finding in prepared.examined.findings}
+    fit = jbf.fit(jbf.Rig(), [run], law="coulomb")
+    for name, value in LAW.items():
+        found = fit.parameters[name]
+        assert found.stderr is not None
+        assert abs(found.value - value) < 4.0 * found.stderr + 1e-3 * value
+    assert fit.rms_n == pytest.approx(NOISE_N, rel=0.06)
+
+
+def test_prediction_at_the_motion_instants_does_not_depend_on_the_force_clock() -> None:
+    channels = slide()
+    run = Run.from_channels(channels)
+    time_s, place = channels["position_m"]
+    alone = Run.from_arrays(time_s, channels["velocity_m_s"][1], position_m=place)
+    model = jbf.Model(jbf.Rig(), law="coulomb", parameters=LAW)
+    at = np.isin(run.time_s, time_s)
+    kept = (time_s >= run.time_s[0]) & (time_s <= run.time_s[-1])
+    np.testing.assert_allclose(
+        model.predict(run)[at], model.predict(alone)[kept], rtol=0.0, atol=1e-12
+    )
+
+
+@pytest.mark.extended
+def test_slide_with_two_clocks_and_no_hidden_effect_is_adequate() -> None:
+    runs = [Run.from_channels(slide(70.0 + k, seed=k), name=f"r{k}") for k in (1, 2, 3)]
+    result = jbf.diagnose(jbf.Rig(), runs, law="coulomb")
+    assert (result.verdict, result.effects) == ("adequate", ())
+    assert result.steps[-1].holdout_rms_n == pytest.approx(NOISE_N, rel=0.1)
+
+
+def test_csv_file_keeps_the_clock_of_each_channel(tmp_path: Path) -> None:
+    run = Run.from_channels(slide(), name="slide")
+    run.write_csv(tmp_path / "slide.csv")
+    again = jbf.read_run(tmp_path / "slide.csv")
+    assert set(again.read) == set(run.read) == {"friction_n", "position_m", "velocity_m_s"}
+    for name, values in run.columns().items():
+        there = run.read.get(name, np.ones(len(run), dtype=bool))
+        np.testing.assert_array_equal(again.columns()[name][there], values[there])
+        np.testing.assert_array_equal(again.read.get(name, there), there)
+    assert again.to_csv() == run.to_csv()

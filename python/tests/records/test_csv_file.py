@@ -1,0 +1,204 @@
+"""Reading runs from CSV: accepted formats, and the place that each error names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from input_errors import input_error
+from jbf.records.csv_file import read_run
+
+HEADER = "time_s,angle_rad,velocity_m_s,friction_n,load_n"
+ROWS = [f"{0.02 * i:.3f},{0.1 * i:.5f},0.01,{0.5 - 0.1 * i:.4f},104.0" for i in range(12)]
+Write = Callable[..., Path]
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Write lines to a file in a temporary folder."""
+
+    def write_lines(*lines: str, name: str = "a.csv", newline: str = "\n") -> Path:
+        path = tmp_path / name
+        path.write_bytes("".join(line + newline for line in lines).encode())
+        return path
+
+    return write_lines
+
+
+def changed(line: int, cell: int, text: str) -> list[str]:
+    """The valid rows with one cell replaced; lines count from 1, the header included."""
+    rows = [row.split(",") for row in ROWS]
+    rows[line - 2][cell] = text
+    return [",".join(row) for row in rows]
+
+
+def test_columns_name_and_path_are_read(write: Write) -> None:
+    path = write(HEADER, *ROWS, name="sweep.csv")
+    run = read_run(path)
+    assert (run.name, len(run), run.path) == ("sweep", 12, path)
+    assert list(run.columns()) == HEADER.split(",")
+    assert run.friction_n is not None
+    assert (run.friction_n[11], run.columns()["angle_rad"][3]) == (-0.6, 0.3)
+
+
+def test_separators_quotes_comments_and_line_ends_do_not_change_the_run(write: Write) -> None:
+    plain = read_run(write(HEADER, *ROWS))
+    spaced = HEADER.replace(",", " , ")
+    marked = write("# by hand", "", f" {spaced} ", *ROWS, "", newline="\r\n", name="b.csv")
+    marked.write_bytes(b"\xef\xbb\xbf" + marked.read_bytes())
+    lines = [HEADER, *ROWS]
+    semicolons = write(*(line.replace(",", ";") for line in lines), name="c.csv")
+    tabs = write(*(line.replace(",", "\t") for line in lines), name="d.csv")
+    quotes = write(*('"' + line.replace(",", '","') + '"' for line in lines), name="e.csv")
+    for path in (marked, semicolons, tabs, quotes):
+        assert read_run(path).to_csv() == plain.to_csv()
+
+
+def test_other_columns_are_kept_if_all_cells_are_finite_numbers(write: Write) -> None:
+    lines = [f"{i},{row},{i},up,{'' if i == 3 else i},inf,0.1" for i, row in enumerate(ROWS)]
+    header = f",{HEADER},current_a,gear,patchy,broken,position_ref_m"
+    run = read_run(write(header, *lines))
+    assert list(run.extra) == ["current_a", "position_ref_m"]
+    assert run.extra["current_a"].tolist() == list(range(12))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "column", "hint"),
+    [
+        ("velocity_m_s", "velocity_ms", "velocity_m_s", "velocity_ms"),
+        ("friction_n", "force", "friction_n", "force"),
+        ("time_s", "t", "time_s", '"t"'),
+        ("friction_n", "pressure", "friction_n", "the header has time_s, angle_rad"),
+        ("angle_rad", "angle_deg", "angle_deg", "angle_rad"),
+        ("load_n", "load", "load", "load_n"),
+        ("load_n", "friction_n", "friction_n", "rename or drop"),
+    ],
+)
+def test_bad_column_name_is_reported_with_the_likely_name(
+    write: Write, old: str, new: str, column: str, hint: str
+) -> None:
+    path = write(HEADER.replace(old, new), *ROWS)
+    error = input_error(read_run, path)
+    assert (error.file, error.row, error.column) == (str(path), 1, column)
+    assert hint in str(error.mend)
+
+
+@pytest.mark.parametrize(
+    ("line", "cell", "text", "column", "fact"),
+    [
+        (12, 3, "abc", "friction_n", '"abc"'),
+        (5, 1, "", "angle_rad", "empty"),
+        (5, 3, "nan", "friction_n", "nan"),
+        (6, 2, "-inf", "velocity_m_s", "-inf"),
+        (4, 0, "0.020", "time_s", "repeats at 0.02"),
+        (4, 0, "0.001", "time_s", "from 0.02 to 0.001"),
+        (9, 4, "-104", "load_n", "-104.0 N"),
+        (9, 4, "x" * 500, "load_n", "xxx..."),
+    ],
+)
+def test_bad_cell_is_reported_by_row_and_column(
+    write: Write, line: int, cell: int, text: str, column: str, fact: str
+) -> None:
+    path = write(HEADER, *changed(line, cell, text))
+    error = input_error(read_run, path)
+    assert (error.file, error.row, error.column) == (str(path), line, column)
+    assert fact in error.problem
+    assert len(str(error)) < len(str(path)) + 200
+
+
+def test_reported_row_counts_comments_and_blank_lines(write: Write) -> None:
+    rows = changed(5, 3, "abc")
+    path = write("# rig 2", "", HEADER, *rows[:2], "", *rows[2:])
+    assert input_error(read_run, path).row == 8
+
+
+@pytest.mark.parametrize(
+    ("lines", "row", "fact"),
+    [
+        ([HEADER, *ROWS[:4], "0.08,0.4,0.01", *ROWS[5:]], 6, "3 cells"),
+        ([], None, "empty"),
+        ([HEADER], None, "no samples"),
+        ([HEADER, *ROWS[:9]], None, "9 samples"),
+        (ROWS, 1, "numbers"),
+        ([line.replace(",", " ") for line in [HEADER, *ROWS]], 1, "blanks"),
+        (
+            [line.replace(",", ";").replace(".", ",") for line in [HEADER, *ROWS]],
+            2,
+            "decimal comma",
+        ),
+        ([HEADER, *ROWS[:3], '"0.06,0.3', *ROWS[4:]], 5, "quote"),
+        (["a\0b"], None, "binary"),
+    ],
+)
+def test_malformed_file_is_reported_with_the_row(
+    write: Write, lines: list[str], row: int | None, fact: str
+) -> None:
+    path = write(*lines)
+    error = input_error(read_run, path)
+    assert (error.file, error.row) == (str(path), row)
+    assert fact in error.problem
+
+
+def test_unreadable_file_is_reported(write: Write, tmp_path: Path) -> None:
+    good = write(HEADER, *ROWS, name="sweep.csv")
+    assert input_error(read_run, tmp_path).file == str(tmp_path)
+    assert "sweep.csv" in str(input_error(read_run, tmp_path / "sweeep.csv").mend)
+    assert "folder" in input_error(read_run, tmp_path / "no" / "x.csv").problem
+    good.write_bytes(HEADER.encode() + b"\n1,\xff\n")
+    assert input_error(read_run, good).row == 2
+    good.write_bytes(HEADER.encode("utf-16"))
+    assert "UTF-16" in input_error(read_run, good).problem
+
+
+def test_friction_may_be_absent_if_not_needed_but_not_misspelt(write: Write) -> None:
+    path = write("time_s,velocity_m_s", *(f"{i},0.1" for i in range(10)))
+    assert read_run(path, need_friction=False).friction_n is None
+    assert input_error(read_run, path).column == "friction_n"
+    path = write("time_s,velocity_m_s,friction", *(f"{i},0.1,1" for i in range(10)))
+    assert "friction_n" in str(input_error(read_run, path, need_friction=False).mend)
+
+
+def cells(count: int, empty: int, value: str) -> list[str]:
+    """A column whose first cells are empty."""
+    return [" "] * empty + [value] * (count - empty)
+
+
+@pytest.mark.parametrize(
+    ("samples", "empty", "own"),
+    [(100, 9, False), (100, 10, True), (400, 19, False), (400, 20, True)],
+)
+def test_column_with_a_twentieth_of_empty_cells_has_its_own_clock(
+    write: Write, samples: int, empty: int, own: bool
+) -> None:
+    force = cells(samples, empty, "2.5")
+    rows = [f"{i},1.5,{cell}" for i, cell in enumerate(force)]
+    path = write("time_s,velocity_m_s,friction_n", *rows)
+    if not own:
+        assert input_error(read_run, path).column == "friction_n"
+        return
+    run = read_run(path)
+    assert run.read["friction_n"].tolist() == [False] * empty + [True] * (samples - empty)
+    assert run.friction_n is not None
+    assert set(run.friction_n.tolist()) == {2.5}
+
+
+def test_few_empty_cells_are_accepted_only_where_a_slow_channel_was_read(write: Write) -> None:
+    speed = cells(100, 3, "1.5")
+    for slow, accepted in ((cells(100, 60, "7")[::-1], True), (cells(100, 60, "7"), False)):
+        rows = [f"{i},{speed[i]},{slow[i]}" for i in range(100)]
+        path = write("time_s,velocity_m_s,friction_n", *rows)
+        if accepted:
+            assert set(read_run(path).read) == {"velocity_m_s", "friction_n"}
+        else:
+            assert input_error(read_run, path).column == "velocity_m_s"
+
+
+def test_temperature_may_have_gaps_or_no_reading_at_all(write: Write) -> None:
+    rows = [f"{0.1 * i},1.0,2.0," for i in range(12)]
+    assert read_run(write("time_s,velocity_m_s,friction_n,temperature_c", *rows)).read == {}
+    rows[4] += "21.5"
+    run = read_run(write("time_s,velocity_m_s,friction_n,temperature_c", *rows))
+    np.testing.assert_array_equal(run.temperature_c, 21.5)
+    assert [finding.kind for finding in run.reading] == ["gaps"]

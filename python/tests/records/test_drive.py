@@ -1,0 +1,322 @@
+"""Drives: constants, columns, conversion of motor quantities, and files of drives."""
+
+from __future__ import annotations
+
+import re
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import jbf
+import numpy as np
+import pytest
+from input_errors import input_error
+from jbf import Rig
+from jbf.records.drive import Drive
+from jbf.records.drive_columns import RPM, DriveColumns
+from jbf.records.rig import read_rig
+
+TORQUE = Drive("rotary", "torque", gear_ratio=20.0)
+CURRENT = Drive("rotary", "current", torque_constant_n_m_a=0.5, gear_ratio=8.0)
+PERCENT = Drive("rotary", "percent", rated_torque_n_m=20.0, gear_ratio=2.0)
+SLIDE = Drive("linear", "force")
+SCREW = Drive("linear", "torque", pitch_m=0.02, gear_ratio=3.0)
+LINEAR_MOTOR = Drive("linear", "current", force_constant_n_a=60.0)
+RATED = Drive("linear", "percent", rated_force_n=250.0)
+SERVO = Drive("linear", "percent", rated_torque_n_m=1.5, pitch_m=0.01, gear_ratio=2.0)
+
+
+# ---- constants -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("drive", "column", "motor_rad", "unit"),
+    [
+        (CURRENT, "current_a", 8.0, 0.5 * 8.0),
+        (PERCENT, "torque_percent", 2.0, 20.0 / 100.0 * 2.0),
+        (LINEAR_MOTOR, "current_a", None, 60.0),
+        (RATED, "force_percent", None, 250.0 / 100.0),
+        (SERVO, "torque_percent", 2 * 2 * pi / 0.01, 1.5 / 100.0 * 2 * 2 * pi / 0.01),
+    ],
+)
+def test_one_ampere_or_percent_follows_from_gear_and_screw(
+    drive: Drive, column: str, motor_rad: float | None, unit: float
+) -> None:
+    """An ideal transmission: the power of the motor is the power at the joint or slide."""
+    assert drive.motor_rad == (None if motor_rad is None else pytest.approx(motor_rad))
+    assert drive.unit_n == pytest.approx(unit)
+    columns = DriveColumns.of(drive)
+    assert columns.friction == pytest.approx({column: unit})
+    columns.refuse_strangers(Path("a.csv"), 1, [*columns.known, "own"])
+
+
+def test_quantities_follow_from_motion_and_sensor() -> None:
+    assert [drive.quantities.force for drive in (TORQUE, CURRENT, SLIDE)] == ["N m", "N m", "N"]
+    assert "torque sensor" in TORQUE.quantities.sensor
+    assert "current sensor" in LINEAR_MOTOR.quantities.sensor
+
+
+BOTH = {"force_constant_n_a": 1.0, "torque_constant_n_m_a": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("motion", "friction", "constants", "key"),
+    [
+        ("spinning", "torque", {}, "motion"),
+        (3, "torque", {}, "motion"),
+        ("rotary", "force", {}, "friction"),
+        ("rotary", "current", {}, "torque_constant_n_m_a"),
+        ("rotary", "torque", {"torque_constant_n_m_a": 1.0}, "torque_constant_n_m_a"),
+        ("linear", "current", BOTH, "force_constant_n_a or torque_constant_n_m_a"),
+        ("linear", "percent", {}, "rated_force_n or rated_torque_n_m"),
+        ("rotary", "torque", {"gear_ratio": 0.0}, "gear_ratio"),
+        ("rotary", "torque", {"gear_ratio": "3"}, "gear_ratio"),
+        ("rotary", "torque", {"mass_kg": 1.0}, "mass_kg"),
+        ("rotary", "torque", {"pitch_m": 1.0}, "pitch_m"),
+        ("linear", "force", {"inertia_kg_m2": 1.0}, "inertia_kg_m2"),
+        ("linear", "torque", {}, "pitch_m"),
+        ("linear", "force", {"gear_ratio": 2.0}, "pitch_m"),
+        ("linear", "current", {"torque_constant_n_m_a": 1.0}, "pitch_m"),
+        ("linear", "percent", {"rated_torque_n_m": 1.0}, "pitch_m"),
+    ],
+)
+def test_inconsistent_drive_is_reported_by_key(
+    motion: Any, friction: Any, constants: dict[str, Any], key: str
+) -> None:
+    section = {"motion": motion, "friction": friction} | constants
+    assert input_error(Drive, **section).key == key
+    assert input_error(Drive.from_mapping, section, "rig.drive").key == f"rig.drive.{key}"
+
+
+def test_section_becomes_a_drive_with_floats() -> None:
+    section: Any = {"motion": "linear", "friction": "force", "mass_kg": 3}
+    assert Drive.from_mapping(section, "drive") == Drive("linear", "force", mass_kg=3.0)
+    for wrong, key in ((3, "drive"), ({"motion": "linear"}, "drive.friction")):
+        assert input_error(Drive.from_mapping, wrong, "drive").key == key
+    assert input_error(Drive.from_mapping, {"motin": "linear"}, "drive").key == "drive.motin"
+
+
+# ---- columns -------------------------------------------------------------------------------------
+
+
+def test_columns_of_a_joint_and_of_a_slide_have_factors_of_gear_and_screw() -> None:
+    joint, slide = DriveColumns.of(TORQUE), DriveColumns.of(SCREW)
+    screw = 1.0 / (3.0 * 2.0 * pi / 0.02)
+    assert joint.friction == {"torque_n_m": 1.0, "motor_torque_n_m": 20.0}
+    assert joint.place == pytest.approx({"angle_rad": 1.0, "motor_angle_rad": 0.05})
+    assert list(joint.speed) == [
+        "velocity_rad_s", "speed_rpm", "motor_velocity_rad_s", "motor_speed_rpm"
+    ]  # fmt: skip
+    rpm = 2.0 * pi / 60.0
+    assert list(joint.speed.values()) == pytest.approx([1.0, rpm, 0.05, 0.05 * rpm])
+    assert slide.friction == pytest.approx({"motor_torque_n_m": 1.0 / screw})
+    assert slide.place == pytest.approx({"position_m": 1.0, "motor_angle_rad": screw})
+    assert list(slide.speed.values()) == pytest.approx([1.0, screw, rpm * screw])
+
+
+def test_required_columns_are_time_and_the_first_present_motion_and_friction() -> None:
+    columns = DriveColumns.of(TORQUE)
+    assert columns.required([], True) == ["time_s", "velocity_rad_s", "torque_n_m"]
+    header = ["motor_torque_n_m", "motor_angle_rad"]
+    assert columns.required(header, True) == ["time_s", "motor_angle_rad", "motor_torque_n_m"]
+    assert columns.required(["angle_rad", "speed_rpm"], False) == ["time_s", "speed_rpm"]
+
+
+@pytest.mark.parametrize(
+    ("drive", "name", "hint"),
+    [
+        (TORQUE, "friction_n", "torque_n_m"),
+        (CURRENT, "friction_n", "current_a"),
+        (TORQUE, "velocity_m_s", "velocity_rad_s"),
+        (TORQUE, "position_m", "angle_rad"),
+        (SLIDE, "angle_rad", "motor_angle_rad"),
+        (SLIDE, "velocity_rad_s", "motor_velocity_rad_s"),
+        (SLIDE, "speed_rpm", "motor_speed_rpm"),
+        (SLIDE, "motor_angle_rad", "pitch_m"),
+        (SLIDE, "motor_velocity_rad_s", "pitch_m"),
+        (SLIDE, "motor_speed_rpm", "pitch_m"),
+        (SCREW, "torque_n_m", "motor_torque_n_m"),
+    ],
+)
+def test_column_of_another_machine_is_rejected_with_a_hint(
+    drive: Drive, name: str, hint: str
+) -> None:
+    columns = DriveColumns.of(drive)
+    error = input_error(columns.refuse_strangers, Path("a.csv"), 3, ["time_s", name])
+    assert (error.file, error.row, error.column) == ("a.csv", 3, name)
+    assert hint in str(error.mend)
+
+
+def test_motor_columns_are_converted_once_and_reported() -> None:
+    angle, torque = np.linspace(0.0, 3.0, 20), np.arange(20.0)
+    columns = {"time_s": torque, "motor_angle_rad": angle, "motor_torque_n_m": torque}
+    columns |= {"speed_rpm": np.full(20, 60.0), "own": torque}
+    kept, findings = DriveColumns.of(TORQUE).converted("a", columns)
+    assert set(kept) == {"time_s", "own", "friction_n", "velocity_m_s", "angle_rad"}
+    np.testing.assert_allclose(kept["friction_n"], 20.0 * torque)
+    np.testing.assert_allclose(kept["velocity_m_s"], 2.0 * pi)
+    np.testing.assert_allclose(kept["angle_rad"], angle / 20.0)
+    assert [(f.kind, f.channel, f.unit) for f in findings] == [
+        ("converted", "friction_n", "N m"),
+        ("converted", "velocity_m_s", "rad/s"),
+        ("converted", "angle_rad", "rad"),
+    ]
+    assert [f.size for f in findings] == pytest.approx([20.0, RPM, 0.05])
+
+
+def test_first_of_several_columns_is_read_and_the_other_is_kept() -> None:
+    one, other = np.arange(20.0), -np.arange(20.0)
+    columns = {"time_s": one, "motor_torque_n_m": other, "torque_n_m": one, "angle_rad": one}
+    kept, (finding,) = DriveColumns.of(TORQUE).converted("a", columns)
+    assert kept["friction_n"] is one
+    assert kept["motor_torque_n_m"] is other
+    assert (finding.kind, finding.channel) == ("second_column", "friction_n")
+    called = DriveColumns.of(TORQUE).called(columns)
+    assert called == {"torque_n_m": "friction_n", "angle_rad": "angle_rad"}
+
+
+def test_wrapped_motor_angle_is_unwrapped_before_the_gear() -> None:
+    """An angle that exceeds one turn is not wrapped; one without a gear is not changed here."""
+    unwrapped = 0.5 * np.arange(30.0)
+    wrapped = np.mod(unwrapped, 2.0 * pi)
+    columns = {"time_s": unwrapped, "torque_n_m": unwrapped}
+    convert = DriveColumns.of(TORQUE).converted
+    for name, given, expected in (
+        ("motor_angle_rad", wrapped, unwrapped / 20.0),
+        ("motor_angle_rad", 4.0 * np.arange(30.0), 0.2 * np.arange(30.0)),
+        ("angle_rad", wrapped, wrapped),
+    ):
+        kept, _ = convert("a", columns | {name: given})
+        np.testing.assert_allclose(kept["angle_rad"], expected, atol=1e-12)
+
+
+# ---- files ---------------------------------------------------------------------------------------
+
+TIME_S = 0.01 * np.arange(200)
+ANGLE = 1.5 * np.sin(TIME_S)
+SPEED = 1.5 * np.cos(TIME_S)
+TORQUE_N_M = 3.0 * np.sign(SPEED) + 0.7 * SPEED
+
+
+def record(folder: Path, columns: dict[str, Any]) -> Path:
+    """A CSV file with these columns."""
+    path = folder / "a.csv"
+    rows = np.column_stack(list(columns.values()))
+    np.savetxt(path, rows, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("drive", "column", "factor"),
+    [
+        (TORQUE, "torque_n_m", 1.0),
+        (TORQUE, "motor_torque_n_m", 20.0),
+        (CURRENT, "current_a", 4.0),
+        (PERCENT, "torque_percent", 0.4),
+    ],
+)
+def test_file_of_a_joint_is_read_as_torque_at_the_joint(
+    drive: Drive, column: str, factor: float, tmp_path: Path
+) -> None:
+    rig = Rig(drive=drive)
+    columns = {"time_s": TIME_S, "angle_rad": ANGLE, column: TORQUE_N_M / factor}
+    run = jbf.read_run(record(tmp_path, columns), rig)
+    np.testing.assert_allclose(run.friction_n, TORQUE_N_M, rtol=1e-12)  # type: ignore[arg-type]
+    assert run.quantities == rig.quantities
+    sizes = [finding.size for finding in run.reading]
+    assert sizes == ([] if factor == 1.0 else [pytest.approx(factor)])
+
+
+def test_power_of_the_motor_is_the_power_of_the_slide(tmp_path: Path) -> None:
+    motor_rad_s = 40.0 * SPEED
+    columns = {
+        "time_s": TIME_S,
+        "motor_angle_rad": 40.0 * ANGLE,
+        "motor_speed_rpm": motor_rad_s * 60.0 / (2.0 * pi),
+        "motor_torque_n_m": TORQUE_N_M,
+    }
+    run = jbf.read_run(record(tmp_path, columns), Rig(drive=SCREW))
+    assert run.friction_n is not None
+    np.testing.assert_allclose(
+        run.friction_n * run.velocity_m_s, TORQUE_N_M * motor_rad_s, rtol=1e-9
+    )
+    turns = 40.0 * ANGLE / (2.0 * pi)
+    np.testing.assert_allclose(run.position_m, turns / 3.0 * 0.02)  # type: ignore[arg-type]
+
+
+def test_written_run_of_a_joint_reads_back(tmp_path: Path) -> None:
+    rig = Rig(drive=TORQUE)
+    columns = {
+        "time_s": TIME_S, "angle_rad": ANGLE, "velocity_rad_s": SPEED, "torque_n_m": TORQUE_N_M
+    }  # fmt: skip
+    run = jbf.read_run(record(tmp_path, columns), rig)
+    run.write_csv(tmp_path / "b.csv")
+    again = jbf.read_run(tmp_path / "b.csv", rig)
+    assert again.to_csv() == run.to_csv()
+    jbf.Model(rig, law="coulomb").save(tmp_path / "model.toml")
+    assert jbf.Model.load(tmp_path / "model.toml").rig == rig
+
+
+def test_empty_cells_of_a_motor_column_are_its_own_clock(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    rows = [f"{t},{a},{a if i % 2 else ''}" for i, (t, a) in enumerate(zip(TIME_S, ANGLE))]  # noqa: B905
+    path.write_text("\n".join(["time_s,angle_rad,current_a", *rows]))
+    run = jbf.read_run(path, Rig(drive=CURRENT))
+    assert set(run.read) == {"friction_n"}
+    assert run.read["friction_n"].tolist() == [i % 2 == 1 for i in range(200)]
+
+
+@pytest.mark.parametrize(
+    ("drive", "header", "column", "hint"),
+    [
+        (TORQUE, "angle_rad,current_a", "torque_n_m", "the header has"),
+        (TORQUE, "angle_rad,torque_nm", "torque_n_m", "torque_nm"),
+        (CURRENT, "current_a,temperature_c", "velocity_rad_s", "the header has"),
+        (SCREW, "position_m,torque_n_m", "torque_n_m", "motor_torque_n_m"),
+        (None, "position_m,current_a", "friction_n", "[drive]"),
+    ],
+)
+def test_wrong_header_of_a_drive_is_reported(
+    drive: Drive | None, header: str, column: str, hint: str, tmp_path: Path
+) -> None:
+    columns = {"time_s": TIME_S} | dict.fromkeys(header.split(","), TORQUE_N_M)
+    path = record(tmp_path, columns)
+    error = input_error(jbf.read_run, path, Rig(drive=drive))
+    assert (error.file, error.row, error.column) == (str(path), 1, column)
+    assert hint in str(error.mend)
+
+
+def test_run_and_law_must_fit_the_kind_of_rig(tmp_path: Path) -> None:
+    joint = Rig(drive=TORQUE)
+    joint.write(tmp_path / "rig.toml")
+    assert read_rig(tmp_path / "rig.toml") == joint
+    path = record(tmp_path, {"time_s": TIME_S, "angle_rad": ANGLE, "torque_n_m": TORQUE_N_M})
+    run = jbf.read_run(path, joint)
+    for other in (Rig(), Rig(drive=SLIDE)):
+        assert input_error(jbf.fit, other, [run], law="coulomb").file == str(path)
+    assert "coulomb" in str(input_error(jbf.Model, joint).mend)
+
+
+# ---- documentation -------------------------------------------------------------------------------
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "drives.md"
+
+
+def test_documentation_names_every_key_and_column_of_a_drive() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    screw = Drive("linear", "force", pitch_m=0.01)
+    columns = [
+        c for d in (TORQUE, CURRENT, PERCENT, screw, RATED) for c in DriveColumns.of(d).known
+    ]
+    missing = [name for name in (*Drive.__dataclass_fields__, *columns) if f"`{name}`" not in text]
+    assert missing == []
+
+
+def test_documentation_names_only_effects_that_a_drive_can_have() -> None:
+    section = PAGE.read_text(encoding="utf-8").partition("## What the effects are here")[2]
+    rows = re.findall(r"^\| (`.*?) \|", section, flags=re.MULTILINE)
+    named = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+    known = jbf.effects()
+    assert named
+    assert [name for name in named if "coulomb" in known[name].refused] == []
+    assert {name for name, page in known.items() if "journal" in page.refused} <= named

@@ -1,0 +1,148 @@
+"""Held samples: a force that stands still, and a slow channel repeated until its next reading."""
+
+from __future__ import annotations
+
+from math import erf
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Run
+from jbf.records.findings.held_samples import find_held, held
+from jbf.records.findings.slow_channel import find_repeated
+from known_motions import Array, places, quantised, reversing_force, white
+
+SAMPLES = 2000
+TIME_S: Any = 0.01 * np.arange(SAMPLES)
+NOISE = white(SAMPLES, 1)
+NOISY_SINE: Any = 10.0 * np.sin(0.7 * TIME_S) + 0.1 * NOISE
+
+
+def repeating(values: Any, first: int, count: int) -> Array:
+    """Values with `count` equal samples from `first` on."""
+    changed: Array = np.array(values)
+    changed[first + 1 : first + count] = changed[first]
+    return changed
+
+
+@pytest.mark.parametrize(("count", "found"), [(4, False), (5, True), (9, True)])
+def test_five_equal_readings_of_noisy_data_are_held(count: int, found: bool) -> None:
+    """The first of them was read; those that repeat it were not."""
+    mask = held(repeating(NOISY_SINE, 300, count))
+    assert places(mask) == (list(range(301, 300 + count)) if found else [])
+
+
+@pytest.mark.parametrize(("count", "found"), [(30, False), (31, True)])
+def test_held_stretch_is_longer_than_chance_makes_it(count: int, found: bool) -> None:
+    """Half of the readings come twice: a row of k has probability 2000 / 2^(k-1) < 1e-6."""
+    pairs = np.repeat(NOISE, np.where(np.arange(SAMPLES) % 2, 1, 2))[:SAMPLES]
+    mask = held(repeating(pairs, 302, count))
+    assert places(mask) == (list(range(303, 302 + count)) if found else [])
+
+
+def test_quantised_noise_repeats_a_reading_by_chance() -> None:
+    """Rounding to whole steps adds 1/12 to the variance of the noise. A reading in the middle of a
+    step is repeated k times with probability p^k: held rows have less than 1e-6 in the record."""
+    values = np.round(np.linspace(-50.0, 50.0, SAMPLES) + 0.5 * NOISE)
+    noise = np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0)
+    p = erf(0.5 / np.sqrt(noise**2 - 1.0 / 12.0) / np.sqrt(2.0))
+    longest = np.log(1e-6 / SAMPLES) / np.log(p)
+    assert not held(repeating(values, 300, int(longest) - 1)).any()
+    assert held(repeating(values, 300, int(longest) + 2)).any()
+
+
+@pytest.mark.parametrize("over_noise", [1.5, 3.5, 6.0])
+@pytest.mark.parametrize("scale", [1e-6, 1.0])
+def test_equal_readings_of_a_coarse_converter_are_not_held(over_noise: float, scale: float) -> None:
+    force = scale * quantised(reversing_force(TIME_S, 5), over_noise * 0.3)
+    assert np.mean(np.diff(force) == 0.0) > 0.2
+    assert not held(force).any()
+
+
+def test_finding_has_the_longest_duration_of_unexplained_stretches() -> None:
+    force = repeating(repeating(NOISY_SINE, 300, 6), 800, 21)
+    run = Run.from_arrays(TIME_S, 0.1 + 0.0 * TIME_S, force, name="a")
+    (finding,), mask = find_held(run, np.zeros(SAMPLES, dtype=bool))
+    assert mask.sum() == 25
+    assert finding.size == pytest.approx(0.2)
+    assert (finding.kind, finding.channel, finding.unit) == ("held_samples", "friction_n", "s")
+    (finding,), mask = find_held(run, np.arange(SAMPLES) > 500)
+    assert (mask.sum(), finding.size) == (5, pytest.approx(0.05))
+    nothing, mask = find_held(run, np.ones(SAMPLES, dtype=bool))
+    assert nothing == []
+    assert not mask.any()
+
+
+FAST_S: Any = 0.02 * np.arange(3000)
+
+
+def ticks_of(rate_hz: float) -> Array:
+    """Instants of a slow clock that covers the record, s."""
+    ticks: Array = np.arange(-0.3 / rate_hz, FAST_S[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    return ticks
+
+
+def repeated(ticks_s: Array, read: Array) -> Array:
+    """The last reading at each sample of the fast clock."""
+    values: Array = read[np.searchsorted(ticks_s, FAST_S, side="right") - 1]
+    return values
+
+
+@pytest.mark.parametrize("rate_hz", [9.3, 31.7, 46.0])
+def test_repeated_readings_and_their_instants_are_recovered(rate_hz: float) -> None:
+    ticks_s = ticks_of(rate_hz)
+    read = reversing_force(ticks_s, 6)
+    native = find_repeated(FAST_S, repeated(ticks_s, read))
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-4)
+    which = np.round((native.time_s - ticks_s[0]) * rate_hz).astype(int)
+    np.testing.assert_array_equal(native.values, read[which])
+    np.testing.assert_allclose(native.time_s, ticks_s[which], atol=0.25 * 0.02)
+
+
+@pytest.mark.parametrize(("rate_hz", "step_n"), [(6.3, 2.5), (17.0, 0.8), (23.0, 2.5)])
+def test_repeated_readings_in_coarse_steps_are_recovered(rate_hz: float, step_n: float) -> None:
+    """Consecutive equal readings are separated by the clock of the others."""
+    ticks_s = ticks_of(rate_hz)
+    read = quantised(1.7 * reversing_force(ticks_s, 6, 0.4), step_n)
+    assert np.mean(np.diff(read) == 0.0) > 0.1
+    native = find_repeated(FAST_S, repeated(ticks_s, read))
+    assert native is not None
+    assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=3e-4)
+    which = np.round((native.time_s - ticks_s[0]) * rate_hz).astype(int)
+    np.testing.assert_array_equal(np.diff(which), 1)
+    np.testing.assert_array_equal(native.values, read[which])
+
+
+@pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
+@pytest.mark.parametrize("omega", [0.02, 3.0])
+def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omega: float) -> None:
+    noise = white(len(FAST_S), 7, 0.3)
+    for force in (20.0 * np.tanh(5.0 * np.sin(omega * FAST_S)) + noise, 0.3 * FAST_S + noise):
+        assert find_repeated(FAST_S, quantised(force, step_n) if step_n else force) is None
+
+
+def rows_of_clock(period: float, rows: int, *, skip: int = 0) -> tuple[Array, Array]:
+    """A record in which `rows` readings begin, a period (in samples) apart; every `skip`-th of them
+    equals the one before."""
+    begins = np.ceil(0.3 + period * np.arange(rows + 1)).astype(int)
+    values = white(rows + 1, 2)
+    if skip:
+        values[skip::skip] = values[skip - 1 : -1 : skip][: len(values[skip::skip])]
+    samples = np.repeat(values, np.diff(np.append(begins, begins[-1] + 2)))
+    return 0.01 * np.arange(len(samples)), samples
+
+
+@pytest.mark.parametrize(("rows", "found"), [(39, False), (40, True)])
+def test_forty_readings_are_needed_to_tell_a_clock(rows: int, found: bool) -> None:
+    assert (find_repeated(*rows_of_clock(2.7, rows)) is not None) == found
+
+
+def test_repeated_readings_need_even_stamps_and_a_steady_clock() -> None:
+    time_s, values = rows_of_clock(2.7, 200)
+    for error_s, found in ((0.5e-5, True), (2e-5, False)):
+        uneven = time_s.copy()
+        uneven[100] += error_s
+        assert (find_repeated(uneven, values) is not None) == found
+    random_rows = np.repeat(NOISE, 1 + (NOISE > 0.3) + 2 * (NOISE > 1.0))
+    assert find_repeated(0.01 * np.arange(len(random_rows)), random_rows) is None

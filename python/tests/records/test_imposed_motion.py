@@ -1,0 +1,320 @@
+"""Estimation of the imposed motion from records of speed and position, against known motions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from input_errors import input_error
+from jbf import Model, Rig, Run
+from jbf.records.motion.believed import believed
+from jbf.records.motion.imposed import impose
+from jbf.records.motion.roughness import step_of
+from known_motions import (
+    STEP_S,
+    TIME_S,
+    Array,
+    acceleration_of,
+    integrated,
+    path_of,
+    quantised,
+    speed_of,
+    white,
+)
+
+SAMPLES = len(TIME_S)
+COUNT_M = 1e-5
+RADIUS_M = 0.0127
+SPEED_M_S = speed_of(TIME_S) + white(SAMPLES, 1, 1e-4)
+PATH_M = quantised(path_of(TIME_S), COUNT_M)
+
+
+def run_of(speed: Any = SPEED_M_S, path: Any = PATH_M, time_s: Any = TIME_S) -> Run:
+    return Run.from_arrays(time_s, speed, position_m=path, name="a")
+
+
+def kinds(run: Run) -> list[str]:
+    return [finding.kind for finding in believed(run, None).findings]
+
+
+# ---- which records are used ----------------------------------------------------------------------
+
+
+def test_records_without_a_fault_are_used_as_they_are() -> None:
+    records = believed(run_of(), None)
+    np.testing.assert_array_equal(records.path, PATH_M)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(records.speed, SPEED_M_S)
+    assert records.step == pytest.approx(step_of(PATH_M))
+    assert (records.speed_measured, records.findings, records.arm_m) == (True, (), 1.0)
+    records = believed(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M)
+    np.testing.assert_allclose(records.path, PATH_M)  # type: ignore[arg-type]
+    assert (records.step, records.arm_m) == (pytest.approx(step_of(PATH_M)), RADIUS_M)
+
+
+def test_angle_alone_needs_a_radius() -> None:
+    run = Run.from_arrays(TIME_S, angle_rad=PATH_M / RADIUS_M, name="a")
+    error = input_error(believed, run, None)
+    assert (error.file, error.column) == ("a", "velocity_m_s")
+    records = believed(run, RADIUS_M)
+    assert [finding.kind for finding in records.findings] == ["no_speed"]
+    assert (records.speed_measured, records.arm_m) == (False, RADIUS_M)
+    np.testing.assert_allclose(records.speed, np.gradient(records.path, TIME_S))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("path_factor", "speed_factor", "kind"),
+    [(1e3, 1.0, "units"), (-1e3, 1.0, "units"), (7.7, 1.0, "units"), (1.0, 1e3, "units"),
+     (-1.0, 1.0, "sign")],
+)  # fmt: skip
+def test_wrong_units_and_signs_are_converted(
+    path_factor: float, speed_factor: float, kind: str
+) -> None:
+    run = run_of(speed_factor * SPEED_M_S, path_factor * PATH_M)
+    records = believed(run, None)
+    assert [finding.kind for finding in records.findings] == [kind]
+    factor = 2e-3 if path_factor == 7.7 else 1e-9
+    np.testing.assert_allclose(records.path, PATH_M, rtol=factor)  # type: ignore[arg-type]
+    np.testing.assert_allclose(records.speed, SPEED_M_S)
+    assert records.step == pytest.approx(step_of(PATH_M), rel=factor)
+    motion = impose(run, None)
+    assert motion.aside == {records.findings[0].channel}
+    assert np.std(motion.velocity_m_s - speed_of(TIME_S)) < 1e-4
+
+
+def test_late_speed_is_shifted_and_a_filtered_or_derived_one_replaced() -> None:
+    late = believed(run_of(speed_of(TIME_S - 0.3 * STEP_S)), None)
+    assert [finding.kind for finding in late.findings] == ["late_speed"]
+    assert late.speed_measured
+    np.testing.assert_allclose(late.speed[5:-5], speed_of(TIME_S)[5:-5], atol=3e-4)
+    filtered = believed(run_of(speed_of(TIME_S - 3.0 * STEP_S)), None)
+    assert [finding.kind for finding in filtered.findings] == ["filtered_speed"]
+    assert not filtered.speed_measured
+    np.testing.assert_allclose(filtered.speed, np.gradient(PATH_M, TIME_S))
+    assert kinds(run_of(np.concatenate(([0.0], np.diff(PATH_M) / STEP_S)))) == ["coarse_speed"]
+
+
+def test_each_fault_of_a_record_is_reported_once() -> None:
+    path, speed = PATH_M.copy(), SPEED_M_S.copy()
+    path[300] += 0.01
+    speed[500] += 0.1
+    findings = believed(run_of(speed, path), None).findings
+    assert [(f.kind, f.channel) for f in findings] == [
+        ("glitches", "position_m"), ("glitches", "velocity_m_s")
+    ]  # fmt: skip
+    held = PATH_M.copy()
+    held[601:609] = held[600]
+    records = believed(run_of(path=held), None)
+    assert [f.kind for f in records.findings] == ["held_samples"]
+    np.testing.assert_allclose(records.path, PATH_M, atol=5e-5)  # type: ignore[arg-type]
+    uneven_s = TIME_S + white(SAMPLES, 2, 5e-4)
+    uneven = run_of(speed_of(uneven_s), quantised(path_of(uneven_s), COUNT_M), uneven_s)
+    assert kinds(uneven) == ["jitter"]
+    shaken_s = TIME_S + white(SAMPLES, 2, 2e-3)
+    assert kinds(run_of(path=quantised(path_of(shaken_s), COUNT_M))) == ["jitter"]
+
+
+def triangle_and_stops(name: str, time_s: Any) -> tuple[Array, Array]:
+    """Speed and path of a triangular speed, or of strokes between stops."""
+    fine_s = np.arange(0.0, 40.0, 1e-3)
+    phase = np.mod(fine_s, 8.0)
+    v = 0.1 * (1.0 - 2.0 * np.abs(phase / 4.0 - 1.0))
+    if name == "stops":
+        way = np.where(np.mod(fine_s, 16.0) < 8.0, 1.0, -1.0)
+        v = 0.08 * way * np.clip(np.minimum(phase - 1.003, 6.007 - phase), 0.0, 1.0)
+    return np.interp(time_s, fine_s, v), np.interp(time_s, fine_s, integrated(v, 1e-3))
+
+
+@pytest.mark.parametrize("name", ["slow", "fast", "triangle", "stops"])
+@pytest.mark.parametrize("noise", [0.0, 1e-5, 2e-3])
+@pytest.mark.parametrize("count", [1e-9, 4e-4, pytest.param(4e-3, marks=pytest.mark.extended)])
+def test_clean_motion_has_no_findings(name: str, noise: float, count: float) -> None:
+    time_s = 0.02 * np.arange(1500)
+    if name in ("slow", "fast"):
+        omega = {"slow": 0.05, "fast": 4.0}[name]
+        v, x = 0.1 * np.sin(omega * time_s + 0.3), -0.1 / omega * np.cos(omega * time_s + 0.3)
+    else:
+        v, x = triangle_and_stops(name, time_s)
+    speed = np.where(v == 0.0, 0.0, v + white(1500, 1, noise))
+    angle = quantised(x / RADIUS_M, count)
+    assert impose(Run.from_arrays(time_s, speed, angle_rad=angle), RADIUS_M).findings == ()
+    assert impose(Run.from_arrays(time_s, speed), RADIUS_M).findings == ()
+    kept = np.sort(np.random.default_rng(8).permutation(1500)[:1350])
+    gaps = impose(Run.from_arrays(time_s[kept], speed[kept], angle_rad=angle[kept]), RADIUS_M)
+    assert "glitches" not in {finding.kind for finding in gaps.findings}
+
+
+# ---- speed, acceleration, errors, signs ----------------------------------------------------------
+
+
+def recorded(time_s: Array, v: Array, path: Array, *, seed: int = 0) -> Run:
+    """A noisy tachometer, exact at rest, and an encoder with 15,000 counts a turn."""
+    speed = np.where(v == 0.0, 0.0, v + white(len(v), seed, 1e-4))
+    return Run.from_arrays(time_s, speed, angle_rad=quantised(path / RADIUS_M, 1.0 / 2387.3))
+
+
+@pytest.mark.parametrize("omega", [0.1, 2.0])
+@pytest.mark.parametrize("even", [True, False])
+def test_smoothed_sine_has_small_errors_of_the_stated_size(omega: float, even: bool) -> None:
+    time_s = np.arange(0.0, 40.0, 0.02)
+    if not even:
+        time_s = np.cumsum(np.random.default_rng(3).uniform(0.01, 0.03, 2000))
+    v = 0.127 * np.sin(omega * time_s)
+    motion = impose(recorded(time_s, v, 0.127 / omega * (1.0 - np.cos(omega * time_s))), RADIUS_M)
+    assert np.std(motion.velocity_m_s - v) < 0.4e-4
+    gap = motion.acceleration_m_s2 - 0.127 * omega * np.cos(omega * time_s)
+    assert np.std(gap) < 2e-3 + 0.02 * 0.127 * omega
+    error = np.abs(motion.velocity_m_s - v) / motion.velocity_error_m_s
+    assert np.mean(error < 3.0) > 0.95
+    known = motion.sign_known & ~motion.resting
+    np.testing.assert_array_equal(np.sign(motion.velocity_m_s[known]), np.sign(v[known]))
+    assert np.mean(motion.sign_known) > 0.98
+    # A slow reversal is no rest.
+    assert not motion.resting.any()
+
+
+def test_motion_of_two_sines_is_recovered_with_signs_at_four_standard_errors() -> None:
+    motion = impose(run_of(), None)
+    np.testing.assert_allclose(motion.velocity_m_s, speed_of(TIME_S), atol=3e-4)
+    np.testing.assert_allclose(motion.angle_rad, path_of(TIME_S), atol=COUNT_M)
+    assert np.std(motion.acceleration_m_s2 - acceleration_of(TIME_S)) < 0.02
+    expected = np.abs(motion.velocity_m_s) > 4.0 * motion.velocity_error_m_s
+    np.testing.assert_array_equal(motion.sign_known, expected)
+    assert 2e-5 < np.median(motion.velocity_error_m_s) < 1e-4
+    turned = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M)
+    np.testing.assert_allclose(turned.angle_rad, path_of(TIME_S) / RADIUS_M, atol=1e-3)
+
+
+def test_speed_alone_is_smoothed_and_integrated_to_an_angle() -> None:
+    motion = impose(Run.from_arrays(TIME_S, SPEED_M_S), RADIUS_M)
+    np.testing.assert_allclose(motion.velocity_m_s, speed_of(TIME_S), atol=4e-4)
+    way = path_of(TIME_S) - path_of(0.0)
+    np.testing.assert_allclose(motion.angle_rad * RADIUS_M, way, atol=2e-4)
+    clean = speed_of(TIME_S)
+    motion = impose(Run.from_arrays(TIME_S, clean), RADIUS_M)
+    np.testing.assert_allclose(motion.velocity_m_s, clean, atol=2e-5)
+
+
+def test_uneven_noise_has_uneven_errors() -> None:
+    loud = np.where((TIME_S > 3.0) & (TIME_S < 6.0), 10.0, 1.0)
+    run = Run.from_arrays(TIME_S, speed_of(TIME_S) + loud * white(SAMPLES, 8, 1e-4))
+    error = impose(run, None).velocity_error_m_s
+    inside, outside = (TIME_S > 3.6) & (TIME_S < 5.4), TIME_S < 2.0
+    assert 5.0 < np.median(error[inside]) / np.median(error[outside]) < 15.0
+
+
+def test_path_without_counts_is_weighted_by_its_noise() -> None:
+    rough = impose(run_of(path=path_of(TIME_S) + white(SAMPLES, 7, 2e-5)), None)
+    np.testing.assert_allclose(rough.velocity_m_s, speed_of(TIME_S), atol=4e-4)
+    fine = impose(run_of(), None)
+    assert np.median(rough.velocity_error_m_s) > 1.1 * np.median(fine.velocity_error_m_s)
+    assert np.std(rough.angle_rad - path_of(TIME_S)) < 1.5e-5
+
+
+def test_speed_that_contradicts_its_path_has_no_known_sign_there() -> None:
+    path = PATH_M + np.where(np.arange(SAMPLES) >= 400, 2e-3, 0.0)
+    motion = impose(run_of(path=path), None)
+    assert not motion.sign_known[398:402].any()
+    assert motion.sign_known[380:390].all()
+
+
+def test_wrapped_angle_gives_the_motion_of_the_unwrapped_one() -> None:
+    time_s = np.arange(0.0, 20.0, 0.02)
+    v = 0.1 + 0.05 * np.sin(time_s)
+    angle = (0.1 * time_s + 0.05 * (1.0 - np.cos(time_s))) / RADIUS_M
+    unwrapped = Run.from_arrays(time_s, v, angle_rad=angle)
+    wrapped = Run.from_arrays(time_s, v, angle_rad=np.mod(angle + 1.0, 2.0 * np.pi) - 1.0)
+    for radius_m in (RADIUS_M, None):
+        one, other = impose(unwrapped, radius_m), impose(wrapped, radius_m)
+        np.testing.assert_allclose(other.velocity_m_s, one.velocity_m_s, atol=1e-9)
+        np.testing.assert_allclose(other.angle_rad, one.angle_rad, atol=1e-6)
+    model = Model(Rig.thesis(), effects=["position_ripple"], parameters={"position_ripple.a": 0.2})
+    np.testing.assert_allclose(model.predict(wrapped), model.predict(unwrapped), atol=1e-6)
+
+
+# ---- rests ---------------------------------------------------------------------------------------
+
+
+def test_corners_and_rests_of_a_trapezoid_are_kept() -> None:
+    time_s = np.arange(0.0, 12.0, 0.02)
+    v = 0.05 * np.clip(np.minimum(time_s - 2.0, 8.0 - time_s), 0.0, 1.0)
+    path = integrated(v, 0.02)
+    motion = impose(recorded(time_s, v, path), RADIUS_M)
+    assert np.max(np.abs(motion.velocity_m_s - v)) < 4e-4
+    np.testing.assert_array_equal(motion.resting, v == 0.0)
+    assert np.all(motion.velocity_m_s[motion.resting] == 0.0)
+    assert abs(motion.angle_rad[-1] * RADIUS_M - path[-1]) < 0.3 * RADIUS_M / 2387.3
+
+
+def test_rests_are_placed_between_the_counts_of_the_encoder() -> None:
+    """Rounding to counts has an RMS error of 1 / sqrt(12) = 0.29 counts."""
+    count_rad = 1.0 / 2387.3
+    time_s = np.arange(0.0, 80.0, 0.02)
+    phase, stroke = np.mod(time_s, 4.0), (time_s // 4.0).astype(int)
+    way = np.where(stroke % 2 == 0, 1.0, -1.0) * (1.0 + 0.0137 * stroke)
+    v = 0.005 * way * np.clip(np.minimum(phase, 2.0 - phase), 0.0, 0.5) * (phase < 2.0)
+    angle = integrated(v, 0.02) / RADIUS_M
+    counted = quantised(angle, count_rad)
+    speed = np.where(v == 0.0, 0.0, v + white(len(v), 5, 1e-5))
+    motion = impose(Run.from_arrays(time_s, speed, angle_rad=counted), RADIUS_M)
+    rests = [np.flatnonzero((stroke == k) & (phase > 3.0)) for k in range(20)]
+    assert all(motion.resting[rest].all() for rest in rests)
+
+    def rms_counts(found: Array) -> float:
+        errors = [float(np.mean(found[rest] - angle[rest])) / count_rad for rest in rests]
+        return float(np.sqrt(np.mean(np.square(errors))))
+
+    assert rms_counts(counted) == pytest.approx(0.29, abs=0.03)
+    assert rms_counts(motion.angle_rad) < 0.15
+
+
+def test_rest_with_a_humming_speed_is_a_rest() -> None:
+    time_s = np.arange(0.0, 12.0, 0.005)
+    phase = np.mod(time_s, 2.0)
+    way = np.where(np.mod(time_s, 4.0) < 2.0, 1.0, -1.0)
+    v = np.where(phase < 1.4, way * 2.5e-4 * np.sin(np.pi * phase / 1.4) ** 2, 0.0)
+    hum = 4e-7 * np.sin(40.0 * time_s) * (v == 0.0)
+    motion = impose(run_of(v + hum, np.round(integrated(v, 0.005), 7), time_s), None)
+    assert motion.resting[(v == 0.0) & (phase > 1.5) & (phase < 1.9)].all()
+    assert not motion.velocity_m_s[motion.resting].any()
+    assert not motion.resting[np.abs(v) > 5e-6].any()
+
+
+def test_edges_of_a_rest_and_two_moving_samples_are_uncertain() -> None:
+    v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, 0.1)
+    v[300:302] = 0.05
+    speed = np.where(v == 0.0, 0.0, v + white(SAMPLES, 4, 1e-4))
+    motion = impose(run_of(speed, quantised(integrated(v, STEP_S), COUNT_M)), None)
+    rest = v == 0.0
+    np.testing.assert_array_equal(motion.resting, rest)
+    assert (motion.velocity_error_m_s[rest] == 0.0).all()
+    # Fewer than three samples are not smoothed.
+    np.testing.assert_array_equal(motion.velocity_m_s[300:302], speed[300:302])
+    assert motion.velocity_error_m_s[300] == motion.velocity_error_m_s[301] > 5e-5
+    uncertain = set(np.flatnonzero(rest & ~motion.sign_known).tolist())
+    assert {201, 299, 302, 399} <= uncertain
+    assert motion.sign_known[225:275].all()
+
+
+def test_first_direction_after_a_rest_is_known_when_the_path_alone_shows_it() -> None:
+    """From three standard errors of the path on, which is about one count."""
+    ramp = 0.1 * np.minimum(np.abs(TIME_S - 4.0), 1.0)
+    v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, ramp)
+    coarse = quantised(integrated(v, STEP_S), 1e-4)
+    motion = impose(Run.from_arrays(TIME_S, position_m=coarse), None)
+    assert motion.resting[250:380].all()
+    first = int(np.flatnonzero(~motion.resting & (TIME_S > 3.0))[0])
+    gone = np.abs(coarse - coarse[first - 1]) > 3.0 * 1e-4 / np.sqrt(12.0)
+    assert not motion.sign_known[first : first + int(np.argmax(gone[first:]))].any()
+    assert motion.sign_known[500:].all()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_run_that_begins_with_a_hum_begins_at_rest(sign: float) -> None:
+    alternating = np.where(np.arange(SAMPLES) % 2, -1.0, 1.0)
+    v = np.where(np.arange(SAMPLES) < 3, 1e-5 * sign * alternating, 0.1)
+    motion = impose(run_of(v, integrated(v, STEP_S)), None)
+    assert (motion.velocity_m_s[0], motion.sign_known[0]) == (0.0, False)
+    moving = impose(run_of(), None)
+    assert moving.sign_known[0]
+    assert moving.velocity_m_s[0] == pytest.approx(speed_of(0.0), abs=4e-4)

@@ -1,0 +1,114 @@
+"""A motion at other instants: interpolation in closed form, and runs shifted in time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Rig, Run
+from jbf.estimation.prepared import Prepared
+from jbf.records.motion.imposed import ImposedMotion
+from known_motions import white
+
+INSTANTS_S = np.array([0.0, 1.0, 2.0, 4.0, 5.0])
+
+
+def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> ImposedMotion:
+    """A motion at five instants; its masks are written as ones and zeros."""
+    resting, sign_known = (np.array([c == "1" for c in text]) for text in (rest, known))
+    error = np.array([1.0, 2.0, 3.0, 1.0, 1.0])
+    return ImposedMotion(np.array(v), np.array(a), 3.0 * INSTANTS_S, error, resting, sign_known)
+
+
+def test_speed_is_interpolated_by_cubics_through_speed_and_acceleration() -> None:
+    t, at_s = INSTANTS_S, np.array([0.0, 0.25, 1.0, 1.7, 3.0, 3.9, 5.0])
+
+    def cubic(t: Any) -> Any:
+        return 1.0 + 0.5 * t - 0.3 * t**2 + 0.1 * t**3
+
+    a = 0.5 - 0.6 * t + 0.3 * t**2
+    found = motion(cubic(t), a).at(t, at_s)
+    np.testing.assert_allclose(found.velocity_m_s, cubic(at_s))
+    np.testing.assert_allclose(found.angle_rad, 3.0 * at_s)
+    np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, t, a))
+    # The larger error of both neighbours.
+    assert found.velocity_error_m_s.tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 1.0]
+    assert found.sign_known.all()
+    assert not found.resting.any()
+
+
+def test_motion_starts_and_stops_where_its_acceleration_says() -> None:
+    """At 0.5 m/s after 1 m/s^2 it started 0.5 s before; at -2 m/s^2 it stops 0.25 s later."""
+    at_s = np.array([0.5, 1.25, 1.5, 1.75, 2.0, 4.1, 4.25, 4.5])
+    v, rest = [0.0, 0.0, 0.5, 0.5, 0.0], "11001"
+    found = motion(v, [0.0, 0.0, 1.0, -2.0, 0.0], rest).at(INSTANTS_S, at_s)
+    expected = [0, 0, 0, 0.25, 0.5, 0.3, 0.0, 0.0]
+    np.testing.assert_allclose(found.velocity_m_s, expected, atol=1e-12)
+    assert found.resting.tolist() == [True, True, True, False, False, False, True, True]
+    np.testing.assert_allclose(found.acceleration_m_s2, [0, 0, 0, 1.0, 1.0, -2.0, 0.0, 0.0])
+    # An acceleration too small for the interval, or of the wrong sign: from sample to sample.
+    for a in ([0.0, 0.0, 0.1, -0.1, 0.0], [0.0, 0.0, -1.0, 1.0, 0.0]):
+        linear = motion(v, a, rest).at(INSTANTS_S, at_s)
+        expected = [0.0, 0.125, 0.25, 0.375, 0.5, 0.45, 0.375, 0.25]
+        np.testing.assert_allclose(linear.velocity_m_s, expected)
+
+
+@pytest.mark.parametrize(
+    ("v", "rest", "known", "unknown_s"),
+    [
+        ([1.0, 1.0, -1.0, -1.0, -1.0], "00000", "11111", [1.5]),  # a reversal in between
+        ([1.0] * 5, "00000", "11011", [1.5, 2.0, 3.0]),
+        ([0.0, 0.0, 1.0, 1.0, 1.0], "11000", "11111", [1.5]),  # between rest and motion
+    ],
+)
+def test_sign_is_known_between_equal_known_signs(
+    v: list[float], rest: str, known: str, unknown_s: list[float]
+) -> None:
+    at_s = np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5, 5.0])
+    found = motion(v, [0.0] * 5, rest, known).at(INSTANTS_S, at_s)
+    assert at_s[~found.sign_known].tolist() == unknown_s
+
+
+LASTS_S = 20.0
+
+
+def speed(time_s: Any) -> Any:
+    return 0.12 * np.sin(3.0 * time_s) + 0.05 * np.sin(0.618 * 3.0 * time_s)
+
+
+@pytest.fixture(scope="module")
+def prepared() -> Prepared:
+    time_s = np.arange(0.0, LASTS_S + 0.01, 0.02)
+    v = speed(time_s)
+    force = 5.0 * np.sign(v) + 20.0 * v + white(len(time_s), 0, 0.03)
+    return Prepared.of(Rig(), Run.from_arrays(time_s, v, force))
+
+
+@pytest.mark.parametrize(("delay_s", "drift"), [(7.3e-3, 0.0), (-31e-3, 0.0), (25e-3, 2e-3)])
+def test_late_force_is_compared_with_the_motion_before(
+    prepared: Prepared, delay_s: float, drift: float
+) -> None:
+    """A drift adds to the delay in proportion to the time from mid-run."""
+    time_s = prepared.run.time_s
+    at_s = time_s - delay_s - drift * (time_s - 0.5 * LASTS_S)
+    inside = (at_s >= time_s[0]) & (at_s <= time_s[-1])
+    assert 1 <= np.sum(~inside) <= 3
+    found = prepared.shifted(delay_s, drift)
+    np.testing.assert_array_equal(found.friction_n, prepared.friction_n[inside])
+    np.testing.assert_allclose(found.run.time_s, at_s[inside], atol=1e-12)
+    expected = speed(at_s[inside])
+    np.testing.assert_allclose(found.motion.velocity_m_s[3:-3], expected[3:-3], atol=5e-6)
+    known = found.motion.sign_known
+    signs = np.sign(found.motion.velocity_m_s)[known]
+    np.testing.assert_array_equal(signs, np.sign(expected)[known])
+    assert np.sum(~known) <= 8 * np.count_nonzero(np.diff(np.sign(expected))) + 4
+
+
+def test_zero_shift_changes_nothing(prepared: Prepared) -> None:
+    same = prepared.shifted(0.0, 0.0)
+    np.testing.assert_array_equal(same.friction_n, prepared.friction_n)
+    expected = prepared.motion.velocity_m_s
+    np.testing.assert_allclose(same.motion.velocity_m_s, expected, rtol=0.0, atol=1e-15)
+    assert not prepared.motion.sign_known.all()
+    np.testing.assert_array_equal(same.motion.sign_known, prepared.motion.sign_known)

@@ -1,0 +1,189 @@
+"""Rests: where a shaft stands still, where its motion begins and ends, and at which position."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf.records.motion.rests import (
+    backward_beside_rest,
+    place_rests,
+    rest_edges,
+    resting_samples,
+    still_samples,
+    unsure_beside_rest,
+    without_swings,
+)
+from known_motions import places, quantised
+
+
+def mask(text: str) -> Any:
+    """A mask written as ones and zeros."""
+    return np.array([character == "1" for character in text])
+
+
+def test_three_zero_speeds_in_a_row_are_a_rest() -> None:
+    v = np.array([0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0], dtype=float)
+    assert places(resting_samples(v)) == [0, 1, 2, 7, 8, 9, 10, 12, 13, 14]
+    assert not resting_samples(np.array([1e-300, 0.0, 0.0])).any()
+    assert len(resting_samples(np.array([]))) == 0
+
+
+COUNT_M = 1e-4
+
+
+def stop(samples: int, *, hum: float = 0.0) -> tuple[Any, Any, Any]:
+    """Time, path and speed: 60 samples at 0.1 m/s, a rest with an alternating speed, 60 samples."""
+    index = np.arange(120 + samples)
+    rest = (index >= 60) & (index < 60 + samples)
+    speed = np.where(rest, hum * np.where(index % 2, 1.0, -1.0), 0.1)
+    return 0.01 * index, np.cumsum(np.where(rest, 0.0, 1e-3)), speed
+
+
+@pytest.mark.parametrize(("samples", "found"), [(19, False), (20, True), (40, True)])
+def test_twenty_samples_within_one_count_are_a_rest(samples: int, found: bool) -> None:
+    rest = still_samples(*stop(samples), COUNT_M)
+    assert places(rest) == (list(range(60, 60 + samples)) if found else [])
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.99, True), (1.01, False)])
+def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_or_a_known_hum(
+    share: float, found: bool
+) -> None:
+    time_s, path, speed = stop(40, hum=share * 5e-3 * 0.1)
+    assert still_samples(time_s, path, speed, COUNT_M).any() == found
+    assert places(still_samples(time_s, path, speed, COUNT_M, hum=1e-3)) == list(range(60, 100))
+
+
+@pytest.mark.parametrize(("counts", "found"), [(1.4, True), (1.6, False)])
+def test_path_of_a_rest_stays_within_one_and_a_half_counts(counts: float, found: bool) -> None:
+    time_s, path, speed = stop(38, hum=1e-4)
+    path[79:] += counts * COUNT_M
+    assert still_samples(time_s, path, speed, COUNT_M)[70:90].any() == found
+
+
+SLOW_S: Any = 5e-3 * np.arange(400)
+RATE_M_S2, FINE_COUNT_M = 0.008, 7e-6
+
+
+def test_slow_reversal_is_no_rest() -> None:
+    v = RATE_M_S2 * (SLOW_S - 1.0)
+    path = quantised(0.5 * RATE_M_S2 * (SLOW_S - 1.0) ** 2, FINE_COUNT_M)
+    assert np.ptp(path[190:211]) <= FINE_COUNT_M
+    v[-1] = 0.2
+    assert not still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
+
+
+def test_speed_that_grazes_zero_is_no_rest() -> None:
+    v = 0.05 * (SLOW_S - 1.0) ** 2 - 3e-5
+    path = quantised(0.05 / 3.0 * (SLOW_S - 1.0) ** 3 - 3e-5 * (SLOW_S - 1.0), FINE_COUNT_M)
+    assert np.ptp(path[188:213]) <= FINE_COUNT_M
+    v[-1] = 0.2
+    assert not still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
+
+
+def test_long_stop_between_equal_or_opposite_speeds_is_a_rest() -> None:
+    inside = np.abs(SLOW_S - 1.0) < 0.4
+    for moving in (np.full(400, 0.01), RATE_M_S2 * (SLOW_S - 1.0)):
+        v = np.where(inside, 0.0, moving)
+        path = quantised(np.cumsum(v) * 5e-3, FINE_COUNT_M)
+        v[-1] = 0.2
+        assert still_samples(SLOW_S, path, v, FINE_COUNT_M)[140:260].all()
+    # Speeds of rounding errors on both sides are no reversal.
+    v = np.where(np.abs(SLOW_S - 1.0) < 0.8, 0.0, 1e-15 * np.sign(SLOW_S - 1.0))
+    v[-1] = 1.0
+    assert still_samples(SLOW_S, np.zeros(400), v, FINE_COUNT_M)[45:355].all()
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.7, False), (1.1, True), (1.3, True)])
+def test_rest_lasts_twice_as_long_as_a_reversal_within_one_and_a_half_counts(
+    share: float, found: bool
+) -> None:
+    """At 8 mm/s^2 a reversal stays within 1.5 counts of 7 um for 2 sqrt(2 s / a) = 0.1 s."""
+    within_s = 2.0 * np.sqrt(2.0 * 1.5 * FINE_COUNT_M / RATE_M_S2)
+    beyond = np.maximum(np.abs(SLOW_S - 1.0) - share * within_s, 0.0)
+    way = np.sign(SLOW_S - 1.0)
+    v = RATE_M_S2 * way * beyond
+    v[-1] = 0.2
+    path = quantised(0.5 * RATE_M_S2 * way * beyond**2, FINE_COUNT_M)
+    rest = still_samples(SLOW_S, path, v, FINE_COUNT_M)
+    assert rest.any() == found
+    if found:
+        np.testing.assert_array_equal(rest[100:300], (beyond == 0.0)[100:300])
+
+
+@pytest.mark.parametrize(
+    ("v", "a", "edges"),
+    [
+        (0.25, 1.0, [5, 32, 33, 34]),  # started 0.25 s = 2.5 samples before
+        (0.25, -1.0, [5, 6, 7, 34]),
+        (-0.25, -1.0, [5, 32, 33, 34]),
+        (0.0, 1.0, [5, 34]),
+        (0.1 + 1e-9, 1.0, [5, 33, 34]),
+        (100.0, 1.0, [5, *range(15, 35)]),  # at most twenty samples
+    ],
+)
+def test_edges_of_a_rest_reach_to_where_the_motion_began(
+    v: float, a: float, edges: list[int]
+) -> None:
+    rest = mask("0" * 5 + "1" * 30 + "0" * 5)
+    found = rest_edges(rest, 0.1 * np.arange(40), np.where(rest, 0.0, v), np.where(rest, 0.0, a))
+    assert places(found) == edges
+
+
+def test_speed_opposite_to_its_growth_next_to_a_rest_is_backward() -> None:
+    rest = mask("110000011")
+    time_s: Any = 0.1 * np.arange(9)
+    v = np.array([0.0, 0.0, -0.05, -0.02, 0.1, 0.2, 0.04, 0.0, 0.0])
+    a = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0])
+    assert places(backward_beside_rest(rest, time_s, v, a)) == [2, 3, 6]
+    assert places(backward_beside_rest(rest, time_s, -v, -a)) == [2, 3, 6]
+    # Only from the rest on, without interruption.
+    v[2] = 0.2
+    assert places(backward_beside_rest(rest, time_s, v, a)) == [6]
+    assert not backward_beside_rest(mask("0" * 9), time_s, v, a).any()
+    assert not backward_beside_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
+
+
+def test_direction_is_unsure_until_the_path_confirms_it() -> None:
+    rest = mask("11000011")
+    path = np.array([0.0, 0.0, 0.5, 1.0, 3.0, 4.0, 4.9, 4.9])
+    v = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
+    assert places(unsure_beside_rest(rest, path, v, 0.9)) == [2]
+    assert places(unsure_beside_rest(rest, path, v, 1.0)) == [2, 3, 5]
+    assert places(unsure_beside_rest(rest, path, -v, 0.9)) == [2, 3, 4, 5]
+    assert places(unsure_beside_rest(mask("00000011"), path, v, 0.95)) == [5]
+    assert not unsure_beside_rest(mask("0" * 8), path, v, 0.9).any()
+
+
+def test_uncertain_speeds_opposite_to_the_first_and_last_certain_ones_are_set_to_zero() -> None:
+    v = np.array([0.0, -0.1, 0.1, 0.5, -0.1, 0.4, -0.1, 0.2, 0.0])
+    without_swings(mask("100000001"), v, mask("100101001"))
+    assert v.tolist() == [0.0, 0.0, 0.1, 0.5, -0.1, 0.4, 0.0, 0.2, 0.0]
+    alone = np.array([-0.1, 0.5, -0.1])
+    without_swings(mask("000"), alone, mask("010"))
+    assert alone.tolist() == [-0.1, 0.5, -0.1]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "half_step", "place"),
+    [
+        ((0.4, -1.0), (0.0, 0.0), 1.0, 0.9 + 0.4**2 / 2.0),
+        ((0.0, 0.0), (0.6, 2.0), 1.0, 1.3 - 0.6**2 / 4.0),
+        ((0.4, -1.0), (0.6, 2.0), 1.0, 0.5 * (0.98 + 1.21)),
+        ((-0.4, 1.0), (-0.6, -2.0), 1.0, 0.5 * (0.82 + 1.39)),
+        ((0.4, 0.0), (0.6, 0.0), 1.0, 1.0),  # steady motions do not say where they stop
+        ((0.0, 0.0), (0.6, 2.0), 0.05, 1.05),  # within half a count of the recorded position
+        ((-2.0, 1.0), (0.0, 0.0), 0.01, 0.99),
+    ],
+)
+def test_rest_is_placed_at_the_mean_of_stop_and_start(
+    before: tuple[float, float], after: tuple[float, float], half_step: float, place: float
+) -> None:
+    """A motion at v that slows down at a stops after v^2 / 2a."""
+    path = np.array([0.9, 1.0, 1.0, 1.0, 1.0, 1.3, 2.0])
+    v, a = np.zeros(7), np.zeros(7)
+    (v[0], a[0]), (v[5], a[5]) = before, after
+    place_rests(mask("0111100"), path, v, a, half_step)
+    np.testing.assert_allclose(path, [0.9, place, place, place, place, 1.3, 2.0])

@@ -1,0 +1,113 @@
+"""Noise of a signal, steps of an encoder, and contradictions between path and speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf.records.lagrange import weights_at_zero
+from jbf.records.motion.agreement import contradiction_of, disagreement_of
+from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.roughness import encoder_step, local_noise, noise_of, step_of
+from known_motions import path_of, quantised, speed_of, white
+
+STEP_S = 0.01
+TIME_S: Any = STEP_S * np.arange(400)
+ALTERNATING: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
+NOISE_OF_ALTERNATING = 8.0 / 0.6745 / np.sqrt(20.0)
+"""Third differences of it are 8; those of unit white noise have a variance of 20."""
+
+
+def test_lagrange_weights_reproduce_a_cubic() -> None:
+    even = weights_at_zero(np.array([-2.0, -1.0, 1.0, 2.0]))
+    np.testing.assert_allclose(even, np.array([-1.0, 4.0, 4.0, -1.0]) / 6.0)
+    t = np.array([[-3.0, -2.0], [-1.0, -0.5], [0.5, 1.0], [4.0, 7.0]])
+    value = 2.0 - 3.0 * t + 0.5 * t**2 + 4.0 * t**3
+    np.testing.assert_allclose(np.sum(weights_at_zero(t) * value, axis=0), 2.0)
+
+
+def test_noise_is_the_standard_deviation_of_white_noise_on_a_smooth_signal() -> None:
+    assert noise_of(TIME_S**2) < 1e-12
+    assert noise_of(ALTERNATING) == pytest.approx(NOISE_OF_ALTERNATING)
+    assert noise_of(ALTERNATING[:8]) > 0.0
+    assert noise_of(ALTERNATING[:7]) == 0.0
+    time_s = np.arange(0.0, 60.0, 0.02)
+    signal = 10.0 * np.tanh(20.0 * np.sin(time_s)) + white(len(time_s), 1, 0.3)
+    assert noise_of(signal) == pytest.approx(0.3, rel=0.15)
+
+
+@pytest.mark.parametrize(("times", "local"), [(2.9, False), (3.1, True)])
+def test_noise_is_local_where_it_is_three_times_the_usual(times: float, local: bool) -> None:
+    loud = np.where((np.arange(1000) > 400) & (np.arange(1000) < 700), times, 1.0)
+    found = local_noise(loud * ALTERNATING)
+    assert isinstance(found, np.ndarray) == local
+    if isinstance(found, np.ndarray):
+        assert found[[100, 550]] == pytest.approx(NOISE_OF_ALTERNATING * np.array([1.0, times]))
+
+
+def test_encoder_step_is_the_smallest_change_above_rounding_and_noise() -> None:
+    assert step_of(np.array([0.0, 0.3, 0.3, 0.2, 0.2 + 1e-13])) == pytest.approx(0.1)
+    assert step_of(np.ones(5)) == step_of(np.array([1.0])) == 0.0
+    path = path_of(TIME_S)
+    assert encoder_step(quantised(path, 1e-4)) == pytest.approx(1e-4)
+    assert encoder_step(path + white(400, 3, 1e-4)) == 0.0
+
+
+def test_disagreement_is_the_speed_error_beyond_the_noise_of_the_path() -> None:
+    error = 1e-3
+    path, speed = path_of(TIME_S), speed_of(TIME_S)
+    assert disagreement_of(TIME_S, path, speed, 0.0, 1e-9) < 1e-4
+    found = disagreement_of(TIME_S, path, speed + error, 0.0, 1e-9)
+    assert found == pytest.approx(error / 0.6745, rel=0.05)
+
+
+@pytest.mark.parametrize(("times", "found"), [(1.49, False), (1.51, True)])
+def test_disagreement_must_be_1_5_times_what_noise_explains(times: float, found: bool) -> None:
+    """Var(gap) = 2 var(path) + dt^2 var(speed) / 2."""
+    still, gap = np.zeros(400), 1e-3 * STEP_S / 0.6745
+    sd_path = gap / times / np.sqrt(2.0)
+    expected = np.sqrt(gap**2 - 2.0 * sd_path**2) / STEP_S if found else 0.0
+    by_path = disagreement_of(TIME_S, still, still + 1e-3, sd_path, 0.0)
+    assert by_path == pytest.approx(expected)
+    sd_speed = gap / times / np.sqrt(0.5) / STEP_S
+    by_speed = disagreement_of(TIME_S, still, still + 1e-3, 0.0, sd_speed)
+    assert by_speed == pytest.approx(gap / STEP_S if found else 0.0)
+
+
+def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: float = 0.0) -> Any:
+    """Contradictions of a shaft at rest whose path alternates by 1 um and jumps after samples."""
+    path: Any = 1e-6 * (np.arange(400) % 2)
+    for sample, size in jumps.items():
+        path[sample + 1 :] += size
+    return contradiction_of(TIME_S, path, np.zeros(400), sd_path, sd_speed)
+
+
+def test_contradiction_covers_three_samples_on_each_side_of_a_jump() -> None:
+    found = contradictions({100: 1e-3})
+    assert np.flatnonzero(found).tolist() == [98, 99, 100, 101, 102, 103]
+    assert found[100] == pytest.approx(1e-3 / STEP_S, rel=2e-3)
+    both = contradictions({100: 1e-3, 103: -3e-3})
+    assert np.flatnonzero(both).tolist() == list(range(98, 107))
+    assert both[[99, 102]] == pytest.approx([0.1, 0.3], rel=2e-3)
+    assert not contradictions({}).any()
+
+
+@pytest.mark.parametrize(("times", "found"), [(9.6, False), (10.4, True)])
+def test_contradiction_is_ten_times_the_usual_gap_or_the_noise(times: float, found: bool) -> None:
+    usual, sd = 1e-6, 1e-5
+    of_usual = contradictions({100: times * usual / 0.6745 - usual})
+    of_path = contradictions({100: times * np.sqrt(2.0) * sd - usual}, sd_path=sd)
+    of_speed = contradictions({100: times * sd - usual}, sd_speed=sd / np.sqrt(0.5) / STEP_S)
+    assert [values.any() for values in (of_usual, of_path, of_speed)] == [found] * 3
+
+
+@pytest.mark.parametrize(
+    ("first", "hum"),
+    [([0.5], True), ([5.0], False), ([0.0], False), ([0.4] * 3, True), ([0.6] * 3, False)],
+)
+def test_first_stroke_below_a_thousandth_of_the_longest_is_a_hum(
+    first: list[float], hum: bool
+) -> None:
+    speed = np.array([*first, *([-1.0] * 1001)])
+    assert begins_in_a_hum(np.arange(float(len(speed))), speed) == hum

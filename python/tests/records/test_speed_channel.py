@@ -1,0 +1,182 @@
+"""A recorded speed that is late, is a difference of the path, or has an offset at standstill."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Run
+from jbf.records.motion.compared import compared
+from jbf.records.motion.derived_speed import derived_speed
+from jbf.records.motion.imposed import impose
+from jbf.records.motion.lateness import earlier, late_speed
+from jbf.records.motion.speed_zero import speed_zero
+from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
+
+PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
+COUNT_M = 1e-4
+COUNTED_M = quantised(PATH_M, COUNT_M)
+
+# ---- delay ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("delay_steps", "kind"),
+    [(0.2, "late_speed"), (0.39, "late_speed"), (0.45, "filtered_speed"), (3.0, "filtered_speed")],
+)
+def test_delay_of_the_speed_is_recovered(delay_steps: float, kind: str) -> None:
+    """Up to 0.4 samples the speed is shifted; beyond, the path alone is used."""
+    delay_s = delay_steps * STEP_S
+    finding = late_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
+    assert finding is not None
+    assert (finding.kind, finding.channel, finding.unit) == (kind, "velocity_m_s", "s")
+    assert finding.size == pytest.approx(delay_s, rel=0.03)
+
+
+def estimated_delay(speed: Array) -> tuple[float, float]:
+    """Delay and standard error, s: regression of windowed speeds on speed and acceleration of the
+    path, jackknife over twelve parts, of the window with the smallest error."""
+    estimates = []
+    for window in compared(TIME_S, PATH_M, speed):
+        design = np.stack([window.by_path, window.acceleration], axis=1)
+        part = np.arange(len(design)) * 12 // len(design)
+        delays = [
+            -np.linalg.lstsq(design[kept], window.by_speed[kept], rcond=None)[0][1]
+            for kept in (np.full(len(design), True), *(part != k for k in range(12)))
+        ]
+        estimates.append((float(np.std(delays[1:])) * np.sqrt(11.0), float(delays[0])))
+    error_s, delay_s = min(estimates)
+    return delay_s, error_s
+
+
+def test_delay_is_reported_from_six_jackknife_standard_errors_on() -> None:
+    decisions = set()
+    for delay_steps in np.arange(0.1, 1.3, 0.1):
+        speed = speed_of(TIME_S - delay_steps * STEP_S) + white(len(TIME_S), 2, 0.01)
+        delay_s, error_s = estimated_delay(speed)
+        finding = late_speed("a", TIME_S, PATH_M, speed)
+        expected = delay_s >= max(6.0 * error_s, 0.1 * STEP_S)
+        assert (finding is not None) == expected
+        assert finding is None or finding.size == pytest.approx(delay_s, rel=1e-6)
+        decisions.add(expected)
+    assert decisions == {True, False}
+
+
+def test_delay_of_a_decaying_speed_is_not_identifiable() -> None:
+    """A delayed exponential is a smaller exponential."""
+    decaying = np.exp(-0.5 * TIME_S)
+    assert late_speed("a", TIME_S, -2.0 * decaying, 1.1 * decaying) is None
+
+
+def test_late_speed_is_shifted_forward_but_its_zeros_stay() -> None:
+    speed = np.array([0.0, 0.0, 1.0, 2.0, 0.0, 0.0])
+    assert earlier(np.arange(6.0), speed, 0.25).tolist() == [0.0, 0.0, 1.25, 1.5, 0.0, 0.0]
+
+
+# ---- differences of the path ---------------------------------------------------------------------
+
+
+def backward_difference(path: Array, span: int) -> Array:
+    speed = np.zeros(len(path))
+    speed[span:] = (path[span:] - path[:-span]) / (span * STEP_S)
+    return speed
+
+
+@pytest.mark.parametrize("span", [1, 2, 5, 12])
+def test_backward_difference_is_recognised_with_half_its_span_as_delay(span: int) -> None:
+    finding = derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, span))
+    assert finding is not None
+    assert (finding.kind, finding.channel, finding.unit) == (
+        "coarse_speed", "velocity_m_s", "samples"
+    )  # fmt: skip
+    assert finding.size == span
+    assert f"{0.5 * span * 1e3 * STEP_S:.3g} ms late" in finding.words
+
+
+@pytest.mark.parametrize("span", [2, 8])
+def test_central_difference_is_recognised_without_a_delay(span: int) -> None:
+    speed, half = np.zeros(len(TIME_S)), span // 2
+    speed[half:-half] = (COUNTED_M[span:] - COUNTED_M[:-span]) / (span * STEP_S)
+    finding = derived_speed("a", TIME_S, COUNTED_M, speed)
+    assert finding is not None
+    assert finding.size == span
+    assert "late" not in finding.words
+
+
+def test_measured_speeds_and_longer_spans_are_no_differences() -> None:
+    assert derived_speed("a", TIME_S, COUNTED_M, SPEED_M_S) is None
+    assert derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, 13)) is None
+    coarse = backward_difference(COUNTED_M, 1)
+    assert derived_speed("a", TIME_S[:47], COUNTED_M[:47], coarse[:47]) is None
+    assert derived_speed("a", TIME_S, 0.0 * PATH_M, 0.0 * PATH_M) is None
+
+
+# ---- offset at standstill ------------------------------------------------------------------------
+
+ALTERNATING = np.where(np.arange(800) % 2, -1.0, 1.0)
+
+
+def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: float = 1e-5) -> Any:
+    """Corrected speed, hum and finding of a shaft that moves at 0.1 m/s, rests and moves on."""
+    index = np.arange(400)
+    speed = np.where((index >= 150) & (index < 150 + samples), 0.0, 0.1)
+    path = quantised(np.cumsum(speed) * STEP_S, step)
+    recorded = speed + offset + noise * ALTERNATING[:400] * (speed == 0.0)
+    return speed_zero("a", TIME_S[:400], path, recorded, step, "m/s")
+
+
+@pytest.mark.parametrize("offset", [2e-3, -2e-3])
+def test_offset_at_standstill_is_removed_everywhere(offset: float) -> None:
+    speed, hum, finding = at_standstill(offset)
+    np.testing.assert_allclose(speed[160:240], 0.0, atol=1e-12)
+    assert speed[0] == pytest.approx(0.1)
+    assert hum == pytest.approx(0.1)
+    assert (finding.kind, finding.unit) == ("speed_zero", "m/s")
+    assert finding.size == pytest.approx(offset)
+
+
+@pytest.mark.parametrize(
+    ("offset", "samples", "found"),
+    [
+        (2e-3, 55, False),
+        (2e-3, 65, True),
+        (3.5e-5, 100, False),
+        (4.5e-5, 100, True),
+        (0, 100, False),
+    ],
+)
+def test_offset_needs_sixty_samples_and_four_counts_of_travel(
+    offset: float, samples: int, found: bool
+) -> None:
+    speed, hum, finding = at_standstill(offset, samples=samples)
+    assert (finding is not None) == found
+    if not found:
+        assert (hum, speed[0]) == (0.0, 0.1 + offset)
+
+
+@pytest.mark.parametrize(("errors", "found"), [(4.9, False), (5.1, True)])
+def test_offset_exceeds_five_standard_errors_of_means_over_twenty_samples(
+    errors: float, found: bool
+) -> None:
+    # The last moving sample already shows the position of the rest.
+    standard_error = 1e-4 / np.sqrt(201.0 / 20.0)
+    finding = at_standstill(errors * standard_error, 1e-4, 200, 1e-7)[2]
+    assert (finding is not None) == found
+
+
+@pytest.mark.parametrize("count_m_s", [0.0, 4e-3])
+def test_run_with_an_offset_rests_where_its_position_does(count_m_s: float) -> None:
+    """A tachometer with an offset; a counter whose counts are around zero and never on it."""
+    phase = np.mod(TIME_S, 4.0)
+    true = 0.08 * np.clip(np.minimum(phase - 0.503, 3.007 - phase), 0.0, 0.5)
+    offset = 0.5 * count_m_s if count_m_s else -2e-3
+    noisy = true + white(len(TIME_S), 3, 1e-5)
+    recorded = offset + (quantised(true, count_m_s) if count_m_s else noisy)
+    path = quantised(integrated(true, STEP_S), 5e-6)
+    motion = impose(Run.from_arrays(TIME_S, recorded, position_m=path), None)
+    (finding,) = motion.findings
+    assert finding.kind == "speed_zero"
+    assert finding.size == pytest.approx(offset, abs=2e-5)
+    assert motion.resting[true == 0.0].mean() > 0.9
+    assert not motion.resting[true > 0.02].any()

@@ -1,0 +1,166 @@
+"""Converter findings: the quantisation step of the force, the end of its range, written digits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Run
+from jbf.records.findings.digits import last_digit
+from jbf.records.findings.examine import examine
+from jbf.records.findings.saturation import find_saturation, saturated
+from jbf.records.findings.steps import find_steps, step_of
+from jbf.records.quantities import ROTARY
+from known_motions import Array, quantised, white
+
+SAMPLES = 2000
+TIME_S: Any = 0.01 * np.arange(SAMPLES)
+WAVE: Any = 10.0 * np.sin(0.7 * TIME_S)
+NOISE = white(SAMPLES, 1)
+
+
+def run_of(force: Any) -> Run:
+    """A run whose friction is a torque."""
+    run = Run.from_arrays(TIME_S, 0.1 * np.sin(0.7 * TIME_S + 0.1), force, name="a")
+    return replace(run, quantities=ROTARY)
+
+
+# ---- quantisation --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("values", "digit"),
+    [
+        ([1.25, 3.5, -2.0], 0.01),
+        ([99.0, 100.0], 1.0),
+        ([0.0, 0.0], 0.0),
+        ([np.pi, 1.0], 1e-9 * np.pi),
+    ],
+)
+def test_last_written_digit(values: list[float], digit: float) -> None:
+    assert last_digit(np.array(values)) == pytest.approx(digit)
+
+
+def test_step_is_found_also_where_levels_are_missing() -> None:
+    levels = quantised(WAVE, 0.5)
+    assert step_of(levels) == pytest.approx(0.5)
+    assert step_of(levels[(levels != 2.0) & (levels != -3.0)]) == pytest.approx(0.5)
+    assert step_of(levels + 0.01 * np.sin(levels)) == pytest.approx(0.5, rel=0.03)
+    assert step_of(WAVE) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("values", "step"),
+    [
+        (np.tile([0.0, 1.0, 2.0], 100), 0.0),  # three levels: a law without noise
+        (np.tile([0.0, 1.0, 2.0, 3.0], 100), 1.0),
+        (np.repeat(np.arange(20.0), 5), 1.0),  # levels are a fifth of the samples
+        (np.repeat(np.arange(26.0), 4)[:100], 0.0),
+        (np.repeat(np.cumsum(np.where(np.arange(40) % 5 == 4, 1.14, 1.0)), 10), 1.0),
+        (np.repeat(np.cumsum(np.where(np.arange(40) % 5 == 4, 1.16, 1.0)), 10), 0.0),
+        (np.repeat(np.cumsum(np.where(np.arange(100) < 8, 1.4, 1.0)), 10), 1.0),
+        (np.repeat(np.cumsum(np.where(np.arange(100) < 12, 1.4, 1.0)), 10), 0.0),
+    ],
+)
+def test_levels_must_be_few_and_whole_steps_apart(values: Array, step: float) -> None:
+    """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
+    assert step_of(values) == pytest.approx(step)
+
+
+def test_corners_of_drawn_lines_come_in_steps_to_the_digits_of_the_file() -> None:
+    corners = np.tile(np.arange(5.0), 20) + 1e-4 * NOISE[:100]
+    assert step_of(corners, drawn=True) == pytest.approx(1.0, abs=1e-3)
+    assert step_of(corners) == 0.0
+
+
+@pytest.mark.parametrize(("step", "found"), [(0.3, False), (0.7, True)])
+def test_step_below_half_of_the_noise_is_not_reported(step: float, found: bool) -> None:
+    run = run_of(quantised(WAVE + NOISE, step))
+    findings = find_steps(run, np.ones(SAMPLES, dtype=bool))
+    assert [(f.kind, f.unit) for f in findings] == ([("steps", "N m")] if found else [])
+    assert all(f.size == pytest.approx(step) for f in findings)
+
+
+def test_step_is_found_in_usable_readings_only() -> None:
+    first = np.arange(SAMPLES) < 1000
+    run = run_of(np.where(first, quantised(WAVE + NOISE, 0.7), WAVE))
+    assert find_steps(run, np.ones(SAMPLES, dtype=bool)) == []
+    assert len(find_steps(run, first)) == 1
+
+
+# ---- saturation ----------------------------------------------------------------------------------
+
+
+def clipped(low: float = -np.inf, high: float = np.inf, noise: float = 0.3) -> Array:
+    force: Array = np.clip(WAVE + noise * NOISE, low, high)
+    return force
+
+
+def test_both_ends_of_the_range_are_found_with_seven_samples_on_each_side() -> None:
+    force = clipped(-8.0, 9.0)
+    mask, ends = saturated(force)
+    assert ends == [9.0, -8.0]
+    at_end = np.isin(force, ends)
+    np.testing.assert_array_equal(mask, np.convolve(at_end, np.ones(15), "same") > 0.5)
+    assert saturated(clipped(high=9.0))[1] == [9.0]
+    assert saturated(clipped(low=-8.0))[1] == [-8.0]
+    mask, ends = saturated(clipped())
+    assert ends == []
+    assert not mask.any()
+
+
+@pytest.mark.parametrize(("count", "found"), [(4, False), (5, True)])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_five_equal_extreme_readings_are_an_end(count: int, found: bool, sign: float) -> None:
+    values = clipped()
+    values[100 : 100 + 60 * count : 60] = sign * 20.0
+    assert (saturated(values)[1] == [sign * 20.0]) == found
+
+
+@pytest.mark.parametrize(("noise", "found"), [(0.3, False), (0.75, True)])
+def test_plateau_of_a_converter_coarser_than_its_noise_is_no_end(noise: float, found: bool) -> None:
+    assert (saturated(np.round(clipped(-8.0, 8.0, noise)))[1] != []) == found
+
+
+@pytest.mark.parametrize("force", [WAVE, np.sign(WAVE), np.clip(WAVE, -8.0, 8.0)])
+def test_force_without_noise_has_no_end(force: Array) -> None:
+    assert saturated(force)[1] == []
+
+
+def test_saturation_finding_has_the_largest_end() -> None:
+    (finding,), _ = find_saturation(run_of(clipped(-8.0, 9.0)))
+    assert (finding.kind, finding.channel) == ("saturation", "friction_n")
+    assert (finding.size, finding.unit, finding.done) == (9.0, "N m", "set aside")
+    assert find_saturation(run_of(clipped(low=-8.0)))[0][0].size == 8.0
+    assert find_saturation(run_of(clipped()))[0] == []
+
+
+@pytest.mark.parametrize(
+    ("of_peak", "step_n"),
+    [(0.8, 0.0), (0.87, 0.1), pytest.param(0.95, 0.1, marks=pytest.mark.extended)],
+)
+def test_usable_readings_next_to_saturation_are_unbiased(of_peak: float, step_n: float) -> None:
+    time_s = 0.02 * np.arange(3000)
+    speed = 0.1 * np.sin(0.3 * time_s + 0.4)
+    size = 15.0 + 10.0 * np.exp(-np.abs(speed) / 0.02) + 40.0 * np.abs(speed)
+    friction = np.tanh(speed / 0.002) * size
+    whole = friction + white(3000, 11, 0.3)
+    limit = of_peak * float(np.quantile(np.abs(whole), 0.995))
+    force = np.clip(whole, -limit, limit)
+    force = quantised(force, step_n) if step_n else force
+    found = examine(Run.from_arrays(time_s, speed, force))
+    assert [f.kind for f in found.findings] == ["saturation"]
+    assert found.findings[0].size == pytest.approx(limit, abs=0.06)
+    assert not found.usable[np.abs(whole) > limit + step_n].any()
+    kept = found.usable & (np.abs(speed) > 0.01)
+    residual = ((force - friction) * np.sign(speed))[kept]
+    assert abs(np.mean(residual)) < 0.3 * (0.1 + 3.0 / np.sqrt(len(residual)))
+    assert np.mean(found.usable) > 0.8 * np.mean(np.abs(whole) < limit - 1.2)
+
+
+def test_levels_of_dry_friction_are_no_saturation() -> None:
+    level = 20.0 * np.sign(WAVE)
+    for force in (level, quantised(level + 0.3 * NOISE, 0.9), quantised(level + 0.3 * NOISE, 0.05)):
+        assert "saturation" not in {f.kind for f in examine(run_of(force)).findings}

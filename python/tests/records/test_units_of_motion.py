@@ -1,0 +1,182 @@
+"""Path and speed that differ by a factor: wrong units, wrong signs, an unknown radius."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Run
+from jbf.records.motion.compared import HALF_WIDTHS, compared
+from jbf.records.motion.imposed import impose
+from jbf.records.motion.position import Position, recorded_position
+from jbf.records.motion.ratio import factor_between, slope_near, way_per_unit
+from jbf.records.motion.units import wrong_unit
+from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY, Quantities
+from known_motions import TIME_S, path_of, quantised, speed_of, white
+
+PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
+
+
+def test_windows_of_a_parabola_have_its_mean_speed_and_acceleration() -> None:
+    time_s: Any = 0.1 * np.arange(200)
+    path = 0.5 * 3.0 * time_s**2
+    windows = list(compared(time_s, path, 6.0 * time_s))
+    assert len(windows) == len(HALF_WIDTHS)
+    for half, window in zip(HALF_WIDTHS, windows, strict=True):
+        inner = time_s[2 * half : -2 * half]
+        np.testing.assert_allclose(window.by_path, 3.0 * inner)
+        np.testing.assert_allclose(window.by_speed, 6.0 * inner, rtol=1e-9)
+        np.testing.assert_allclose(window.acceleration, 3.0, rtol=1e-9)
+        assert window.count == pytest.approx((path[1] - path[0]) / (2 * half * 0.1))
+
+
+def test_windows_across_a_gap_are_left_out() -> None:
+    time_s: Any = np.concatenate((0.1 * np.arange(100), 50.0 + 0.1 * np.arange(100)))
+    windows = list(compared(time_s, time_s, np.ones(200)))
+    assert [len(w.by_path) for w in windows] == [200 - 16, 200 - 32, 200 - 64]
+    for samples, widths in ((67, 0), (68, 1), (75, 1), (76, 2), (92, 3)):
+        clock: Any = 0.1 * np.arange(samples)
+        assert len(list(compared(clock, clock, np.ones(samples)))) == widths
+
+
+@pytest.mark.parametrize("factor", [1.25, -1.0, 57.3, 1e-3, 0.75])
+def test_factor_between_path_and_speed_is_recovered(factor: float) -> None:
+    path = factor * PATH_M
+    assert factor_between(TIME_S, path, SPEED_M_S) == pytest.approx(factor, rel=5e-3)
+    assert slope_near(TIME_S, path, SPEED_M_S, factor) == pytest.approx(factor, rel=2e-3)
+    way = way_per_unit(TIME_S, path, SPEED_M_S)
+    assert way == (None if factor < 0.0 else pytest.approx(1.0 / factor, rel=2e-3))
+
+
+@pytest.mark.parametrize(
+    ("factor", "found"), [(1.0, False), (1.18, False), (1.22, True), (0.82, False), (0.78, True)]
+)
+def test_factors_within_a_fifth_of_one_agree(factor: float, found: bool) -> None:
+    assert (factor_between(TIME_S, factor * PATH_M, SPEED_M_S) is not None) == found
+
+
+def test_unrelated_and_short_records_have_no_factor() -> None:
+    other = white(len(TIME_S), 1)
+    assert factor_between(TIME_S, PATH_M, other) is None
+    assert way_per_unit(TIME_S, PATH_M, other) is None
+    assert factor_between(TIME_S[:60], 3.0 * PATH_M[:60], SPEED_M_S[:60]) is None
+    assert slope_near(TIME_S, PATH_M, SPEED_M_S, 7.0) == 7.0
+
+
+@pytest.mark.parametrize(("growth", "found"), [(8.0, False), (0.5, True)])
+def test_ratio_that_changes_in_time_is_no_factor(growth: float, found: bool) -> None:
+    speed = np.full(len(TIME_S), 0.1)
+    path = 0.1 * (2.0 * TIME_S + 0.5 * growth * TIME_S**2 / TIME_S[-1])
+    assert (factor_between(TIME_S, path, speed) is not None) == found
+    assert (way_per_unit(TIME_S, path, speed) is not None) == found
+
+
+@pytest.mark.parametrize("gap_s", [0.5, 2.0])
+def test_gaps_of_a_fast_motion_make_no_factor(gap_s: float) -> None:
+    time_s: Any = 0.02 * np.arange(900)
+    for begin_s in (3.1, 8.4, 13.3):
+        time_s = time_s[(time_s < begin_s) | (time_s > begin_s + gap_s)]
+    rate = 2.0 * np.pi * 1.7
+    path = -0.2 / rate * np.cos(rate * time_s) + 0.02 * time_s
+    speed = 0.2 * np.sin(rate * time_s) + 0.02
+    assert factor_between(time_s, path, speed) is None
+    assert factor_between(time_s, 1.386 * path, speed) == pytest.approx(1.386, rel=0.02)
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_way_per_radian_of_a_slow_coarse_motion_is_recovered(even: bool) -> None:
+    random = np.random.default_rng(9)
+    steps = np.full(8000, 0.003) if even else random.choice([0.005, 0.05], 4000, p=[0.7, 0.3])
+    time_s = np.cumsum(steps)
+    counts = quantised(0.1 * np.sin(0.5 * time_s), 4e-4)
+    speed = 0.05 * np.cos(0.5 * time_s) + white(len(time_s), 9, 1e-3)
+    assert way_per_unit(time_s, counts, speed) == 1.0
+    assert way_per_unit(time_s, counts, 0.03 * speed) == pytest.approx(0.03, rel=0.01)
+
+
+def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:
+    """The mismatch of a path that changes `factor` times as fast as the speed says."""
+    unit = "rad" if column == "angle_rad" else "m"
+    position = Position(factor * PATH_M, column, unit, arm_m)
+    return wrong_unit("a", TIME_S, position, SPEED_M_S, kind)
+
+
+TURN = 2.0 * np.pi
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "arm_m", "kind", "channel", "hint"),
+    [
+        ("angle_rad", 360.0 / TURN, 0.3, OF_BEARING, "angle_rad", "degrees"),
+        ("angle_rad", 1.0 / TURN, 0.3, OF_BEARING, "angle_rad", "turns"),
+        ("angle_rad", 0.3, 0.3, OF_BEARING, "velocity_m_s", "rad/s"),
+        ("angle_rad", 0.3 * TURN / 360.0, 0.3, OF_BEARING, "velocity_m_s", "degrees a second"),
+        ("angle_rad", 0.3 * TURN / 60.0, 0.3, OF_BEARING, "velocity_m_s", "turns a minute"),
+        ("angle_rad", TURN / 60.0, 1.0, ROTARY, "velocity_m_s", "turns a minute"),
+        ("position_m", 1e3, 1.0, LINEAR, "position_m", "mm"),
+        ("position_m", 1e6, 1.0, LINEAR, "position_m", "um"),
+        ("position_m", 1e-3, 1.0, LINEAR, "velocity_m_s", "mm/s"),
+        ("position_m", 1e-6, 1.0, LINEAR, "velocity_m_s", "um/s"),
+        ("position_m", 1.0 / 60.0, 1.0, LINEAR, "velocity_m_s", "m/min"),
+    ],
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_wrong_unit_is_recognised_by_its_factor(
+    column: str, factor: float, arm_m: float, kind: Quantities, channel: str, hint: str, sign: float
+) -> None:
+    found = mismatch(column, sign * factor, arm_m, kind)
+    assert (found.finding.kind, found.finding.channel) == ("units", channel)
+    assert found.finding.size == pytest.approx(sign * factor, rel=5e-3)
+    assert found.factor == pytest.approx(sign * factor, rel=1e-12)
+    assert found.of_speed == (channel == "velocity_m_s")
+    assert f" {hint}?" in found.finding.words
+
+
+def test_factor_of_no_unit_is_applied_to_the_path() -> None:
+    found = mismatch("angle_rad", 5.0, 0.3)
+    assert found.finding.channel == "angle_rad"
+    assert found.factor == pytest.approx(5.0, rel=2e-3)
+    for factor, is_unit in ((1.05e3, True), (1.1e3, False)):
+        assert ("mm" in mismatch("position_m", factor).finding.words) == is_unit
+
+
+@pytest.mark.parametrize(
+    ("factor", "kind"), [(-1.0, "sign"), (-1.15, "sign"), (-1.3, "units"), (1.0, None)]
+)
+def test_factor_near_minus_one_is_a_wrong_sign(factor: float, kind: str | None) -> None:
+    found = mismatch("angle_rad", factor, 0.3)
+    assert (found and found.finding.kind) == kind
+    if kind == "sign":
+        assert (found.factor, found.of_speed) == (-1, False)
+
+
+def test_path_is_the_unwrapped_angle_times_the_radius_or_else_the_position() -> None:
+    angle = np.mod(8.0 * TIME_S, TURN)
+    run = Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle, position_m=PATH_M)
+    found = recorded_position(run, 0.25)
+    assert found is not None
+    np.testing.assert_allclose(found.path_m, 2.0 * TIME_S, atol=1e-12)
+    assert (found.column, found.unit, found.arm_m) == ("angle_rad", "rad", 0.25)
+    found = recorded_position(run, None)
+    assert found is not None
+    assert (found.column, found.unit, found.arm_m) == ("position_m", "m", 1.0)
+    assert recorded_position(Run.from_arrays(TIME_S, SPEED_M_S), 0.25) is None
+    assert recorded_position(Run.from_arrays(TIME_S, angle_rad=PATH_M), None) is None
+
+
+@pytest.mark.parametrize("radius_m", [1.0, 0.31, 0.0127])
+def test_unknown_radius_follows_from_speed_and_angle(radius_m: float) -> None:
+    angle = np.round(PATH_M / radius_m, 5)
+    speed = SPEED_M_S + white(len(TIME_S), 0, 1e-4)
+    motion = impose(Run.from_arrays(TIME_S, speed, angle_rad=angle), None)
+    assert motion.findings == ()
+    assert np.std(motion.velocity_m_s - SPEED_M_S) < 0.5e-4
+    assert np.max(np.abs(np.diff(motion.angle_rad - angle))) < 1e-4
+
+
+def test_angle_of_another_shaft_is_not_used_for_the_speed() -> None:
+    angle = np.mod(np.cumsum(np.random.default_rng(3).uniform(0.0, 1.0, len(TIME_S))), TURN)
+    motion = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
+    np.testing.assert_allclose(motion.angle_rad, np.unwrap(angle))
+    np.testing.assert_allclose(motion.velocity_m_s, SPEED_M_S, atol=1e-4)

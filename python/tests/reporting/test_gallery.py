@@ -1,0 +1,125 @@
+"""Cards of failures and remainders: which effect makes a pattern, and what remains of it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+import pytest
+from by_hand import LAW, coulomb, diagnosis_by_hand, there_and_back
+from golden import golden
+from jbf import Diagnosis, Model, ParameterValue, Rig, compare
+from jbf.comparison.bins import Axis
+from jbf.comparison.parts import added_by
+from jbf.diagnosis import Remainder
+from jbf.reporting.advice import ADVICE, NONE, advice_on
+from jbf.reporting.gallery import failure_cards, remainder_cards
+
+
+def percentages(cause: str) -> dict[str, float]:
+    """Effects that are named as a cause, with their share of the pattern in percent."""
+    return {name: float(x) for name, x in re.findall(r"(\w+) \((\d+) % of it\)", cause)}
+
+
+def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Diagnosis:
+    """A record with zero error and drift; the final model has the drift and some of the offset.
+
+    The parameters of the law are held, so that each effect makes all that it adds.
+    """
+    runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + offset_n + drift_n_s * t)
+    fixed: dict[str, ParameterValue | float] = {
+        n: ParameterValue(x, None, held=True) for n, x in {**LAW, "F_s_n": 5.0}.items()
+    }
+    values = {"sensor_offset.b_n": found_offset_n, "sensor_drift.d_n_s": drift_n_s}
+    before = compare(Model(Rig(), "coulomb", (), fixed), runs)
+    after = compare(
+        Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**fixed, **values}), runs
+    )
+    return replace(
+        diagnosis_by_hand("missing"), before=before, after=after, failures=before.failures
+    )
+
+
+def test_shares_of_effects_are_projections_on_the_pattern() -> None:
+    """Along time both effects make the pattern: their shares follow from its bin means."""
+    diagnosis = diagnosis_of(2.0, 0.5, 2.0)
+    i = next(i for i, f in enumerate(diagnosis.failures) if f.axis == "time")
+    failure, card = diagnosis.failures[i], failure_cards(diagnosis)[i]
+    shares = percentages(card.cause)
+    assert sum(shares.values()) == pytest.approx(100.0, abs=1.0)
+    offset = np.concatenate(added_by(diagnosis.after, ["sensor_offset"]))
+    assert offset == pytest.approx(np.full(len(offset), 2.0))
+    weight = failure.counts
+    expected = np.sum(weight * 2.0 * failure.means_n) / np.sum(weight * failure.means_n**2)
+    assert shares["sensor_offset"] == pytest.approx(100.0 * expected, abs=1.0)
+    names = [name for name, _ in sorted(shares.items(), key=lambda item: -item[1])]
+    assert list(shares) == names
+    assert "usually" not in card.cause.lower()
+    size = np.sqrt(np.average(failure.means_n**2, weights=weight))
+    assert f"from {size:.2g} to" in card.to_do
+
+
+def test_effect_that_makes_part_of_a_pattern_is_named_with_the_usual_causes() -> None:
+    """An offset of 1 N makes half of a pattern of 2 N, and the pattern stays."""
+    diagnosis = diagnosis_of(2.0, 0.0, 1.0)
+    i = next(i for i, f in enumerate(diagnosis.failures) if f.axis == "direction")
+    card = failure_cards(diagnosis)[i]
+    assert percentages(card.cause) == {"sensor_offset": 50.0}
+    assert advice_on("direction").causes in card.cause
+    assert "from 2.0 to 1.00 N" in card.to_do
+    assert "stays" in card.to_do
+
+
+def test_pattern_without_a_cause_has_the_usual_causes_and_advice() -> None:
+    cards = failure_cards(diagnosis_by_hand("unexplained"))
+    assert percentages(cards[0].cause) == {}
+    assert advice_on("direction").causes in cards[0].cause
+    assert failure_cards(diagnosis_by_hand("adequate")) == []
+
+
+def test_removed_pattern_of_a_simulated_campaign_is_made_by_the_hidden_effect() -> None:
+    diagnosis = golden("bearing_coulomb_drag")
+    cards = failure_cards(diagnosis)
+    assert [card.title for card in cards] == [f"Along {f.axis}" for f in diagnosis.failures]
+    assert percentages(cards[0].cause)["coulomb_drag"] > 80.0
+    first = diagnosis.failures[0]
+    size = np.sqrt(np.average(first.means_n**2, weights=first.counts))
+    fall = re.search(r"from ([\d.]+) to ([\d.]+) N, and no pattern", cards[0].to_do)
+    assert fall is not None
+    assert float(fall[1]) == pytest.approx(size, rel=0.05)
+    assert float(fall[2]) < 0.3 * size
+    assert cards[0].share == f"{100 * first.share:.0f} % of the mean square"
+
+
+@pytest.mark.parametrize(
+    ("axis", "where", "kind", "label"),
+    [
+        ("frequency", "a 3.00 Hz tone", "frequency", "Frequency (Hz)"),
+        ("time", "2 bursts", "bursts", "Time (s)"),
+        ("time", "it grows", "time", "Time in the run (s)"),
+        ("run", "run a is high", "run", "Run"),
+        ("run", "time_delay predicts runs left out no better", "unconfirmed", "Run"),
+        ("direction", "forward", "direction", "Direction of motion"),
+        ("force", "large", "force", "Force of the model (N)"),
+        ("stroke", "each", "stroke", "Time (s)"),
+        ("parameters", "disagree", "parameters", "Time (s)"),
+    ],
+)
+def test_remainder_has_the_picture_and_the_advice_of_its_kind(
+    axis: str, where: str, kind: str, label: str
+) -> None:
+    remains = (Remainder(axis, where, 0.126),)
+    (card,) = remainder_cards(replace(diagnosis_by_hand("unexplained"), unexplained=remains))
+    assert f">{label}</text>" in str(card.picture)
+    assert card.share == "13 % of the mean square"
+    assert card.looks.lower() == f"{where}.".lower()
+    assert advice_on(kind).causes in card.cause
+    assert card.to_do.lower() == f"{advice_on(kind).to_do}.".lower()
+
+
+def test_every_axis_and_kind_of_remainder_has_its_own_advice() -> None:
+    kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects"}
+    assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
+    assert advice_on("nothing known") is NONE

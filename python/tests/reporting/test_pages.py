@@ -1,0 +1,253 @@
+"""HTML pages: self-contained, escaped, and with the numbers under their headings."""
+
+from __future__ import annotations
+
+import base64
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from by_hand import LAW, TRIALS, along, diagnosis_by_hand, fit_by_hand, there_and_back
+from jbf import (
+    Bootstrap,
+    Diagnosis,
+    Drive,
+    InputError,
+    Model,
+    ParameterValue,
+    Rig,
+    TrajectoryFit,
+    compare,
+    control,
+)
+from jbf.diagnosis.power import Power
+from jbf.reporting.diagnosis_page import diagnosis_page
+from jbf.reporting.fit_page import bootstrap_page, fit_page, loop_page, trajectory_page
+from shared import shared
+
+Table = list[list[str]]
+VOID = {"meta", "img", "br", "link"}
+LINKS = ("src", "href", "xlink:href")
+LEDGER = ("step", "fit (N)", "held out (N)", "noise (N)", "held out / noise")
+
+
+class Page(HTMLParser):
+    """Tables, text and pictures of a page; checks that every element is closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tables: list[Table] = []
+        self.words: list[str] = []
+        self.links: list[str] = []
+        self.open: list[str] = []
+        self.pictures = 0
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        # A link that begins with a hash is within the page.
+        self.links += [v for k, v in attrs if k in LINKS and v and not v.startswith("#")]
+        self.pictures += tag == "svg"
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] in ("td", "th"):
+            self.tables[-1][-1][-1] += data
+        else:
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+    def below(self, *head: str) -> Table:
+        """Rows of the table with a head."""
+        (found,) = [table for table in self.tables if table[0] == list(head)]
+        return found[1:]
+
+
+def diagnosis_of(verdict: str) -> Diagnosis:
+    """A diagnosis of each verdict: `missing` with power, `unexplained` of a rotary drive."""
+    found = diagnosis_by_hand(verdict)
+    if verdict == "missing":
+        power = (Power("backlash", "gap_rad", "rad", 0.1, 0.13, False, 0.02, 0.1, ()),)
+        second = replace(found.steps[1], trials=TRIALS[2:])
+        return replace(found, power=power, steps=(found.steps[0], second), unseen=("wear_in",))
+    if verdict == "unexplained":
+        joint = Rig(drive=Drive("rotary", "current", torque_constant_n_m_a=0.5))
+        model = replace(found.fit.model, rig=joint)
+        return replace(found, fit=replace(found.fit, model=model))
+    return found
+
+
+@shared
+def html_of(verdict: str) -> str:
+    """The page of a diagnosis, which takes a second to draw."""
+    return diagnosis_page(diagnosis_of(verdict), "jbf diagnose 'a b'")
+
+
+def page(verdict: str) -> Page:
+    return Page(html_of(verdict))
+
+
+@pytest.mark.parametrize(
+    "verdict",
+    [
+        "missing",
+        "unexplained",
+        *(pytest.param(v, marks=pytest.mark.extended) for v in ("adequate", "ambiguous")),
+    ],
+)
+def test_page_of_a_diagnosis_is_complete_and_fetches_nothing(verdict: str) -> None:
+    text = html_of(verdict)
+    found = Page(text)
+    # Ledger, residual in two pictures, friction in two, and a card for each failure.
+    assert found.pictures >= 5 + len(diagnosis_of(verdict).failures)
+    for link in found.links:
+        head, _, data = link.partition(",")
+        assert head == "data:image/png;base64"
+        assert base64.b64decode(data).startswith(b"\x89PNG")
+    assert "url(http" not in text
+    assert f"Diagnosis: {verdict}" in text
+    assert ("record a rest" in text) == (verdict == "ambiguous")
+
+
+def test_page_begins_with_the_verdict_and_the_ledger() -> None:
+    text = html_of("missing")
+    assert re.findall(r"<h1>(.*?)</h1>", text) == ["Missing: sensor_offset."]
+    assert text.index("<h1>") < text.index('id="ledger"') < text.index("<h2>")
+    assert "<code>jbf diagnose &#39;a b&#39;</code>" in text
+    assert "noise floor 0.500 N" in page("missing").text
+    assert "2 runs of 20 s in all, 1002 samples" in page("missing").text
+
+
+def test_page_has_each_step_of_the_ledger() -> None:
+    assert page("missing").below(*LEDGER) == [
+        ["bare law", "2.50", "2.75", "0.500", "5.50"],
+        ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
+    ]
+    torques = [cell.replace("(N)", "(N m)") for cell in LEDGER]
+    assert page("unexplained").below(*torques) == [["bare law", "2.50", "2.75", "0.500", "5.50"]]
+
+
+def test_page_has_the_error_of_each_run_before_and_after() -> None:
+    both = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
+    assert page("missing").below(*both) == [
+        ["there", "501", "2.00", "0.450", "0.90"],
+        ["back", "500", "3.00", "0.600", "1.20"],
+    ]
+
+
+def test_page_lists_candidates_with_a_gain_and_names_the_others() -> None:
+    head = ["effect", "RMS (N)", "evidence", "outcome", "why"]
+    rows = next(table for table in page("missing").tables if table[0] == head)[1:]
+    assert [row[:4] for row in rows] == [
+        ["sensor_offset", "0.525", "+812", "added"],
+        ["sensor_drift", "1.50", "+55", "ties"],
+        ["inertia_leak", "2.00", "+7", "rejected"],
+    ]
+    assert re.search(r"no more than chance would: sensor_lag\.", page("missing").text)
+
+
+def test_candidates_are_listed_under_each_step_that_tried_them() -> None:
+    assert re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing")) == [
+        "bare law",
+        "bare law + sensor_offset",
+    ]
+    assert len(re.findall("inertia_leak</td>", html_of("missing"))) == 2
+
+
+def test_page_has_parameters_correlations_and_the_added_effect() -> None:
+    found = page("missing")
+    assert found.below("parameter", "value", "standard error", "", "unit", "note") == [
+        ["F_c_n", "4.988", "0.012", "0.25 %", "N", ""],
+        ["F_s_n", "held at 6.0000", "", "", "N", "held fixed"],
+        ["F_v_n_s_m", "20.44", "0.52", "2.5 %", "N s/m", ""],
+        ["sensor_offset.b_n", "-0.250", "0.025", "10 %", "N", ""],
+    ]
+    assert "F_c_n with F_v_n_s_m -0.90; F_c_n with sensor_offset.b_n +0.45" in found.text
+    assert "the zero of the force sensor is off" in found.text
+    held = re.findall(r'<tr class="held"><td class="name">(.*?)</td>', html_of("missing"))
+    assert held == ["F_s_n"]
+
+
+def test_page_has_failures_with_share_and_appearance() -> None:
+    assert "Along direction 60 % of the mean square" in page("missing").text
+    assert "Record above the model." in page("missing").text
+    assert "12 % of the mean square" in page("unexplained").text
+
+
+def test_page_has_power_hidden_effects_and_untried_effects() -> None:
+    found = page("missing")
+    head = ("effect", "found from", "of friction", "alone from", "else it could be")
+    assert found.below(*head) == [["backlash", "gap 0.100 m", "2 %", "same", ""]]
+    assert "hide in these runs: wear_in." in found.text
+    assert found.below("effect", "why")[0][0] == "position_ripple"
+    assert "structure stands above it" in page("unexplained").text
+
+
+def test_page_of_a_rotary_drive_has_its_units() -> None:
+    found = page("unexplained")
+    assert found.below("run", "samples", "RMS (N m)", "RMS / noise") == [
+        ["there", "501", "2.00", "4.00"],
+        ["back", "500", "3.00", "6.00"],
+    ]
+    rows = found.below("parameter", "value", "standard error", "", "unit", "note")
+    assert [(row[0], row[4]) for row in rows] == [
+        ("F_c", "N m"),
+        ("F_s", "N m"),
+        ("F_v", "N m s/rad"),
+    ]
+
+
+def test_page_of_a_comparison_has_runs_and_failures_and_escapes_names(tmp_path: Path) -> None:
+    runs = [
+        replace(run, name=f"<script>$x^{{$</script>{i}")
+        for i, run in enumerate(there_and_back(along(1.0)))
+    ]
+    compared = compare(Model(Rig(), "coulomb", parameters=LAW), runs)
+    compared.save_html(tmp_path / "c.html")
+    assert [p.name for p in tmp_path.iterdir()] == ["c.html"]
+    text = (tmp_path / "c.html").read_text(encoding="utf-8")
+    assert "<script>" not in text
+    assert "<script>" not in compared._repr_html_()
+    found = Page(text)
+    assert found.pictures == 4
+    rows = found.below("run", "samples", "RMS (N)", "RMS / noise")
+    assert [row[:3] for row in rows] == [[run.name, "501", "1.00"] for run in runs]
+    failures = found.below("along", "share", "pattern")
+    assert [row[0] for row in failures] == [f.axis for f in compared.failures]
+    assert failures[0][1] == f"{100 * compared.failures[0].share:.0f} %"
+
+
+def test_page_in_a_missing_folder_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="folder does not exist"):
+        fit_by_hand().save_html(tmp_path / "no" / "c.html")
+
+
+def test_pages_of_fits_and_loops_have_their_report_and_a_picture() -> None:
+    fit = fit_by_hand()
+    bootstrap = Bootstrap(fit, dict.fromkeys(fit.parameters, fit.residuals[0][:3]))
+    trajectory = TrajectoryFit({"f_m": ParameterValue(0.25, 0.01)}, 1.0, 2, 3, True, "")
+    loop = control.run(None, "none", replace(control.TASKS["velocity sine"], seconds=2.1))
+    for text, result in (
+        (fit_page(fit), fit),
+        (bootstrap_page(bootstrap), bootstrap),
+        (trajectory_page(trajectory), trajectory),
+        (loop_page(loop), loop),
+    ):
+        found = Page(text)
+        assert found.pictures == 1
+        assert " ".join(result.summary().split()) in found.text

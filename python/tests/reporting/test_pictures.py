@@ -1,0 +1,363 @@
+"""Pictures: the numbers that they draw, their axes, and the files that they are written to."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, cast
+
+import jbf.plot
+import numpy as np
+import pytest
+from by_hand import (
+    LAW,
+    comparison_by_hand,
+    coulomb,
+    diagnosis_by_hand,
+    fit_by_hand,
+    one_way,
+    there_and_back,
+)
+from jbf import Bootstrap, Comparison, Diagnosis, InputError, Model, Rig, compare, control
+from jbf.comparison.over_speed import friction_over_speed
+from jbf.diagnosis.power import Power
+from jbf.plot.power import deviate
+from jbf.plot.runs import index_of, most_telling
+from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, OTHER, one_axes
+from jbf.reporting.diagnosis_plot import plot_diagnosis
+from jbf.reporting.fit_plot import plot_bootstrap
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from scipy.special import ndtr
+
+POWER = Power("backlash", "gap_rad", "rad", 0.1, 0.13, False, 0.02, 0.1, ())
+
+
+def line(ax: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
+    """Data of the line with a label."""
+    (found,) = [one for one in ax.lines if one.get_label() == label]
+    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
+
+
+def title(ax: Axes) -> str:
+    return ax.get_title(loc="left")
+
+
+@pytest.fixture(scope="module")
+def comparison() -> Comparison:
+    """Record 1 N above the model in the direction of motion, without noise; noise floor 0.5 N."""
+    return comparison_by_hand(1.25, (1.0, 1.5))
+
+
+@pytest.fixture(scope="module")
+def diagnosis() -> Diagnosis:
+    return replace(diagnosis_by_hand("missing"), power=(POWER,))
+
+
+@pytest.fixture(scope="module")
+def loop() -> control.Result:
+    return control.run(None, "observed", replace(control.TASKS["velocity sine"], seconds=8.0))
+
+
+def test_every_picture_draws_on_given_axes_or_a_new_figure_and_is_documented(
+    diagnosis: Diagnosis, loop: control.Result, tmp_path: Path
+) -> None:
+    page = Path(__file__).resolve().parents[3] / "docs" / "pictures.md"
+    text = page.read_text(encoding="utf-8")
+    of_diagnosis, of_fit = {"ledger", "ranking", "power"}, {"parameters", "residuals_in_a_row"}
+    for name in sorted(set(jbf.plot.__all__) - {"save"}):
+        shown: Any = diagnosis.before
+        shown = diagnosis if name in of_diagnosis else diagnosis.fit if name in of_fit else shown
+        draw = partial(getattr(jbf.plot, name), loop if name == "control_trace" else shown)
+        given = Figure().subplots()
+        assert draw(ax=given) is given, name
+        ax = draw()
+        assert ax.figure is not given.figure, name
+        assert ax.get_xlabel() + ax.get_ylabel(), name
+        assert title(ax), name
+        jbf.plot.save(ax, tmp_path / f"{name}.svg")
+        assert "<text" in (tmp_path / f"{name}.svg").read_text()
+        assert f"`{name}(" in text
+        assert (page.parent / "images" / "plot" / f"{name}.svg").is_file()
+
+
+def test_matplotlib_is_imported_with_the_first_picture_and_pyplot_never() -> None:
+    for code in (
+        "import jbf, sys; sys.exit(bool({'scipy', 'matplotlib', 'jinja2'} & set(sys.modules)))",
+        "import jbf.plot, jbf.reporting.door, sys; sys.exit('matplotlib' in sys.modules)",
+        "import jbf.reporting.pictures, sys; sys.exit('matplotlib.pyplot' in sys.modules)",
+    ):
+        assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_colours_can_be_told_apart_with_red_green_deficiency() -> None:
+    """Distances after Vienot's projection of the colours for a deuteranope."""
+
+    def least_distance(*colours: str) -> float:
+        seen = np.array([[0.293, 0.707, 0.0], [0.293, 0.707, 0.0], [-0.022, 0.022, 1.0]])
+        rgb = np.array([[int(c[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] for c in colours])
+        places = rgb**2.2 @ seen.T
+        return min(float(np.linalg.norm(a - b)) for i, a in enumerate(places) for b in places[:i])
+
+    assert least_distance(MEASURED, MODEL, BEFORE, NOISE, OTHER) > 0.08
+    assert least_distance("#8c6d00", "#5f8c00") < 0.08  # a pair that cannot be told apart
+
+
+def test_wrong_number_of_axes_is_refused(diagnosis: Diagnosis) -> None:
+    with pytest.raises(InputError, match="needs 4"):
+        plot_diagnosis(diagnosis, list(Figure().subplots(1, 2)))
+
+
+def test_file_of_an_unknown_kind_or_in_a_missing_folder_is_refused(tmp_path: Path) -> None:
+    ax = one_axes(None)
+    for path in (tmp_path / "a.nonsense", tmp_path / "none" / "a.svg"):
+        with pytest.raises(InputError, match="cannot be written"):
+            jbf.plot.save(ax, path)
+
+
+def test_loops_draw_friction_of_record_and_model_over_speed(comparison: Comparison) -> None:
+    ax = jbf.plot.loops(comparison, "there")
+    p = comparison.campaign.prepared[0]
+    v, measured = line(ax, "measured")
+    assert np.array_equal(v, p.motion.velocity_m_s)
+    assert np.array_equal(measured, p.friction_n)
+    v, modelled = line(ax, "model")
+    known = np.isfinite(modelled)
+    assert modelled[known] == pytest.approx(5.0 + 20.0 * v[known], rel=1e-3)
+
+
+def test_loops_of_friction_alone_omit_the_zero_error() -> None:
+    runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
+    model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
+    v, measured = line(jbf.plot.loops(compare(model, runs), 0, alone=True), "measured")
+    assert measured == pytest.approx(5.0 + 20.0 * v, rel=1e-4)
+
+
+def test_record_and_model_are_drawn_in_time(comparison: Comparison) -> None:
+    ax = jbf.plot.record_and_model(comparison, 1)
+    p = comparison.campaign.prepared[1]
+    for label, values in (("measured", p.friction_n), ("model", comparison.predictions[1])):
+        time_s, drawn = line(ax, label)
+        assert np.array_equal(time_s, p.run.time_s)
+        assert np.array_equal(drawn, values)
+
+
+def test_stribeck_draws_the_means_over_speed_and_the_steady_law(comparison: Comparison) -> None:
+    ax = jbf.plot.stribeck(comparison)
+    modelled = [one for one in ax.lines if one.get_linestyle() == "-" and len(one.get_xdata()) > 2]  # type: ignore[arg-type]
+    for found, drawn in zip(friction_over_speed(comparison), modelled, strict=False):
+        assert np.array_equal(np.asarray(drawn.get_xdata()), found.speed_m_s)
+        assert np.array_equal(np.asarray(drawn.get_ydata()), found.modelled_n)
+    steady = [np.asarray(one.get_xydata()).T for one in ax.lines if one.get_linestyle() == ":"]
+    assert [np.sign(v).mean() for v, _ in steady] == [1.0, -1.0]
+    for v, force in steady:
+        assert force == pytest.approx(5.0 * np.sign(v) + 20.0 * v, rel=1e-3)
+
+
+def test_friction_map_counts_the_samples_and_draws_the_mean_of_the_model(
+    comparison: Comparison,
+) -> None:
+    ax = jbf.plot.friction_map(comparison)
+    counts = np.ma.filled(cast(Any, ax.collections[0]).get_array(), 0.0)
+    total = comparison.samples.count
+    # At most 0.05 % of the samples lie outside at each of the four sides.
+    assert total * (1.0 - 4 * 0.0005) - 4 <= np.nansum(counts) <= total
+    for drawn in ax.lines:
+        x, y = np.asarray(drawn.get_xdata()), np.asarray(drawn.get_ydata())
+        assert y == pytest.approx(5.0 * np.sign(x) + 20.0 * x, rel=1e-3)
+
+
+def test_residual_along_direction_is_above_zero_where_the_record_is_above_the_model(
+    comparison: Comparison,
+) -> None:
+    ax = jbf.plot.residual_along(comparison, "direction")
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["v < 0", "v > 0"]
+    _, means = line(ax, "mean in the bin")
+    assert means == pytest.approx([-1.0, 1.0], abs=1e-3)
+
+
+def test_residual_map_shows_the_mean_in_units_of_the_noise(comparison: Comparison) -> None:
+    """1 N over 0.5 N of noise: above the model in the first run, below it in the second."""
+    ax = jbf.plot.residual_map(comparison, "time", "run")
+    cells = np.ma.filled(cast(Any, ax.collections[0]).get_array(), np.nan).reshape(2, -1)
+    assert np.nanmean(cells, axis=1) == pytest.approx([2.0, -2.0], abs=0.01)
+    with pytest.raises(InputError, match="not over nothing"):
+        jbf.plot.residual_map(comparison, "nothing")  # type: ignore[arg-type]
+
+
+def test_residual_in_time_omits_samples_that_do_not_count(comparison: Comparison) -> None:
+    masks = [np.arange(501) >= 100, np.arange(501) >= 0]
+    partial = replace(comparison, samples=comparison.samples.within(masks))
+    ax = jbf.plot.residual_in_time(partial, 0)
+    _, residual = line(ax, "record minus model")
+    assert np.all(np.isnan(residual[:100]))
+    assert residual[100:] == pytest.approx(np.ones(401), abs=1e-3)
+
+
+def test_residuals_in_a_row_are_those_of_the_fit(diagnosis: Diagnosis) -> None:
+    ax = jbf.plot.residuals_in_a_row(diagnosis.fit)
+    drawn = [one for one in ax.lines if one.get_marker() == "."]
+    x = np.concatenate([np.asarray(one.get_xdata()) for one in drawn])
+    y = np.concatenate([np.asarray(one.get_ydata()) for one in drawn])
+    assert np.array_equal(y, np.concatenate(diagnosis.fit.residuals))
+    assert np.array_equal(x, np.arange(len(y)))
+
+
+def test_spectrum_has_the_level_of_white_noise_and_a_peak_at_a_tone() -> None:
+    """White noise of standard deviation s has the density s sqrt(2 dt)."""
+    model = Model(Rig(), "coulomb", parameters=LAW)
+    runs = there_and_back(coulomb, noise_n=0.2)
+    quiet = jbf.plot.spectrum(compare(model, runs), 0)
+    _, density = line(quiet, "record minus model")
+    assert np.sqrt(np.mean(density**2)) == pytest.approx(0.2 * np.sqrt(2.0 * 0.02), rel=0.15)
+    _, floor = line(quiet, "white noise as large")
+    assert floor[0] == pytest.approx(0.2 * np.sqrt(2.0 * 0.02), rel=0.1)
+
+    tone = replace(
+        runs[0], friction_n=runs[0].friction_n + 0.5 * np.sin(2.0 * np.pi * 7.0 * runs[0].time_s)
+    )
+    frequency, density = line(jbf.plot.spectrum(compare(model, [tone])), "record minus model")
+    assert frequency[np.argmax(density)] == pytest.approx(7.0, abs=0.5)
+
+
+def test_run_is_found_by_name_or_index_and_the_worst_by_default(comparison: Comparison) -> None:
+    assert [index_of(comparison, run) for run in ("there", "back", 0, -1, None)] == [0, 1, 0, 1, 1]
+    assert index_of(comparison_by_hand(1.25, (1.5, 1.0)), None) == 0
+    with pytest.raises(InputError, match="no run nope; known: there, back"):
+        index_of(comparison, "nope")
+
+
+def test_run_in_which_two_models_differ_most_is_found() -> None:
+    """5 N + 20 N s/m and 1 N + 40 N s/m agree at 0.2 m/s and differ by 2 N at 0.1 m/s."""
+    runs = [one_way("slow", coulomb), one_way("fast", coulomb, way=2.0)]
+    first, second = (
+        compare(Model(Rig(), "coulomb", parameters=values), runs)
+        for values in (LAW, {"F_c_n": 1.0, "F_s_n": 1.0, "F_v_n_s_m": 40.0})
+    )
+    assert most_telling(first, second) == 0
+    assert most_telling(first, first) == most_telling(first)
+
+
+def test_intervals_are_standard_errors_in_percent_of_the_value() -> None:
+    fit = fit_by_hand(["sensor_offset"])
+    ax = jbf.plot.parameters(fit)
+    widths = {
+        float(c[0].get_ydata()[0]): float(np.ptp(c[2][0].get_segments()[0][:, 0]))
+        for c in cast(Any, ax.containers)
+    }
+    expected = {
+        float(row): 2.0 * 100.0 * abs(p.stderr / p.value)
+        for row, p in enumerate(fit.parameters.values())
+        if p.stderr is not None
+    }
+    assert widths == pytest.approx(expected)
+    labels = [tick.get_text() for tick in ax.get_yticklabels()]
+    # A held parameter has no interval.
+    assert labels[:2] == ["F_c_n\n4.988 ± 0.012", "F_s_n\nheld at 6.0000"]
+    assert len(ax.containers) == 3
+
+
+def test_bootstrap_draws_the_answers_in_percent_of_the_value() -> None:
+    fit = fit_by_hand()
+    answers = {name: p.value * np.array([0.9, 1.2]) for name, p in fit.parameters.items()}
+    (ax,) = plot_bootstrap(Bootstrap(fit, answers))
+    off = [np.asarray(one.get_xdata(), dtype=float) for one in ax.lines if one.get_marker() == "|"]
+    # The caps of the intervals have the same marker and one point each.
+    assert [x for x in off if len(x) == 2] == [pytest.approx([-10.0, 20.0])] * 2
+
+
+def test_ledger_draws_fit_and_held_out_error_and_their_fall(diagnosis: Diagnosis) -> None:
+    ax = jbf.plot.ledger(diagnosis)
+    assert line(ax, "fit")[0].tolist() == [2.5, 0.525]
+    assert line(ax, "held out")[0].tolist() == [2.75, 0.55]
+    assert set(line(ax, "noise floor")[0]) == {0.5}
+    assert ax.get_xscale() == "log"
+    low, high = ax.get_xlim()
+    assert low < 0.5
+    assert high > 2.75
+    # 0.55 N is 80 % less than 2.75 N; the minus sign is the typographic one.
+    assert [t.get_text() for t in ax.texts] == ["2.75 N", "0.550 N  (−80 %)"]
+
+
+def test_ranking_draws_gains_in_descending_order(diagnosis: Diagnosis) -> None:
+    ax = jbf.plot.ranking(diagnosis)
+    assert [cast(Any, bar).get_width() for bar in ax.patches] == [812.4, 55.0, 7.4]
+    assert [t.get_text() for t in ax.get_yticklabels()] == [
+        "sensor_offset",
+        "sensor_drift",
+        "inertia_leak",
+    ]
+    with pytest.raises(InputError, match="nothing was tried at step 1"):
+        jbf.plot.ranking(diagnosis, 1)
+    with pytest.raises(InputError, match="there is no step 7"):
+        jbf.plot.ranking(diagnosis, 7)
+
+
+def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Diagnosis) -> None:
+    """An effect found from 0.1 rad in 80 %, from 0.13 rad in 95 %; 2 % of the friction at 0.1."""
+    shares = np.array([0.02, 0.02 * 1.3])
+    assert ndtr(deviate(POWER, shares)) == pytest.approx([0.80, 0.95])
+    x, y = line(jbf.plot.power(diagnosis), "backlash")
+    assert np.interp(2.0, x, y) == pytest.approx(80.0, abs=0.2)
+    assert np.interp(2.6, x, y) == pytest.approx(95.0, abs=0.2)
+    unknown = replace(diagnosis, power=(replace(POWER, found_80=None),))
+    with pytest.raises(InputError, match="no power is known"):
+        jbf.plot.power(unknown)
+
+
+def inside(axes: Sequence[Axes]) -> bool:
+    """Whether every text lies inside the figure once it is laid out."""
+    figure = cast(Figure, axes[0].figure)
+    FigureCanvasAgg(figure).draw()
+    boxes = [cast(Any, ax.get_tightbbox()) for ax in axes]
+    low = min(min(box.x0, box.y0) for box in boxes)
+    return bool(
+        low >= 0
+        and max(box.x1 for box in boxes) <= figure.bbox.x1
+        and max(box.y1 for box in boxes) <= figure.bbox.y1
+    )
+
+
+@pytest.mark.parametrize(("verdict", "added"), [("missing", True), ("unexplained", False)])
+def test_diagnosis_has_four_pictures(verdict: str, added: bool) -> None:
+    axes = plot_diagnosis(diagnosis_by_hand(verdict))
+    assert title(axes[0]) == "The error falling"
+    assert title(axes[1]) == "Residual along direction"
+    assert title(axes[2]).startswith("Bare law, run ")
+    assert title(axes[3]).startswith("Final model, run " if added else "Residual, run ")
+    # Loops of the bare law and of the final model have one scale.
+    assert (axes[3].get_ylim() == axes[2].get_ylim()) == added
+    assert inside(axes)
+
+
+def test_control_traces_draw_response_error_and_friction(loop: control.Result) -> None:
+    response = jbf.plot.control_trace(loop)
+    assert np.array_equal(line(response, "reference")[1], loop.reference)
+    assert np.array_equal(line(response, "response")[1], loop.velocity_rad_s)
+    error = jbf.plot.control_trace(loop, "error")
+    assert np.array_equal(line(error, "of the shaft")[1], loop.true_error)
+    assert np.array_equal(line(error, "of the estimate")[1], loop.error)
+    friction = jbf.plot.control_trace(loop, "friction")
+    assert np.array_equal(line(friction, "true")[1], loop.friction_v)
+    assert np.array_equal(line(friction, "estimated")[1], loop.estimated_friction_v)
+    curve = jbf.plot.control_trace(loop, "loop")
+    assert np.array_equal(line(curve, "true")[0], loop.velocity_rad_s)
+    learned = jbf.plot.control_trace(loop, "learned")
+    assert np.array_equal(line(learned, "level correction (V)")[1], loop.learned_0)
+    assert np.array_equal(line(learned, "rest (V)")[1], loop.learned_1)
+    with pytest.raises(InputError, match="no trace speed"):
+        jbf.plot.control_trace(loop, "speed")  # type: ignore[arg-type]
+
+
+def test_learned_parameters_of_the_thesis_are_drawn_in_their_units() -> None:
+    """K0 in 1e5, gamma in tens."""
+    task = replace(control.TASKS["velocity sine"], seconds=4.0)
+    r = control.run(None, "learning", task)
+    ax = jbf.plot.control_trace(r, "learned")
+    assert line(ax, "K0 / 1e5")[1] == pytest.approx(r.learned_0 / 1e5)
+    assert line(ax, "gamma / 10")[1] == pytest.approx(r.learned_1 / 10.0)

@@ -1,0 +1,179 @@
+"""What every result offers: summary, picture, page, JSON, frame, repr, table."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
+from jbf import Bootstrap, InputError, ParameterValue, Rig, TrajectoryFit, control
+from jbf.importing.cutting.piece import Piece
+from jbf.importing.result import Import
+from jbf.reporting import door
+from jbf.reporting.frames import parameter_columns
+from jbf.reporting.json import json_text
+from jbf.reporting.short import LONGEST, first_of
+from jbf.results import Result
+
+TRAJECTORY = TrajectoryFit(
+    {"f_m": ParameterValue(0.25, 0.0012), "U_tr_m_s": ParameterValue(0.05)}, 4e-4, 100, 7, True, ""
+)
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, Result]:
+    """One result of each kind."""
+    fit = fit_by_hand(["sensor_offset"])
+    task = control.Task("velocity", "sine", -5.0, 5.0, 2.0, seconds=2.0)
+    return {
+        "fit": fit,
+        "bootstrap": Bootstrap(
+            fit, {n: p.value + np.arange(3.0) for n, p in fit.parameters.items()}
+        ),
+        "trajectory fit": TRAJECTORY,
+        "comparison": comparison_by_hand(1.25, (1.0, 1.5)),
+        "diagnosis": diagnosis_by_hand("ambiguous"),
+        "loop": control.run(None, "observed", task),
+    }
+
+
+@pytest.fixture
+def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pandas whose frames are the dictionaries that they are made from."""
+    pandas = ModuleType("pandas")
+    pandas.DataFrame = dict  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "pandas", pandas)
+
+
+@pytest.mark.usefixtures("frame_is_dict")
+@pytest.mark.parametrize(
+    "kind", ["fit", "bootstrap", "trajectory fit", "comparison", "diagnosis", "loop"]
+)
+def test_every_result_has_every_method(
+    kind: str, results: dict[str, Result], tmp_path: Path
+) -> None:
+    result = results[kind]
+    assert result.summary()
+    for ax in result.plot():
+        assert ax.lines or ax.collections or ax.patches
+    json.loads(json_text(result.to_dict()))
+    result.save_html(tmp_path / "a.html")
+    assert "<svg" in (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert 20 < len(repr(result)) < 300
+    assert result._repr_html_().count("<table>") == 1
+    columns: dict[str, Sequence[Any]] = result.to_frame()
+    assert len({len(values) for values in columns.values()}) == 1
+
+
+def test_frame_without_pandas_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(InputError, match="pip install pandas"):
+        fit_by_hand().to_frame()
+
+
+def test_object_that_is_no_result_is_refused() -> None:
+    for method in (door.summary, door.small_table, door.columns, door.plot, door.page):
+        with pytest.raises(TypeError, match="int"):
+            method(3)  # type: ignore[operator]
+
+
+def test_parameter_is_found_by_its_full_and_its_short_name() -> None:
+    fit = fit_by_hand(["sensor_offset"])
+    assert fit["sensor_offset.b"] is fit.parameters["sensor_offset.b_n"]
+    assert fit["F_c"].value == fit.values["F_c_n"] == 4.9876
+    assert fit.stderr["F_c_n"] == 0.0123
+    assert "F_v" in fit
+    assert "F_x" not in fit
+    assert list(fit) == list(fit.parameters)
+    with pytest.raises(InputError, match="did you mean"):
+        fit["F_w_n"]
+
+
+@pytest.mark.usefixtures("frame_is_dict")
+def test_frame_of_a_fit_has_a_row_for_each_parameter() -> None:
+    frame: Any = fit_by_hand(["sensor_offset"]).to_frame()
+    assert frame["parameter"] == ["F_c_n", "F_s_n", "F_v_n_s_m", "sensor_offset.b_n"]
+    assert frame["value"] == [4.9876, 6.0, 20.44, -0.25]
+    assert frame["unit"] == ["N", "N", "N s/m", "N"]
+    assert frame["held"] == [False, True, False, False]
+    assert frame["note"] == ["", "held fixed", "", ""]
+    np.testing.assert_array_equal(frame["stderr"], [0.0123, np.nan, 0.52, 0.025])
+    unknown = parameter_columns("coulomb", (), {"own": ParameterValue(1.0, 0.5, "a note")})
+    assert (unknown["unit"], unknown["stderr"]) == ([""], [0.5])
+
+
+@pytest.mark.usefixtures("frame_is_dict")
+def test_frame_of_a_comparison_has_a_row_for_each_sample() -> None:
+    frame: Any = comparison_by_hand(1.25, (1.0, 1.5)).to_frame()
+    assert frame["run"] == ["there"] * 501 + ["back"] * 501
+    np.testing.assert_array_equal(frame["residual_n"], frame["friction_n"] - frame["model_n"])
+    # The record is 1 N above the model in the direction of motion.
+    np.testing.assert_allclose(frame["residual_n"], np.sign(frame["velocity_m_s"]), atol=1e-3)
+    assert frame["counts"].all()
+
+
+def numbers(text: str) -> list[str]:
+    return [word.strip(",;()") for word in text.split() if word[:1].isdigit()]
+
+
+def test_repr_of_a_fit_has_runs_samples_rms_and_parameters() -> None:
+    fit = fit_by_hand(["sensor_offset"])
+    head, _, values = repr(fit).partition("\n")
+    assert head.startswith("Fit(coulomb + sensor_offset;")
+    assert numbers(head) == ["2", "1001", "0.525"]
+    assert "F_v_n_s_m 20.44 +/- 0.52" in values
+    assert "F_s_n held at" in values
+    assert "not converged" in repr(replace(fit, converged=False))
+    answers = {name: np.arange(20.0) for name in fit.parameters}
+    assert repr(Bootstrap(fit, answers)).startswith("Bootstrap(20 fits")
+    assert "f_m 0.2500 +/- 0.0012, U_tr_m_s 0.050000" in repr(TRAJECTORY)
+
+
+def test_repr_of_a_comparison_and_a_diagnosis_have_error_and_noise() -> None:
+    comparison = comparison_by_hand(1.25, (1.0, 1.5))
+    assert numbers(repr(comparison)) == ["2", "1.25", "2.50", "0.500"]
+    assert "fails along direction" in repr(comparison)
+    assert "no pattern" in repr(replace(comparison, failures=()))
+    diagnosis = repr(diagnosis_by_hand("missing"))
+    assert diagnosis.startswith("Diagnosis(missing: sensor_offset;")
+    assert numbers(diagnosis) == ["0.550", "1.10", "0.500"]
+    assert repr(diagnosis_by_hand("adequate")).startswith("Diagnosis(adequate;")
+
+
+def test_long_lists_are_cut_at_an_item() -> None:
+    assert LONGEST == 120
+    assert first_of(["a" * 59, "b" * 59]) == f"{'a' * 59}, {'b' * 59}"
+    assert first_of(["a" * 59, "b" * 60]) == f"{'a' * 59}, ..."
+    assert first_of(["a" * 56, "b" * 56, "c" * 9]) == f"{'a' * 56}, {'b' * 56}, ..."
+    assert first_of([]) == ""
+
+
+@pytest.mark.parametrize(
+    ("kind", "row"),
+    [
+        ("fit", ("F_c_n", "4.988", "0.012", "0.25 %", "N", "")),
+        ("bootstrap", ("F_s_n", "held at 6.0000", "", "", "N", "held fixed")),
+        ("trajectory fit", ("f_m", "0.2500", "0.0012", "0.48 %", "", "")),
+        ("comparison", ("back", "500", "1.50", "3.00")),
+        ("diagnosis", ("+ sensor_offset", "0.525", "0.550", "0.500", "1.10")),
+    ],
+)
+def test_table_of_a_result_has_its_rows(
+    results: dict[str, Result], kind: str, row: tuple[str, ...]
+) -> None:
+    cells = "".join(f"<td>{cell}</td>" for cell in row)
+    assert f"<tr>{cells}</tr>" in results[kind]._repr_html_()
+
+
+def test_table_of_an_import_has_the_reason_of_the_pieces_left_out() -> None:
+    pieces = (Piece("r", "a.csv", 0, 0.0, 1.5), Piece("", "a.csv", 0, 1.5, 2.0, False, "at rest"))
+    html = Import(Path("out"), Rig(), pieces, {})._repr_html_()
+    assert "<td>r</td><td>a.csv</td><td>0.000</td><td>1.500</td>" in html
+    assert "<td>left out: at rest</td><td>a.csv</td><td>1.500</td><td>2.000</td>" in html

@@ -1,0 +1,168 @@
+"""Rows of cells that texts and pages share: parameters, steps, runs, findings, power, laws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from by_hand import diagnosis_by_hand, fit_by_hand
+from jbf import ParameterValue
+from jbf.diagnosis import Step
+from jbf.diagnosis.power import Power
+from jbf.diagnosis.which_law import LawTried
+from jbf.records.findings.finding import Finding
+from jbf.records.quantities import LINEAR, ROTARY
+from jbf.reporting.tables import (
+    correlation_pairs,
+    finding_rows,
+    law_rows,
+    parameter_rows,
+    power_rows,
+    ratio,
+)
+from jbf.reporting.text_parts import finding_lines, parameter_lines
+from jbf.reporting.words import step_name
+
+VALUES = {
+    "F_c_n": ParameterValue(4.9876, 0.0123),
+    "F_v_n_s_m": ParameterValue(20.0),
+    "own": ParameterValue(0.0, 0.5, "at its bound"),
+}
+
+
+def test_parameter_row_has_value_error_share_unit_and_note() -> None:
+    assert parameter_rows("coulomb", (), VALUES) == [
+        ("F_c_n", "4.988", "0.012", "0.25 %", "N", ""),
+        ("F_v_n_s_m", "20.000", "", "", "N s/m", "no error known"),
+        ("own", "0.00", "0.50", "", "", "at its bound"),
+    ]
+
+
+def test_parameter_rows_of_a_rotary_drive_have_its_units_and_no_unit_in_the_name() -> None:
+    rows = parameter_rows("coulomb", (), VALUES, ROTARY)
+    assert [(row[0], row[4]) for row in rows] == [("F_c", "N m"), ("F_v", "N m s/rad"), ("own", "")]
+
+
+def test_parameter_lines_are_aligned_and_omit_missing_parts() -> None:
+    assert parameter_lines("coulomb", (), VALUES) == [
+        "    F_c_n       4.988  +/- 0.012  (0.25 %)  N",
+        "    F_v_n_s_m  20.000                       N s/m  (no error known)",
+        "    own          0.00   +/- 0.50                   (at its bound)",
+    ]
+
+
+def test_correlations_above_three_tenths_are_listed_strongest_first() -> None:
+    """A held parameter has no row in the table of correlations."""
+    fit = fit_by_hand(["sensor_offset"])
+    assert correlation_pairs(fit) == [
+        ("F_c_n", "F_v_n_s_m", -0.9),
+        ("F_c_n", "sensor_offset.b_n", 0.45),
+    ]
+    table = np.array([[1.0, 0.3, np.nan], [0.3, 1.0, -0.301], [np.nan, -0.301, 1.0]])
+    weak = replace(fit, correlations=table)
+    assert correlation_pairs(weak) == [("F_v_n_s_m", "sensor_offset.b_n", -0.301)]
+
+
+def test_ratio_to_the_noise_is_empty_without_noise() -> None:
+    assert [ratio(1.0, noise) for noise in (0.3, 0.0)] == ["3.33", ""]
+
+
+def test_law_row_marks_the_first_law_and_those_that_predict_as_well() -> None:
+    laws = (LawTried("a", 2, 0.5, True), LawTried("b", 4, 0.51, True), LawTried("c", 6, 1, False))
+    assert law_rows(replace(diagnosis_by_hand("missing"), laws=laws)) == [
+        ("a", "2", "0.500", "taken"),
+        ("b", "4", "0.510", "predicts as well"),
+        ("c", "6", "1.00", "predicts worse"),
+    ]
+
+
+def test_step_is_named_for_what_it_added_and_removed() -> None:
+    effects = [(), ("a",), ("a", "b", "c"), ("b", "c"), ("b", "c"), ("b", "d")]
+    steps = tuple(Step(names, 1.0, 1.0, 1.0) for names in effects)
+    diagnosis = replace(diagnosis_by_hand("missing"), steps=steps)
+    assert [step_name(diagnosis, i) for i in range(len(steps))] == [
+        "bare law",
+        "+ a",
+        "+ b, + c",
+        "- a",
+        "refitted",
+        "+ d, - c",
+    ]
+    assert step_name(replace(diagnosis, steps=steps[2:]), 0) == "bare law + a, b, c"
+
+
+def findings_of(*cases: tuple[str, str]) -> list[Finding]:
+    """Findings of one kind, each with its run and its words."""
+    return [Finding("slow_channel", "c", run, 1.0, "s", "left", words) for run, words in cases]
+
+
+@pytest.mark.parametrize(
+    ("cases", "expected"),
+    [
+        ([("a", "x"), ("b", "x"), ("c", "x")], "x, in a, b, c (left)"),
+        (
+            [("a", "x"), ("b", "y"), ("c", "x"), ("d", "x"), ("e", "x")],
+            "x, in a, c, d and 1 run more; y, in b (left)",
+        ),
+        (
+            [("a", "x"), ("b", "y"), ("c", "z"), ("d", "w"), ("e", "v"), ("f", "v")],
+            "x, in a; y, in b; z, in c; and in 3 runs more (left)",
+        ),
+    ],
+)
+def test_findings_with_the_same_words_name_at_most_three_runs(
+    cases: list[tuple[str, str]], expected: str
+) -> None:
+    assert finding_rows(findings_of(*cases)) == [("slow channel", expected)]
+
+
+def test_findings_have_one_row_for_each_kind_and_a_heading_where_there_are_any() -> None:
+    other = Finding("glitches", "angle_rad", "a", 2.0, "rad", "weighed", "one jump")
+    assert finding_rows([*findings_of(("a", "x")), other]) == [
+        ("slow channel", "x, in a (left)"),
+        ("glitches", "one jump, in a (weighed)"),
+    ]
+    assert finding_rows([]) == []
+    assert finding_lines([]) == []
+    assert finding_lines(findings_of(("a", "x")))[2:] == ["    slow channel: x, in a (left)"]
+
+
+def power_of(**changes: Any) -> Power:
+    """An offset that is found from 2 N, and distinguished from 3 N."""
+    values: dict[str, Any] = {
+        "effect": "sensor_offset",
+        "parameter": "b_n",
+        "unit": "N",
+        "found_80": 2.0,
+        "found_95": 3.0,
+        "always": False,
+        "share_80": 0.0123,
+        "alone_80": 3.0,
+        "like": (),
+    }
+    return Power(**{**values, **changes})
+
+
+@pytest.mark.parametrize(
+    ("changes", "cells"),
+    [
+        ({}, ("b_n 2.00 N", "1.2 %", "3.00", "")),
+        ({"alone_80": 2.0004}, ("b_n 2.00 N", "1.2 %", "same", "")),
+        ({"alone_80": None}, ("b_n 2.00 N", "1.2 %", "never", "")),
+        ({"found_80": None, "share_80": None, "alone_80": None}, ("never", "", "", "")),
+        ({"always": True}, ("any", "", "3.00", "")),
+        ({"like": ("a", "b", "c", "d")}, ("b_n 2.00 N", "1.2 %", "3.00", "a, b, c")),
+    ],
+)
+def test_power_row_has_detectable_size_share_and_distinguishable_size(
+    changes: dict[str, Any], cells: tuple[str, ...]
+) -> None:
+    assert power_rows([power_of(**changes)], "coulomb", LINEAR) == [("sensor_offset", *cells)]
+
+
+def test_power_rows_of_a_rotary_drive_have_its_units() -> None:
+    share = power_of(effect="position_ripple", parameter="a", unit="-")
+    rows = power_rows([power_of(), share], "coulomb", ROTARY)
+    assert [row[1] for row in rows] == ["b 2.00 N m", "a 2.00"]

@@ -1,0 +1,261 @@
+"""Reports as plain text: sections, and the numbers in the table of each."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
+from golden import golden
+from jbf import Bootstrap, Model, ParameterValue, Rig, TrajectoryFit
+from jbf.diagnosis.check import Answer, Check
+from jbf.diagnosis.decoys import rate_below
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.planned import PlannedPower
+from jbf.diagnosis.power import Power
+from jbf.diagnosis.which_law import LawTried
+from jbf.estimation.noise import Noise
+from jbf.records.findings.finding import Finding
+from jbf.reporting.fit_text import noise_words
+from jbf.reporting.power_text import level_words
+
+GAP = Finding("gaps", "time_s", "there", 0.1, "s", "stepped over", "3 rows are missing")
+
+
+def section(text: str, heading: str) -> list[list[str]]:
+    """Cells of the indented lines below the line that starts with `heading`."""
+    lines = text.splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith(heading)) + 1
+    rows = []
+    for line in lines[start:]:
+        if not line.startswith("    "):
+            break
+        rows.append(re.split(r"  +", line.strip()))
+    return rows
+
+
+def has_section(text: str, heading: str) -> bool:
+    return any(line.startswith(heading) for line in text.splitlines())
+
+
+def test_fit_report_has_statistics_parameters_and_correlations() -> None:
+    report = fit_by_hand(["sensor_offset"]).summary()
+    statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
+    assert statistics == {
+        "law": "= coulomb",
+        "effects": "= sensor_offset",
+        "runs": "= 2",
+        "samples": "= 1001",
+        "RMS of the residual": "= 0.525 N",
+        "noise in the residual": "= coloured, share 0.25, memory 0.15 s",
+        "search": "= converged",
+    }
+    assert section(report, "[[Parameters]]") == [
+        ["F_c_n", "4.988", "+/- 0.012", "(0.25 %)", "N"],
+        ["F_s_n", "held at 6.0000", "N", "(held fixed)"],
+        ["F_v_n_s_m", "20.44", "+/- 0.52", "(2.5 %)", "N s/m"],
+        ["sensor_offset.b_n", "-0.250", "+/- 0.025", "(10 %)", "N"],
+    ]
+    assert section(report, "[[Correlations]]") == [
+        ["C(F_c_n, F_v_n_s_m)", "= -0.900"],
+        ["C(F_c_n, sensor_offset.b_n)", "= +0.450"],
+    ]
+
+
+def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:
+    assert "note: of F_c_n" in fit_by_hand(doubtful=("F_c_n",)).summary()
+    failed = replace(fit_by_hand(), converged=False, message="too many steps")
+    assert "not converged: too many steps" in failed.summary()
+    assert ["effects", "= none"] in section(failed.summary(), "[[Fit]]")
+
+
+def test_noise_is_white_or_has_a_share_and_a_memory() -> None:
+    assert noise_words(Noise()) == "white"
+    assert noise_words(Noise(0.5, 0.3)) == "coloured, share 0.30, memory 0.50 s"
+
+
+def test_bootstrap_report_counts_the_fits_and_contains_the_fit() -> None:
+    fit = fit_by_hand()
+    found = Bootstrap(fit, {n: np.arange(7.0) for n in fit.parameters})
+    first, _, rest = found.summary().partition("\n")
+    assert "7 fits" in first
+    assert rest == fit.summary()
+
+
+def test_trajectory_report_has_statistics_and_parameters() -> None:
+    values = {"f_m": ParameterValue(0.25, 0.0012), "U_tr_m_s": ParameterValue(0.05)}
+    found = TrajectoryFit(values, 4e-4, 100, 7, True, "")
+    statistics = {row[0]: row[1] for row in section(found.summary(), "[[Fit]]")}
+    assert (statistics["samples"], statistics["simulations"]) == ("= 100", "= 7")
+    assert statistics["sum of squares"].startswith("= 0.000400")
+    assert statistics["search"] == "= converged"
+    assert section(found.summary(), "[[Parameters]]") == [
+        ["f_m", "0.2500", "+/- 0.0012", "(0.48 %)"],
+        ["U_tr_m_s", "0.050000", "m/s", "(no error known)"],
+    ]
+    assert "not converged: lost" in replace(found, converged=False, message="lost").summary()
+
+
+def test_comparison_report_lists_failures_and_runs() -> None:
+    report = comparison_by_hand(1.25, (1.0, 1.5)).summary()
+    assert section(report, "Where it fails") == [["direction", "60 %", "record above the model"]]
+    assert section(report, "Runs") == [
+        ["run", "samples", "RMS (N)", "RMS / noise"],
+        ["there", "501", "1.00", "2.00"],
+        ["back", "500", "1.50", "3.00"],
+    ]
+    assert not has_section(report, "What the recording did")
+
+
+def test_comparison_report_without_failures_lists_findings_only() -> None:
+    found = comparison_by_hand(1.25, (1.0, 1.5))
+    campaign = replace(found.campaign, more_findings=(GAP,))
+    report = replace(found, failures=(), campaign=campaign).summary()
+    assert "no pattern" in report.splitlines()[0]
+    assert not has_section(report, "Where it fails")
+    findings = section(report, "What the recording did")
+    assert findings == [["gaps: 3 rows are missing, in there (stepped over)"]]
+
+
+def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> None:
+    report = diagnosis_by_hand("missing").summary()
+    assert report.startswith("Verdict: missing\n")
+    measurement = section(report, "Measurement")
+    assert measurement[0][0].startswith("2 runs of 20 s in all, 1002 samples")
+    assert "noise floor 0.500 N" in measurement[1][0]
+    bare = section(report, "The bare law (coulomb)")
+    assert "2.50 N RMS, 5.00 times the noise" in bare[0][0]
+    assert bare[1] == ["direction", "60 %", "record above the model"]
+    candidates = section(report, "Candidates tried beside the bare law")
+    assert candidates[0] == ["effect", "RMS (N)", "evidence", "outcome", "why"]
+    assert candidates[1] == ["sensor_offset", "0.525", "+812", "added", "largest evidence"]
+    assert len(candidates) == 5
+    assert section(report, "Not tried")[0][0].startswith("position_ripple: ")
+    assert section(report, "The error falling (N)") == [
+        ["step", "fit", "held out", "noise", "held out / noise"],
+        ["bare law", "2.50", "2.75", "0.500", "5.50"],
+        ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
+    ]
+    assert section(report, "Parameters of the final model")[3][:2] == [
+        "sensor_offset.b_n",
+        "-0.250",
+    ]
+
+
+def test_optional_sections_appear_only_with_content() -> None:
+    power = (Power("sensor_lag", "tau_s", "s", 0.01, 0.02, False, 0.1, 0.02, ()),)
+    laws = (LawTried("coulomb", 2, 0.55, True), LawTried("stribeck", 4, 0.551, True))
+    plain = replace(diagnosis_by_hand("missing"), not_tried={})
+    full = replace(plain, power=power, laws=laws, findings=(GAP,)).summary()
+    assert section(full, "Which law")[1:] == [
+        ["coulomb", "2", "0.550", "taken"],
+        ["stribeck", "4", "0.551", "predicts as well"],
+    ]
+    assert section(full, "What these runs would have shown")[1] == [
+        "sensor_lag",
+        "tau_s 0.0100 s",
+        "10 %",
+        "0.0200",
+    ]
+    assert has_section(full, "What the recording did")
+    for heading in ("Which law", "What these runs", "What the recording did", "Not tried"):
+        assert not has_section(plain.summary(), heading)
+
+
+def test_remainders_next_experiment_and_hidden_effects_are_reported() -> None:
+    unexplained = diagnosis_by_hand("unexplained").summary()
+    assert section(unexplained, "What remains") == [
+        ["frequency", "12 %", "a 3.00 Hz tone"],
+        ["time", "4 %", "2 bursts"],
+    ]
+    assert "Next experiment: record a rest" in diagnosis_by_hand("ambiguous").summary()
+    adequate = diagnosis_by_hand("adequate").summary()
+    assert section(adequate, "Could be there")[0] == ["backlash"]
+    assert "no pattern along any axis" in adequate
+
+
+def test_report_of_a_simulated_campaign_fits_a_terminal_and_shows_its_steps() -> None:
+    diagnosis = golden("bearing_coulomb_drag")
+    report = diagnosis.summary()
+    assert max(map(len, report.splitlines())) <= 100
+    rows = section(report, "The error falling")[1:]
+    steps = [(float(row[1]), float(row[2])) for row in rows]
+    assert steps == [
+        pytest.approx((step.rms_n, step.holdout_rms_n), rel=5e-3) for step in diagnosis.steps
+    ]
+    parameters = section(report, "Parameters of the final model")
+    assert [row[0] for row in parameters] == list(diagnosis.model.parameters)
+
+
+def test_check_report_has_counts_shares_and_exact_intervals() -> None:
+    """Clopper and Pearson: ten of ten has the lower end 0.025^(1/10)."""
+    right = [Answer((), k, "adequate", (), {}) for k in range(10)]
+    wrong = [Answer(("wear_in",), k, "adequate", (), {}) for k in range(4)]
+    check = Check(Model(Rig.thesis()), (*right, *wrong))
+    rows = [re.split(r"  +", line) for line in check.summary().splitlines()]
+    adequate = next(row for row in rows if row[0] == "nothing hidden: adequate")
+    assert adequate[1:] == ["10 of 10", "100 %", f"{100 * 0.025**0.1:.1f} to 100 %"]
+    named = next(row for row in rows if row[0] == "wear_in hidden: named")
+    assert named[1:] == ["0 of 4", "0 %", f"0 to {100 * (1 - 0.025**0.25):.1f} %"]
+    assert "10 of 14" in repr(check)
+
+
+LEVEL = Level(0.025, 20, 0.00125, imperfection=0.0, worth=0.0)
+
+
+def test_level_states_false_alarm_rate_candidates_and_threshold() -> None:
+    words = level_words(LEVEL)
+    assert "2.5 %" in words
+    assert "20 candidates" in words
+    # The 1 - 0.00125 quantile of chi-square with one degree of freedom.
+    assert "10.4 in twice the log likelihood" in words
+
+
+@pytest.mark.parametrize(
+    ("changes", "fragment"),
+    [
+        ({"blocks": 40}, "40 blocks"),
+        ({"imperfection": 100.0}, f"at least {LEVEL.white + 100.0:.0f}"),
+        ({"worth": 1234.0}, "gain 1234"),
+        ({"decoys": 50, "decoys_named": 3}, f"below {100.0 * rate_below(3, 50):.2g} %"),
+        ({"decoys": 2, "decoys_named": 2}, "below 100 %"),
+    ],
+)
+def test_level_states_each_further_threshold_only_where_it_applies(
+    changes: dict[str, Any], fragment: str
+) -> None:
+    assert fragment in level_words(replace(LEVEL, **changes))
+    assert fragment not in level_words(LEVEL)
+
+
+def planned_power() -> PlannedPower:
+    power = (
+        Power("sensor_offset", "b_n", "N", 2.0, 3.0, False, 0.0123, 2.0, ("wear_in",)),
+        Power("sensor_lag", "tau_s", "s", None, None, False, None, None, ()),
+    )
+    model = Model(Rig(), "coulomb", ["inertia_leak"])
+    return PlannedPower(model, 0.1, power, {"backlash": "no path"}, ("a", "b"), LEVEL)
+
+
+def test_planned_power_report_lists_effects_noise_and_what_is_not_tried() -> None:
+    planned = planned_power()
+    report = planned.summary()
+    assert report.startswith("2 runs beside coulomb + inertia_leak, noise of 0.100 N")
+    assert section(report, "What such runs show")[1:3] == [
+        ["sensor_offset", "b_n 2.00 N", "1.2 %", "same", "wear_in"],
+        ["sensor_lag", "never"],
+    ]
+    assert section(report, "Not asked for")[0] == ["backlash: no path"]
+    assert "2 runs show 1 of 2 effects" in repr(planned)
+
+
+def test_plan_report_lists_the_runs_before_their_power() -> None:
+    run = comparison_by_hand(1.0, (1.0, 1.0)).campaign.prepared[0].run
+    plan = Plan((run,), ("a sine",), planned_power())
+    rows = [re.split(r"  +", line.strip()) for line in plan.summary().splitlines()]
+    assert rows.index(["there", "a sine"]) < rows.index(["sensor_lag", "never"])
+    assert "1 run" in repr(plan)

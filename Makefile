@@ -17,26 +17,27 @@ SANITIZED := $(or $(CARGO_TARGET_DIR),target)/sanitized
 
 MADE := $(VENV)/.made
 BUILT := $(VENV)/.built
+TOOLS := $(VENV)/.tools
 
 # A stamp without its extension or its command is stale.
 ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo docs figures test test-slow lint format bench counts bits bits-table fuzz miri sanitize supply mutants mutation firmware \
+.PHONY: help venv quick demo docs figures test test-extended lint format bench counts bits bits-table fuzz miri sanitize supply faults mutation firmware \
 	sbom coverage licences publish-check wheel wheel-test reproducible lowest free-threaded clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
 	@echo "make docs    the site, in target/site/html; every snippet of every page is run"
 	@echo "make figures  every picture and generated table of the docs anew, from this commit"
-	@echo "make test    Rust and Python tests"
-	@echo "make test-slow  the tests that take minutes"
+	@echo "make test    Rust and Python tests: before every pull request"
+	@echo "make test-extended  what takes minutes: statistical studies, long simulations, all seeds"
 	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
-	@echo "make mutants  deliberate faults, one at a time: would the tests notice?"
+	@echo "make faults  30 deliberate faults, one at a time: which do the fast tests notice?"
 	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
 	@echo "make coverage  lines of python/jbf that no fast test runs, file by file (pytest-cov)"
 	@echo "make fuzz    bred input to every property of jbf-properties, a minute each or FOR=seconds (nightly, cargo-fuzz)"
@@ -53,42 +54,48 @@ help:
 	@echo "make free-threaded PYTHON=python3.14t  tests in four threads at once, without the interpreter lock"
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
-	@echo "make venv    builds the extension and the jbf command into $(VENV)"
+	@echo "make venv    the extension, the jbf command and all tools of a developer in $(VENV)"
 	@echo "make quick   the same to try a change of Rust with: built in a third of the time, slower, same numbers"
 	@echo "make clean   removes $(VENV), dist, target and the built extension"
 
-venv: $(BUILT)
+venv: $(TOOLS)
 
 # Little optimised, without wide instructions, and only what changed: then .venv/bin/jbf and
 # .venv/bin/python -m pytest by hand. Its stamp goes, so that all other targets build the real one.
-quick: $(MADE)
+quick: $(TOOLS)
 	@rm -f $(BUILT)
-	VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(VENV)/bin/maturin develop --quiet --extras dev \
+	VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(VENV)/bin/maturin develop --quiet \
 		--profile quick --no-default-features
 
 demo: $(BUILT)
 	$(VENV)/bin/jbf demo
 
 # Two pages at a time: most of them diagnose something.
-docs: $(BUILT)
+docs: $(TOOLS)
 	$(VENV)/bin/python docs/site/build.py
 	$(VENV)/bin/python -m pytest docs/site/tests -n 2 --dist worksteal --durations 5
 
 # ONLY="docs/laws.py ..." makes those alone; the page then tells which stand as they were.
-figures: $(BUILT)
+figures: $(TOOLS)
 	$(VENV)/bin/python docs/site/figures.py $(ONLY)
 
-test: $(BUILT)
-	cargo test --workspace --exclude jbf-py
-	cargo test -p jbf-core --features serde --test serde_state
+# The extension is tested from Python, benches are compiled by `make lint`.
+NO_RUST_TESTS := $(addprefix --exclude ,jbf-predict jbf-py jbf-py-module jbf-benches)
+
+test: $(TOOLS)
+	cargo test --quiet --workspace $(NO_RUST_TESTS)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
-test-slow: $(BUILT)
+# What takes minutes: statistical studies, long simulations, all seeds.
+test-extended: $(TOOLS)
 	cargo test --release -p jbf-core --test control_tracking --test endless -- --ignored --nocapture
-	$(VENV)/bin/python -m pytest -n auto -m slow
+	cargo test --release -p jbf-core --features serde --test serde_state
+	cargo test --release -p jbf-predict
+	JBF_ALL=1 cargo test --release -p jbf-properties
+	$(VENV)/bin/python -m pytest -n auto -m extended
 
 # Fuzz targets and firmware are no part of the workspace: rustfmt is given every file.
-lint: $(BUILT)
+lint: $(TOOLS)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
@@ -101,7 +108,7 @@ lint: $(BUILT)
 		$(filter-out %/config.yml,$(wildcard .github/ISSUE_TEMPLATE/*.yml))
 	$(VENV)/bin/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
 
-format: $(BUILT)
+format: $(TOOLS)
 	$(RUSTFMT) $$($(RUST_FILES))
 	$(VENV)/bin/ruff check --fix $(PYTHON_CODE)
 	$(VENV)/bin/ruff format $(PYTHON_CODE)
@@ -125,16 +132,17 @@ bits:
 bits-table:
 	cargo run --quiet --release -p jbf-trace --example table -- --write crates/jbf-trace/src/table.rs
 
-# Deliberate faults in a copy of the tree, one at a time; ONLY=words keeps those whose name holds them.
-mutants: $(BUILT)
-	$(VENV)/bin/python benches/mutants $(if $(ONLY),--only '$(ONLY)')
+# 30 faults in physics, likelihood, estimation and verdict, inserted one at a time; ONLY=WORDS.
+faults: $(TOOLS)
+	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),0)
 
 # Mutants drawn by lot, SAMPLE of each ROOM by SEED; fails where fewer than LEAST of them are caught.
-mutation: $(BUILT)
+mutation: $(TOOLS)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
 		--seed $(or $(SEED),1) --budget $(or $(BUDGET),60) --least $(or $(LEAST),0.58)
 
-coverage: $(BUILT)
+coverage: $(TOOLS)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal --cov=jbf --cov-report=term-missing:skip-covered
 
 # Needs nightly Rust and cargo-fuzz. Begins with the inputs that were bred before; FOR=seconds a target.
@@ -243,9 +251,10 @@ free-threaded:
 		{ echo "SKIPPED: $(PYTHON) has an interpreter lock; PYTHON=python3.14t names one without"; exit 0; }; \
 	$(PYTHON) -m venv $(FREE) && \
 	$(FREE)/bin/pip install --quiet --disable-pip-version-check pytest pytest-run-parallel hypothesis . && \
-	$(FREE)/bin/python -m pytest -q python/tests/test_parallel_calls.py && \
-	$(FREE)/bin/python -m pytest -q --parallel-threads=4 $(addprefix python/tests/test_, trajectory.py \
-		batch.py model.py left_out.py predictive.py level.py)
+	$(FREE)/bin/python -m pytest -q python/tests/cli/test_parallel_calls.py && \
+	$(FREE)/bin/python -m pytest -q --parallel-threads=4 $(addprefix python/tests/, \
+		estimation/test_trajectory_fit.py comparison/test_batch.py models/test_model.py \
+		estimation/test_held_out.py estimation/test_predictive_density.py diagnosis/test_level.py)
 
 firmware: $(BUILT)
 	$(VENV)/bin/python examples/firmware/report.py
@@ -264,11 +273,16 @@ $(MADE):
 	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2' setuptools wheel
 	@touch $@
 
-# The build runs inside .venv (no isolation), so that a rebuild is cargo's alone: seconds. What comes
-# as source only (yattag, by way of cosmic-ray) is then built with .venv's setuptools, too.
+# What a user runs. The build uses .venv's own tools (no isolation), so that a rebuild is cargo's alone.
 $(BUILT): $(MADE) pyproject.toml $(RUST)
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" pip install --quiet --disable-pip-version-check \
-		--no-build-isolation --editable '.[dev]'
+		--no-build-isolation --editable '.[workbench]'
 	@$(VENV)/bin/python -m jbf.workbench.vendored || \
 		echo "SKIPPED: the workbench has nothing to draw with; python -m jbf.workbench.vendored fetches it"
+	@touch $@
+
+# What a developer needs in addition: tests, lints, documentation.
+$(TOOLS): pyproject.toml | $(BUILT)
+	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" pip install --quiet --disable-pip-version-check \
+		--no-build-isolation --editable '.[dev]'
 	@touch $@

@@ -40,7 +40,7 @@ FLOORS: list[list[tuple[str, str]]] = [
         ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
     ],
     [("records", "files in; runs, rig,\nimposed motion out")],
-    [("_core", "crates/jbf-py, jbf-batch, jbf-core: the physics, once, in Rust")],
+    [("_core", "crates/jbf-py, jbf-predict, jbf-batch, jbf-core: the physics, once, in Rust")],
 ]
 
 

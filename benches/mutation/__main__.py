@@ -6,7 +6,7 @@ A room is a folder of `python/jbf`. Sites are drawn by lot, at each one of cosmi
 the tests that reach the line (`reach.py`; unmeasured, those that import the module) run, the
 quickest first, until one fails. Each mutant is
 a line of the record; a mutant that is in it is not tried again (`--again` tries its survivors).
-Unlike `benches/mutants`, whose faults are chosen by hand, nobody chose these.
+Unlike those of `faults.py`, which are chosen by hand, nobody chose these.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from imports import by_imports  # noqa: E402
-from mutants.faults import Copy  # noqa: E402
+from tree_copy import TreeCopy  # noqa: E402
 from reach import Chosen, Reach  # noqa: E402
 from score import read, table  # noqa: E402
 from sites import drawn  # noqa: E402
@@ -83,7 +83,7 @@ def main(given: list[str] | None = None) -> int:
     done = read(asked.out) if asked.out else []
     trials: list[Trial] = []
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
-        bench = Bench(Copy(asked.root, Path(folder)))
+        bench = Bench(TreeCopy(asked.root, Path(folder)))
         for room in asked.room or ROOMS:
             trials += tried_in(asked, room, bench, done)
     print(table(trials))

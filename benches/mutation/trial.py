@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from mutants.faults import Copy
+from tree_copy import TreeCopy
 from processor import run
 from reach import Chosen
 from sites import Fault
@@ -49,7 +49,7 @@ class Trial:
 class Bench:
     """A copy of the tree, and which tests were seen to pass in it without any fault."""
 
-    copy: Copy
+    copy: TreeCopy
     sound: dict[str, bool] = field(default_factory=dict)
 
     def pytest(

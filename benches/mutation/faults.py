@@ -1,0 +1,109 @@
+"""Insert the faults of `faults.toml` one at a time and report which the fast tests notice.
+
+    python benches/mutation/faults.py [--only WORDS] [--least N]
+
+Each fault is a wrong sign, a swapped argument or a dropped term in physics, likelihood, estimation or
+verdict. A fault in Python is tested by the test files that import its module, the nearest first; a
+fault in Rust by the arguments of `cargo test` in its entry.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import tomlkit
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE)]
+
+from imports import by_imports  # noqa: E402
+from processor import run  # noqa: E402
+from tree_copy import TreeCopy  # noqa: E402
+from trial import Bench  # noqa: E402
+
+ROOT = HERE.parents[1]
+LONGEST_S = 900.0
+"""Processor time of one Rust test, s; a test that takes longer has noticed the fault."""
+
+
+@dataclass(frozen=True)
+class InsertedFault:
+    """One fault: in `file`, `old` occurs once and is replaced by `new`."""
+
+    what: str
+    file: str
+    old: str
+    new: str
+    test: tuple[str, ...] = ()
+    operator: str = "by hand"
+
+    @property
+    def name(self) -> str:
+        """The name in the output."""
+        return self.what
+
+    @property
+    def line(self) -> int:
+        """The line of the fault."""
+        text = (ROOT / self.file).read_text("utf-8")
+        return text[: text.index(self.old)].count("\n") + 1
+
+    def applied(self, source: str) -> str:
+        """The source with the fault; an error where its place is not there once."""
+        if source.count(self.old) != 1:
+            raise SystemExit(f"faults.toml: the text of '{self.what}' is not once in {self.file}")
+        return source.replace(self.old, self.new)
+
+
+def read_faults(path: Path) -> list[InsertedFault]:
+    """The faults of a table."""
+    entries = tomlkit.parse(path.read_text("utf-8")).unwrap()["fault"]
+    return [InsertedFault(**{**e, "test": tuple(e.get("test", ()))}) for e in entries]
+
+
+def noticed_by_cargo(copy: TreeCopy, fault: InsertedFault) -> bool:
+    """Whether a Rust test passes without the fault and fails with it."""
+    path = copy.folder / fault.file
+    before = path.read_text("utf-8")
+    command = ["cargo", "test", "--quiet", *fault.test]
+    if run(command, copy.folder, copy.environment, LONGEST_S)[0] != 0:
+        raise SystemExit(f"'{fault.what}': its test fails without the fault")
+    path.write_text(fault.applied(before), "utf-8")
+    try:
+        return run(command, copy.folder, copy.environment, LONGEST_S)[0] != 0
+    finally:
+        path.write_text(before, "utf-8")
+
+
+def main() -> int:
+    """Insert what was chosen; 1 where fewer than `--least` were noticed."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--only", default="", help="faults whose description contains this")
+    parser.add_argument("--least", type=int, default=0, help="fail where fewer are noticed")
+    parser.add_argument("--budget", type=float, default=90.0, help="processor seconds of a fault")
+    parser.add_argument("--table", type=Path, default=HERE / "faults.toml")
+    chosen = parser.parse_args()
+    faults = [f for f in read_faults(chosen.table) if chosen.only in f.what]
+    reach = by_imports(ROOT)
+    noticed = 0
+    with tempfile.TemporaryDirectory(prefix="faults-") as folder:
+        bench = Bench(TreeCopy(ROOT, Path(folder)))
+        for fault in faults:
+            if fault.test:
+                found, by = noticed_by_cargo(bench.copy, fault), " ".join(fault.test)
+            else:
+                tests = reach.chosen(fault.file, fault.line, chosen.budget)
+                trial = bench.tried(fault, tests)
+                found, by = trial.caught, trial.by
+            noticed += found
+            print(f"{'noticed' if found else 'NOT NOTICED':<12} {fault.what}: {by}", flush=True)
+    print(f"{noticed} of {len(faults)} noticed")
+    return int(noticed < chosen.least)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

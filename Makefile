@@ -243,20 +243,20 @@ reproducible: $(MADE)
 lowest: $(MADE)
 	$(VENV)/bin/python release/lowest.py dist
 
-# Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
 # Needs a free-threaded interpreter: PYTHON=python3.14t. Each test of some files in four threads at once.
 FREE := target/free-threaded
 free-threaded:
 	@$(PYTHON) -c 'import sys; sys.exit(sys._is_gil_enabled())' 2>/dev/null || \
 		{ echo "SKIPPED: $(PYTHON) has an interpreter lock; PYTHON=python3.14t names one without"; exit 0; }; \
 	$(PYTHON) -m venv $(FREE) && \
-	$(FREE)/bin/pip install --quiet --disable-pip-version-check pytest pytest-run-parallel hypothesis . && \
+	$(FREE)/bin/pip install --quiet --disable-pip-version-check pytest pytest-run-parallel hypothesis filelock . && \
 	$(FREE)/bin/python -m pytest -q python/tests/cli/test_parallel_calls.py && \
 	$(FREE)/bin/python -m pytest -q --parallel-threads=4 $(addprefix python/tests/, \
-		estimation/test_trajectory_fit.py comparison/test_batch.py models/test_model.py \
+		estimation/test_trajectory_fit.py models/test_batch.py models/test_model.py \
 		estimation/test_held_out.py estimation/test_predictive_density.py diagnosis/test_level.py)
 
-firmware: $(BUILT)
+# Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
+firmware: $(TOOLS)
 	$(VENV)/bin/python examples/firmware/report.py
 
 clean:

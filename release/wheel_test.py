@@ -21,14 +21,14 @@ from build import BUILD_FOLDER
 from steps import ROOT, make_environment, run, say, tracked_files
 
 TESTS = (
-    "test_batch", "test_cli", "test_cli_habits", "test_control_tuning", "test_drive_files",
-    "test_fitting", "test_frames", "test_import_clocks", "test_import_headers",
-    "test_late_imports", "test_model", "test_model_file", "test_parallel_calls", "test_plot",
-    "test_record", "test_report", "test_rig",
+    "cli/test_commands", "cli/test_parallel_calls", "models/test_batch", "comparison/test_comparison",
+    "control/test_tuning", "estimation/test_fit", "importing/test_clocks", "importing/test_headers",
+    "models/test_model", "models/test_model_file", "project/test_lazy_imports", "records/test_channels",
+    "records/test_drive", "records/test_rig", "records/test_run", "reporting/test_text_reports",
 )  # fmt: skip
-"""Of every room something, in a minute or two; none needs an extra or the rest of the tree."""
+"""Some of each package, in a minute or two; none needs an extra or the rest of the tree."""
 COPIED = ("python/tests/", "simulator/", "benches/", "pyproject.toml")
-TOOLS = ("pytest>=8", "hypothesis>=6.100")
+TOOLS = ("pytest>=8", "hypothesis>=6.100", "filelock>=3.12")
 MUST_HOLD = (
     "jbf/_core.pyi",
     "jbf/py.typed",

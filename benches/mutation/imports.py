@@ -15,7 +15,7 @@ from reach import ANY, Reach
 
 QUICK_S, SLOW_S = 5.0, 12.0
 """What a file of tests is taken to take."""
-SLOW = ("campaigns", "rigruns", "rigsim", "subprocess", "playwright")
+SLOW = ("campaigns", "golden", "rigruns", "rigsim", "subprocess", "playwright")
 """Who imports one of these takes longer."""
 
 
@@ -79,7 +79,7 @@ def _alike(module: Path, tests: list[str]) -> list[str]:
     the command line."""
     words = {*module.stem.split("_")}
     return [t for t in tests if words & {*Path(t).stem.split("_")}] or [
-        t for t in tests if Path(t).stem.startswith("test_cli")
+        t for t in tests if Path(t).parent.name == "cli"
     ]
 
 

@@ -38,9 +38,9 @@ help:
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
 	@echo "make faults  30 deliberate faults, one at a time: which do the fast tests notice?"
-	@echo "make mutation  mutants drawn by lot, a few of each room: what share do the tests catch?"
+	@echo "make mutation  random mutants, a few of each package: which share do the fast tests notice?"
 	@echo "make coverage  lines of python/jbf that no fast test runs, file by file (pytest-cov)"
-	@echo "make fuzz    bred input to every property of jbf-properties, a minute each or FOR=seconds (nightly, cargo-fuzz)"
+	@echo "make fuzz    fuzzer-generated input to every property of jbf-properties, a minute each or FOR=seconds (nightly, cargo-fuzz)"
 	@echo "make miri    a few tests under Rust's own interpreter: no undefined behaviour (nightly)"
 	@echo "make sanitize  a C program over every function of jbf.h under ASan and UBSan (gcc or clang)"
 	@echo "make supply  licences, sources and known faults of every dependency; the workflows (cargo-deny, pip-audit, zizmor)"
@@ -55,16 +55,16 @@ help:
 	@echo "make bits    the same bits in debug, release, std and native builds"
 	@echo "make firmware  the loop on a Cortex-M4F in QEMU: instructions, sizes, bits, no panic"
 	@echo "make venv    the extension, the jbf command and all tools of a developer in $(VENV)"
-	@echo "make quick   the same to try a change of Rust with: built in a third of the time, slower, same numbers"
+	@echo "make quick   a lightly optimised extension to try a change of Rust: same numbers, slower"
 	@echo "make clean   removes $(VENV), dist, target and the built extension"
 
 venv: $(TOOLS)
 
 # Little optimised, without wide instructions, and only what changed: then .venv/bin/jbf and
-# .venv/bin/python -m pytest by hand. Its stamp goes, so that all other targets build the real one.
-quick: $(TOOLS)
+# .venv/bin/python -m pytest by hand. Deletes .built, so that any other target builds the release.
+quick: $(MADE)
 	@rm -f $(BUILT)
-	VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(VENV)/bin/maturin develop --quiet \
+	VIRTUAL_ENV="$(CURDIR)/$(VENV)" $(VENV)/bin/maturin develop --quiet --extras dev \
 		--profile quick --no-default-features
 
 demo: $(BUILT)
@@ -79,7 +79,7 @@ docs: $(TOOLS)
 figures: $(TOOLS)
 	$(VENV)/bin/python docs/site/figures.py $(ONLY)
 
-# The extension is tested from Python, benches are compiled by `make lint`.
+# The extension (jbf-predict, jbf-py) is tested from Python; `make lint` compiles the benches.
 NO_RUST_TESTS := $(addprefix --exclude ,jbf-predict jbf-py jbf-py-module jbf-benches)
 
 test: $(TOOLS)
@@ -134,9 +134,9 @@ bits-table:
 
 # 30 faults in physics, likelihood, estimation and verdict, inserted one at a time; ONLY=WORDS.
 faults: $(TOOLS)
-	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),0)
+	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),30)
 
-# Mutants drawn by lot, SAMPLE of each ROOM by SEED; fails where fewer than LEAST of them are caught.
+# Random mutants, SAMPLE of each ROOM (package) by SEED; fails where a smaller share than LEAST is noticed.
 mutation: $(TOOLS)
 	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \

@@ -20,7 +20,7 @@ from steps import ROOT, make_environment, run, say
 from wheel_test import TESTS, TOOLS, find_wheel, run_tests
 
 EXTRAS = ("formats", "workbench")
-TESTS_OF_EXTRAS = ("test_import_formats", "workbench/test_guard", "workbench/test_session")
+TESTS_OF_EXTRAS = ("importing/test_formats", "workbench/test_guard", "workbench/test_session")
 FROM_SOURCE = ("mat-io",)
 """Without wheels; pure Python."""
 

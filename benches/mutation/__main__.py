@@ -22,10 +22,10 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from imports import by_imports  # noqa: E402
-from tree_copy import TreeCopy  # noqa: E402
 from reach import Chosen, Reach  # noqa: E402
 from score import read, table  # noqa: E402
 from sites import drawn  # noqa: E402
+from tree_copy import TreeCopy  # noqa: E402
 from trial import Bench, Trial  # noqa: E402
 
 ROOT = HERE.parents[1]

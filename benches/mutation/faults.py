@@ -2,9 +2,9 @@
 
     python benches/mutation/faults.py [--only WORDS] [--least N]
 
-Each fault is a wrong sign, a swapped argument or a dropped term in physics, likelihood, estimation or
-verdict. A fault in Python is tested by the test files that import its module, the nearest first; a
-fault in Rust by the arguments of `cargo test` in its entry.
+Each fault is a wrong sign, a swapped argument or a dropped term in physics, likelihood, estimation
+or verdict. A fault in Python is tested by the test files that import its module, the nearest first;
+a fault in Rust by the arguments of `cargo test` in its entry.
 """
 
 from __future__ import annotations
@@ -71,9 +71,12 @@ def noticed_by_cargo(copy: TreeCopy, fault: InsertedFault) -> bool:
     before = path.read_text("utf-8")
     command = ["cargo", "test", "--quiet", *fault.test]
     if run(command, copy.folder, copy.environment, LONGEST_S)[0] != 0:
-        raise SystemExit(f"'{fault.what}': its test fails without the fault")
+        raise SystemExit(f"'{fault.what}': its test fails or times out without the fault")
     path.write_text(fault.applied(before), "utf-8")
     try:
+        built = [*command, "--no-run"]
+        if run(built, copy.folder, copy.environment, LONGEST_S)[0] != 0:
+            raise SystemExit(f"'{fault.what}': the fault does not compile")
         return run(command, copy.folder, copy.environment, LONGEST_S)[0] != 0
     finally:
         path.write_text(before, "utf-8")
@@ -84,7 +87,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--only", default="", help="faults whose description contains this")
     parser.add_argument("--least", type=int, default=0, help="fail where fewer are noticed")
-    parser.add_argument("--budget", type=float, default=90.0, help="processor seconds of a fault")
+    parser.add_argument("--budget", type=float, default=90.0, help="seconds of tests, assumed")
     parser.add_argument("--table", type=Path, default=HERE / "faults.toml")
     chosen = parser.parse_args()
     faults = [f for f in read_faults(chosen.table) if chosen.only in f.what]

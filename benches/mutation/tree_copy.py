@@ -25,12 +25,12 @@ class TreeCopy:
 
     @cached_property
     def environment(self) -> dict[str, str]:
-        """Variables with which Python imports the copy and cargo builds it next to the tree's target."""
+        """Variables for Python to import the copy; cargo builds in target/mutation of the tree."""
         parts = ("python", "simulator", "benches", "python/tests")
         return os.environ | {
             "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"])),
             "PYTHONPATH": os.pathsep.join(str(self.folder / part) for part in parts),
-            # A file that changes twice within a second would keep the compiled form of its first text.
+            # A file that changes twice in a second would keep the bytecode of its first text.
             "PYTHONDONTWRITEBYTECODE": "1",
             "CARGO_TARGET_DIR": str(self.root / "target" / "mutation"),
         }

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from tree_copy import TreeCopy
 from processor import run
 from reach import Chosen
 from sites import Fault
+from tree_copy import TreeCopy
 
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 NO_TESTS, PASSED, USAGE = 5, 0, 4

@@ -1,7 +1,7 @@
-"""Records and results put together by hand: every number is round, so a test can say what is read.
+"""Records and results with given round numbers, which tests of reports compare with their output.
 
-Friction by Coulomb's law on motions that never turn round is linear in everything: what a fit must
-find, and with which error, stands in any textbook on least squares.
+Coulomb friction on motions that never reverse is linear in its parameters, so that estimates and
+standard errors are those of linear least squares.
 """
 
 from __future__ import annotations
@@ -35,7 +35,11 @@ def one_way(
     noise_n: float = 0.0,
     seed: int = 0,
 ) -> Run:
-    """A run at 0.05 to 0.15 m/s in one direction; `friction` of time, speed and acceleration."""
+    """A run at 0.05 to 0.15 m/s in one direction.
+
+    `friction` is a function of time, speed and acceleration; `way` is the sign of the speed, or a
+    factor of it; `rate` is its angular frequency, 1/s.
+    """
     t = np.arange(0.0, duration_s + 0.5 * STEP_S, STEP_S)
     v = way * (0.1 + 0.05 * np.sin(rate * t))
     a = way * 0.05 * rate * np.cos(rate * t)
@@ -46,7 +50,7 @@ def one_way(
 def wandering(
     name: str, friction: Friction, *, way: float, rate: float, noise_n: float, seed: int
 ) -> Run:
-    """The same with two rates that have no common period: nothing comes again."""
+    """A run like `one_way` whose speed has two frequencies without a common period."""
     t = np.arange(0.0, 10.0 + 0.5 * STEP_S, STEP_S)
     other = 0.6180340 * rate
     v = way * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
@@ -56,7 +60,7 @@ def wandering(
 
 
 def four_runs(friction: Friction, *, noise_n: float, seed: int = 0) -> list[Run]:
-    """Two wandering runs in each direction: any three of them tell what the fourth does."""
+    """Two `wandering` runs in each direction: any three determine the prediction of the fourth."""
     plan = (("a", 1.0, 12.0), ("b", -1.0, 14.0), ("c", 1.0, 10.0), ("d", -1.0, 16.0))
     return [
         wandering(name, friction, way=way, rate=rate, noise_n=noise_n, seed=4 * seed + i)
@@ -65,7 +69,7 @@ def four_runs(friction: Friction, *, noise_n: float, seed: int = 0) -> list[Run]
 
 
 def there_and_back(friction: Friction, *, noise_n: float = 0.0, seed: int = 0) -> list[Run]:
-    """A run in each direction, each sample's sign known."""
+    """A run in each direction of motion, named `there` and `back`; no sample is at rest."""
     return [
         one_way("there", friction, noise_n=noise_n, seed=2 * seed),
         one_way("back", friction, way=-1.0, rate=3.0, noise_n=noise_n, seed=2 * seed + 1),
@@ -73,25 +77,25 @@ def there_and_back(friction: Friction, *, noise_n: float = 0.0, seed: int = 0) -
 
 
 def coulomb(t: Array, v: Array, a: Array) -> Array:
-    """5 N of dry friction and 20 N s/m of viscous."""
+    """Dry friction of 5 N and viscous friction of 20 N s/m."""
     return LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
 
 
 def along(more_n: float) -> Friction:
-    """`coulomb`, and so much more in the direction of motion."""
+    """`coulomb` with dry friction larger by `more_n`."""
     return lambda t, v, a: coulomb(t, v, a) + more_n * np.sign(v)
 
 
 @cache
-def _bare() -> tuple[Fit, Comparison]:
-    """A real fit and comparison, whose numbers the functions below replace."""
+def _computed() -> tuple[Fit, Comparison]:
+    """A computed fit and comparison, in which the functions below replace numbers."""
     fitted = fit(Rig(), there_and_back(coulomb, noise_n=0.1), law="coulomb")
-    off = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
-    return fitted, off
+    compared = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
+    return fitted, compared
 
 
 def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) -> Fit:
-    """A fit of three parameters of the law, one of them held, and of the offset."""
+    """A fit of three law parameters, of which one is held, and of the sensor offset if given."""
     parameters = {
         "F_c_n": ParameterValue(4.9876, 0.0123),
         "F_s_n": ParameterValue(6.0, None, "held fixed", held=True),
@@ -101,7 +105,7 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
         parameters["sensor_offset.b_n"] = ParameterValue(-0.25, 0.025)
     table = np.array([[1.0, -0.9, 0.45], [-0.9, 1.0, 0.1], [0.45, 0.1, 1.0]])
     size = len(parameters) - 1
-    fitted = _bare()[0]
+    fitted = _computed()[0]
     return replace(
         fitted,
         model=Model(Rig(), "coulomb", effects, parameters),
@@ -116,16 +120,16 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
 
 
 def comparison_by_hand(rms_n: float, runs_rms_n: tuple[float, float]) -> Comparison:
-    """A comparison with one pattern; the floor of the noise is 0.5 N."""
-    real = _bare()[1]
+    """A comparison with one failure and a noise floor of 0.5 N."""
+    computed = _computed()[1]
     counts = (501, 500)
     runs = tuple(
         replace(r, rms_n=x, samples=n)
-        for r, x, n in zip(real.runs, runs_rms_n, counts, strict=True)
+        for r, x, n in zip(computed.runs, runs_rms_n, counts, strict=True)
     )
-    direction = next(f for f in real.failures if f.axis == "direction")
+    direction = next(f for f in computed.failures if f.axis == "direction")
     pattern = replace(direction, where="record above the model", share=0.6)
-    return replace(real, rms_n=rms_n, noise_n=0.5, runs=runs, failures=(pattern,))
+    return replace(computed, rms_n=rms_n, noise_n=0.5, runs=runs, failures=(pattern,))
 
 
 TRIALS = (
@@ -134,18 +138,21 @@ TRIALS = (
     Trial("inertia_leak", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
     Trial("sensor_lag", 2.5, -26.2, "no gain", "gains no more than chance would"),
 )
-LEFT = (Remainder("frequency", "a 3.00 Hz tone", 0.12), Remainder("time", "2 bursts", 0.04))
+RESIDUAL_STRUCTURE = (
+    Remainder("frequency", "a 3.00 Hz tone", 0.12),
+    Remainder("time", "2 bursts", 0.04),
+)
 
 
 def diagnosis_by_hand(verdict: Any) -> Diagnosis:
-    """A diagnosis of each verdict; no two numbers in its tables are alike."""
-    kept = verdict in ("missing", "ambiguous")
-    effects = ("sensor_offset",) if kept else ()
+    """A diagnosis with the given verdict; the numbers in its tables differ from one another."""
+    has_effect = verdict in ("missing", "ambiguous")
+    effects = ("sensor_offset",) if has_effect else ()
     before = comparison_by_hand(2.5, (2.0, 3.0))
     after = comparison_by_hand(0.525, (0.45, 0.6))
     tried = TRIALS if verdict != "adequate" else TRIALS[3:]
     bare = Step((), 2.5, 2.75, 0.5, tried)
-    steps = (bare, Step(effects, 0.525, 0.55, 0.5)) if kept else (bare,)
+    steps = (bare, Step(effects, 0.525, 0.55, 0.5)) if has_effect else (bare,)
     ties = ("sensor_drift",) if verdict == "ambiguous" else ()
     return Diagnosis(
         verdict=verdict,
@@ -154,11 +161,11 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         weights={e: {e: 0.62, **dict.fromkeys(ties, 0.38)} if ties else {e: 1.0} for e in effects},
         steps=steps,
         failures=before.failures if verdict != "adequate" else (),
-        unexplained=LEFT if verdict == "unexplained" else (),
+        unexplained=RESIDUAL_STRUCTURE if verdict == "unexplained" else (),
         next_experiment="record a rest" if ties else None,
         fit=fit_by_hand(effects),
         before=before,
-        after=after if kept else before,
+        after=after if has_effect else before,
         elapsed_s=12.5,
         level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
         not_tried={"position_ripple": "not every run has the shaft's angle"},

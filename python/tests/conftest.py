@@ -1,4 +1,4 @@
-"""A short made-up campaign: the project's own model, a known effect, seeded noise."""
+"""Fixtures: a short campaign simulated with a model of jbf, a known effect and seeded noise."""
 
 from __future__ import annotations
 
@@ -75,16 +75,16 @@ def make_runs(
     effects: dict[str, dict[str, float]] | None = None,
     kinds: Sequence[str] = ("sine_w0.5", "sine_w2.0", "stopgo"),
 ) -> list[Run]:
-    """A campaign of the base law and the given effects' parameters."""
+    """Runs of the base law with the given effects and parameters, one for each kind of motion."""
     effects = effects or {}
-    own = {f"{e}.{p}": v for e, values in effects.items() for p, v in values.items()}
-    model = Model(Rig.thesis(), effects=list(effects), parameters=LAW | own)
+    values_of_effects = {f"{e}.{p}": v for e, values in effects.items() for p, v in values.items()}
+    model = Model(Rig.thesis(), effects=list(effects), parameters=LAW | values_of_effects)
     return [make_run(model, kind, seed=i) for i, kind in enumerate(kinds)]
 
 
 @pytest.fixture(scope="session")
 def rig() -> Rig:
-    """The thesis's rig."""
+    """The rig of the thesis."""
     return Rig.thesis()
 
 
@@ -96,19 +96,19 @@ def runs() -> list[Run]:
 
 @pytest.fixture(scope="session")
 def bare_fit(rig: Rig, runs: list[Run]) -> Fit:
-    """The base law alone."""
+    """Fit of the base law without effects."""
     return fit(rig, runs)
 
 
 @pytest.fixture(scope="session")
 def full_fit(rig: Rig, runs: list[Run]) -> Fit:
-    """The base law with the hidden effect."""
+    """Fit of the base law with the hidden effect."""
     return fit(rig, runs, effects=["coulomb_drag"])
 
 
 @pytest.fixture(scope="session")
 def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[str], Diagnosis]:
-    """A diagnosis of each verdict, put together by hand from real fits."""
+    """A function that builds a diagnosis with a given verdict from real fits."""
     before, after = compare(bare_fit.model, runs), compare(full_fit.model, runs)
     noise = before.noise_n
     trials = (
@@ -127,14 +127,14 @@ def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[s
         steps = (bare, full) if added else (bare if verdict == "unexplained" else full,)
         if verdict == "adequate":
             steps = (Step((), after.rms_n, 1.01 * after.rms_n, noise, trials[2:]),)
-        left = tuple(Remainder(f.axis, f.where, f.share) for f in before.failures[:2])
+        remainders = tuple(Remainder(f.axis, f.where, f.share) for f in before.failures[:2])
         return Diagnosis(
             verdict=verdict,
             effects=("coulomb_drag",) if added else (),
             alternatives={"coulomb_drag": ties} if added else {},
             steps=steps,
             failures=first.failures,
-            unexplained=left if verdict == "unexplained" else (),
+            unexplained=remainders if verdict == "unexplained" else (),
             next_experiment="record a run at twice the load" if ties else None,
             fit=full_fit if last is after else bare_fit,
             before=first,

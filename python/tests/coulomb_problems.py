@@ -1,4 +1,4 @@
-"""Real problems, samples and solutions whose least squares are textbook regressions.
+"""Problems, samples and solutions of jbf whose least squares are linear regressions.
 
 Coulomb's law on motions without reversals (`by_hand.four_runs`) is linear in its parameters.
 """
@@ -20,17 +20,17 @@ from scipy import signal
 
 STEP_S = 0.02
 HELD = {"F_s_n": 6.0}
-"""Breakaway friction, which motions without reversals do not show."""
+"""Breakaway friction (N), which motions without reversals do not determine."""
 VALUES = {**LAW, **HELD}
 
 
 def coulomb_problem(runs: Sequence[Run], effects: Sequence[str] = ()) -> Problem:
-    """Coulomb's law with effects; breakaway friction is held."""
+    """Coulomb's law with effects; breakaway friction is fixed."""
     return Problem(Campaign.prepare(Rig(), list(runs)), "coulomb", "journal", effects, HELD)
 
 
 def values_of(problem: Problem, **changed: float) -> Array:
-    """The true values of the law, with changes; effects at their first starting value."""
+    """True values of the law and first starting values of the effects, with changes."""
     pages = problem.parameters
     known = {name: page.starts[0] for name, page in pages.items()} | VALUES | changed
     return np.array([known[name] for name in problem.names])
@@ -46,7 +46,7 @@ def samples_of(
     counted: Sequence[npt.NDArray[np.bool_]] | None = None,
     step_s: float = STEP_S,
 ) -> Samples:
-    """Samples with these weights, one array a run; samples with weight count by default."""
+    """Samples with these weights, one array for each run; by default all with weight count."""
     masks = [w > 0.0 for w in weight] if counted is None else counted
     names = tuple(f"run {i}" for i in range(len(weight)))
     return Samples(names, (step_s,) * len(weight), tuple(masks), tuple(weight))
@@ -58,7 +58,7 @@ def solution_of(
     jacobian: Sequence[Array] | None = None,
     noise: Noise = WHITE,
 ) -> Solution:
-    """A solution that leaves these residuals."""
+    """A solution with these residuals and with values of zero."""
     slopes = [np.zeros((len(r), 0)) for r in residuals] if jacobian is None else list(jacobian)
     values = np.zeros(slopes[0].shape[1])
     cost = samples.cost(residuals, noise)

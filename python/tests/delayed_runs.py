@@ -1,8 +1,13 @@
-"""Coulomb friction recorded with known delays and clock drifts, and fits that start at the truth.
+"""Coulomb friction recorded with known delays and clock drifts, and fits with true starting values.
 
-A force with delay d and drift c is recorded as `F(t - d - c (t - t_mid))`, `t_mid` in the middle of
-the run. Two kinds of motion are used: reversing ones, which turn round about once a second, and
-one-way ones, whose friction `F_c + F_v v` is linear in every parameter.
+With delay d and clock drift c the force recorded at time t of a run of duration T is
+
+- `F(t - d - c (t - T / 2))` in `reversing_campaign`: d is the delay in the middle of the run;
+- `F(t - d - c t)` in `one_way_campaign`: d is the delay at the start of the run, and the delay in
+  its middle is `d + c T / 2`.
+
+Reversing motions reverse about once a second. The friction `F_c + F_v v` of one-way motions is
+linear in every parameter.
 """
 
 from __future__ import annotations
@@ -27,24 +32,24 @@ ONE_WAY_NOISE_N = 0.005
 
 
 def reversing_speed(run: int, t: Array) -> Array:
-    """Speed of a run that turns round, at rates of its own, m/s."""
+    """Speed of a reversing run, whose rates depend on its number, m/s."""
     rate = 3.0 + 0.4 * run
     v: Array = 0.12 * np.sin(rate * t) + 0.05 * np.sin(0.618 * rate * t + run)
     return v
 
 
 def one_way_speed(run: int, t: Array, swing: float = 0.05) -> Array:
-    """Speed about 0.1 m/s, m/s; constant without `swing`."""
+    """Speed that varies about 0.1 m/s, m/s; constant if `swing` is zero."""
     rate = 3.0 + 0.4 * run
     v: Array = 0.1 + swing * (0.6 * np.sin(rate * t) + 0.4 * np.sin(0.618 * rate * t + run))
     return v
 
 
-def one_way_acceleration(run: int, t: Array) -> Array:
-    """Derivative of `one_way_speed` with respect to time, m/s^2."""
+def one_way_acceleration(run: int, t: Array, swing: float = 0.05) -> Array:
+    """Derivative of `one_way_speed` with the same `swing` with respect to time, m/s^2."""
     rate = 3.0 + 0.4 * run
     slow = 0.618 * rate
-    a: Array = 0.05 * (0.6 * rate * np.cos(rate * t) + 0.4 * slow * np.cos(slow * t + run))
+    a: Array = swing * (0.6 * rate * np.cos(rate * t) + 0.4 * slow * np.cos(slow * t + run))
     return a
 
 
@@ -55,14 +60,15 @@ def reversing_campaign(
     seed: int = 0,
     noise_n: float = NOISE_N,
     speed_noise_m_s: float = 0.0,
-    durations_s: Sequence[float] = (DURATION_S,) * 4,
+    durations_s: Sequence[float] | None = None,
 ) -> Campaign:
-    """Reversing runs; `delays_s` are those in the middle of each run.
+    """Reversing runs of 20 s by default; `delays_s` are those in the middle of each run.
 
     Without noise on the speed the sign of the motion is known at every sample.
     """
+    durations = (DURATION_S,) * len(delays_s) if durations_s is None else durations_s
     random, runs = np.random.default_rng(seed), []
-    for i, (delay_s, duration_s) in enumerate(zip(delays_s, durations_s, strict=False)):
+    for i, (delay_s, duration_s) in enumerate(zip(delays_s, durations, strict=True)):
         t = np.arange(0.0, duration_s + 0.01, STEP_S)
         v = reversing_speed(i, t - delay_s - drift * (t - 0.5 * duration_s))
         force = coulomb(t, v, v) + noise_n * random.standard_normal(len(t))
@@ -78,11 +84,15 @@ def one_way_campaign(
     seed: int = 0,
     noise_n: float = ONE_WAY_NOISE_N,
     constant_speed: int | None = None,
-    durations_s: Sequence[float] = (DURATION_S,) * 4,
+    durations_s: Sequence[float] | None = None,
 ) -> Campaign:
-    """One-way runs whose clock was right when each run started; one may keep its speed."""
+    """One-way runs of 20 s by default; `delays_s` are those at the start of each run.
+
+    The run with the number `constant_speed` has a constant speed.
+    """
+    durations = (DURATION_S,) * len(delays_s) if durations_s is None else durations_s
     random, runs = np.random.default_rng(seed), []
-    for i, (delay_s, duration_s) in enumerate(zip(delays_s, durations_s, strict=False)):
+    for i, (delay_s, duration_s) in enumerate(zip(delays_s, durations, strict=True)):
         swing = 0.0 if i == constant_speed else 0.05
         t = np.arange(0.0, duration_s + 0.01, STEP_S)
         v = one_way_speed(i, t - delay_s - drift * t, swing)
@@ -92,7 +102,10 @@ def one_way_campaign(
 
 
 def fitted(campaign: Campaign, effects: Sequence[str] = ()) -> tuple[Problem, Solution]:
-    """Coulomb's law fitted to the runs as they are recorded, started at the truth."""
+    """Coulomb's law fitted to the runs as they are recorded.
+
+    The parameters of the law start at their true values, a delay or a sensor lag at 10 ms.
+    """
     problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
     known = {"F_s_n": 6.0, **LAW, TAU: 0.01, "sensor_lag.tau_s": 0.01}
     start = problem.starts({name: known[name] for name in problem.names})[0]

@@ -2,7 +2,7 @@
 
 The campaigns cover every verdict, bearings and drives, direct simulation and simulated loggers.
 `test_golden_diagnoses.py` compares each diagnosis with the truth of its campaign. A test that needs
-some diagnosis, fit or report uses one of these.
+any diagnosis, fit or report uses one of them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Golden:
     verdict, effects
         Expected result; the effects are those of the simulation.
     alternatives
-        Expected equally good replacement of the only effect.
+        Effects expected to be as likely as the only effect.
     findings
         Kinds of data-quality findings that the simulated logger causes.
     law

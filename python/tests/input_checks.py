@@ -71,16 +71,16 @@ SECONDS = 20
 """Time limit of one command; far longer than any of them takes."""
 
 
-def cases(table: Mapping[str, tuple[Any, ...]], fast: Collection[str]) -> list[Any]:
-    """Parameters of a test, one for each row of a table; rows not in `fast` are extended."""
-    assert set(fast) <= set(table)
+def cases(rows: Mapping[str, tuple[Any, ...]], fast: Collection[str]) -> list[Any]:
+    """Parameters of a test, one set for each row; rows not in `fast` are marked as extended."""
+    assert set(fast) <= set(rows)
     return [
         pytest.param(*row, id=name, marks=() if name in fast else pytest.mark.extended)
-        for name, row in table.items()
+        for name, row in rows.items()
     ]
 
 
-def table(
+def csv_text(
     rows: Sequence[Sequence[str]] = ROWS, header: Sequence[str] = HEADER, sep: str = ","
 ) -> str:
     """The CSV text of a run."""
@@ -91,13 +91,13 @@ def with_cell(row: int, column: str, text: str) -> str:
     """The run with another text in one cell; the header is row 1."""
     rows = [list(cells) for cells in ROWS]
     rows[row - 2][HEADER.index(column)] = text
-    return table(rows)
+    return csv_text(rows)
 
 
 def with_column(column: str, change: Callable[[float], float]) -> str:
     """The run with a function applied to every value of a column."""
     index = HEADER.index(column)
-    return table([[*r[:index], repr(change(float(r[index]))), *r[index + 1 :]] for r in ROWS])
+    return csv_text([[*r[:index], repr(change(float(r[index]))), *r[index + 1 :]] for r in ROWS])
 
 
 def campaign(folder: Path) -> Path:
@@ -105,7 +105,7 @@ def campaign(folder: Path) -> Path:
     (folder / "rig.toml").write_text(RIG)
     (folder / "model.toml").write_text(MODEL)
     (folder / "map.toml").write_text(MAP)
-    (folder / "a.csv").write_text(table())
+    (folder / "a.csv").write_text(csv_text())
     return folder
 
 

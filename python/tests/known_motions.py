@@ -1,4 +1,4 @@
-"""Motions and friction forces in closed form, and what encoders and converters make of them."""
+"""Motions and friction forces in closed form, with noise and quantisation as sensors add them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def acceleration_of(time_s: Any) -> Any:
 
 
 def reversing_force(time_s: Any, seed: int, noise_n: float = 0.3) -> Array:
-    """A friction force of 20 N that reverses, with white noise of its own at each instant, N."""
+    """A friction force of 20 N that reverses, with white noise independent at each instant, N."""
     force: Array = 20.0 * np.tanh(50.0 * np.sin(0.3 * time_s)) + white(len(time_s), seed, noise_n)
     return force
 

@@ -33,7 +33,7 @@ def mass(kilograms: float) -> Friction:
 
 
 def lag(seconds: float) -> Friction:
-    """Coulomb friction measured late, to first order: a lag and a delay are then the same."""
+    """Coulomb friction with a sensor lag to first order, which is then equivalent to a delay."""
     return lambda t, v, a: coulomb(t, v, a) - seconds * 20.0 * a
 
 
@@ -80,7 +80,7 @@ def reversing_runs(
     duration_s: float = 30.0,
     seed: int = 0,
 ) -> list[Run]:
-    """Runs that reverse, each at times of its own, so that an offset is not dry friction.
+    """Runs that reverse at different times, so that an offset is separable from dry friction.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def reversing_runs(
 
 
 def fit_from_truth(campaign: Campaign, *effects: str) -> tuple[Problem, Solution]:
-    """Coulomb's law fitted from its true values; these motions do not determine F_s."""
+    """Coulomb's law fitted with true starting values; these motions do not determine F_s."""
     problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
     known = {"F_s_n": 6.0, **LAW, "sensor_offset.b_n": 0.0}
     start = problem.starts({name: known[name] for name in problem.names})[0]
@@ -143,11 +143,11 @@ class Textbook:
 
 
 def threshold(parameters: int, samples: int) -> float:
-    """Gain that an effect of so many parameters must exceed under the default policy.
+    """Gain that an effect with this number of parameters must exceed under the default policy.
 
-    The larger of the chi-square quantile of a false-alarm rate of 1 % shared among the candidates
-    (Bonferroni) plus the artefact margin of 22, and of 3 % of the residual; log n for each
-    further parameter (Schwarz 1978).
+    The larger of two values, plus log n for each further parameter (Schwarz 1978): the chi-square
+    quantile of a false-alarm rate of 1 % shared among the candidates (Bonferroni) plus the artefact
+    margin of 22; and n times the square of the minimum effect size, 3 % of the residual.
     """
     least = max(float(stats.chi2.isf(0.01 / CANDIDATES, 1)) + 22.0, 0.03**2 * samples)
     return least + max(parameters - 1, 0) * float(np.log(samples))

@@ -26,7 +26,7 @@ DIRECTORY = "JBF_SHARED_TEST_RESULTS"
 
 
 def shared(compute: Callable[P, R]) -> Callable[P, R]:
-    """Compute each result once per test session; arguments must be hashable and have a repr."""
+    """Compute each result once per session; arguments are hashable and identified by their repr."""
 
     @cache
     @wraps(compute)

@@ -1,7 +1,7 @@
-"""Slides with Coulomb friction, prepared by jbf, and residuals that a test chooses.
+"""Campaigns of slides with Coulomb friction, and solutions with given residuals.
 
-The tests of residual structure take real campaigns and solutions; only the residuals are replaced,
-so that sizes, shares and significance are known in closed form.
+Tests of residual structure replace only the residuals of a solution, so that sizes, shares and
+significance are known in closed form.
 """
 
 from __future__ import annotations

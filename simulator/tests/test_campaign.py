@@ -24,7 +24,7 @@ SHORT = Campaign("short", (sine("bi", 7.0, 0.127, 1.0), triangle("tri", 5.0, 0.1
 
 
 @pytest.mark.parametrize("name", ["full", "heldout", "slow", "steady"])
-def test_speed_is_the_derivative_of_position_within_and_between_pieces(name):
+def test_motion_is_continuous_and_its_speed_is_the_derivative_of_its_position(name):
     for motion in standard(name).motions:
         edges = [motion.pieces[0].t0, *(p.t1 for p in motion.pieces)]
         assert edges[0] == 0.0
@@ -41,7 +41,7 @@ def test_speed_is_the_derivative_of_position_within_and_between_pieces(name):
             assert a.position(a.t1) == pytest.approx(b.position(b.t0), abs=1e-12)
 
 
-def test_same_seed_repeats_the_record_and_another_seed_does_not():
+def test_record_is_repeated_by_the_same_seed_and_changed_by_another_seed():
     one, truth = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     two, again = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     other, _ = simulate_campaign(4, ["coulomb_drag"], campaign=SHORT)
@@ -50,7 +50,7 @@ def test_same_seed_repeats_the_record_and_another_seed_does_not():
     assert not np.array_equal(one["bi"].friction_n, other["bi"].friction_n)
 
 
-def test_rig_of_a_seed_does_not_depend_on_the_effects():
+def test_rig_noise_and_effect_size_of_a_seed_do_not_depend_on_other_effects():
     _, alone = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     _, both = simulate_campaign(3, ["sensor_lag", "coulomb_drag"], campaign=SHORT)
     assert alone["base"] == both["base"]
@@ -58,7 +58,7 @@ def test_rig_of_a_seed_does_not_depend_on_the_effects():
     assert alone["effects"]["coulomb_drag"] == both["effects"]["coulomb_drag"]
 
 
-def test_reported_noise_is_that_of_the_record():
+def test_reported_noise_equals_the_standard_deviation_of_the_recorded_noise():
     records, truth = simulate_campaign(6, campaign=SHORT)
     gap = np.concatenate([r.friction_n - r.clean_friction_n for r in records.values()])
     assert np.std(gap) == pytest.approx(truth["noise_n"], rel=0.1)
@@ -74,7 +74,7 @@ def test_coloured_noise_has_its_variance_and_lag_one_correlation():
     assert lag_one == pytest.approx(0.2 * np.exp(-0.1), abs=0.03)
 
 
-def test_speed_at_rest_is_exact_and_angle_is_in_encoder_counts():
+def test_speed_at_rest_is_exactly_zero_and_the_angle_is_in_encoder_counts():
     rng = np.random.default_rng(1)
     record = simulate_run(Base(), {}, SHORT.motions[0], noise=Noise(0.1), rng=rng)
     assert record.velocity_m_s[0] == 0.0
@@ -107,7 +107,7 @@ def test_written_csv_has_the_documented_columns_and_digits(tmp_path):
     assert f"normal_n = {truth['base']['load_n']}" in rig
 
 
-def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path, capsys):
+def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path):
     truth_file = tmp_path / "truth.json"
     hidden = ["--effects", "coulomb_drag", "--foreign", "hum", "--seed", "3"]
     places = ["--heldout", str(tmp_path / "b"), "--truth", str(truth_file)]
@@ -117,5 +117,8 @@ def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path, capsys):
     assert list(truth["effects"]) == ["coulomb_drag"]
     assert list(truth["foreign"]) == ["hum"]
     assert (tmp_path / "b" / "multi.csv").exists()
+
+
+def test_command_line_refuses_an_unknown_effect(tmp_path, capsys):
     assert main([str(tmp_path / "c"), "--effects", "magic"]) == 2
     assert "magic" in capsys.readouterr().err

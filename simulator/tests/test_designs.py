@@ -10,7 +10,7 @@ from rigsim.film import Film
 SEEDS = range(40)
 
 
-def test_drawn_rigs_stay_within_their_documented_ranges():
+def test_drawn_rigs_are_repeatable_and_within_their_documented_ranges():
     designs = [draw_design(seed) for seed in SEEDS]
     assert draw_design(3) == draw_design(3)
     loads = np.array([d.base.load_n for d in designs])
@@ -47,16 +47,16 @@ def test_effect_sizes_scale_with_the_friction_of_the_rig(name):
     )
     small, large = (draw_effect(name, d.base, np.random.default_rng(1)) for d in (light, heavy))
     ratio = heavy.base.f_m * heavy.base.load_n / (light.base.f_m * light.base.load_n)
-    pushed = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia_leak": "m_e"}
-    pushed["sensor_hysteresis"] = "w"
-    if name in pushed:
-        assert large[pushed[name]] / small[pushed[name]] == pytest.approx(ratio)
+    proportional = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia_leak": "m_e"}
+    proportional["sensor_hysteresis"] = "w"
+    if name in proportional:
+        assert large[proportional[name]] / small[proportional[name]] == pytest.approx(ratio)
     if name == "sensor_nonlinearity":
         assert large["c"] / small["c"] == pytest.approx(ratio**-2)
     assert set(small) == set(CATALOGUE[name])
 
 
-def test_initial_film_is_unsettled_and_thinner_when_resting():
+def test_initial_eccentricity_varies_in_motion_and_exceeds_the_transition_at_rest():
     base = draw_design(4).base
     film = Film.of(base)
     rng = np.random.default_rng(1)

@@ -50,7 +50,7 @@ def test_effect_vanishes_as_its_parameter_approaches_the_null(name):
     assert np.max(np.abs(gap[moving])) < 1e-3
 
 
-def test_drags_and_inertia_add_their_closed_forms():
+def test_drags_and_inertia_add_the_forces_of_their_closed_forms():
     extra = {
         "coulomb_drag": {"F_d": 0.7},
         "quadratic_drag": {"c": 50.0},
@@ -70,7 +70,7 @@ def test_sensor_lag_is_a_first_order_filter():
     np.testing.assert_allclose((lagged + 0.1 * rate)[inner], plain.friction_n[inner], atol=2e-3)
 
 
-def test_presliding_settles_on_the_base_friction():
+def test_presliding_friction_settles_at_the_base_friction():
     motion = polyline("start", [(0.0, 0.0), (1.0, 0.03), (30.0, 0.03)])
     bristled = force({"presliding": {"sigma": 2000.0}}, motion)
     assert bristled[-1] == pytest.approx(force({}, motion)[-1], rel=1e-6)
@@ -84,7 +84,7 @@ def test_presliding_force_is_constant_at_rest():
     np.testing.assert_allclose(rest, rest[0], rtol=1e-9)
 
 
-def test_dwell_stiction_grows_with_the_duration_of_a_rest():
+def test_dwell_stiction_grows_with_the_duration_of_a_rest_by_its_closed_form():
     p = {"a": 0.06, "t_0": 4.0, "m": 0.65, "s_0": 0.002}
     np.testing.assert_array_equal(force({"dwell_stiction": p}), force({}))
     gap = force({"dwell_stiction": p}, STOP) - force({}, STOP)
@@ -135,7 +135,7 @@ def test_backlash_holds_the_journal_until_the_gap_is_crossed():
     np.testing.assert_array_equal(record.velocity_m_s, plain.velocity_m_s)
 
 
-def test_load_dependence_maps_one_published_table_onto_the_other():
+def test_load_dependence_reproduces_the_second_published_table_at_its_load():
     share = math.log(83.5 / 104.0)
     p = {"p": math.log(0.05 / 0.06) / share, "q": math.log(6.25e5 / 7.5e5) / share}
     other = simulate_run(Base(load_n=83.5, U_tr=0.05, K0=6.25e5), {}, SWING).friction_n
@@ -143,19 +143,19 @@ def test_load_dependence_maps_one_published_table_onto_the_other():
     np.testing.assert_array_equal(force({"load_dependence": p}), force({}))
 
 
-def test_sensor_hysteresis_has_two_branches_of_its_half_width():
+def test_sensor_hysteresis_trails_a_monotonic_force_by_its_half_width():
     width = 0.8
     record, plain = force({"sensor_hysteresis": {"w": width}}), force({})
     gap = record - plain
     assert record[0] == plain[0]
     assert np.max(np.abs(gap)) <= width + 1e-6
-    # After a long enough monotonic change the record trails the force by the half width.
-    way = np.convolve(np.diff(plain), np.ones(25))[24:-24]
+    # Samples after a monotonic change of the force by more than three half widths.
+    change = np.convolve(np.diff(plain), np.ones(25))[24:-24]
     for sign in (1.0, -1.0):
-        far = np.flatnonzero(sign * way > 3.0 * width) + 25
-        assert len(far) > 5
-        straight = [i for i in far if np.all(sign * np.diff(plain[i - 25 : i + 1]) > 0.0)]
-        np.testing.assert_allclose(gap[straight], -sign * width, atol=1e-6)
+        candidates = np.flatnonzero(sign * change > 3.0 * width) + 25
+        assert len(candidates) > 5
+        monotonic = [i for i in candidates if np.all(sign * np.diff(plain[i - 25 : i + 1]) > 0.0)]
+        np.testing.assert_allclose(gap[monotonic], -sign * width, atol=1e-6)
     np.testing.assert_allclose(
         force({"sensor_hysteresis": {"w": width}}, rate_hz=400.0)[::8], record, atol=0.05
     )
@@ -176,7 +176,7 @@ def test_lag_and_delay_agree_between_grid_and_state_implementation():
         assert np.max(gap) < 5e-3
 
 
-def test_unknown_names_are_refused():
+def test_unknown_effect_and_parameter_names_are_refused():
     with pytest.raises(ValueError, match="no effect named"):
         force({"magic": {}})
     with pytest.raises(ValueError, match="takes F_d"):
@@ -194,8 +194,7 @@ def test_vogel_viscosity_at_a_steady_temperature_equals_a_thinner_oil():
     assert np.max(np.abs(warm - force({}))) > 0.5
 
 
-def test_vogel_viscosity_follows_a_changing_temperature():
-    """Cold at first, warm at the end, between both meanwhile."""
+def test_vogel_viscosity_gives_the_friction_of_the_final_temperature_after_warming():
     hidden = {"vogel_viscosity": {"B": 900.0}}
     speed = hold(0.03)
     cold, warm = (force(hidden, speed, warmth=Warmth(c)) for c in (15.0, 40.0))

@@ -63,7 +63,7 @@ def test_friction_is_odd_in_speed():
     np.testing.assert_allclose(forward.friction_n, -backward.friction_n, atol=1e-9)
 
 
-def test_backward_half_period_mirrors_the_forward_one():
+def test_friction_of_the_backward_half_period_mirrors_that_of_the_forward_one():
     motion = sine("bi", 4.0 * math.pi, 0.127, 2.0)
     record = simulate_run(BASE, {}, motion, rate_hz=100 / math.pi)
     half = 50

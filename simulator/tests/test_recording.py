@@ -28,7 +28,7 @@ def pairs(*artefacts, strength="usual"):
     return [(CLEAN[name], records[name], sizes[name]) for name in CLEAN]
 
 
-def test_recording_without_artefacts_has_only_noise_and_repeats():
+def test_recording_without_artefacts_has_only_noise_and_is_repeatable():
     again, truth = recorded(SEED)
     assert truth == CLEAN_TRUTH
     assert truth["recording"] == []
@@ -39,7 +39,7 @@ def test_recording_without_artefacts_has_only_noise_and_repeats():
 
 
 @pytest.mark.parametrize("name", ARTEFACTS)
-def test_artefact_changes_only_its_own_channel(name):
+def test_artefact_changes_only_the_columns_of_its_channel(name):
     of = {
         "force": {"friction_n"},
         "position": {"angle_rad"},
@@ -71,7 +71,7 @@ def test_artefact_changes_only_its_own_channel(name):
         for n in ARTEFACTS
     ],
 )
-def test_artefact_reports_finite_sizes_and_repeats(name, strength):
+def test_artefact_reports_finite_sizes_and_is_repeatable(name, strength):
     records, sizes = recorded_with(name, strength=strength)
     again, truth = recorded(SEED, (), (name,), strength)
     for entry in truth["recording"]:
@@ -92,7 +92,7 @@ def test_second_artefact_does_not_change_the_first():
         np.testing.assert_array_equal(record.friction_n, both[name].friction_n)
 
 
-def test_slow_force_is_interpolated_or_held():
+def test_slow_force_is_interpolated_or_held_as_reported():
     seen = set()
     for seed in (0, 6, 13, 25, 68, 92):
         records, sizes = recorded_with("slow_force", strength="severe", seed=seed)
@@ -106,7 +106,7 @@ def test_slow_force_is_interpolated_or_held():
 
 
 def test_skew_delays_each_run_by_its_reported_time():
-    late = []
+    delays_s = []
     for clean, record, size in pairs("skew"):
         moved = np.interp(clean.time_s - size["late_s"], clean.time_s, clean.clean_friction_n)
         kept = slice(20, -20)
@@ -114,8 +114,8 @@ def test_skew_delays_each_run_by_its_reported_time():
         after = np.std((record.clean_friction_n - moved)[kept])
         assert after < before
         assert 0.006 <= abs(size["late_s"]) <= 0.014
-        late.append(size["late_s"])
-    assert len(set(late)) == len(late)
+        delays_s.append(size["late_s"])
+    assert len(set(delays_s)) == len(delays_s)
 
 
 def test_clock_drift_grows_from_zero_to_the_reported_delay():
@@ -125,33 +125,39 @@ def test_clock_drift_grows_from_zero_to_the_reported_delay():
         assert size["late_at_end_s"] == pytest.approx(size["share"] * clean.time_s[-1])
 
 
-def test_jitter_has_its_reported_rms_and_leaves_the_time_stamps_even():
+def test_jitter_has_the_expected_rms_and_leaves_the_time_stamps_evenly_spaced():
     for _, record, size in pairs("jitter"):
         assert np.ptp(np.diff(record.time_s)) < 1e-9
         assert size["rms_s"] == pytest.approx(3e-3, rel=0.15)
 
 
-def test_offset_and_gain_differ_between_runs_as_reported():
+def test_offset_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("retared"):
         np.testing.assert_allclose(record.friction_n - clean.friction_n, size["zero_n"])
+
+
+def test_gain_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("gain_by_run"):
         gap = record.friction_n - clean.friction_n
         np.testing.assert_allclose(gap, (size["gain"] - 1.0) * clean.clean_friction_n, atol=1e-12)
 
 
-def test_saturation_clips_and_quantisation_rounds():
+def test_saturation_clips_the_force_at_the_reported_limit():
     clipped = 0.0
     for _, record, size in pairs("saturation"):
         assert np.max(np.abs(record.friction_n)) <= size["limit_n"]
         clipped += size["share_clipped"]
     assert clipped > 0.01
+
+
+def test_quantisation_rounds_the_force_to_the_reported_step():
     for _, record, size in pairs("quantised"):
         steps = record.friction_n / size["step_n"]
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
         assert 1.5 <= size["step_n"] / NOISE_N <= 3.5
 
 
-def test_spikes_have_the_reported_count_and_size():
+def test_spikes_have_the_reported_count_and_size_above_9_9_noise_standard_deviations():
     for clean, record, size in pairs("spikes"):
         gap = np.abs(record.friction_n - clean.friction_n)
         assert np.sum(gap > 0.0) == size["samples"]
@@ -166,7 +172,7 @@ def test_dropouts_hold_the_last_value():
         assert np.mean(np.diff(record.friction_n)[changed - 1] == 0.0) == 1.0
 
 
-def test_position_glitches_are_single_samples():
+def test_position_glitches_have_the_reported_count_and_size():
     for clean, record, size in pairs("position_glitch"):
         gap = np.abs(record.angle_rad - clean.angle_rad)
         assert np.sum(gap > 0.0) == size["samples"]
@@ -181,18 +187,26 @@ def test_gaps_remove_the_reported_rows_and_nothing_else():
         np.testing.assert_array_equal(record.friction_n, clean.friction_n[kept])
 
 
-def test_noise_artefacts_have_their_distribution_force_dependence_and_levels():
-    tails, grows, levels = [], [], []
+def test_heavy_tailed_noise_exceeds_four_standard_deviations_in_one_of_1000_samples():
+    tails = []
     for _, record, _ in pairs("heavy_tails"):
         tails.append((record.friction_n - record.clean_friction_n) / NOISE_N)
-    every = np.concatenate(tails)
-    assert np.mean(np.abs(every) > 4.0) > 1e-3  # white noise: 6e-5
+    noise = np.concatenate(tails)
+    assert np.mean(np.abs(noise) > 4.0) > 1e-3  # white noise: 6e-5
+
+
+def test_force_dependent_noise_is_larger_at_large_forces():
+    ratios = []
     for clean, record, size in pairs("noise_with_force"):
         noise = record.friction_n - record.clean_friction_n
         large = np.abs(clean.clean_friction_n) > np.median(np.abs(clean.clean_friction_n))
-        grows.append(np.std(noise[large]) / np.std(noise[~large]))
+        ratios.append(np.std(noise[large]) / np.std(noise[~large]))
         assert size["at_peak"] >= 1.0
-    assert np.median(grows) > 1.15
+    assert np.median(ratios) > 1.15
+
+
+def test_noise_level_of_each_run_is_the_reported_one_and_differs_between_runs():
+    levels = []
     for _, record, size in pairs("noise_by_run"):
         noise = np.std(record.friction_n - record.clean_friction_n)
         assert noise == pytest.approx(size["times"] * NOISE_N, rel=0.1)
@@ -209,13 +223,13 @@ def test_long_memory_noise_is_correlated_over_a_fifth_of_a_second():
         assert 0.2 * size["sd_n"] < np.std(extra) < 2.0 * size["sd_n"]
 
 
-def test_transition_speed_differs_between_runs():
+def test_reported_factors_of_the_transition_speed_differ_between_runs():
     factors = [size["U_tr"] for _, _, size in pairs("runs_differ")]
     assert len(set(factors)) == len(factors)
     assert all(0.7 < f < 1.3 for f in factors)
 
 
-def test_speed_from_counts_is_their_difference_quotient():
+def test_backward_velocity_is_the_difference_quotient_of_the_encoder_counts():
     for clean, record, size in pairs("backward_velocity"):
         step = clean.time_s[1] - clean.time_s[0]
         counts = record.angle_rad * size["counts_per_rad"]
@@ -223,22 +237,25 @@ def test_speed_from_counts_is_their_difference_quotient():
         radius = CLEAN_TRUTH["base"]["bearing"]["radius_m"]
         wanted = np.diff(record.angle_rad) * radius / step
         np.testing.assert_allclose(record.velocity_m_s[1:], wanted, atol=1e-9)
+
+
+def test_coarse_velocity_is_averaged_over_five_samples_and_close_to_the_true_velocity():
     for clean, record, size in pairs("coarse_velocity"):
         step = clean.time_s[1] - clean.time_s[0]
         assert size["over_s"] == pytest.approx(5.0 * step)
         assert np.std(record.velocity_m_s - clean.velocity_m_s) < 0.2 * np.std(clean.velocity_m_s)
 
 
-def test_filtered_speed_is_delayed_by_its_filter():
+def test_filtered_velocity_is_delayed_by_45_ms():
     for clean, record, size in pairs("filtered_velocity"):
         assert size["cut_hz"] == pytest.approx(5.0)
-        late = np.interp(clean.time_s - 0.045, clean.time_s, clean.velocity_m_s)
-        kept = clean.time_s > 0.3  # 2nd order, 5 Hz: 45 ms late
-        gap = np.std((record.velocity_m_s - late)[kept])
+        delayed = np.interp(clean.time_s - 0.045, clean.time_s, clean.velocity_m_s)
+        kept = clean.time_s > 0.3  # a filter of second order and 5 Hz delays by 45 ms
+        gap = np.std((record.velocity_m_s - delayed)[kept])
         assert gap < 0.6 * np.std((record.velocity_m_s - clean.velocity_m_s)[kept]) + 2e-4
 
 
-def test_noisy_load_is_noise_around_a_constant():
+def test_noisy_load_has_the_reported_noise_around_the_true_load():
     for clean, record, size in pairs("noisy_load"):
         share = record.load_n / clean.load_n - 1.0
         assert np.std(share) == pytest.approx(size["sd"], rel=0.1)
@@ -250,10 +267,13 @@ def test_unknown_and_incompatible_artefacts_are_refused():
         chosen(("magic",))
     with pytest.raises(ValueError, match="not more"):
         chosen(("coarse_velocity", "filtered_velocity"))
+
+
+def test_chosen_artefacts_are_returned_in_catalogue_order_without_the_off_grid_option():
     assert [a.name for a in chosen(("quantised", "jitter", OFF_GRID))] == ["jitter", "quantised"]
 
 
-def test_written_files_hold_runs_rig_and_truth(tmp_path):
+def test_written_files_contain_runs_rig_and_truth(tmp_path):
     truth = write_recorded(tmp_path / "a", tmp_path / "b", SEED, ["sensor_offset"], ["gaps"])
     assert sorted(p.stem for p in (tmp_path / "a").glob("*.csv")) == sorted(CLEAN)
     assert len(list((tmp_path / "b").glob("*.csv"))) == 3

@@ -35,4 +35,4 @@ mod passes;
 mod run;
 
 pub use model::{FilmPath, Model};
-pub use passes::groups;
+pub use passes::parameter_passes;

@@ -31,7 +31,7 @@ pub struct Model<'a> {
 pub struct FilmPath<'a> {
     /// The places of the film, one a step.
     pub places: &'a [Place],
-    /// For each sample but the first the number of the last step before it.
+    /// For each sample that a step leads to the number of that step.
     pub ends: &'a [u32],
 }
 
@@ -40,6 +40,9 @@ impl Model<'_> {
     ///
     /// # Errors
     /// Names the first parameter that breaks its rule.
+    ///
+    /// # Panics
+    /// Where there are fewer values than parameters.
     pub fn with_chain<T: Real, U: Using<T>>(
         &self,
         parameters: &[T],

@@ -1,13 +1,12 @@
 //! The effects of the catalogue, each stage compiled as a function of its own.
 //!
-//! A chain that holds [`Effects`] inlines the code of all effects into the time loop of every law. With
-//! nine laws, four kinds of numbers and three instruction sets that code would be compiled more than a
-//! hundred times. Here it is compiled once for each kind of numbers and each instruction set; a step pays
-//! one call for each stage that has an effect, and nothing for a stage that has none.
+//! A chain that holds [`Effects`] itself inlines the code of all effects into the time loop of its law: for
+//! nine laws, four kinds of numbers and two instruction sets some fifty times. Here that code is compiled
+//! once for each kind of numbers and each instruction set. A step pays one call for each stage that has an
+//! effect, and nothing for a stage that has none.
 //!
-//! What a call may change has an address, and so is kept in memory. The effects' states are therefore
-//! outside the chain's state, and a stage gets copies of the few numbers that it reads and changes: what
-//! the time loop works with stays in registers.
+//! Arguments passed by reference are forced into memory. Therefore the effects' states are outside the
+//! chain's state, and a stage copies values in and out: what the time loop works with stays in registers.
 
 use core::cell::RefCell;
 use jbf_batch::InstructionSet;
@@ -18,7 +17,7 @@ use jbf_core::motion::{JournalMotion, Motion};
 use jbf_core::Real;
 
 /// [`Effects`] whose stages are called as functions compiled for the instruction set `I`, for one run of
-/// one chain at a time: a copy shares the states. The results have the same bits.
+/// one chain at a time: copies share one cell of states. The results have the same bits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outlined<'a, T: Real, I> {
     effects: &'a Effects<T>,

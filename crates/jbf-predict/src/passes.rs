@@ -6,30 +6,30 @@ use jbf_batch::{Baseline, InstructionSet, Simd};
 use jbf_core::record::Record;
 use jbf_core::{Dual, ParameterError, Real};
 
-/// Parameters in one pass: a law's own, or those of a law with effects. A pass of eight costs a quarter
-/// more than one of four, one of twelve three quarters of two passes.
+/// Parameters in the shortest pass, usually a law's own.
 const FEW: usize = 4;
+/// Parameters in the usual pass, which costs a quarter more than the shortest.
 const MANY: usize = 8;
+/// Parameters in the longest pass, which costs three quarters of two usual ones.
 const MOST: usize = 12;
 
 /// The parameters of each pass over a record, for the machine that this runs on.
-pub fn groups(which: &[usize]) -> Vec<&[usize]> {
+pub fn parameter_passes(which: &[usize]) -> Vec<&[usize]> {
     match which.len() {
         0 => vec![&[]],
-        MANY..=MOST if !has_one_width(Simd::best()) => vec![which],
+        9..=MOST if !only_passes_of_eight(Simd::best()) => vec![which],
         _ => which.chunks(MANY).collect(),
     }
 }
 
-/// True on a processor older than the instructions that the derivatives are compiled for: passes of eight
-/// are all that is compiled without them.
-fn has_one_width(simd: Simd) -> bool {
+/// True on a processor without AVX2: only passes of eight are compiled for it.
+fn only_passes_of_eight(simd: Simd) -> bool {
     cfg!(all(feature = "wide", target_arch = "x86_64")) && matches!(simd, Simd::Baseline)
 }
 
 impl Model<'_> {
     /// Readings (N) along a record, and row by row their derivatives with respect to the parameters
-    /// `which`, one of the [`groups`].
+    /// `which`, one of the [`parameter_passes`].
     ///
     /// # Errors
     /// Names the first parameter that breaks its rule.
@@ -54,6 +54,7 @@ impl Model<'_> {
             // Wider registers than AVX2's gain nothing: a derivative of a chain is short arithmetic
             // between loads and stores.
             #[cfg(all(feature = "wide", target_arch = "x86_64"))]
+            // Its subset, AVX2.
             Simd::Avx512(v4) => pass.of_any_width(*v4),
             #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Simd::Avx2(v3) => pass.of_any_width(v3),

@@ -34,6 +34,7 @@ impl<T: Real, I: InstructionSet> Run<'_, T, I> {
     /// The time loop with calls of the effects' stages, whose code all laws share.
     fn with_calls<L: Law<T>>(self, chain: Chain<T, L>) {
         let Chain { law, effects, rig } = chain;
+        // A value until the chain's start replaces it.
         let states = RefCell::new(effects.start(&Motion::at_rest(T::ONE), &rig));
         let effects = Outlined::new(&effects, &states, self.instructions);
         self.inlined(&Chain { law, effects, rig }, Steps::Every);
@@ -44,13 +45,14 @@ impl<T: Real, I: InstructionSet> Using<T> for Run<'_, T, I> {
     type Output = ();
 
     fn with<L: Named<T>>(self, chain: Chain<T, L>) {
-        // A constant of the type: a law without a film is not compiled on a path.
+        // The constant skips compiling the path for laws without a film.
         if const { L::FILM_PARAMETERS.is_none() } {
             return self.with_calls(chain);
         }
         let (Some((path, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
             return self.with_calls(chain);
         };
+        // The hot path of a bearing's diagnosis, therefore inlined.
         let law = OnPath::new(chain.law, [p[first], p[second]], path.places);
         let (law, steps) = if chain.effects.remembers() {
             (law, Steps::Every)
@@ -62,7 +64,6 @@ impl<T: Real, I: InstructionSet> Using<T> for Run<'_, T, I> {
             effects: chain.effects,
             rig: chain.rig,
         };
-        // What a diagnosis of a bearing spends most of its time in.
         self.inlined(&on_path, steps);
     }
 }

@@ -28,8 +28,8 @@ pub struct Film {
     pub bits: [u64; 3],
 }
 
-/// The places of a film, with slopes or without, and of each sample but the first the number of the
-/// last step before it.
+/// The places of a film, with slopes or without, and of each sample that a step leads to the number
+/// of that step.
 pub struct FilmPath {
     pub places: Vec<Place>,
     pub has_slopes: bool,

@@ -1,4 +1,4 @@
-"""The built site: nothing broken, nothing from outside, a search that works without a network."""
+"""The built site: no broken links, no external requests, and a search that works offline."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _page(folder: Path, name: str, body: str) -> None:
     (folder / name).write_text(f"<html><body>{body}</body></html>", encoding="utf-8")
 
 
-def test_what_is_broken_is_found(tmp_path: Path) -> None:
+def test_faults_lists_broken_links_missing_anchors_and_external_images(tmp_path: Path) -> None:
     _page(tmp_path, "a.html", "<h1 id=one>A</h1><a href=b.html#two>b</a><a href=c.html>c</a>")
     _page(tmp_path, "b.html", "<a href=a.html#one>a</a><img src=https://x.org/a.png>")
     found = faults(tmp_path)
@@ -44,13 +44,13 @@ def test_what_is_broken_is_found(tmp_path: Path) -> None:
         "<img srcset='https://x.org/a.png 2x'>",
     ],
 )
-def test_loads_from_outside_are_found(tmp_path: Path, tag: str) -> None:
+def test_faults_lists_external_scripts_styles_frames_and_images(tmp_path: Path, tag: str) -> None:
     _page(tmp_path, "a.html", tag)
     assert len(faults(tmp_path)) == 1
 
 
 @needs_site
-def test_nothing_is_broken() -> None:
+def test_built_site_has_no_faults() -> None:
     assert faults(HTML, skip=("rust",)) == []
 
 
@@ -80,30 +80,34 @@ def browser() -> Iterator[Any]:
 
 @needs_site
 @pytest.mark.parametrize("place", ["", "start/analyst/", "reference/python/", "why/failures/"])
-def test_a_page_asks_for_nothing_outside(browser: Any, address: str, place: str) -> None:
+def test_page_makes_no_external_request_logs_no_error_and_fits_the_window(
+    browser: Any, address: str, place: str
+) -> None:
     page = browser.new_page(viewport={"width": 1280, "height": 900})
-    asked: list[str] = []
-    said: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("console", lambda message: said.append(message.text))
+    requested: list[str] = []
+    logged: list[str] = []
+    page.on("request", lambda request: requested.append(request.url))
+    page.on("console", lambda message: logged.append(message.text))
     page.goto(f"{address}/{place}", wait_until="networkidle")
-    assert asked
-    assert [url for url in asked if not url.startswith((address, "data:", "blob:"))] == []
-    assert [text for text in said if "error" in text.lower()] == []
+    assert requested
+    assert [url for url in requested if not url.startswith((address, "data:", "blob:"))] == []
+    assert [text for text in logged if "error" in text.lower()] == []
     width = page.evaluate("document.documentElement.scrollWidth")
     assert width <= 1280, "hangs over"
     page.close()
 
 
 @needs_site
-def test_search_needs_nothing_but_the_site(browser: Any, address: str) -> None:
+def test_search_loads_the_index_of_the_site_and_makes_no_external_request(
+    browser: Any, address: str
+) -> None:
     page = browser.new_page()
-    asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
+    requested: list[str] = []
+    page.on("request", lambda request: requested.append(request.url))
     page.goto(address, wait_until="networkidle")
     page.keyboard.press("Control+k")
     page.wait_for_timeout(1000)
-    assert f"{address}/search.json" in asked
-    assert [url for url in asked if not url.startswith((address, "data:", "blob:"))] == []
+    assert f"{address}/search.json" in requested
+    assert [url for url in requested if not url.startswith((address, "data:", "blob:"))] == []
     assert "eccentricity" in (HTML / "search.json").read_text(encoding="utf-8")
     page.close()

@@ -28,21 +28,27 @@ ANYTHING: Any = None
 CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "law": (lambda: jbf.fit(RIG, [RUN], law="Journal"), 'did you mean "journal"?'),
     "rig a path": (lambda: jbf.fit("rig.toml", [RUN]), 'read it: jbf.read_rig("rig.toml")'),
-    "swapped compare": (lambda: jbf.compare([RUN], MODEL), "the model is a list"),
-    "at rest": (lambda: MODEL.steady_friction([0.0]), "must be finite and not zero"),
-    "trajectory's value": (
+    "runs and model swapped": (lambda: jbf.compare([RUN], MODEL), "the model is a list"),
+    "speed of zero": (lambda: MODEL.steady_friction([0.0]), "must be finite and not zero"),
+    "parameter of a trajectory": (
         lambda: jbf.trajectory(RIG, LAW | {"K0": "a"}, T, T),
         'key parameters.K0: "a" is not a number',
     ),
-    "sine": (lambda: jbf.trajectory(RIG, LAW, T, sine=(1.0,)), "omega in rad/s"),
+    "sine without a frequency": (
+        lambda: jbf.trajectory(RIG, LAW, T, sine=(1.0,)),
+        "omega in rad/s",
+    ),
     "trajectories": (lambda: jbf.trajectories(RIG, LAW, [RUN]), "run 0 is a Run; give a pair"),
-    "batch's method": (lambda: jbf.batch(RIG, T, 0.1, method="rk5", **LAW), '"rk4"?'),
-    "bootstrap a model": (lambda: jbf.bootstrap(MODEL, [RUN]), "the fit is a Model"),
+    "method of batch": (lambda: jbf.batch(RIG, T, 0.1, method="rk5", **LAW), '"rk4"?'),
+    "bootstrap of a model": (lambda: jbf.bootstrap(MODEL, [RUN]), "the fit is a Model"),
     "trajectories to fit": (lambda: jbf.fit_trajectories(RIG, [RUN], [T]), "run 0 is a Run"),
-    "many's campaigns": (lambda: jbf.diagnose_many([RIG]), "campaigns is a list; give a dict"),
-    "many's option": (lambda: jbf.diagnose_many({}, effects=[]), "there is no option"),
-    "loop's model": (lambda: jbf.control.run("m.toml"), 'jbf.Model.load("m.toml")'),
-    "loop's scheme": (lambda: jbf.control.run(scheme=ANYTHING), "the scheme is None"),
+    "campaigns of diagnose_many": (
+        lambda: jbf.diagnose_many([RIG]),
+        "campaigns is a list; give a dict",
+    ),
+    "option of diagnose_many": (lambda: jbf.diagnose_many({}, effects=[]), "there is no option"),
+    "model of a control run": (lambda: jbf.control.run("m.toml"), 'jbf.Model.load("m.toml")'),
+    "scheme of a control run": (lambda: jbf.control.run(scheme=ANYTHING), "the scheme is None"),
     "effect": (lambda: jbf.fit(RIG, [RUN], ["sensor_ofset"]), 'did you mean "sensor_offset"?'),
     "no run": (lambda: jbf.compare(MODEL, []), "no run"),
     "no run in a plan": (lambda: jbf.planned_power(MODEL, [], noise_n=0.1), "no run was given"),
@@ -55,12 +61,12 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_wrong_argument_raises_one_line(name: str) -> None:
+def test_invalid_argument_raises_an_input_error_of_one_line(name: str) -> None:
     call, fragment = CASES[name]
     raises_one_line(call, fragment)
 
 
-def test_each_bad_campaign_of_many_gives_its_own_error() -> None:
+def test_diagnose_many_returns_a_separate_error_for_each_invalid_campaign() -> None:
     campaigns: Any = {"number": 3, "three": (1, 2, 3), "run": (RIG, RUN)}
     results = jbf.diagnose_many(campaigns)
     assert {name: type(error) for name, error in results.items()} == dict.fromkeys(

@@ -1,4 +1,4 @@
-"""Command lines: wrong words, numbers and outputs are refused, and no input is overwritten."""
+"""Command lines: invalid words, numbers and outputs are refused; no input is overwritten."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from input_checks import (
     accepted,
     cases,
     compared,
+    csv_text,
     refused,
-    table,
     with_cell,
 )
 from jbf.cli import main
@@ -37,13 +37,13 @@ DIAGNOSE = "diagnose rig.toml a.csv "
 
 REFUSED: dict[str, tuple[str, str]] = {
     # Words
-    "nothing": ("", "required: COMMAND"),
+    "no command": ("", "required: COMMAND"),
     "command misspelt": ("diagnos", 'there is no command "diagnos"; did you mean "diagnose"?'),
     "option misspelt": ("compare model.toml a.csv --jsn x", "did you mean --json?"),
-    "option twice removed": (f"{DIAGNOSE} --false-alarm 0.1", "did you mean --false-alarms?"),
+    "option similar to another": (f"{DIAGNOSE} --false-alarm 0.1", "did you mean --false-alarms?"),
     "value missing": ("compare model.toml a.csv --json", "--json: expected one argument"),
     "runs missing": ("compare model.toml", "the following arguments are required: RUN"),
-    "swapped": ("compare a.csv model.toml", "is a CSV file where MODEL should be"),
+    "run and model swapped": ("compare a.csv model.toml", "is a CSV file where MODEL should be"),
     "law unknown": (f"{FIT} --law stribek", 'there is no law "stribek"; did you mean "stribeck"'),
     "effect unknown": (f"{FIT} --effects sensor_ofset", 'did you mean "sensor_offset"?'),
     # Numbers
@@ -52,36 +52,60 @@ REFUSED: dict[str, tuple[str, str]] = {
     "fix nan": (f"{FIT} --fix f_m=nan", "--fix f_m=nan: is out of range"),
     "fix twice": (f"{FIT} --fix f_m=0.2 --fix f_m=0.3", "f_m is fixed twice; fix it once"),
     "fix unknown": (f"{FIT} --fix fm=0.2", "--fix fm=0.2: there is no parameter"),
-    "fix below": (f"{FIT} --fix f_m=-1", "--fix f_m=-1: is out of range; choose from"),
+    "fix below the bounds": (f"{FIT} --fix f_m=-1", "--fix f_m=-1: is out of range; choose from"),
     "fix of an effect not fitted": (f"{FIT} --fix coulomb_drag.F_d_n=1", "there is no parameter"),
     "law of a model": ("power model.toml a.csv --law coulomb", "--law"),
-    "share zero": (f"{DIAGNOSE} --false-alarms 0", "--false-alarms: 0 is no share; choose from"),
-    "indifference below": (f"{DIAGNOSE} --indifference-n -1", "--indifference-n: -1 is no size"),
+    "false-alarm rate of zero": (
+        f"{DIAGNOSE} --false-alarms 0",
+        "--false-alarms: 0 is no share; choose from",
+    ),
+    "minimum effect size negative": (
+        f"{DIAGNOSE} --indifference-n -1",
+        "--indifference-n: -1 is no size",
+    ),
     "loads nan": (f"{DIAGNOSE} --loads-n 5 nan", "the limit load_n = nan; must be above zero"),
-    "loads turned": (f"{DIAGNOSE} --loads-n 9 5", "give the smaller load first"),
+    "load limits reversed": (f"{DIAGNOSE} --loads-n 9 5", "give the smaller load first"),
     "speed 1e300": (f"{DIAGNOSE} --max-velocity-m-s 1e300", "velocity_m_s = 1e+300 is beyond"),
-    "long": (f"{DIAGNOSE} --next-duration-s 1e9", "duration_s = 1e+09 is more than a day; ask"),
-    "plan no noise": ("plan rig.toml --max-velocity-m-s 0.2", "--noise-n is missing; say how"),
-    "power noise zero": ("power rig.toml a.csv --noise-n 0", "noise_n"),
-    "jobs none": ("diagnose --many many --jobs 0", "--jobs: 0 campaigns at a time; 1 or more"),
+    "duration above a day": (
+        f"{DIAGNOSE} --next-duration-s 1e9",
+        "duration_s = 1e+09 is more than a day; ask",
+    ),
+    "plan without noise": ("plan rig.toml --max-velocity-m-s 0.2", "--noise-n is missing; say how"),
+    "power with zero noise": ("power rig.toml a.csv --noise-n 0", "noise_n"),
+    "zero jobs": ("diagnose --many many --jobs 0", "--jobs: 0 campaigns at a time; 1 or more"),
     # Many rigs
-    "many none": ("diagnose --many nowhere", "nowhere: holds no campaign"),
+    "folder without campaigns": ("diagnose --many nowhere", "nowhere: holds no campaign"),
     "many and a rig": ("diagnose rig.toml --many many", "takes neither RIG nor RUN nor --next-run"),
     # Outputs
-    "onto the run": ("compare model.toml a.csv --json a.csv", "--json a.csv: is also an input"),
-    "onto the run by a link": ("compare model.toml a.csv --json link.csv", "is also an input"),
-    "onto the model": ("compare model.toml a.csv --report model.toml", "is also an input"),
-    "many onto a run": ("diagnose --many many --json many/one/a.csv", "is also an input"),
-    "motion onto itself": ("predict model.toml a.csv --out ./a.csv", "is also an input"),
-    "two of one": ("compare model.toml a.csv --json x --report x", "the file of another option"),
-    "no folder": ("compare model.toml a.csv --json no/x", "its folder does not exist; make"),
-    "a loop": (
+    "output onto the run": (
+        "compare model.toml a.csv --json a.csv",
+        "--json a.csv: is also an input",
+    ),
+    "output onto the run through a link": (
+        "compare model.toml a.csv --json link.csv",
+        "is also an input",
+    ),
+    "output onto the model": ("compare model.toml a.csv --report model.toml", "is also an input"),
+    "output of many onto a run": ("diagnose --many many --json many/one/a.csv", "is also an input"),
+    "prediction onto its motion": ("predict model.toml a.csv --out ./a.csv", "is also an input"),
+    "one file for two outputs": (
+        "compare model.toml a.csv --json x --report x",
+        "the file of another option",
+    ),
+    "output folder missing": (
+        "compare model.toml a.csv --json no/x",
+        "its folder does not exist; make",
+    ),
+    "output link to itself": (
         "compare model.toml a.csv --json loop",
         "--json loop: is a link that leads to itself; name another",
     ),
     "a full disk": ("predict model.toml a.csv --out /dev/full", "no space left on device"),
     "import onto a file": ("import a.csv --map map.toml --out a.csv", "is a file, not a folder"),
-    "import onto others": ("import a.csv --map map.toml --out many", "many: holds other files"),
+    "import into a folder with other files": (
+        "import a.csv --map map.toml --out many",
+        "many: holds other files",
+    ),
     # Kinds of files
     "model misspelt": ("compare modle.toml a.csv", 'not exist; did you mean "model.toml"?'),
     "run for a rig": ("diagnose rig.toml rig.toml", "where a run should be"),
@@ -89,14 +113,23 @@ REFUSED: dict[str, tuple[str, str]] = {
     "same run twice": ("compare model.toml a.csv a.csv", "is given twice"),
     "demo in no folder": ("demo no/such", "its parent folder does not exist"),
     # Own effects
-    "own absent": (f"{DIAGNOSE} --effects-from no.py", "no.py: is no file; name a Python file"),
-    "own that ends": (f"{DIAGNOSE} --effects-from ends.py", "ends.py, row 1: fails: SystemExit"),
-    "own that exits": (f"{FIT} --law coulomb --effects-from own.py --effects rude", "rude fails"),
+    "effects file missing": (
+        f"{DIAGNOSE} --effects-from no.py",
+        "no.py: is no file; name a Python file",
+    ),
+    "effects file that exits": (
+        f"{DIAGNOSE} --effects-from ends.py",
+        "ends.py, row 1: fails: SystemExit",
+    ),
+    "effect that exits": (
+        f"{FIT} --law coulomb --effects-from own.py --effects rude",
+        "rude fails",
+    ),
 }
 
 
 @pytest.fixture(autouse=True)
-def more(folder: Path) -> None:
+def extra_files(folder: Path) -> None:
     """Folders of campaigns, links and files with effects."""
     (folder / "many" / "one").mkdir(parents=True)
     for name in ("rig.toml", "a.csv"):
@@ -109,7 +142,7 @@ def more(folder: Path) -> None:
 
 
 @pytest.fixture(autouse=True)
-def forgotten() -> Iterator[None]:
+def forget_user_effect() -> Iterator[None]:
     """Remove the effect that a command may have registered in this process."""
     yield
     with suppress(jbf.InputError):
@@ -117,23 +150,30 @@ def forgotten() -> Iterator[None]:
 
 
 FAST = (
-    "nothing", "command misspelt", "option misspelt", "value missing", "runs missing", "swapped",
-    "law unknown", "effect unknown", "bootstrap a word", "bootstrap few", "fix nan", "fix twice",
-    "share zero", "indifference below", "loads nan", "loads turned", "speed 1e300", "long",
-    "plan no noise", "power noise zero", "jobs none", "many none", "onto the run",
-    "onto the run by a link", "onto the model", "many onto a run", "two of one", "no folder",
-    "a loop", "a full disk", "import onto others", "model misspelt", "run for a rig", "own absent",
-    "own that ends", "own that exits", "fix of an effect not fitted", "same run twice",
+    "no command", "command misspelt", "option misspelt", "value missing", "runs missing",
+    "run and model swapped", "law unknown", "effect unknown", "bootstrap a word", "bootstrap few",
+    "fix nan", "fix twice", "false-alarm rate of zero", "minimum effect size negative", "loads nan",
+    "load limits reversed", "speed 1e300", "duration above a day", "plan without noise",
+    "power with zero noise", "zero jobs", "folder without campaigns", "output onto the run",
+    "output onto the run through a link", "output onto the model", "output of many onto a run",
+    "one file for two outputs", "output folder missing", "output link to itself", "a full disk",
+    "import into a folder with other files", "model misspelt", "run for a rig",
+    "effects file missing", "effects file that exits", "effect that exits",
+    "fix of an effect not fitted", "same run twice",
 )  # fmt: skip
 
 
 @pytest.mark.parametrize(("words", "fragment"), cases(REFUSED, FAST))
-def test_bad_command_line_is_refused_in_one_line(words: str, fragment: str, capfd: Capture) -> None:
+def test_invalid_command_line_is_refused_in_one_line_and_changes_no_file(
+    words: str, fragment: str, capfd: Capture
+) -> None:
     refused(words.split(), fragment, capfd)
 
 
 @pytest.mark.parametrize("command", ["fit", "compare", "diagnose", "predict"])
-def test_every_command_refuses_a_bad_run(command: str, capfd: Capture) -> None:
+def test_every_command_reports_nan_in_a_run_with_file_row_and_column(
+    command: str, capfd: Capture
+) -> None:
     Path("bad.csv").write_text(with_cell(17, "velocity_m_s", "nan"))
     first = "model.toml" if command in ("compare", "predict") else "rig.toml"
     out = "--json" if command == "compare" else "--out"
@@ -143,24 +183,26 @@ def test_every_command_refuses_a_bad_run(command: str, capfd: Capture) -> None:
 
 def test_misspelt_friction_column_of_a_motion_is_refused(capfd: Capture) -> None:
     """A motion to predict may lack friction, but not misspell it."""
-    Path("bad.csv").write_text(table().replace("friction_n", "fricton_n"))
+    Path("bad.csv").write_text(csv_text().replace("friction_n", "fricton_n"))
     words = ["predict", "model.toml", "bad.csv", "--out", "new.csv"]
     refused(words, "column fricton_n: is not a known column; did you mean", capfd)
 
 
-def test_column_that_an_effect_needs_is_named(capfd: Capture) -> None:
+def test_fit_is_refused_if_the_column_that_an_effect_needs_is_missing(capfd: Capture) -> None:
     words = ["fit", "rig.toml", "a.csv", "--effects", "position_ripple", "--out", "new.toml"]
     refused(words, "column angle_rad: is missing, and the effect position_ripple", capfd)
 
 
-def test_run_without_motion_is_refused(capfd: Capture) -> None:
+def test_fit_of_a_run_without_motion_is_refused(capfd: Capture) -> None:
     rows = ["time_s,velocity_m_s,friction_n", *(f"{i / 50},0,0" for i in range(100))]
     Path("still.csv").write_text("\n".join(rows))
     words = ["fit", "rig.toml", "still.csv", "--out", "new.toml"]
     refused(words, "still.csv: the shaft never moves", capfd)
 
 
-def test_second_result_replaces_the_first(folder: Path, capfd: Capture) -> None:
+def test_existing_output_file_is_replaced_and_no_temporary_file_remains(
+    folder: Path, capfd: Capture
+) -> None:
     words = ["compare", "model.toml", "a.csv", "--json", "out.json"]
     accepted(words, capfd)
     accepted([*words, "--report", "out.html"], capfd)
@@ -169,7 +211,7 @@ def test_second_result_replaces_the_first(folder: Path, capfd: Capture) -> None:
     assert [p.name for p in folder.iterdir() if p.name.startswith(".")] == []
 
 
-def test_output_may_be_a_device(capfd: Capture) -> None:
+def test_prediction_can_be_written_to_the_null_device(capfd: Capture) -> None:
     accepted(["predict", "model.toml", "a.csv", "--out", "/dev/null"], capfd)
     assert compared("a.csv", capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
 

@@ -1,4 +1,4 @@
-"""CSV files: bad content names file, row and column; unusual content is read correctly."""
+"""CSV files: invalid content is refused with its place; unusual notation is read correctly."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from input_checks import (
     ROWS,
     Capture,
     compared,
+    csv_text,
     refused,
-    table,
     with_cell,
     with_column,
 )
 
-GOOD = table()
+GOOD = csv_text()
 LINES = GOOD.splitlines()
 UNITS = "\n".join([LINES[0], "s,m/s,N", *LINES[1:]])
-EMPTY_COLUMN = table([(*r, "") for r in ROWS], (*HEADER, "load_n"))
+EMPTY_COLUMN = csv_text([(*r, "") for r in ROWS], (*HEADER, "load_n"))
 T = [float(r[0]) for r in ROWS]
 
 
@@ -34,7 +34,7 @@ def rms_of_scaled(factor: float) -> float:
 
 def with_times(time_s: list[float]) -> str:
     """The run with other time stamps."""
-    return table([(repr(t), *r[1:]) for t, r in zip(time_s, ROWS, strict=True)])
+    return csv_text([(repr(t), *r[1:]) for t, r in zip(time_s, ROWS, strict=True)])
 
 
 REFUSED: dict[str, tuple[str | bytes, str]] = {
@@ -46,7 +46,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "a NUL": (with_cell(9, "friction_n", "5\0"), "is binary, not text; name a text file"),
     # Shapes
     "empty": ("", "is empty; start with a header"),
-    "header alone": (LINES[0], "has a header but no samples; add the samples"),
+    "header without samples": (LINES[0], "has a header but no samples; add the samples"),
     "nine rows": ("\n".join(LINES[:10]), "has 9 samples; a run needs at least 10"),
     "no header": ("\n".join(LINES[1:]), "row 1: holds numbers where the header should be"),
     "a short row": (GOOD + "1.2,0.1\n", "row 62: has 2 cells where the header has 3"),
@@ -54,7 +54,10 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     # Headers
     "time missing": (GOOD.replace("time_s", "when"), "row 1, column time_s: is missing; add it"),
     "a unit in the name": (GOOD.replace("time_s", "time_ms"), 'did you mean "time_ms"?'),
-    "twice": (GOOD.replace("velocity_m_s", "time_s"), "column time_s: stands twice in the header"),
+    "column twice": (
+        GOOD.replace("velocity_m_s", "time_s"),
+        "column time_s: stands twice in the header",
+    ),
     # Cells
     "text": (with_cell(9, "friction_n", "abc"), 'row 9, column friction_n: "abc" is not a number'),
     "escapes": (with_cell(9, "friction_n", "\x1b[31m"), "\\x1b[31m"),
@@ -65,22 +68,22 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "nan": (with_cell(9, "friction_n", "NaN"), "row 9, column friction_n: nan is not a finite"),
     "1e400": (with_cell(9, "friction_n", "1e400"), "row 9, column friction_n: inf is not"),
     "decimal comma": (
-        table([(r[0], r[1], r[2].replace(".", ",")) for r in ROWS], sep=";"),
+        csv_text([(r[0], r[1], r[2].replace(".", ",")) for r in ROWS], sep=";"),
         'row 2, column friction_n: "7,500000" has a decimal comma',
     ),
     # Times
-    "unsorted": (table([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
-    "repeated": (table([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
+    "unsorted": (csv_text([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
+    "repeated": (csv_text([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
     # Sizes that no machine has
     "1e160 N": (with_cell(9, "friction_n", "1e160"), "row 9, column friction_n: 1e+160"),
     "nanoseconds of an epoch": (with_column("time_s", lambda t: 1.7e18 + 1e9 * t), "column time_s"),
     # Loads
-    "no load": (table([(*r, "0") for r in ROWS], (*HEADER, "load_n")), "a load of 0.0 N"),
+    "no load": (csv_text([(*r, "0") for r in ROWS], (*HEADER, "load_n")), "a load of 0.0 N"),
 }
 
 ACCEPTED: dict[str, tuple[str | bytes, float]] = {
-    "as it is": (GOOD, RMS_N),
-    "a mark first": (b"\xef\xbb\xbf" + GOOD.encode(), RMS_N),
+    "unchanged": (GOOD, RMS_N),
+    "byte-order mark first": (b"\xef\xbb\xbf" + GOOD.encode(), RMS_N),
     "crlf": (GOOD.replace("\n", "\r\n"), RMS_N),
     "cr alone": (GOOD.replace("\n", "\r"), RMS_N),
     "semicolons": (GOOD.replace(",", ";"), RMS_N),
@@ -88,15 +91,18 @@ ACCEPTED: dict[str, tuple[str | bytes, float]] = {
     "quoted": (GOOD.replace(LINES[0], ",".join(f'"{c}"' for c in HEADER)), RMS_N),
     "blanks round cells": (GOOD.replace(",", " , "), RMS_N),
     "blank lines": (GOOD.replace("\n", "\n\n"), RMS_N),
-    "columns turned": (table([r[::-1] for r in ROWS], HEADER[::-1]), RMS_N),
-    "a comment column": (table([(*r, "good") for r in ROWS], (*HEADER, "remark")), RMS_N),
+    "columns in reverse order": (csv_text([r[::-1] for r in ROWS], HEADER[::-1]), RMS_N),
+    "a comment column": (csv_text([(*r, "good") for r in ROWS], (*HEADER, "remark")), RMS_N),
     "exponents": (with_column("time_s", lambda t: t).replace("0.02,", "2.0E-02,"), RMS_N),
     "epoch": (with_column("time_s", lambda t: 1.7e9 + t), RMS_N),
     "milliseconds": (with_column("time_s", lambda t: 1e3 * t), RMS_N),
     "ten rows": ("\n".join(LINES[:11]), RMS_N),
-    "friction turned": (with_column("friction_n", lambda f: -f), rms_of_scaled(-1.0)),
+    "friction negated": (with_column("friction_n", lambda f: -f), rms_of_scaled(-1.0)),
     "friction of 1e-300": (with_column("friction_n", lambda f: 1e-300 * f), rms_of_scaled(0.0)),
-    "turned": (table([(r[0], "-" + r[1], repr(-float(r[2]))) for r in ROWS]), RMS_N),
+    "speed and friction negated": (
+        csv_text([(r[0], "-" + r[1], repr(-float(r[2]))) for r in ROWS]),
+        RMS_N,
+    ),
 }
 
 
@@ -106,7 +112,7 @@ def write(content: str | bytes) -> None:
 
 
 @pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
-def test_bad_csv_is_refused_with_file_row_and_column(
+def test_invalid_csv_is_refused_with_the_file_and_the_cause(
     content: str | bytes, fragment: str, capfd: Capture
 ) -> None:
     write(content)
@@ -114,6 +120,8 @@ def test_bad_csv_is_refused_with_file_row_and_column(
 
 
 @pytest.mark.parametrize(("content", "rms_n"), ACCEPTED.values(), ids=ACCEPTED)
-def test_unusual_csv_is_read_correctly(content: str | bytes, rms_n: float, capfd: Capture) -> None:
+def test_csv_in_unusual_notation_gives_the_expected_rms(
+    content: str | bytes, rms_n: float, capfd: Capture
+) -> None:
     write(content)
     assert compared("bad.csv", capfd)["rms_n"] == pytest.approx(rms_n, rel=5e-3)

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
-from input_checks import SECONDS, table
+from input_checks import SECONDS, csv_text
 from jbf.cores import cap_threads, check_jobs, processes
 from jbf.errors import InputError
 
@@ -34,8 +34,8 @@ def run(
     )
 
 
-ODD = {
-    "too little": {
+ENVIRONMENTS = {
+    "minimal settings": {
         "RAYON_NUM_THREADS": "0",
         "MPLBACKEND": "tkagg",
         "DISPLAY": "nowhere:9",
@@ -43,7 +43,7 @@ ODD = {
         "PYTHONUTF8": "0",
         "PYTHONCOERCECLOCALE": "0",
     },
-    "words": {
+    "invalid settings": {
         "RAYON_NUM_THREADS": "abc",
         "PYTHONIOENCODING": "latin-1",
         "COLUMNS": "wide",
@@ -52,17 +52,17 @@ ODD = {
         "PYTHONWARNINGS": "error",
     },
 }
-"""Several variables at a time, because each case costs a process."""
+"""Each case sets several variables, because each starts a process."""
 
 
 @pytest.mark.parametrize(
-    "name", ["words", *(pytest.param(n, marks=EXTENDED) for n in ("too little",))]
+    "name", ["invalid settings", *(pytest.param(n, marks=EXTENDED) for n in ("minimal settings",))]
 )
 def test_unusual_environment_does_not_change_the_result(name: str, folder: Path) -> None:
     file = "Lauf µ ∅.csv"
-    (folder / file).write_text(table())
+    (folder / file).write_text(csv_text())
     result = run(["compare", "model.toml", file, "--report", "new.html", "--json", "new.json"],
-                ODD[name])  # fmt: skip
+                ENVIRONMENTS[name])  # fmt: skip
     assert (result.returncode, result.stderr) == (0, b"")
     assert b"RMS 0.500 N against" in result.stdout
     assert b"<svg" in (folder / "new.html").read_bytes()
@@ -72,7 +72,7 @@ def test_unusual_environment_does_not_change_the_result(name: str, folder: Path)
 STREAMS = {
     "both closed": (">&- 2>&-", 0, b""),
     "full": (">/dev/full", 2, b"jbf: standard output: cannot be written (no space left on device)"),
-    "nobody reads": ("| true", 0, b""),
+    "pipe without a reader": ("| true", 0, b""),
 }
 
 
@@ -82,7 +82,7 @@ STREAMS = {
 @pytest.mark.parametrize(
     "words", [COMPARE, pytest.param(("--help",), marks=EXTENDED)], ids=lambda w: w[0]
 )
-def test_unwritable_standard_output_is_reported_in_one_line(
+def test_full_standard_output_is_reported_in_one_line_and_a_closed_one_is_ignored(
     words: tuple[str, ...], name: str
 ) -> None:
     redirect, code, message = STREAMS[name]
@@ -92,7 +92,7 @@ def test_unwritable_standard_output_is_reported_in_one_line(
     assert done.stderr.count(b"\n") == (1 if message else 0)
 
 
-def test_lost_result_on_standard_output_is_an_error() -> None:
+def test_json_to_a_closed_standard_output_is_refused_in_one_line() -> None:
     done = run([*COMPARE, "--json", "-"], redirect=">&-")
     assert done.returncode == 2
     assert done.stderr == b"jbf: standard output: is closed; name a file in the place of -\n"
@@ -106,22 +106,25 @@ def test_requested_threads_are_limited_to_the_cores(monkeypatch: pytest.MonkeyPa
         assert os.environ["RAYON_NUM_THREADS"] == expected
 
 
-def test_processes_are_limited_to_the_tasks() -> None:
+def test_processes_are_limited_to_the_tasks_the_jobs_and_the_cores() -> None:
     assert processes(1_000_000, 3) == 3
     assert processes(2, 100) == 2
     assert processes(None, 1_000_000) == (os.cpu_count() or 1)
     assert processes(4, 0) == 1
+
+
+def test_zero_jobs_are_refused_and_an_unset_number_is_accepted() -> None:
     with pytest.raises(InputError, match="--jobs: 0 campaigns at a time"):
         check_jobs(0)
     check_jobs(None)
 
 
-def hears_interrupts() -> None:
+def restore_interrupts() -> None:
     """Restore the default action of SIGINT, which background processes of a shell ignore."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def test_interrupt_prints_one_line_and_leaves_no_file(folder: Path) -> None:
+def test_interrupted_command_prints_one_line_and_leaves_no_file(folder: Path) -> None:
     """The command waits for a pipe without a writer when the signal comes."""
     os.mkfifo("slow.csv")
     before = sorted(p.name for p in folder.iterdir())
@@ -129,7 +132,7 @@ def test_interrupt_prints_one_line_and_leaves_no_file(folder: Path) -> None:
         [*COMMAND, "compare", "model.toml", "slow.csv", "--json", "new.json"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        preexec_fn=hears_interrupts,
+        preexec_fn=restore_interrupts,
     )
     # The pipe can be opened for writing as soon as the command reads it.
     end = time.monotonic() + SECONDS
@@ -165,7 +168,7 @@ def test_killed_concurrent_writers_leave_complete_files(kind: signal.Signals, fo
             [sys.executable, "-c", WRITER, letter],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            preexec_fn=hears_interrupts,
+            preexec_fn=restore_interrupts,
         )
         for letter in "ab"
     ]

@@ -11,7 +11,7 @@ from jbf.errors import InputError, closest, did_you_mean, printable, quoted
 from jbf.text_files import read_text, write_text, write_texts
 
 
-def test_message_names_place_problem_and_remedy() -> None:
+def test_error_message_names_place_problem_and_remedy() -> None:
     error = InputError(
         file="a.csv", row=17, column="friction_n", problem="is wrong", mend="correct it"
     )
@@ -20,7 +20,7 @@ def test_message_names_place_problem_and_remedy() -> None:
     assert str(InputError(key="load", problem="is\n wrong")) == "key load: is wrong"
 
 
-def test_caller_adds_file_and_key_prefix() -> None:
+def test_within_adds_a_file_and_a_key_prefix_but_does_not_replace_a_file() -> None:
     error = InputError(key="radius_m", problem="is missing").within(
         file="rig.toml", key_prefix="bearing."
     )
@@ -28,20 +28,20 @@ def test_caller_adds_file_and_key_prefix() -> None:
     assert error.within(file="other.toml").file == "rig.toml"
 
 
-def test_error_survives_pickling() -> None:
+def test_error_is_unchanged_by_pickling() -> None:
     error = InputError(file="a", row=3, column="c", key="k", problem="p", mend="m")
     copy = pickle.loads(pickle.dumps(error))
     assert (str(copy), copy.row, copy.mend) == (str(error), 3, "m")
 
 
-def test_suggestion_ignores_case_and_rejects_unlike_words() -> None:
+def test_suggestion_ignores_case_and_lists_the_known_words_if_none_is_similar() -> None:
     assert closest("STRIBEK", ["coulomb", "Stribeck"]) == "Stribeck"
     assert closest("xyz", ["coulomb", "stribeck"]) is None
     assert did_you_mean("stribek", ["coulomb", "stribeck"]) == 'did you mean "stribeck"?'
     assert did_you_mean("xyz", ["coulomb", "stribeck"]) == "known: coulomb, stribeck"
 
 
-def test_quoted_text_is_printable_and_limited() -> None:
+def test_quoted_text_has_escaped_control_characters_and_at_most_40_characters() -> None:
     assert quoted("a\x1b[31m") == '"a\\x1b[31m"'
     assert quoted("x" * 40) == f'"{"x" * 40}"'
     assert quoted("x" * 41) == f'"{"x" * 37}..."'

@@ -1,4 +1,4 @@
-"""Special files and unusual names: refused at once, or read like any other file."""
+"""Special files are refused without waiting; files with unusual names are read."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from input_checks import (
     Capture,
     accepted,
     compared,
+    csv_text,
     raises_one_line,
     refused,
-    table,
 )
 from jbf import read_map, read_rig, read_run
 from jbf.cli import main, parser
@@ -45,43 +45,43 @@ def unprivileged() -> Iterator[None]:
         os.seteuid(0)
 
 
-def loop(name: str) -> None:
+def link_to_itself(name: str) -> None:
     Path(name).symlink_to(name)
 
 
-def plug(name: str) -> None:
+def socket_file(name: str) -> None:
     with socket.socket(socket.AF_UNIX) as one:
         one.bind(name)
 
 
-def locked(name: str) -> None:
-    Path(name).write_text(table())
+def unreadable_file(name: str) -> None:
+    Path(name).write_text(csv_text())
     Path(name).chmod(0)
 
 
-def dead(name: str) -> None:
+def dangling_link(name: str) -> None:
     Path(name).symlink_to("nowhere")
 
 
 SPECIAL_FILES: dict[str, tuple[Callable[[str], object], str]] = {
     "a folder": (os.mkdir, "is a folder"),
-    "a loop of links": (loop, "cannot be read (too many levels of symbolic links)"),
-    "a pipe that nobody fills": (os.mkfifo, "nothing comes out of this pipe"),
-    "a socket": (plug, "cannot be read"),
-    "a dead link": (dead, "the file does not exist"),
+    "a loop of links": (link_to_itself, "cannot be read (too many levels of symbolic links)"),
+    "a pipe without a writer": (os.mkfifo, "nothing comes out of this pipe"),
+    "a socket": (socket_file, "cannot be read"),
+    "a dead link": (dangling_link, "the file does not exist"),
     "a link to zeros": (lambda n: Path(n).symlink_to("/dev/zero"), "is a device, not a file"),
 }
-PIPE = "a pipe that nobody fills"
+PIPE = "a pipe without a writer"
 EXTENDED = pytest.mark.extended
 DEVICES = ("/dev/zero", "/dev/urandom", "/dev/full", "/dev/null")
 
 
 SPECIAL = [pytest.param(n, marks=EXTENDED if n == PIPE else ()) for n in SPECIAL_FILES]
-"""A pipe without a writer is waited for, ten seconds in each command."""
+"""The case with a pipe is extended: each command waits ten seconds for a writer."""
 
 
 @pytest.mark.parametrize("name", SPECIAL)
-def test_special_file_is_refused(name: str, capfd: Capture) -> None:
+def test_special_file_is_refused_by_commands_and_readers(name: str, capfd: Capture) -> None:
     make, fragment = SPECIAL_FILES[name]
     make("odd")
     line = refused(["predict", "model.toml", "odd", "--out", "new.csv"], fragment, capfd)
@@ -91,7 +91,7 @@ def test_special_file_is_refused(name: str, capfd: Capture) -> None:
 
 
 @pytest.mark.parametrize("device", DEVICES)
-def test_device_is_refused(device: str, capfd: Capture) -> None:
+def test_device_is_refused_by_every_command(device: str, capfd: Capture) -> None:
     fragment = f"{device}: is a device, not a file; name a file"
     for words in (
         ["compare", "model.toml", device],
@@ -104,7 +104,7 @@ def test_device_is_refused(device: str, capfd: Capture) -> None:
 
 
 def test_unreadable_file_is_refused(capfd: Capture) -> None:
-    locked("locked.csv")
+    unreadable_file("locked.csv")
     words = ["compare", "model.toml", "locked.csv"]
     with unprivileged():
         refused(words, "locked.csv: cannot be read (permission denied)", capfd)
@@ -168,7 +168,7 @@ def with_two_gigabytes(name: str, words: list[str], capfd: Capture) -> tuple[int
 
 def test_pipe_with_a_writer_is_read(capfd: Capture) -> None:
     os.mkfifo("pipe.csv")
-    writer = threading.Thread(target=lambda: Path("pipe.csv").write_text(table()))
+    writer = threading.Thread(target=lambda: Path("pipe.csv").write_text(csv_text()))
     writer.start()
     assert compared("pipe.csv", capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
     writer.join()
@@ -186,9 +186,11 @@ UNUSUAL_NAMES = {
 
 
 @pytest.mark.parametrize("name", UNUSUAL_NAMES)
-def test_file_with_an_unusual_name_is_read(name: str, folder: Path, capfd: Capture) -> None:
+def test_file_with_an_unusual_name_is_read_and_its_name_is_printed_without_escapes(
+    name: str, folder: Path, capfd: Capture
+) -> None:
     file = UNUSUAL_NAMES[name]
-    (folder / file).write_text(table())
+    (folder / file).write_text(csv_text())
     assert compared(file, capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
     text = accepted(["compare", "model.toml", file], capfd)
     assert "\x1b" not in text
@@ -197,12 +199,14 @@ def test_file_with_an_unusual_name_is_read(name: str, folder: Path, capfd: Captu
     assert "\x1b" not in line
 
 
-def test_null_character_in_a_name_is_refused() -> None:
+def test_null_character_in_a_file_name_is_refused() -> None:
     for read in (read_rig, read_map, Model.load, read_run, read_campaign, campaigns_in):
         raises_one_line(lambda read=read: read("a\0b"), "")  # type: ignore[misc]
 
 
-def test_output_link_is_followed_and_kept(folder: Path, capfd: Capture) -> None:
+def test_output_through_a_link_is_written_to_its_target_and_preserves_the_link(
+    folder: Path, capfd: Capture
+) -> None:
     (folder / "link.csv").symlink_to("target.csv")
     accepted(["predict", "model.toml", "a.csv", "--out", "link.csv"], capfd)
     assert (folder / "link.csv").is_symlink()

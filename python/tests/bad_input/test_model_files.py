@@ -10,7 +10,7 @@ from input_checks import MODEL, RMS_N, Capture, compared, refused
 from jbf.models.catalogue import parameters_of
 
 F_C = "F_c_n = {value = 5.0, stderr = 0.1}"
-DRAG = MODEL.replace("effects = []", 'effects = ["sensor_offset"]')
+WITH_OFFSET = MODEL.replace("effects = []", 'effects = ["sensor_offset"]')
 
 
 def model(old: str, new: str) -> str:
@@ -51,7 +51,7 @@ ACCEPTED = {
     "held": MODEL.replace("stderr = 0.1", "held = true"),
     "no clock": MODEL.replace('clock = "journal"\n', ""),
     "no effects": MODEL.replace("effects = []\n", ""),
-    "effect without numbers": DRAG,
+    "effect without numbers": WITH_OFFSET,
     "a fit's words": MODEL + "[fit]\nrms_n = 0.5\n",
 }
 
@@ -61,7 +61,7 @@ def write(content: str | bytes) -> None:
 
 
 @pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
-def test_bad_model_file_is_refused_with_file_and_key(
+def test_invalid_model_file_is_refused_with_the_file_and_the_cause(
     content: str | bytes, fragment: str, capfd: Capture
 ) -> None:
     write(content)
@@ -70,12 +70,14 @@ def test_bad_model_file_is_refused_with_file_and_key(
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_unusual_notation_gives_the_same_model(name: str, capfd: Capture) -> None:
+def test_model_file_in_unusual_notation_gives_the_same_rms(name: str, capfd: Capture) -> None:
     write(ACCEPTED[name])
     assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
 
 
-def test_missing_parameter_has_the_starting_value_of_the_catalogue(capfd: Capture) -> None:
+def test_parameter_missing_in_a_model_file_has_the_starting_value_of_the_catalogue(
+    capfd: Capture,
+) -> None:
     write(model(F_C + "\n", ""))
     start_n = parameters_of("coulomb", ())["F_c_n"].starts[0]
     expected_rms_n = math.hypot(start_n - 5.0, RMS_N)

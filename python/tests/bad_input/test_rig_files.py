@@ -63,14 +63,17 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
         for value in ("1e300", "5e-324")
     },
     # Drives
-    "both": (RIG + DRIVE, "key drive: stands beside a [bearing]"),
+    "bearing and drive": (RIG + DRIVE, "key drive: stands beside a [bearing]"),
     "constant missing": (CURRENT.replace("torque_c", "#"), "torque_constant_n_m_a"),
-    "of another motion": (CURRENT + "mass_kg = 1.0\n", "mass_kg: means nothing of a rotary drive"),
+    "mass of a rotary drive": (
+        CURRENT + "mass_kg = 1.0\n",
+        "mass_kg: means nothing of a rotary drive",
+    ),
 }
 
 ACCEPTED = {
     "crlf": RIG.replace("\n", "\r\n"),
-    "a mark first": "\ufeff" + RIG,
+    "byte-order mark first": "\ufeff" + RIG,
     "underscores": rig("104.0", "1_0_4.0"),
     "inline": "bearing = {radius_m = 0.0127, length_m = 0.0254, clearance_m = 2.5e-5, "
     "mass_kg = 2.27, count = 4}\nlubricant.viscosity_pa_s = 0.002\nload.normal_n = 104.0\n",
@@ -83,7 +86,7 @@ def write(content: str | bytes, name: str = "bad.toml") -> None:
 
 
 @pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
-def test_bad_rig_file_is_refused_with_file_and_key(
+def test_invalid_rig_file_is_refused_with_the_file_and_the_cause(
     content: str | bytes, fragment: str, capfd: Capture
 ) -> None:
     write(content)
@@ -93,7 +96,7 @@ def test_bad_rig_file_is_refused_with_file_and_key(
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_unusual_notation_gives_the_same_rig(name: str) -> None:
+def test_rig_file_in_unusual_notation_gives_the_same_rig(name: str) -> None:
     write(ACCEPTED[name])
     assert read_rig("bad.toml") == read_rig("rig.toml")
 
@@ -107,8 +110,8 @@ EXTENDED = pytest.mark.extended
 )
 @pytest.mark.parametrize("key", ["radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_pa_s",
                                  "normal_n"])  # fmt: skip
-def test_every_accepted_size_predicts_finite_friction(key: str, value: str, capfd: Capture) -> None:
-    """No size that is accepted overflows in the model, and no library warns."""
+def test_rig_with_an_extreme_size_gives_a_finite_rms(key: str, value: str, capfd: Capture) -> None:
+    """Sizes from 1e-12 to 1e12 are accepted, cause no overflow in the model and no warning."""
     text = size(key, value)
     if key == "clearance_m" and float(value) > 0.0127:
         text = text.replace("radius_m = 0.0127", "radius_m = 1e12") if value != "1e12" else ""
@@ -129,10 +132,13 @@ def test_every_accepted_size_predicts_finite_friction(key: str, value: str, capf
     assert 0.0 <= float(result["rms_n"]) < 1e40
 
 
-def test_rig_and_model_files_are_not_confused(capfd: Capture) -> None:
+def test_rig_file_in_place_of_a_model_file_and_the_reverse_are_refused(capfd: Capture) -> None:
     refused(["compare", "rig.toml", "a.csv"], "rig.toml: is a rig, not a model file", capfd)
     refused(["fit", "model.toml", "a.csv", "--out", "n.toml"], "is a model file, not a rig", capfd)
-    refused(["fit", "map.toml", "a.csv", "--out", "map.toml"], "is also an input", capfd)
     write(MODEL)
     accepted(["compare", "bad.toml", "a.csv"], capfd)
     raises_one_line(lambda: read_rig("bad.toml"), "key format: is not known")
+
+
+def test_output_to_the_map_that_is_the_input_is_refused(capfd: Capture) -> None:
+    refused(["fit", "map.toml", "a.csv", "--out", "map.toml"], "is also an input", capfd)

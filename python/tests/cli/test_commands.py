@@ -30,19 +30,23 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f"\n    {name}" in shown for name in COMMANDS)
 
 
-def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_option_prints_the_version_of_the_package(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"jbf {jbf.__version__}\n"
 
 
-def test_effects_prints_names_and_parameters(capsys: pytest.CaptureFixture[str]) -> None:
+def test_effects_command_prints_the_catalogue_and_the_parameters_of_one_effect(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["effects"]) == 0
     assert "coulomb_drag" in capsys.readouterr().out
     assert main(["effects", "coulomb_drag"]) == 0
     assert "F_d_n" in capsys.readouterr().out
 
 
-def test_effects_of_a_law_separates_those_that_do_not_apply(
+def test_effects_command_lists_effects_that_do_not_apply_to_a_law_separately(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["effects", "--law", "lugre"]) == 0
@@ -53,7 +57,9 @@ def test_effects_of_a_law_separates_those_that_do_not_apply(
     assert "presliding" in refused
 
 
-def test_effects_json_is_strict_and_complete(capsys: pytest.CaptureFixture[str]) -> None:
+def test_effects_json_contains_every_effect_and_neither_nan_nor_infinity(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["effects", "--json", "-"]) == 0
 
     def refuse(constant: str) -> None:
@@ -63,7 +69,7 @@ def test_effects_json_is_strict_and_complete(capsys: pytest.CaptureFixture[str])
     assert [page["name"] for page in data["effects"]] == list(jbf.effects())
 
 
-def test_fit_writes_a_model_with_the_hidden_effect(
+def test_fit_command_writes_a_model_that_recovers_the_hidden_effect(
     campaign: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = campaign / "fitted.toml"
@@ -77,7 +83,7 @@ def test_fit_writes_a_model_with_the_hidden_effect(
     assert abs(drag.value - DRAG_N) < 4.0 * drag.stderr
 
 
-def test_fixed_parameters_keep_their_values(campaign: Path) -> None:
+def test_parameters_given_with_the_fix_option_keep_their_values(campaign: Path) -> None:
     out = campaign / "fitted.toml"
     command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs" / "*.csv")]
     command += ["--effects", "coulomb_drag", "--fix", "f_m=0.25", "--fix", "coulomb_drag.F_d=1"]
@@ -87,7 +93,7 @@ def test_fixed_parameters_keep_their_values(campaign: Path) -> None:
     assert parameters["coulomb_drag.F_d_n"].value == 1.0
 
 
-def test_compare_writes_json_and_report(
+def test_compare_command_writes_json_and_an_html_report(
     model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     runs = [str(path) for path in sorted((campaign / "runs").iterdir())]
@@ -103,14 +109,14 @@ def test_compare_writes_json_and_report(
     assert page.read_text().startswith("<!doctype html>")
 
 
-def test_json_on_standard_output_is_the_only_output(
+def test_json_to_standard_output_is_the_only_output(
     model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["compare", str(model), str(campaign / "runs"), "--json", "-"]) == 0
     assert "rms_n" in json.loads(capsys.readouterr().out)
 
 
-def test_predict_needs_no_recorded_friction(
+def test_predict_command_writes_the_friction_for_a_motion_without_recorded_friction(
     model: Path, campaign: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = runs[0]
@@ -129,7 +135,7 @@ def test_predict_needs_no_recorded_friction(
     assert capsys.readouterr().out == out.read_text()
 
 
-def test_warning_of_a_fast_film_is_one_line(
+def test_predict_command_warns_in_one_line_if_the_film_responds_too_fast(
     tmp_path: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
 ) -> None:
     rig = jbf.Rig.thesis("4.2")
@@ -142,7 +148,7 @@ def test_warning_of_a_fast_film_is_one_line(
     assert message.count("\n") == 1
 
 
-def test_module_runs_as_a_program() -> None:
+def test_python_dash_m_jbf_runs_a_command() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "jbf", "effects"], capture_output=True, text=True, check=False
     )
@@ -151,7 +157,7 @@ def test_module_runs_as_a_program() -> None:
 
 
 @posix
-def test_closed_pipe_ends_without_a_message() -> None:
+def test_command_ends_without_a_message_if_its_output_pipe_is_closed() -> None:
     read, write = os.pipe()
     os.close(read)
     done = subprocess.run(
@@ -163,7 +169,9 @@ def test_closed_pipe_ends_without_a_message() -> None:
 
 
 @posix
-def test_progress_is_shown_on_a_terminal_and_not_on_standard_output(campaign: Path) -> None:
+def test_progress_of_a_fit_is_shown_on_the_terminal_and_not_on_standard_output(
+    campaign: Path,
+) -> None:
     import pty
 
     ours, theirs = pty.openpty()

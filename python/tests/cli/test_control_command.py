@@ -23,7 +23,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("run.csv").write_text("\n".join(["time_s,velocity_m_s", *rows]) + "\n")
 
 
-def test_run_prints_every_scheme_and_draws_a_plot(capsys: pytest.CaptureFixture[str]) -> None:
+def test_control_run_prints_every_scheme_and_writes_a_png(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     run = ["control", "run", "model.toml", "--task", "position sine", "--seconds", "5"]
     assert main([*run, "--plot", "p.png"]) == 0
     out = capsys.readouterr().out
@@ -32,7 +34,7 @@ def test_run_prints_every_scheme_and_draws_a_plot(capsys: pytest.CaptureFixture[
     assert Path("p.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_run_writes_one_row_for_each_sample() -> None:
+def test_control_run_writes_one_csv_row_for_each_sample() -> None:
     assert main(["control", "run", "--scheme", "observed", "--seconds", "4", "--out", "r.csv"]) == 0
     with open("r.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -41,19 +43,21 @@ def test_run_writes_one_row_for_each_sample() -> None:
     assert {"estimated_friction_v", "friction_v", "status"} <= set(rows[0])
 
 
-def test_recorded_motion_is_the_reference(capsys: pytest.CaptureFixture[str]) -> None:
+def test_control_run_uses_a_recorded_motion_as_the_reference(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["control", "run", "model.toml", "--motion", "run.csv"]) == 0
     assert "recorded -1.57 to 1.57 rad/s, 5.98 s" in capsys.readouterr().out
 
 
-def test_law_without_a_film_has_no_learning_scheme(
+def test_control_run_omits_the_learning_scheme_for_a_law_without_a_film(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["control", "run", "lugre.toml", "--seconds", "4"]) == 0
     assert "learning" not in capsys.readouterr().out
 
 
-def test_tuned_settings_are_those_of_a_run_without_settings(
+def test_control_run_gives_the_same_result_with_tuned_settings_and_without_settings(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["control", "tune", "model.toml", "--out", "s.toml"]) == 0
@@ -66,7 +70,9 @@ def test_tuned_settings_are_those_of_a_run_without_settings(
 
 
 @pytest.mark.extended
-def test_robustness_is_written_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+def test_control_robustness_writes_json_and_reports_no_harmful_case(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["control", "robustness", "model.toml", "--json", "r.json"]) == 0
     cases = json.loads(Path("r.json").read_text())["cases"]
     assert {"name", "ratios", "worst", "verdict"} <= set(cases[0])
@@ -75,7 +81,9 @@ def test_robustness_is_written_as_json(capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.extended
-def test_tables_reproduce_the_published_results(capsys: pytest.CaptureFixture[str]) -> None:
+def test_control_tables_reproduce_at_least_12_published_cells_within_a_factor_of_two(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert main(["control", "tables", "--json", "t.json", "--plot", "t.svg"]) == 0
     result = json.loads(Path("t.json").read_text())
     assert result["within_2"] >= 12
@@ -106,7 +114,7 @@ def test_tables_reproduce_the_published_results(capsys: pytest.CaptureFixture[st
         ("robustness model.toml --json model.toml", ["input"]),
     ],
 )
-def test_bad_arguments_are_refused_in_one_line(
+def test_invalid_control_arguments_are_refused_in_one_line_and_change_no_file(
     arguments: str, fragments: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = {p: p.read_bytes() for p in Path().iterdir()}

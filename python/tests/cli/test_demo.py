@@ -11,7 +11,7 @@ from jbf.demo import run
 
 
 @pytest.mark.extended
-def test_demo_finds_the_hidden_effects_and_writes_report_and_model(tmp_path: Path) -> None:
+def test_demo_identifies_the_hidden_effects_and_writes_report_and_model(tmp_path: Path) -> None:
     lines: list[str] = []
     d = run(tmp_path / "demo", lines.append, jbf="bin/jbf")
     assert d.verdict == "missing"
@@ -25,7 +25,7 @@ def test_demo_finds_the_hidden_effects_and_writes_report_and_model(tmp_path: Pat
     assert Model.load(tmp_path / "demo" / "model.toml") == d.model
 
 
-def test_suggested_command_can_be_typed_in_this_shell(
+def test_suggested_command_contains_the_path_of_jbf_unless_it_is_on_the_search_path(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     program = tmp_path / "my venv" / "bin" / "jbf"

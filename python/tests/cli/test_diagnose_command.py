@@ -22,7 +22,7 @@ def diagnosed(slide: Path, out: Path, *options: str) -> dict[str, Any]:
     return result
 
 
-def test_diagnosis_writes_model_json_and_report(
+def test_diagnose_command_writes_model_json_and_report(
     slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     model, page = tmp_path / "m.toml", tmp_path / "d.html"
@@ -44,21 +44,23 @@ def test_diagnosis_writes_model_json_and_report(
 
 
 @pytest.mark.extended
-def test_false_alarm_rate_raises_the_threshold(slide: Path, tmp_path: Path) -> None:
+def test_smaller_false_alarm_rate_raises_the_threshold_and_rejects_the_effect(
+    slide: Path, tmp_path: Path
+) -> None:
     strict = diagnosed(slide, tmp_path / "d.json", "--false-alarms", "1e-15")
     assert strict["effects"] == []
     assert strict["level"]["critical"] > 60.0
 
 
 @pytest.mark.extended
-def test_clean_recording_has_no_artefact_margin(slide: Path, tmp_path: Path) -> None:
+def test_clean_recording_option_removes_the_artefact_margin(slide: Path, tmp_path: Path) -> None:
     clean = diagnosed(slide, tmp_path / "d.json", "--clean-recording")
     assert clean["effects"] == ["inertia_leak"]
     assert clean["level"]["imperfection"] == 0.0
 
 
 @pytest.mark.extended
-def test_effect_below_the_minimum_size_is_not_reported(slide: Path, tmp_path: Path) -> None:
+def test_effect_below_the_minimum_effect_size_is_not_reported(slide: Path, tmp_path: Path) -> None:
     result = diagnosed(slide, tmp_path / "d.json", "--indifference-n", "0.2")
     assert result["effects"] == []
     assert result["level"]["worth"] > result["level"]["critical"]
@@ -73,7 +75,9 @@ def detectable_kg(slide: Path, out: Path, noise_n: float, *options: str) -> floa
     return float(rows["inertia_leak"]["found_80"])
 
 
-def test_detectable_size_scales_with_noise_and_threshold(slide: Path, tmp_path: Path) -> None:
+def test_detectable_size_is_proportional_to_the_noise_and_grows_with_the_threshold(
+    slide: Path, tmp_path: Path
+) -> None:
     out = tmp_path / "power.json"
     usual = detectable_kg(slide, out, 0.1)
     assert detectable_kg(slide, out, 0.05) == pytest.approx(0.5 * usual, rel=0.15)
@@ -81,7 +85,7 @@ def test_detectable_size_scales_with_noise_and_threshold(slide: Path, tmp_path: 
 
 
 @pytest.mark.extended
-def test_power_of_a_fitted_model_uses_its_noise(
+def test_power_of_a_fitted_model_uses_its_noise_unless_another_is_given(
     slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     model, out = tmp_path / "model.toml", tmp_path / "power.json"
@@ -99,7 +103,9 @@ def test_power_of_a_fitted_model_uses_its_noise(
     assert result("--noise-n", "0.5")["noise_n"] == 0.5
 
 
-def test_power_of_a_rig_requires_the_noise(slide: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_power_of_a_rig_is_refused_if_the_noise_is_not_given(
+    slide: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["power", str(slide / "rig.toml"), str(slide), *LAW]) == 2
     assert "--noise-n is missing" in capsys.readouterr().err
 
@@ -119,7 +125,7 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_fit_ignores_held_out_runs(
+def test_fit_excludes_held_out_runs_and_prints_their_rms(
     odd_run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out, rig = tmp_path / "m.toml", str(odd_run / "rig.toml")
@@ -146,7 +152,7 @@ def test_diagnosis_reports_the_rms_of_held_out_runs(odd_run: Path, tmp_path: Pat
     ("pattern", "fragment"),
     [("x*", "--hold-out x*: fits no run; there are r0, r1, r2, r3"), ("r*", "fits every run")],
 )
-def test_hold_out_pattern_of_no_run_or_all_runs_is_refused(
+def test_hold_out_pattern_that_matches_no_run_or_every_run_is_refused(
     odd_run: Path,
     tmp_path: Path,
     pattern: str,

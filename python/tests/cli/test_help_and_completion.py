@@ -17,7 +17,9 @@ def test_every_command_has_examples() -> None:
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))
-def test_help_ends_with_examples_that_parse(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_of_every_command_ends_with_examples_that_parse(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main([*name.split(), "--help"]) == 0
     shown = capsys.readouterr().out
     lines = shown[shown.index("examples:\n") :].splitlines()[1:]
@@ -48,7 +50,7 @@ def test_misspelt_option_is_reported_with_a_suggestion(
     assert message.count("\n") == 1
 
 
-def test_option_values_are_not_taken_for_misspelt_options(
+def test_command_lines_with_valid_options_and_values_are_accepted(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["effects", "--law=lugre"]) == 0
@@ -86,6 +88,6 @@ def test_bash_completes_commands_options_and_values(capsys: pytest.CaptureFixtur
     assert completed(text, "--comp") == ["--completion"]
 
 
-def test_unknown_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_completion_for_an_unknown_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--completion", "tcsh"]) == 2
     assert "tcsh" in capsys.readouterr().err

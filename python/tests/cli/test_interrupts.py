@@ -1,4 +1,4 @@
-"""An interrupt (Ctrl-C) during a fit or a diagnosis keeps the best model so far; exit code 130.
+"""An interrupt (Ctrl-C) of a fit or a diagnosis returns the best model so far; exit code 130.
 
 The interrupt comes from an effect written in Python, at a chosen evaluation of its force, or from
 the progress callback.
@@ -65,14 +65,14 @@ def fit() -> jbf.Fit:
     return jbf.fit(Rig(), RUNS, ["inertia_leak", "stopping"], law="coulomb")
 
 
-def test_fit_interrupted_at_once_has_no_result() -> None:
+def test_fit_interrupted_at_its_first_evaluation_raises_a_plain_keyboard_interrupt() -> None:
     register(1)
     with pytest.raises(KeyboardInterrupt) as interrupted:
         fit()
     assert not isinstance(interrupted.value, Stopped)
 
 
-def test_interrupted_fit_keeps_its_best_parameters() -> None:
+def test_interrupted_fit_returns_the_best_parameters_so_far() -> None:
     calls = register(np.inf)
     complete = fit()
     total = calls[0]
@@ -89,7 +89,7 @@ def test_interrupted_fit_keeps_its_best_parameters() -> None:
 
 
 def stop_when(condition: Callable[[str, int, int], bool]) -> Callable[[str, int, int], None]:
-    """A progress callback that interrupts."""
+    """A progress callback that raises `KeyboardInterrupt` when the condition holds."""
 
     def progress(message: str, done: int, total: int) -> None:
         if condition(message, done, total):
@@ -98,7 +98,7 @@ def stop_when(condition: Callable[[str, int, int], bool]) -> Callable[[str, int,
     return progress
 
 
-def test_interrupted_diagnosis_keeps_the_base_law() -> None:
+def test_diagnosis_interrupted_while_trying_effects_returns_the_fitted_base_law() -> None:
     progress = stop_when(lambda message, done, total: total > 0)
     with pytest.raises(Stopped) as stopped:
         jbf.diagnose(Rig(), RUNS, law="coulomb", progress=progress)
@@ -109,7 +109,7 @@ def test_interrupted_diagnosis_keeps_the_base_law() -> None:
 
 
 @pytest.mark.extended
-def test_interrupted_round_keeps_its_model() -> None:
+def test_interrupted_round_returns_the_model_with_its_effects() -> None:
     progress = stop_when(lambda message, done, total: total > 0)
     with pytest.raises(Stopped) as stopped:
         one_round(Rig(), RUNS, ["inertia_leak"], law="coulomb", progress=progress)
@@ -135,7 +135,7 @@ def write_effect(at: int) -> None:
     ["diagnose runs --report r.html", "fit runs --effects stopping"],
     ids=["diagnose", "fit"],
 )
-def test_interrupted_command_writes_the_best_model(
+def test_interrupted_command_writes_the_best_model_and_exits_with_code_130(
     command: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     at = 1
@@ -155,7 +155,7 @@ def test_interrupted_command_writes_the_best_model(
     assert jbf.Model.load("m.toml").law == "coulomb"
 
 
-def test_interrupted_diagnosis_without_a_file_prints_the_best_model(
+def test_interrupted_diagnosis_without_an_output_file_prints_the_best_model(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_effect(1)

@@ -27,7 +27,7 @@ def campaigns() -> list[list[jbf.Run]]:
 
 
 @pytest.mark.extended
-def test_concurrent_diagnoses_equal_sequential_ones(campaigns: list[list[jbf.Run]]) -> None:
+def test_concurrent_diagnoses_equal_sequential_diagnoses(campaigns: list[list[jbf.Run]]) -> None:
     def work(runs: list[jbf.Run]) -> str:
         return as_text(jbf.diagnose(jbf.Rig(), runs, law="stribeck"))
 
@@ -37,7 +37,8 @@ def test_concurrent_diagnoses_equal_sequential_ones(campaigns: list[list[jbf.Run
         assert list(pool.map(work, campaigns[:2])) == sequential
 
 
-def test_concurrent_predictions_and_fits_equal_sequential_ones(
+@pytest.mark.extended
+def test_concurrent_fits_and_predictions_equal_sequential_fits_and_predictions(
     campaigns: list[list[jbf.Run]],
 ) -> None:
     def fitted(runs: list[jbf.Run]) -> jbf.Model:
@@ -56,7 +57,7 @@ def test_concurrent_predictions_and_fits_equal_sequential_ones(
 @pytest.mark.skipif(
     not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="this interpreter has a lock"
 )
-def test_extension_does_not_enable_the_interpreter_lock() -> None:
+def test_extension_does_not_enable_the_lock_of_a_free_threaded_interpreter() -> None:
     # In a separate process, because another library of the tests may enable the lock.
     code = "import sys, jbf; jbf.effects(); print(sys._is_gil_enabled())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -69,7 +70,7 @@ def blas_threads() -> set[int]:
     return {lib["num_threads"] for lib in threadpool_info() if lib["user_api"] == "blas"}
 
 
-def test_blas_uses_one_thread_during_a_fit_and_is_restored_after_an_error() -> None:
+def test_blas_has_one_thread_in_decorated_calls_and_its_previous_number_after_an_error() -> None:
     @one_blas_thread
     def work(depth: int) -> set[int]:
         if depth:

@@ -56,7 +56,7 @@ def places(axis: Binned) -> Array:
     return np.concatenate(axis.places)
 
 
-def test_bins_of_a_direction_hold_no_sample_of_the_other(
+def test_bins_of_one_direction_contain_no_sample_of_the_other_direction(
     campaign: Campaign, axes: dict[str, Binned]
 ) -> None:
     velocity = velocities(campaign)
@@ -68,11 +68,11 @@ def test_bins_of_a_direction_hold_no_sample_of_the_other(
         for i, b in enumerate(axis.bins):
             if b.direction:
                 assert -b.direction not in np.sign(velocity[places(axis) == i]), (name, i)
-            # Only the backward bins of the time axis hold samples at rest as well.
+            # Only the backward bins of the time axis contain samples at rest as well.
             assert b.with_rest == (name == "time" and b.direction < 0)
 
 
-def test_bins_carry_the_units_of_the_rig(axes: dict[str, Binned]) -> None:
+def test_bins_have_the_units_of_the_rig(axes: dict[str, Binned]) -> None:
     units = {name: {b.unit for b in axis.bins} for name, axis in axes.items()}
     assert units == {
         "direction": {""},
@@ -100,7 +100,7 @@ def test_run_axis_has_one_bin_for_each_run(axes: dict[str, Binned]) -> None:
     assert [set(at.tolist()) for at in axes["run"].places] == [{0}, {1}]
 
 
-def test_regimes_end_at_one_fifth_of_the_transition_speed_and_at_it(
+def test_regimes_change_at_0_2_and_1_0_times_the_transition_speed(
     campaign: Campaign, axes: dict[str, Binned]
 ) -> None:
     axis = axes["regime"]
@@ -111,7 +111,9 @@ def test_regimes_end_at_one_fifth_of_the_transition_speed_and_at_it(
         assert np.array_equal(at, np.where(p.motion.resting, 0, regime))
 
 
-def test_law_without_a_film_has_thirds_of_the_recorded_speeds(campaign: Campaign) -> None:
+def test_speed_ranges_of_a_law_without_a_film_are_thirds_of_the_recorded_speeds(
+    campaign: Campaign,
+) -> None:
     axis = axis_of(campaign, "speed range", u_tr=None)
     speeds = np.abs(velocities(campaign))
     slow, fast = np.quantile(speeds[speeds > 0.0], [1 / 3, 2 / 3])
@@ -200,7 +202,7 @@ def since_last(event: npt.NDArray[np.bool_], measure: Array) -> Array:
     return since
 
 
-def test_time_since_a_rest_and_distance_since_a_reversal_lie_in_their_spans(
+def test_time_since_a_rest_and_distance_since_a_reversal_lie_in_the_span_of_their_bin(
     campaign: Campaign, axes: dict[str, Binned]
 ) -> None:
     seen: dict[str, list[Array]] = {"time since a rest": [], "distance since a reversal": []}
@@ -233,7 +235,7 @@ def test_time_since_a_rest_and_distance_since_a_reversal_lie_in_their_spans(
         assert below == pytest.approx([0.05, 0.1, 0.2, 0.4, 0.7], abs=0.02)
 
 
-def test_samples_before_the_first_reversal_have_no_distance_since_one() -> None:
+def test_samples_before_the_first_reversal_have_no_distance_since_a_reversal() -> None:
     time = 0.02 * np.arange(600)
     forward = time < 6.0
     run = Run.from_arrays(time, np.where(forward, 0.1, -0.1), np.where(forward, 2.0, -2.0))
@@ -245,7 +247,9 @@ def test_samples_before_the_first_reversal_have_no_distance_since_one() -> None:
 
 
 @pytest.mark.parametrize(("count", "exists"), [(99, False), (100, True)])
-def test_time_since_a_rest_needs_one_hundred_samples_after_a_rest(count: int, exists: bool) -> None:
+def test_axis_of_time_since_a_rest_exists_from_one_hundred_samples_after_a_rest_on(
+    count: int, exists: bool
+) -> None:
     speed = np.concatenate((np.zeros(40), np.full(count, 0.1)))
     time = 0.02 * np.arange(len(speed))
     run = Run.from_arrays(time, speed, 2.0 + 0.01 * np.cos(time))

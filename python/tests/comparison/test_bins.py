@@ -43,7 +43,7 @@ from jbf.plot.bin_axes import bin_axis
         ("force", Bin(centre=3.14, unit="N"), "f = +3.14 N"),
     ],
 )
-def test_label_states_place_unit_and_direction(axis: Axis, b: Bin, expected: str) -> None:
+def test_bin_label_states_position_unit_and_direction(axis: Axis, b: Bin, expected: str) -> None:
     assert label(axis, b) == expected
     assert Binned(axis, (b,), []).labels == (expected,)
 
@@ -53,7 +53,7 @@ def failure_of(axis: Axis, *bins: Bin) -> Failure:
     return Failure(axis, "", 0.5, bins, np.zeros(len(bins)), np.ones(len(bins), dtype=np.intp))
 
 
-def test_spans_are_drawn_at_their_middle() -> None:
+def test_bins_with_a_span_are_drawn_at_its_middle() -> None:
     spans = [Bin(span=(0.0, 2.3), unit="s", direction=d, with_rest=d < 0) for d in (-1, 1)]
     place = bin_axis(failure_of("time", *spans))
     assert place.x.tolist() == [1.15, 1.15]
@@ -61,7 +61,7 @@ def test_spans_are_drawn_at_their_middle() -> None:
     assert place.ticks == ()
 
 
-def test_open_spans_of_both_directions_share_one_tick() -> None:
+def test_half_open_spans_of_both_directions_share_a_tick_label() -> None:
     ends = [(-math.inf, 0.1), (0.1, math.inf)]
     bins = [Bin(span=end, unit="s", direction=d) for d in (-1, 1) for end in ends]
     place = bin_axis(failure_of("time since a rest", *bins))

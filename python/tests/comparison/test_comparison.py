@@ -40,6 +40,12 @@ def test_rms_of_all_runs_weighs_each_run_by_its_samples() -> None:
     assert [(r.name, r.samples) for r in found.runs] == [("long", 501), ("short", 101)]
     assert [r.rms_n for r in found.runs] == pytest.approx([1.0, 3.0], abs=1e-5)
     assert found.rms_n == pytest.approx(np.sqrt((501 + 909) / 602), abs=1e-5)
+
+
+def test_json_of_a_comparison_has_errors_noise_runs_and_failures(
+    off_by_one_newton: Comparison,
+) -> None:
+    found = off_by_one_newton
     content = found.to_dict()
     assert (content["rms_n"], content["noise_n"]) == (found.rms_n, found.noise_n)
     assert content["runs"] == [
@@ -75,8 +81,8 @@ def test_run_without_counted_samples_has_an_error_of_zero() -> None:
     assert found.rms_n == pytest.approx(1.0)
 
 
-def test_delayed_model_excludes_samples_next_to_jumps() -> None:
-    """The instant of a reversal is uncertain where the model itself moves it."""
+def test_model_with_a_delay_excludes_samples_next_to_jumps_of_the_force() -> None:
+    """The instant of a reversal is uncertain because the model shifts it."""
     t = np.arange(0.0, 20.0, 0.02)
     v = 0.1 * np.sin(t)
     runs = [Run.from_arrays(t, v, coulomb(t, v, v))]
@@ -92,8 +98,9 @@ def test_delayed_prediction_lags_by_the_delay() -> None:
     v = 0.05 + 0.02 * t
     campaign = Campaign.prepare(Rig(), [Run.from_arrays(t, v, coulomb(t, v, v))])
     delayed = Model(Rig(), "coulomb", ["time_delay"], {**LAW, "time_delay.tau_s": 0.1})
-    (now,), (late,) = predicted(MODEL, campaign), predicted(delayed, campaign)
-    assert (now - late)[10:-10] == pytest.approx(20.0 * 0.02 * 0.1, rel=0.02)
+    (without_delay,), (with_delay,) = predicted(MODEL, campaign), predicted(delayed, campaign)
+    difference = without_delay - with_delay
+    assert difference[10:-10] == pytest.approx(20.0 * 0.02 * 0.1, rel=0.02)
 
 
 def test_means_over_speed_lie_on_the_lines_of_record_and_model(
@@ -115,7 +122,7 @@ def test_means_over_speed_lie_on_the_lines_of_record_and_model(
 
 
 @pytest.mark.parametrize(("count", "bins"), [(4, 0), (5, 1), (9, 1), (10, 2), (119, 23), (125, 24)])
-def test_mean_over_speed_needs_five_samples(
+def test_bin_of_the_means_over_speed_has_at_least_five_samples(
     off_by_one_newton: Comparison, count: int, bins: int
 ) -> None:
     masks: list[npt.NDArray[np.bool_]] = [np.arange(501) < count, np.arange(501) < 50]
@@ -125,7 +132,7 @@ def test_mean_over_speed_needs_five_samples(
     assert found[-1.0] == 10
 
 
-def test_zero_error_of_the_sensor_is_removed_from_friction_over_speed() -> None:
+def test_sensor_offset_is_removed_from_friction_over_speed() -> None:
     runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
     model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
     for one in friction_over_speed(compare(model, runs)):
@@ -134,7 +141,7 @@ def test_zero_error_of_the_sensor_is_removed_from_friction_over_speed() -> None:
         assert one.modelled_n == pytest.approx(line, rel=1e-4)
 
 
-def test_regimes_begin_at_one_fifth_of_the_transition_speed_and_at_it() -> None:
+def test_regimes_begin_at_0_2_and_1_0_times_the_transition_speed() -> None:
     model = Model(Rig.thesis(), parameters={"U_tr_m_s": 0.05})
     assert regimes(model) == [(pytest.approx(0.01), "mixed"), (0.05, "full film")]
     assert regimes(MODEL) == []

@@ -1,4 +1,4 @@
-"""Parts of a model's force: what effects add, and what the other parameters cannot replace."""
+"""Parts of a model's force: the contribution of effects that other parameters cannot replace."""
 
 from __future__ import annotations
 
@@ -34,20 +34,22 @@ def full(runs: list[Run]) -> Comparison:
     return compare(model_of(["sensor_offset", "sensor_drift"], **OFFSET, **DRIFT), runs)
 
 
-def test_model_without_an_effect_keeps_law_parameters_and_held_flags() -> None:
+def test_removal_of_an_effect_preserves_law_parameters_and_held_flags() -> None:
     held = {"F_c_n": ParameterValue(4.0, 0.25), "F_v_n_s_m": ParameterValue(9.0, None, held=True)}
     values = {"sensor_offset.b_n": 0.5, "sensor_drift.d_n_s": 0.01}
     model = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**held, **values})
     reduced = without(model, ["sensor_offset"])
     assert tuple(reduced.effects) == ("sensor_drift",)
     assert reduced.law == "coulomb"
-    kept = {n: p for n, p in model.parameters.items() if n != "sensor_offset.b_n"}
-    assert dict(reduced.parameters) == kept
+    others = {n: p for n, p in model.parameters.items() if n != "sensor_offset.b_n"}
+    assert dict(reduced.parameters) == others
     assert tuple(without(model, model.effects).effects) == ()
 
 
-def test_offset_and_drift_add_their_own_force(full: Comparison) -> None:
-    """A drift is relative to the middle of a run or to its start: its rate is 0.5 N/s."""
+def test_force_added_by_an_offset_is_constant_and_that_of_a_drift_grows_at_its_rate(
+    full: Comparison,
+) -> None:
+    """The rate of 0.5 N/s does not depend on the instant to which the drift is relative."""
     drift = added_by(full, ["sensor_drift"])
     offset = added_by(full, ["sensor_offset"])
     both = added_by(full, full.model.effects)
@@ -57,7 +59,7 @@ def test_offset_and_drift_add_their_own_force(full: Comparison) -> None:
         assert both[i] == pytest.approx(offset[i] + drift[i])
 
 
-def test_effects_that_the_model_lacks_add_nothing(full: Comparison) -> None:
+def test_effect_that_the_model_lacks_adds_no_force(full: Comparison) -> None:
     assert [a.tolist() for a in added_by(full, ["sensor_lag"])] == [[0.0] * 501] * 2
     mixed = added_by(full, ["sensor_offset", "sensor_lag"])
     assert mixed[0] == pytest.approx(np.full(501, 2.0))
@@ -71,7 +73,7 @@ def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
         assert added[inside] == pytest.approx(mass[inside], abs=1e-3)
 
 
-def test_friction_alone_is_the_record_without_offset_and_drift(full: Comparison) -> None:
+def test_friction_alone_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
     assert beside_friction(full) == ("sensor_offset", "sensor_drift")
     for found, p in zip(friction_alone(full), full.campaign.prepared, strict=True):
         v = p.motion.velocity_m_s
@@ -80,7 +82,7 @@ def test_friction_alone_is_the_record_without_offset_and_drift(full: Comparison)
         assert found == pytest.approx(5.0 * np.sign(v) + 20.0 * v, abs=2e-3)
 
 
-def test_effects_of_friction_are_not_removed() -> None:
+def test_offset_inertia_and_drift_but_not_lag_are_excluded_from_the_friction() -> None:
     effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
     found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
     assert set(beside_friction(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
@@ -116,13 +118,15 @@ def test_part_of_an_effect_is_its_least_squares_residual_on_the_free_parameters(
             assert part == pytest.approx(reference, abs=5e-3)
 
 
-def test_only_new_effects_have_a_part(full: Comparison, runs: list[Run]) -> None:
+def test_part_is_computed_only_for_effects_that_the_first_model_lacks(
+    full: Comparison, runs: list[Run]
+) -> None:
     assert made_of(full, compare(model_of([]), runs)) == {}
     assert made_of(full, full) == {}
 
 
-def test_parameters_without_any_influence_are_ignored() -> None:
-    """A time constant of a change of zero has a derivative of zero."""
+def test_parameter_without_influence_does_not_change_the_part_of_an_effect() -> None:
+    """The time constant of a warm-up of size zero has a derivative of zero."""
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
     idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
     before = Model(Rig(), "coulomb", ["warm_up"], idle)

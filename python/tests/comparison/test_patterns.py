@@ -33,7 +33,7 @@ def description(
     counts: list[int] | None = None,
     found: list[float] | None = None,
 ) -> str:
-    """The pattern of bin means in words; 100 samples in each bin by default."""
+    """Description of a pattern of bin means, by default of 100 samples in each bin."""
     axis = Binned("run" if bins[0].name else "direction", bins, [], "N m")
     count = np.array([100] * len(bins) if counts is None else counts, dtype=np.intp)
     return pattern_words(axis, np.array(means), count, None if found is None else np.array(found))
@@ -48,7 +48,7 @@ def test_bin_means_use_counted_samples_that_have_a_bin() -> None:
     assert means.tolist() == [3.0, 0.0, -4.5]
 
 
-def test_share_is_the_explained_square_less_one_noise_variance_per_bin() -> None:
+def test_share_of_a_pattern_is_the_explained_square_less_one_noise_variance_per_bin() -> None:
     """Of a sum of squares of 95 N^2, three bins of ten samples explain 50 N^2."""
     axis = binned(RUNS[:4], [0] * 10 + [1] * 10 + [2] * 10 + [-1] * 5)
     residuals = np.repeat([2.0, -1.0, 0.0, 3.0], [10, 10, 10, 5])
@@ -66,7 +66,7 @@ def test_share_is_the_explained_square_less_one_noise_variance_per_bin() -> None
 
 
 @pytest.mark.parametrize(("share", "reported"), [(0.0097, False), (0.0103, True)])
-def test_default_least_share_is_one_percent_of_the_mean_square(
+def test_pattern_below_one_percent_of_the_mean_square_is_not_reported_by_default(
     share: float, reported: bool
 ) -> None:
     """A mean m with unit swings around it explains m^2 of 1 + m^2."""
@@ -78,7 +78,7 @@ def test_default_least_share_is_one_percent_of_the_mean_square(
 
 @pytest.mark.parametrize(("excess", "reported"), [(-0.01, False), (0.01, True)])
 @pytest.mark.parametrize("significance", [6.0, 9.0])
-def test_explained_square_exceeds_chi_square_of_the_filled_bins(
+def test_pattern_is_reported_if_its_explained_square_exceeds_the_chi_square_threshold(
     significance: float, excess: float, reported: bool
 ) -> None:
     """A chi-square variable of three degrees of freedom has mean 3 and deviation sqrt(6)."""
@@ -92,14 +92,14 @@ def test_explained_square_exceeds_chi_square_of_the_filled_bins(
     assert (found is not None) == reported
 
 
-def test_sizes_come_from_the_second_residual_where_one_is_given() -> None:
+def test_sizes_of_a_pattern_are_those_of_the_second_residual_if_it_is_given() -> None:
     axis, samples = binned(RUNS[:2], [0] * 50 + [1] * 50), samples_of(np.ones(100))
     tested, reported = np.repeat([1.0, 0.0], 50), np.repeat([7.0, -9.0], 50)
     found = pattern_along(axis, samples, [tested], 0.01, told_of=[reported])
     assert found is not None
     assert found.share == pytest.approx((50.0 - 2e-4) / 50.0)
     assert found.means_n.tolist() == [7.0, -9.0]
-    # The bin without a pattern in the tested residual is not named.
+    # A bin whose mean is zero in the tested residual is not named.
     assert "+7 N at run a" in found.where
     assert "run b" not in found.where
     assert pattern_along(axis, samples, [0.0 * tested], 0.01, told_of=[reported]) is None
@@ -121,7 +121,7 @@ def test_description_states_sign_and_mean_size_over_all_samples(
     assert relation in description(DIRECTIONS, means, [300, 100])
 
 
-def test_sign_of_motion_needs_strong_bins_of_both_directions() -> None:
+def test_description_omits_the_direction_if_only_one_deviates_or_a_bin_is_at_rest() -> None:
     assert "record minus model +3 N m" in description(DIRECTIONS, [0.001, 3.0])
     with_rest = (*DIRECTIONS, Bin("at rest"))
     assert "direction of motion" not in description(with_rest, [-1.0, 1.0, 1.0])
@@ -135,8 +135,8 @@ def test_bins_below_two_percent_of_the_explained_square_are_not_named(
     assert ("run b" in description(RUNS[:2], [1.0, other])) == named
 
 
-def test_named_bins_are_those_that_explain_most() -> None:
-    """10 samples at 2 N m explain 40, 100 samples at 1 and -0.9 N m explain 100 and 81."""
+def test_description_names_the_bins_that_explain_most() -> None:
+    """10 samples at 2 N m explain 40 (N m)^2; 100 samples at 1 and -0.9 N m explain 100 and 81."""
     words = description(RUNS[:3], [2.0, 1.0, -0.9], [10, 100, 100])
     assert words == "most +1 N m at run b; -0.9 N m at run c"
     found_elsewhere = description(RUNS[:3], [1.0, -8.0, 2.0], found=[3.0, 0.1, 3.0])
@@ -144,7 +144,7 @@ def test_named_bins_are_those_that_explain_most() -> None:
 
 
 @pytest.mark.parametrize(("counts", "throughout"), [([100] * 5, False), ([100] * 4 + [0], True)])
-def test_pattern_in_more_than_four_fifths_of_the_filled_bins_is_one_of_all(
+def test_pattern_in_more_than_four_fifths_of_the_filled_bins_is_described_as_all(
     counts: list[int], throughout: bool
 ) -> None:
     words = description(RUNS, [1.0, 1.0, 1.0, 1.0, 0.01], counts)
@@ -161,12 +161,20 @@ def two_runs() -> Campaign:
     return Campaign.prepare(Rig(), runs)
 
 
-def test_white_noise_has_no_failures_and_a_step_between_runs_has_one() -> None:
-    campaign = two_runs()
+def noise_of(campaign: Campaign) -> list[Array]:
+    """White noise of unit size for each run."""
     random = np.random.default_rng(5)
-    noise = [random.normal(0.0, 1.0, len(p.run)) for p in campaign.prepared]
-    assert find_failures(campaign, campaign.samples, noise, 0.05, 1.0) == ()
-    step = [r + level for r, level in zip(noise, (0.5, -0.5), strict=True)]
+    return [random.normal(0.0, 1.0, len(p.run)) for p in campaign.prepared]
+
+
+def test_white_noise_has_no_failures() -> None:
+    campaign = two_runs()
+    assert find_failures(campaign, campaign.samples, noise_of(campaign), 0.05, 1.0) == ()
+
+
+def test_step_between_runs_is_the_largest_failure_with_its_share_and_means() -> None:
+    campaign = two_runs()
+    step = [r + level for r, level in zip(noise_of(campaign), (0.5, -0.5), strict=True)]
     found = find_failures(campaign, campaign.samples, step, 0.05, 1.0)
     assert found[0].axis == "run"
     # The step is 0.25 of the mean square 1.25.

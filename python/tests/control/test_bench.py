@@ -56,7 +56,7 @@ def test_shaft_obeys_the_equation_of_motion() -> None:
     assert np.max(np.abs(expected - r.velocity_rad_s[1:])) < 1e-9
 
 
-def test_velocity_control_without_friction_has_its_transfer_function() -> None:
+def test_velocity_loop_without_friction_has_the_analytical_transfer_function() -> None:
     """A first-order plant under u = -g (v_hat - r) + c r, v_hat with the observer's lag 1/k."""
     task = replace(SHORT, frequency_rad_s=2.0, seconds=40.0, skip_s=10.0)
     r = run(None, "none", task, bench=replace(QUIET, volts_per_n=1e-12))
@@ -80,11 +80,11 @@ def test_shaft_below_breakaway_does_not_move_for_ten_minutes() -> None:
     assert r.friction_v[-1] == pytest.approx(r.output_v[-1], rel=1e-9)
 
 
-def test_friction_of_sliding_is_the_friction_force_in_volts() -> None:
+def test_friction_of_a_sliding_shaft_equals_the_coulomb_law_in_volts() -> None:
     """Coulomb's law: F_c + F_v v, times volts per newton."""
     model = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 3.0})
     r = run(model, "none", SHORT, bench=replace(QUIET, volts_per_n=0.05))
-    # Friction holds over the step that leads to the velocity.
+    # Friction is constant over the step that leads to the velocity.
     before, after = r.velocity_rad_s[:-1], r.velocity_rad_s[1:]
     sliding = np.minimum(np.abs(before), np.abs(after)) > 0.2
     expected = 0.05 * (5.0 * np.sign(before) + 3.0 * before)
@@ -92,14 +92,14 @@ def test_friction_of_sliding_is_the_friction_force_in_volts() -> None:
     assert r.friction_v[1:][sliding] == pytest.approx(expected[sliding], abs=0.01)
 
 
-def test_measured_angle_is_counted_in_steps_of_the_encoder() -> None:
+def test_measured_angle_is_a_whole_number_of_encoder_counts() -> None:
     r = run(None, "observed", SHORT)
     counts = r.measured_angle_rad * THESIS_BENCH.counts_per_rad
     assert counts == pytest.approx(np.round(counts), abs=1e-6)
     assert np.max(np.abs(r.measured_angle_rad - r.angle_rad)) <= 1.01 / COUNTS_PER_RAD
 
 
-def test_seed_determines_the_noise() -> None:
+def test_runs_are_equal_if_and_only_if_the_seed_of_the_noise_is_equal() -> None:
     first, second = (run(None, "coulomb", SHORT) for _ in range(2))
     assert np.array_equal(first.angle_rad, second.angle_rad)
     other = run(None, "coulomb", SHORT, bench=replace(THESIS_BENCH, seed=2))
@@ -108,7 +108,9 @@ def test_seed_determines_the_noise() -> None:
 
 @pytest.mark.parametrize("factor", [0.5, 1.0, 4.0])
 @pytest.mark.parametrize("counts", [0.0, 0.7])
-def test_noise_factor_includes_the_rounding_of_the_encoder(factor: float, counts: float) -> None:
+def test_encoder_noise_including_its_rounding_error_scales_with_the_factor(
+    factor: float, counts: float
+) -> None:
     """Rounding to whole counts has the variance 1/12 (Widrow), which no encoder falls below."""
     bench = with_noise(replace(THESIS_BENCH, encoder_noise_counts=counts), factor)
     assert bench.input_noise_v == pytest.approx(0.005 * factor)
@@ -132,7 +134,7 @@ def test_thesis_model_has_the_elastic_element_and_the_given_parameters(
     assert stiffness * 0.0127 / COUNTS_PER_RAD == pytest.approx(0.26)
 
 
-def test_effects_reach_the_core_with_their_own_parameters() -> None:
+def test_core_model_has_the_parameters_of_law_effects_bearing_and_load() -> None:
     values = {"F_c_n": 5.0, "F_s_n": 6.0, "F_v_n_s_m": 20.0, "wear_in.a": 0.5, "wear_in.s_0_m": 0.2}
     content = core_model(Model(Rig(), "coulomb", ["wear_in"], values))
     assert content["parameters"] == [5.0, 6.0, 20.0]
@@ -143,7 +145,7 @@ def test_effects_reach_the_core_with_their_own_parameters() -> None:
     assert bearing["bearing"]["radius_m"] == pytest.approx(0.0127)
 
 
-def test_user_defined_effect_cannot_run_in_a_loop() -> None:
+def test_user_defined_effect_in_a_loop_is_rejected_by_name() -> None:
     drag = Parameter("c", "N s/m", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
     register_effect(lambda velocity_m_s, c: c * velocity_m_s, name="my_drag", parameters=[drag])
     try:
@@ -162,7 +164,7 @@ def test_user_defined_effect_cannot_run_in_a_loop() -> None:
         ("counter_bits", (8, 32), (7, 33)),
     ],
 )
-def test_quantity_outside_its_range_is_named(
+def test_bench_quantity_outside_its_range_is_rejected_by_name(
     name: str, accepted: tuple[Any, ...], refused: tuple[Any, ...]
 ) -> None:
     for value in accepted:

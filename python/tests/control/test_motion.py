@@ -22,7 +22,7 @@ def recorded(**columns: Any) -> Run:
     return Run.from_arrays(TIME, **{"velocity_m_s": RADIUS_M * TIME, **columns})
 
 
-def test_speed_is_followed_in_radians_of_the_journal() -> None:
+def test_reference_of_a_bearing_is_the_recorded_speed_in_radians_per_second() -> None:
     task, reference, load = follow(recorded(load_n=100.0 + TIME), Rig.thesis())
     assert reference is not None
     assert load is not None
@@ -34,14 +34,14 @@ def test_speed_is_followed_in_radians_of_the_journal() -> None:
     assert task.frequency_rad_s * task.seconds == pytest.approx(2.0 * math.pi)
 
 
-def test_speed_of_a_linear_axis_is_followed_in_metres() -> None:
+def test_reference_of_a_linear_axis_is_the_recorded_speed_in_metres_per_second() -> None:
     _, reference, load = follow(recorded(), Rig())
     assert reference is not None
     assert np.allclose(reference[0], RADIUS_M * STEPS)
     assert load is None
 
 
-def test_reference_starts_with_the_record_and_has_the_step_of_the_bench() -> None:
+def test_reference_starts_at_the_first_sample_and_has_the_time_step_of_the_bench() -> None:
     later = Run.from_arrays(TIME + 50.0, RADIUS_M * TIME)
     task, reference, _ = follow(later, Rig.thesis(), bench=replace(THESIS_BENCH, dt_s=0.01))
     assert reference is not None
@@ -49,7 +49,7 @@ def test_reference_starts_with_the_record_and_has_the_step_of_the_bench() -> Non
     assert (reference[0][0], task.high) == pytest.approx((0.0, 9.89))
 
 
-def test_speed_is_derived_from_a_wrapped_angle_only_where_it_was_not_recorded() -> None:
+def test_speed_is_derived_from_a_wrapped_angle_only_if_it_was_not_recorded() -> None:
     wrapped = Run.from_arrays(TIME, angle_rad=np.mod(TIME**2, 2.0 * np.pi))
     reference = follow(wrapped, Rig.thesis()).reference
     assert reference is not None
@@ -61,7 +61,9 @@ def test_speed_is_derived_from_a_wrapped_angle_only_where_it_was_not_recorded() 
 
 
 @pytest.mark.parametrize(("rig", "rate"), [(Rig.thesis(), 1.0), (Rig(), 2.0)])
-def test_position_is_followed_from_zero(rig: Rig, rate: float) -> None:
+def test_position_reference_is_the_recorded_position_relative_to_its_start(
+    rig: Rig, rate: float
+) -> None:
     motion = recorded(angle_rad=3.0 + TIME, position_m=7.0 + 2.0 * TIME)
     task, reference, _ = follow(motion, rig, "position")
     assert reference is not None
@@ -70,7 +72,7 @@ def test_position_is_followed_from_zero(rig: Rig, rate: float) -> None:
     assert np.allclose(reference[1], rate)
 
 
-def test_record_without_motion_or_without_a_position_is_refused() -> None:
+def test_record_without_motion_or_without_the_required_position_is_rejected() -> None:
     with pytest.raises(InputError, match="does not move"):
         follow(recorded(velocity_m_s=np.full(len(TIME), 0.1)), Rig())
     for rig, column in ((Rig.thesis(), "position_m"), (Rig(), "angle_rad")):
@@ -79,7 +81,9 @@ def test_record_without_motion_or_without_a_position_is_refused() -> None:
 
 
 @pytest.mark.parametrize("control", ["velocity", "position"])
-def test_observed_compensator_follows_a_recorded_motion(control: Any) -> None:
+def test_observed_compensator_follows_a_record_within_a_tenth_of_its_standard_deviation(
+    control: Any,
+) -> None:
     time_s = np.arange(0.0, 20.0, 0.02)
     angle = 3.0 + 0.02 * (1.0 - np.cos(time_s)) / RADIUS_M
     load = np.where(time_s < 10.0, 104.0, 150.0)

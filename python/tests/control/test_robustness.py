@@ -19,7 +19,7 @@ SQUARE = {"position square": TASKS["position square"]}
 
 
 def base() -> Model:
-    """The rigid bearing that the compensator carries."""
+    """The model of a rigid bearing, which the compensator uses."""
     return thesis_model(elastic="nothing")
 
 
@@ -44,7 +44,7 @@ def square_outcomes() -> dict[str, Outcome]:
         ((1.03, 0.1), 1.03, "harm"),
     ],
 )
-def test_verdict_is_that_of_the_worst_task(
+def test_robustness_verdict_is_that_of_the_task_with_the_largest_ratio(
     ratios: tuple[float, ...], worst: float, verdict: str
 ) -> None:
     assert (HELP, HARM) == (0.95, 1.02)
@@ -52,7 +52,8 @@ def test_verdict_is_that_of_the_worst_task(
     assert (outcome.worst, outcome.verdict) == (worst, verdict)
 
 
-def test_hidden_effects_are_in_the_plant_at_their_strength() -> None:
+@pytest.mark.extended
+def test_each_hidden_effect_is_added_to_the_plant_at_its_strong_or_starting_value() -> None:
     hidden = {n.removeprefix("hidden "): c for n, c in all_cases().items() if "hidden" in n}
     assert set(STRONG) <= set(hidden)
     assert len(hidden) > 15
@@ -66,11 +67,11 @@ def test_hidden_effects_are_in_the_plant_at_their_strength() -> None:
         for p in page.parameters:
             expected = STRONG.get(name, {}).get(p.name, p.starts[0])
             assert case.plant.parameters[f"{name}.{p.name}"].value == expected
-        # An effect of the load shows only under another load.
+        # The load dependence has an influence only under another load.
         assert case.load_factor == (1.5 if name == "load_dependence" else 1.0)
 
 
-def test_effects_of_the_instrument_mislead_the_carried_model_only() -> None:
+def test_hidden_sensor_offset_changes_the_model_of_the_compensator_but_not_the_plant() -> None:
     offset = all_cases()["hidden sensor_offset"]
     assert offset.plant == base()
     assert offset.carried is not None
@@ -87,7 +88,7 @@ def test_fit_of_records_without_a_hidden_effect_recovers_the_model() -> None:
         assert abs(found[name].value - true[name].value) < 4.0 * stderr
 
 
-def test_cases_of_wrong_numbers_are_wrong_by_the_stated_factor() -> None:
+def test_cases_with_a_wrong_constant_differ_from_the_bench_by_the_stated_factor() -> None:
     found, model = all_cases(), base()
 
     def factor(name: str, field: str) -> float:
@@ -106,7 +107,8 @@ def test_cases_of_wrong_numbers_are_wrong_by_the_stated_factor() -> None:
         assert oil.viscosity_pa_s == pytest.approx(times * model.rig.lubricant.viscosity_pa_s)
 
 
-def test_effects_of_the_model_and_viscosity_without_a_film_are_no_cases() -> None:
+@pytest.mark.extended
+def test_effects_of_the_model_and_viscosity_of_a_law_without_a_film_are_not_cases() -> None:
     names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["wear_in"]))}
     assert "hidden wear_in" not in names
     assert "hidden coulomb_drag" not in names  # the law has it already
@@ -114,9 +116,16 @@ def test_effects_of_the_model_and_viscosity_without_a_film_are_no_cases() -> Non
     assert "load doubled" in names
 
 
-@pytest.mark.parametrize("name", ["load doubled", "friction a third smaller", "hidden wear_in"])
-def test_ratio_is_the_error_with_over_that_without_compensation(name: str) -> None:
-    """27 s after the skipped seconds; both loops are designed for the undisturbed bench."""
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("load doubled", marks=pytest.mark.extended),
+        "friction a third smaller",
+        pytest.param("hidden wear_in", marks=pytest.mark.extended),
+    ],
+)
+def test_robustness_ratio_is_the_error_with_over_that_without_compensation(name: str) -> None:
+    """A task of 27 s; both loops are designed for the undisturbed bench."""
     case, model = all_cases()[name], base()
     assert model.rig.load is not None
     task = replace(TASKS["position square"], seconds=27.0)
@@ -128,8 +137,8 @@ def test_ratio_is_the_error_with_over_that_without_compensation(name: str) -> No
     assert square_outcomes()[name].ratios == {"position square": pytest.approx(with_ / without)}
 
 
-def test_ratios_agree_with_the_table_of_the_documentation() -> None:
-    """The worst task of every case is the square in position."""
+def test_robustness_ratios_agree_with_the_table_of_the_documentation() -> None:
+    """In every case the worst task is the square in position."""
     section = PAGE.read_text(encoding="utf-8").partition("## When the model is wrong")[2]
     rows = re.findall(r"\| `?([a-z_][\w %]*?)`? \| (\d\.\d{3}) ", section)
     printed = {name: float(ratio) for name, ratio in rows}
@@ -139,7 +148,7 @@ def test_ratios_agree_with_the_table_of_the_documentation() -> None:
     assert max(found.values()) < HELP
 
 
-def test_ratio_without_compensation_is_one() -> None:
+def test_robustness_ratio_of_no_compensation_is_one() -> None:
     task = {"velocity sine": TASKS["velocity sine"]}
     found = robustness(Model(Rig(), "coulomb"), tasks=task, scheme=NoCompensation())
     assert {dict(o.ratios)["velocity sine"] for o in found} == {1.0}
@@ -147,7 +156,7 @@ def test_ratio_without_compensation_is_one() -> None:
 
 
 @pytest.mark.extended
-def test_no_case_harms_at_four_times_the_noise() -> None:
+def test_compensation_never_exceeds_the_harm_limit_at_four_times_the_noise() -> None:
     rows = {row: TASKS[row] for row in ("position sine", "velocity triangle")}
     found = robustness(bench=with_noise(THESIS_BENCH, 4.0), tasks=rows)
     assert len(found) > 20

@@ -1,4 +1,4 @@
-"""One run of the loop: errors, references, loads, faults, and beliefs of the compensator."""
+"""One run of the loop: errors, references, loads, faults, and the model of the compensator."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def same(a: Result, b: Result) -> bool:
 
 
 @pytest.mark.parametrize("row", ["position sine", "velocity sine"])
-def test_errors_are_those_of_the_counted_seconds(row: str) -> None:
+def test_rms_and_peak_errors_are_computed_after_the_skipped_seconds(row: str) -> None:
     task = replace(TASKS[row], seconds=6.0, skip_s=1.5)
     r = run(None, "coulomb", task)
     counted = np.arange(len(r.time_s)) >= 750
@@ -59,7 +59,7 @@ def test_output_saturates_at_the_limit_of_the_amplifier() -> None:
     assert np.all(np.abs(r.output_v[(r.status & SATURATED) > 0]) == 2.0)
 
 
-def test_result_as_data_and_as_csv() -> None:
+def test_result_has_its_errors_in_json_and_all_samples_in_csv() -> None:
     r = run(None, "none", replace(SHORT, seconds=2.1))
     content = r.to_dict()
     assert (content["scheme"], content["task"]["wave"]) == ("none", "sine")
@@ -77,25 +77,31 @@ def test_run_has_one_sample_per_step_and_at_least_one(seconds: float, steps: int
     assert len(r.output_v) == len(r.reference) == steps
 
 
+GIVEN = replace(TASKS["position sine"], wave=RECORDED, seconds=1.0)
+VALUE = 0.3 * np.sin(0.002 * np.arange(700.0))
+RATE = 0.3 * np.cos(0.002 * np.arange(700.0))
+
+
 def test_given_reference_replaces_the_wave_and_sets_the_length() -> None:
-    value = 0.3 * np.sin(0.002 * np.arange(700.0))
-    rate = 0.3 * np.cos(0.002 * np.arange(700.0))
-    task = replace(TASKS["position sine"], wave=RECORDED, seconds=1.0)
-    r = run(None, "observed", task, reference=(value, rate))
-    assert np.array_equal(r.reference, value)
-    # The observed compensator feeds the rate of the reference forward.
-    other = run(None, "observed", task, reference=(value, 0.0 * rate))
-    assert r.true_rms < 0.8 * other.true_rms
+    r = run(None, "observed", GIVEN, reference=(VALUE, RATE))
+    assert np.array_equal(r.reference, VALUE)
 
 
-def test_load_is_that_of_the_rig_unless_given() -> None:
+def test_observed_compensator_has_less_error_if_the_rate_of_the_reference_is_given() -> None:
+    with_rate, without_rate = (
+        run(None, "observed", GIVEN, reference=(VALUE, rate)) for rate in (RATE, 0.0 * RATE)
+    )
+    assert with_rate.true_rms < 0.8 * without_rate.true_rms
+
+
+def test_default_load_equals_an_explicit_constant_load_of_the_rig() -> None:
     steps = round(SHORT.seconds / THESIS_BENCH.dt_s)
     usual = run(None, "none", SHORT)
     assert same(usual, run(None, "none", SHORT, load_n=104.0))
     assert same(usual, run(None, "none", SHORT, load_n=np.full(steps, 104.0)))
 
 
-def test_friction_before_breakaway_is_proportional_to_the_load() -> None:
+def test_breakaway_friction_is_proportional_to_the_load() -> None:
     """The shaft breaks away where the output reaches f_m times the load in volts."""
     task = replace(TASKS["position sine"], seconds=4.0)
     ramp = np.linspace(0.0, 2.0, 2000)
@@ -123,7 +129,7 @@ def test_friction_before_breakaway_is_proportional_to_the_load() -> None:
     ],
 )
 @pytest.mark.parametrize("row", ["position sine", "velocity sine"])
-def test_frozen_encoder_leaves_the_control_law_alone(scheme: str, row: str) -> None:
+def test_compensation_is_switched_off_while_the_encoder_is_frozen(scheme: str, row: str) -> None:
     task = replace(TASKS[row], seconds=16.0)
     guard = control.tune(thesis_model())
     r = run(None, scheme, task, guard=guard, frozen_s=(8.0, 12.0))
@@ -134,19 +140,19 @@ def test_frozen_encoder_leaves_the_control_law_alone(scheme: str, row: str) -> N
     frozen = (r.status & FROZEN) > 0
     assert not frozen[r.time_s < 8.0].any()
     assert np.all(r.status[frozen] & FALLBACK)
-    alone = ((r.status & FALLBACK) > 0) & (np.abs(r.base_v) < THESIS_BENCH.limit_v)
-    assert np.array_equal(r.output_v[alone], r.base_v[alone])
-    # Two seconds after the encoder counts again nothing is flagged.
+    fallback = ((r.status & FALLBACK) > 0) & (np.abs(r.base_v) < THESIS_BENCH.limit_v)
+    assert np.array_equal(r.output_v[fallback], r.base_v[fallback])
+    # The encoder counts again from 12 s on.
     assert np.all(r.status[r.time_s > 15.0] & (FROZEN | FALLBACK) == 0)
 
 
-def test_jump_of_the_counter_is_rejected_at_its_step() -> None:
+def test_jump_of_the_counter_is_flagged_at_its_step_and_hardly_moves_the_shaft() -> None:
     r = run(None, "observed", SHORT, jump=(10.0, 9000))
     assert np.flatnonzero(r.status & JUMPED).tolist() == [5000]
     assert np.max(np.abs(r.true_error[r.time_s > 1.0])) < 0.5
 
 
-def test_carried_model_settings_and_scheme_objects_are_equivalent() -> None:
+def test_model_and_settings_as_arguments_are_equivalent_to_a_scheme_object() -> None:
     weak = thesis_model(f_m=0.13)
     settings = replace(control.tune(thesis_model()), bandwidth_rad_s=40.0)
     assert same(run(None, "observed", SHORT, carried=weak), run(None, Observed(weak), SHORT))
@@ -158,7 +164,7 @@ def test_carried_model_settings_and_scheme_objects_are_equivalent() -> None:
     assert same(run(None, "coulomb", SHORT), run(None, Coulomb(), SHORT))
 
 
-def test_single_precision_rounds_only_the_loop() -> None:
+def test_single_precision_output_is_float32_with_an_error_within_10_percent() -> None:
     double, single = (run(None, "observed", SHORT, precision=p) for p in ("f64", "f32"))
     assert single.true_rms == pytest.approx(double.true_rms, rel=0.1)
     assert np.array_equal(single.output_v, single.output_v.astype(np.float32))
@@ -181,6 +187,6 @@ def test_single_precision_rounds_only_the_loop() -> None:
         ({"bench": replace(THESIS_BENCH, counts_per_rad=1e9)}, "counts_per_rad"),
     ],
 )
-def test_invalid_argument_is_named(given: dict[str, Any], named: str) -> None:
+def test_invalid_argument_of_a_run_is_rejected_by_name(given: dict[str, Any], named: str) -> None:
     with pytest.raises(InputError, match=named):
         run(**{"scheme": "none", "task": SHORT, **given})

@@ -1,4 +1,4 @@
-"""Compensators: their numbers, and what they do to the error of the shaft."""
+"""Compensators: their constants, and the error of the shaft under each of them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SHORT = replace(VELOCITY, seconds=27.0)
 NEWTONS = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_v_n_s_m": 20.0})
 
 
-def test_each_name_gives_its_scheme_with_the_given_model() -> None:
+def test_scheme_is_found_by_name_with_the_given_model_and_unknown_names_are_rejected() -> None:
     kinds = (NoCompensation, Learning, Coulomb, Table, Repetitive, Observed)
     made = [scheme(name) for name in SCHEMES]
     assert [type(s) for s in made] == list(kinds)
@@ -45,36 +45,48 @@ def test_each_name_gives_its_scheme_with_the_given_model() -> None:
         scheme("non")
 
 
-def test_gains_of_the_thesis() -> None:
+def test_feedback_gains_of_the_thesis_bench_are_those_of_the_thesis() -> None:
     assert gains(POSITION, THESIS_BENCH) == (0.43764, -0.25164)
     assert gains(VELOCITY, THESIS_BENCH) == (1.0, 0.295)
 
 
-def test_gains_of_another_drive_keep_the_poles() -> None:
-    drive = replace(THESIS_BENCH, damping_1_s=10.0, input_rad_s2_v=100.0)
-    k1, k2 = gains(POSITION, drive)
-    a, b = drive.damping_1_s, drive.input_rad_s2_v
+OTHER_DRIVE = replace(THESIS_BENCH, damping_1_s=10.0, input_rad_s2_v=100.0)
+
+
+def test_feedback_gains_of_another_drive_give_the_same_closed_loop_poles() -> None:
+    k1, k2 = gains(POSITION, OTHER_DRIVE)
+    a, b = OTHER_DRIVE.damping_1_s, OTHER_DRIVE.input_rad_s2_v
     poles = np.sort_complex(np.roots([1.0, a + b * k2, b * k1]))
     assert np.allclose(poles, [-10.0 - 10.0j, -10.0 + 10.0j])
-    errors = [run(None, s, SHORT, bench=drive).true_rms for s in ("none", "observed")]
+
+
+def test_observed_compensator_reduces_the_error_tenfold_on_another_drive() -> None:
+    errors = [run(None, s, SHORT, bench=OTHER_DRIVE).true_rms for s in ("none", "observed")]
     assert errors[1] < 0.1 * errors[0]
 
 
-def test_coulomb_observer_learns_the_level_of_the_friction() -> None:
-    """Equation (6.1) of the thesis; the learned level is what a constant friction is in volts."""
-    dry = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 1e-6})
-    r = run(dry, Coulomb(), SHORT, bench=replace(THESIS_BENCH, volts_per_n=0.1))
+CONSTANT = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 1e-6})
+"""A friction of 5 N at any speed."""
+TENTH_VOLT = replace(THESIS_BENCH, volts_per_n=0.1)
+
+
+def test_coulomb_observer_learns_the_friction_level_in_volts_within_15_percent() -> None:
+    """Equation (6.1) of the thesis."""
+    r = run(CONSTANT, Coulomb(), SHORT, bench=TENTH_VOLT)
     assert r.learned_0[0] == pytest.approx(0.0, abs=0.05)
     assert r.learned_0[-1] == pytest.approx(0.5, rel=0.15)
-    warm = run(dry, Coulomb(start_v=0.4), replace(SHORT, seconds=2.1))
-    assert warm.learned_0[0] == pytest.approx(0.4, abs=0.05)
-    capped = run(dry, Coulomb(limit_v=0.2), SHORT, bench=replace(THESIS_BENCH, volts_per_n=0.1))
-    assert capped.learned_0[-1] == pytest.approx(0.2, abs=1e-3)
+
+
+def test_coulomb_observer_starts_at_its_initial_value_and_stops_at_its_limit() -> None:
+    started = run(CONSTANT, Coulomb(start_v=0.4), replace(SHORT, seconds=2.1))
+    assert started.learned_0[0] == pytest.approx(0.4, abs=0.05)
+    limited = run(CONSTANT, Coulomb(limit_v=0.2), SHORT, bench=TENTH_VOLT)
+    assert limited.learned_0[-1] == pytest.approx(0.2, abs=1e-3)
 
 
 @pytest.mark.parametrize("task", [POSITION, VELOCITY], ids=["position", "velocity"])
-def test_lap_gain_is_half_of_the_stiffness_of_a_held_shaft(task: Task) -> None:
-    """Volts that the loop gives for an error of a shaft that cannot move."""
+def test_repetitive_gain_is_half_of_the_loop_stiffness_at_a_blocked_shaft(task: Task) -> None:
+    """The stiffness is the output voltage per error of a shaft that cannot move."""
     task = replace(task, seconds=6.0, skip_s=0.0)
     bench = replace(THESIS_BENCH, input_noise_v=0.0)
     steps = round(task.seconds / bench.dt_s)
@@ -94,7 +106,7 @@ def test_lap_gain_is_half_of_the_stiffness_of_a_held_shaft(task: Task) -> None:
     assert (given["lap_gain"], given["lead_s"]) == (0.0, 0.0)
 
 
-def test_repetitive_learning_reduces_the_error_from_lap_to_lap() -> None:
+def test_repetitive_scheme_halves_the_error_between_the_first_and_the_last_period() -> None:
     task = replace(VELOCITY, frequency_rad_s=1.0, seconds=38.0)
     error = run(None, "repetitive", task).true_error
     lap = round(task.period_s / THESIS_BENCH.dt_s)
@@ -103,7 +115,7 @@ def test_repetitive_learning_reduces_the_error_from_lap_to_lap() -> None:
 
 
 @pytest.mark.parametrize(("task", "top"), [(VELOCITY, 1.04), (POSITION, 1.0)])
-def test_table_holds_the_steady_friction_up_to_the_top_speed(task: Task, top: float) -> None:
+def test_friction_table_has_the_steady_friction_up_to_the_top_speed(task: Task, top: float) -> None:
     """5 N + 20 N s/m, from zero at rest, up to at least 1 rad/s."""
     core = Table(NEWTONS).core(task, THESIS_BENCH)
     speeds = core["width"] * np.arange(len(core["levels_v"]))
@@ -128,7 +140,7 @@ def test_table_holds_the_steady_friction_up_to_the_top_speed(task: Task, top: fl
         ),
     ],
 )
-def test_table_halves_the_error_without_a_limit_cycle(row: str) -> None:
+def test_friction_table_halves_the_error_of_sine_and_triangle_tasks(row: str) -> None:
     model = Model(Rig.thesis("4.2"))
     none, table = (run(model, s, TASKS[row]).true_rms for s in ("none", "table"))
     assert table < 0.5 * none
@@ -146,7 +158,9 @@ def test_table_halves_the_error_without_a_limit_cycle(row: str) -> None:
         ),
     ],
 )
-def test_observed_compensator_halves_the_error_of_the_schemes_of_the_thesis(row: str) -> None:
+def test_observed_compensator_has_at_most_half_the_thesis_error_except_in_position_square(
+    row: str,
+) -> None:
     learning, coulomb, observed = (
         run(None, s, TASKS[row]).true_rms for s in ("learning", "coulomb", "observed")
     )
@@ -157,7 +171,9 @@ def test_observed_compensator_halves_the_error_of_the_schemes_of_the_thesis(row:
 @pytest.mark.parametrize(
     "counts_per_rad", [100.0, *(pytest.param(c, marks=pytest.mark.extended) for c in (652.0, 30.0))]
 )
-def test_observed_compensator_with_a_coarse_encoder_does_no_harm(counts_per_rad: float) -> None:
+def test_observed_compensator_with_a_coarse_encoder_reduces_the_error(
+    counts_per_rad: float,
+) -> None:
     bench = replace(THESIS_BENCH, counts_per_rad=counts_per_rad)
     for row in ("position square", "position sine", "velocity triangle"):
         task = replace(TASKS[row], seconds=26.0)
@@ -165,7 +181,7 @@ def test_observed_compensator_with_a_coarse_encoder_does_no_harm(counts_per_rad:
         assert ours < none, row
 
 
-def test_observed_compensator_learns_the_level_and_can_start_from_it() -> None:
+def test_observed_compensator_has_less_error_if_it_starts_from_the_learned_level() -> None:
     halved = thesis_model(f_m=0.13)
     level = float(run(None, Observed(halved), SHORT).learned_0[-1])
     assert level > 0.1
@@ -174,7 +190,7 @@ def test_observed_compensator_learns_the_level_and_can_start_from_it() -> None:
     assert warm.true_rms < cold.true_rms
 
 
-def test_learning_scheme_has_the_first_guesses_of_chapter_six() -> None:
+def test_learning_scheme_has_the_initial_values_of_chapter_six_of_the_thesis() -> None:
     learning = Learning()
     assert (learning.f_m, learning.u_tr_m_s, learning.eps_tr) == (0.26, 0.05, 0.9747)
     assert (learning.k0, learning.gamma) == (650_000.0, 33.0)
@@ -183,7 +199,7 @@ def test_learning_scheme_has_the_first_guesses_of_chapter_six() -> None:
     assert Learning(volts=3.5).core(VELOCITY, THESIS_BENCH)["volts"] == 3.5
 
 
-def test_learning_scheme_starts_from_a_fitted_model() -> None:
+def test_learning_scheme_has_initial_values_and_bounds_of_the_given_model() -> None:
     learning = Learning.of(thesis_model(clock="journal", gamma=50.0))
     assert (learning.k0, learning.gamma) == (FITTED["K0"], 50.0)
     assert (learning.u_tr_m_s, learning.f_m) == (FITTED["U_tr_m_s"], 0.26)
@@ -192,8 +208,14 @@ def test_learning_scheme_starts_from_a_fitted_model() -> None:
     assert learning.gamma_bounds == pytest.approx((5e-3, 5e3))
     r = run(thesis_model(), "learning", replace(SHORT, seconds=2.1))
     assert (r.learned_0[0], r.learned_1[0]) == pytest.approx((FITTED["K0"], FITTED["gamma"]), 0.01)
+
+
+def test_learning_scheme_reduces_the_error_on_the_model_that_it_starts_from() -> None:
     model = Model(Rig.thesis("4.2"))
     errors = [run(model, s, SHORT).true_rms for s in ("none", "learning")]
     assert errors[1] < 0.6 * errors[0]
+
+
+def test_learning_scheme_of_a_law_without_a_film_is_rejected() -> None:
     with pytest.raises(InputError, match="coulomb"):
         Learning.of(NEWTONS)

@@ -24,7 +24,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", list(PROGRAMS))
-def test_program_agrees_with_chapter_six_of_the_thesis(name: str) -> None:
+def test_task_agrees_with_chapter_six_of_the_thesis(name: str) -> None:
     task, (wave, low, high, frequency, top) = TASKS[name], PROGRAMS[name]
     assert (task.wave, task.low, task.high) == (wave, low, high)
     assert task.frequency_rad_s == frequency
@@ -64,7 +64,7 @@ SINE = Task("position", "sine", -1.0, 2.0, 0.5, 10.0, 1.0)
         ({"control": "velocity", "wave": "square", "low": -3.0}, 3.0),
     ],
 )
-def test_top_speed_of_wave_and_control(change: dict[str, Any], top: float) -> None:
+def test_top_speed_follows_from_wave_and_control(change: dict[str, Any], top: float) -> None:
     assert replace(SINE, **change).top_speed_rad_s == pytest.approx(top)
 
 
@@ -85,7 +85,9 @@ def test_top_speed_of_wave_and_control(change: dict[str, Any], top: float) -> No
         ({"seconds": 0.0, "skip_s": 0.0}, "0.0 s"),
     ],
 )
-def test_value_outside_its_range_is_named(change: dict[str, Any], named: str) -> None:
+def test_task_value_outside_its_range_is_rejected_by_name(
+    change: dict[str, Any], named: str
+) -> None:
     assert replace(SINE, low=-1e6, high=1e6, skip_s=0.0, seconds=1e5).seconds == 1e5
     with pytest.raises(InputError, match=named):
         replace(SINE, **change)

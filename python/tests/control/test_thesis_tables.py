@@ -34,7 +34,7 @@ def simulated_tables() -> Tables:
 
 
 @pytest.mark.parametrize("row", PRINTED)
-def test_printed_figures_are_those_of_the_thesis(row: str) -> None:
+def test_table_cells_have_the_figures_printed_in_the_thesis(row: str) -> None:
     assert PRINTED_PEAK[row] == PRINTED[row][::2]
     assert PRINTED_RMS[row] == PRINTED[row][1::2]
     for i, column in enumerate(("none", "learning", "coulomb")):
@@ -44,12 +44,12 @@ def test_printed_figures_are_those_of_the_thesis(row: str) -> None:
     assert (ours.printed_rms, ours.printed_peak) == (None, None)
 
 
-def test_fitted_cells_agree_within_twenty_percent() -> None:
+def test_uncompensated_cells_agree_with_the_thesis_within_20_percent() -> None:
     for cell in simulated_tables().column("none"):
         assert cell.ratio == pytest.approx(1.0, abs=0.2), cell.row
 
 
-def test_most_predicted_cells_agree_within_a_factor_of_two() -> None:
+def test_twelve_of_thirteen_predicted_cells_agree_within_a_factor_of_two() -> None:
     assert len(simulated_tables().predicted) == 13
     assert simulated_tables().within(2.0) >= 12
     assert simulated_tables().within(1.5) >= 11
@@ -62,13 +62,13 @@ def test_every_scheme_reduces_the_error_of_every_task() -> None:
             assert cells[row, column].rms < cells[row, "none"].rms, (row, column)
 
 
-def test_observed_compensator_halves_the_better_error_of_the_thesis_in_the_median() -> None:
+def test_median_error_of_the_better_thesis_scheme_is_twice_that_of_the_observed_one() -> None:
     gains = sorted(simulated_tables().gains().values())
     assert gains[0] > 1.3
     assert gains[len(gains) // 2] > 2.0
 
 
-def test_scale_of_friction_explains_the_cell_that_is_off() -> None:
+def test_ratio_of_the_deviating_cell_decreases_with_the_friction_scale_of_the_scheme() -> None:
     row = {"position triangle": TASKS["position triangle"]}
     ratios = []
     for volts in (None, 3.5, LISTED_VOLTS):
@@ -80,10 +80,10 @@ def test_scale_of_friction_explains_the_cell_that_is_off() -> None:
     assert ratios[0] > 2.0 > ratios[1] > 0.5 > ratios[2]
 
 
-def test_cell_is_the_rms_over_seeds_and_the_mean_of_the_peaks() -> None:
-    """Seeds are counted from one, whatever the seed of the bench."""
+def test_table_cell_shows_rms_over_seeds_and_mean_peak_error() -> None:
+    """The seeds are 1, 2, ..., independent of the seed of the bench."""
     task = {"velocity sine": replace(TASKS["velocity sine"], seconds=8.0)}
-    # So much noise that the seeds differ.
+    # The noise is large enough for the seeds to differ.
     bench = replace(THESIS_BENCH, seed=9, input_noise_v=1.0)
     reports: list[tuple[str, int, int]] = []
     found = tables(
@@ -113,7 +113,7 @@ def tables_of(*cells: Cell) -> Tables:
     return Tables({(c.row, c.column): c for c in cells}, thesis_model(), THESIS_BENCH)
 
 
-def test_factor_counts_predicted_cells_on_both_sides_and_at_its_limits() -> None:
+def test_number_of_cells_within_a_factor_counts_only_predicted_cells_and_both_limits() -> None:
     ratios = (0.5, 0.499, 1.0, 2.0, 2.001)
     found = tables_of(
         cell_of("a", "none", 9.0, 1.0),
@@ -128,7 +128,7 @@ def test_factor_counts_predicted_cells_on_both_sides_and_at_its_limits() -> None
     assert [c.row for c in found.column("none")] == ["a"]
 
 
-def test_replaced_tables_keep_the_cells_that_are_not_recomputed() -> None:
+def test_replacing_recomputed_cells_preserves_the_others_and_takes_the_new_model() -> None:
     base = tables_of(cell_of("a", "none", 9.0, 1.0), cell_of("b", "none", 8.0, 1.0))
     dry = Model(Rig(), "coulomb")
     other = replace(tables_of(cell_of("a", "none", 5.0, 1.0)), model=dry)
@@ -137,7 +137,7 @@ def test_replaced_tables_keep_the_cells_that_are_not_recomputed() -> None:
     assert both.model == dry
 
 
-def test_gain_is_relative_to_the_better_of_the_two_schemes() -> None:
+def test_gain_is_relative_to_the_better_of_the_two_thesis_schemes() -> None:
     cells = []
     for i, row in enumerate(PRINTED_RMS):
         learning, coulomb = (0.6, 0.8) if i % 2 else (0.9, 0.6)
@@ -151,7 +151,7 @@ def test_gain_is_relative_to_the_better_of_the_two_schemes() -> None:
 
 
 @pytest.mark.extended
-def test_fit_of_the_uncompensated_cells_finds_the_friction_of_the_bench() -> None:
+def test_fit_of_the_uncompensated_cells_recovers_the_friction_of_the_bench() -> None:
     model, bench = fit_friction()
     assert bench.volts_per_n == pytest.approx(THESIS_BENCH.volts_per_n, rel=0.01)
     for name, value in FITTED.items():
@@ -186,7 +186,7 @@ def test_each_assumption_changes_only_the_columns_that_it_concerns() -> None:
         for column in ("none", "learning", "coulomb", "observed"):
             same = found[name].column(column) == base.column(column)
             assert same == (column in columns), (name, column)
-    # The listed scale is not that of the thesis's runs: far fewer cells agree.
+    # Fewer cells agree with the scale of the listings than with that of the rig.
     assert found["scale 25.5 V, as listed"].within(2.0) < base.within(2.0)
     assert found["nothing elastic"].model.effects == ()
     assert found["elastic contact, no belt"].model.effects == ("presliding",)

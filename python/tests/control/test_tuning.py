@@ -33,14 +33,14 @@ def test_friction_level_is_that_of_the_direction_with_more_friction(asymmetry: f
     assert friction_level_v(uneven, VOLT) == pytest.approx(7.1 / 5.1, rel=1e-3)
 
 
-def test_friction_level_of_a_bearing_is_near_its_breakaway_friction() -> None:
-    """f_m times the load, of which the film carries at most U / U_tr at 5 mm/s."""
+def test_friction_level_of_a_bearing_lies_just_below_its_breakaway_friction() -> None:
+    """Breakaway is f_m times the load; at 5 mm/s the film carries at most U / U_tr of it."""
     breakaway = 0.26 * 104.0 * THESIS_BENCH.volts_per_n
     level = friction_level_v(thesis_model(elastic="nothing"))
     assert (1.0 - 0.005 / FITTED["U_tr_m_s"]) * breakaway < level <= breakaway
 
 
-def test_settings_follow_from_step_encoder_and_friction() -> None:
+def test_settings_follow_from_time_step_encoder_and_friction_level() -> None:
     level = friction_level_v(DRY, VOLT)
     settings = tune(DRY, VOLT)
     count_rad = 1.0 / VOLT.counts_per_rad
@@ -57,8 +57,8 @@ def test_settings_follow_from_step_encoder_and_friction() -> None:
     assert tune(DRY, replace(VOLT, dt_s=0.004)).bandwidth_rad_s == pytest.approx(0.12 / 0.004)
 
 
-def test_noise_limits_the_bandwidth_but_not_the_stiffness_of_the_loop() -> None:
-    """Noise of the speed estimate, sigma w sqrt(w dt), makes 1 % of the friction level."""
+def test_bandwidth_limits_encoder_noise_to_one_percent_of_the_friction_level() -> None:
+    """The noise of the speed estimate is sigma w sqrt(w dt)."""
     noisy = replace(VOLT, encoder_noise_counts=40.0)
     sigma_rad = math.sqrt(1.0 / 12.0 + 40.0**2) / VOLT.counts_per_rad
     settings, level = tune(DRY, noisy), friction_level_v(DRY, VOLT)
@@ -71,19 +71,19 @@ def test_noise_limits_the_bandwidth_but_not_the_stiffness_of_the_loop() -> None:
     assert settings.loop_rad_s == pytest.approx(math.hypot(10.0, 10.0))
 
 
-def test_moving_voltage_is_at_most_that_of_the_drive() -> None:
+def test_moving_voltage_does_not_exceed_the_voltage_limit_of_the_drive() -> None:
     level = friction_level_v(DRY, VOLT)
     assert tune(DRY, replace(VOLT, limit_v=2.0 * level)).moving_v == 2.0 * level
     assert tune(DRY, replace(VOLT, limit_v=level * (1.0 + 1e-9))).level_limit_v == level
 
 
-def test_friction_above_the_voltage_of_the_drive_is_refused() -> None:
+def test_friction_above_the_voltage_of_the_drive_is_rejected() -> None:
     with pytest.raises(InputError, match="--volts-per-n"):
         tune(DRY, replace(VOLT, limit_v=friction_level_v(DRY, VOLT)))
 
 
 @pytest.mark.parametrize("bench", [THESIS_BENCH, replace(THESIS_BENCH, counts_per_rad=652.0)])
-def test_slow_speed_is_a_few_times_the_error_of_the_speed_estimate(bench: Bench) -> None:
+def test_slow_speed_limit_is_5_to_30_times_the_error_of_the_speed_estimate(bench: Bench) -> None:
     model = thesis_model()
     r = run(model, "observed", replace(TASKS["velocity sine"], seconds=12.0), bench=bench)
     error = (r.estimated_velocity_rad_s - r.velocity_rad_s)[r.time_s > 2.0]
@@ -108,7 +108,7 @@ def test_settings_are_read_back_from_their_file_to_six_digits(tmp_path: Path) ->
         ("moving_v = 1.9", 'moving_v = "much"', "moving_v"),
     ],
 )
-def test_invalid_settings_file_names_file_and_key(
+def test_invalid_settings_file_is_reported_by_file_and_key(
     tmp_path: Path, old: str, new: str, named: str
 ) -> None:
     path = tmp_path / "s.toml"
@@ -120,7 +120,7 @@ def test_invalid_settings_file_names_file_and_key(
 
 
 @pytest.mark.parametrize("name", list(asdict(SETTINGS)))
-def test_setting_below_zero_or_not_finite_is_named(name: str) -> None:
+def test_setting_below_zero_or_not_finite_is_rejected_by_name(name: str) -> None:
     assert getattr(replace(SETTINGS, **{name: 0.0}), name) == 0.0
     for value in (-1e-9, math.inf, math.nan):
         with pytest.raises(InputError, match=f"{name}: {value}"):

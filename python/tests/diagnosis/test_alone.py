@@ -1,4 +1,4 @@
-"""Strength from which no other effect explains the same: probabilities against simulated gains."""
+"""Minimum distinguishable strength of an effect: probabilities against simulated gains."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ def test_difference_of_gains_is_normal_with_four_times_its_mean_as_variance(
 
 
 @pytest.mark.parametrize("parameters", [1, 3])
-def test_probability_to_be_found_is_that_of_a_noncentral_chi_square(parameters: int) -> None:
+def test_detection_probability_is_that_of_a_noncentral_chi_square(parameters: int) -> None:
     found = chance_found(np.array([10.0, 30.0]), parameters, 25.0)
     assert found == pytest.approx(stats.ncx2.sf([10.0, 30.0], parameters, 25.0), abs=1e-6)
 
 
 @pytest.mark.parametrize("correlation", [0.3, 0.8, 0.9])
-def test_effect_of_the_returned_strength_is_found_alone_with_the_given_probability(
+def test_effect_of_the_returned_strength_is_distinguished_with_the_given_probability(
     correlation: float,
 ) -> None:
     size = np.sqrt(non_centrality(PRICE, 1, CHANCE))
@@ -56,11 +56,11 @@ def test_effect_of_the_returned_strength_is_found_alone_with_the_given_probabili
     times = times_alone(PRICE, 1, size**2, rivals, CHANCE)
     own, rival = simulated_gains(correlation, times * size)
     alone = float(np.mean((own > PRICE) & (own - rival > TIE)))
-    # The two events are taken for independent, which asks for slightly more than necessary.
+    # The two events are treated as independent, which requires slightly more than necessary.
     assert CHANCE - 0.01 < alone < CHANCE + 0.06
 
 
-def test_strength_without_and_with_inseparable_rivals() -> None:
+def test_strength_is_one_without_rivals_and_infinite_with_an_inseparable_rival() -> None:
     square = non_centrality(PRICE, 1, CHANCE)
     assert times_alone(PRICE, 1, square, {}, CHANCE) == pytest.approx(1.0, abs=1e-6)
     assert times_alone(PRICE, 1, square, {"rival": (100.0, TIE)}, CHANCE) < 1.01
@@ -69,8 +69,8 @@ def test_strength_without_and_with_inseparable_rivals() -> None:
         assert times_alone(PRICE, 1, square, rivals, CHANCE) == np.inf
 
 
-def test_strength_up_to_thirty_times_is_searched() -> None:
-    """Far above the price only the rival decides: l^2 - 1.683 l = margin at 80 %."""
+def test_distinguishable_strength_far_above_the_threshold_depends_on_the_rival_only() -> None:
+    """Far above the threshold the strength follows from l^2 - 1.683 l = margin at 80 %."""
     square = non_centrality(PRICE, 1, CHANCE)
     quantile = 2.0 * stats.norm.ppf(CHANCE)
     needed = 0.5 * (quantile + np.sqrt(quantile**2 + 4.0 * TIE))
@@ -79,7 +79,7 @@ def test_strength_up_to_thirty_times_is_searched() -> None:
     assert times == pytest.approx(0.5 * NEVER, rel=0.01)
 
 
-def test_single_sample_counts_up_to_three_standard_deviations() -> None:
+def test_sample_counts_with_at_most_three_standard_deviations() -> None:
     assert worth(np.array([1.0, -2.0, 100.0])) == pytest.approx(1.0 + 4.0 + 9.0)
 
 
@@ -95,7 +95,7 @@ def swings(velocity_noise: float = 0.0) -> Candidates:
     return Candidates(Campaign.prepare(Rig(), runs), "coulomb", "journal")
 
 
-def test_unexplained_part_of_a_change_is_the_residual_of_a_regression() -> None:
+def test_unexplained_part_of_a_change_is_the_residual_of_a_regression_on_the_rival() -> None:
     at_hand = RunsAtHand(swings(), ())
     random = np.random.default_rng(5)
     lengths = [len(f) for f in at_hand.now]
@@ -111,7 +111,7 @@ def test_unexplained_part_of_a_change_is_the_residual_of_a_regression() -> None:
     assert left_apart(own, own, at_hand) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_effects_are_compared_at_samples_that_both_leave() -> None:
+def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None:
     """A rival without weight in the second half is compared in the first half only."""
     at_hand = RunsAtHand(swings(), ())
     lengths = [len(f) for f in at_hand.now]
@@ -128,7 +128,7 @@ def test_effects_are_compared_at_samples_that_both_leave() -> None:
 
 
 @pytest.mark.parametrize("velocity_noise", [0.0, 1e-3])
-def test_delay_and_lag_are_confounded_where_instants_of_reversals_are_uncertain(
+def test_delay_and_lag_are_confounded_if_instants_of_reversals_are_uncertain(
     velocity_noise: float,
 ) -> None:
     """With an exact velocity they differ within a sample of 20 ms."""

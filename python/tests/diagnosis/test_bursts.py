@@ -98,7 +98,7 @@ def test_large_innovations_of_alternating_sign_are_not_a_burst() -> None:
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.9, False), (1.1, True)])
-def test_significance_is_that_of_the_clipped_correlation_of_neighbours(
+def test_burst_is_reported_only_if_the_clipped_correlation_of_neighbours_is_significant(
     part: float, found: bool
 ) -> None:
     """Four values clipped to three: three pairs with product 9, and two pairs at the edges."""

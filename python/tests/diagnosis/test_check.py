@@ -1,4 +1,4 @@
-"""`check`: how often diagnoses of simulated campaigns like the one at hand are right."""
+"""`check`: how often diagnoses of simulated campaigns like the given one are right."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def _assert_always_right(checked: Check, campaigns: int) -> None:
     assert {rate.campaigns for rate in checked.rates} == {campaigns}
 
 
-def test_strong_effect_is_named_if_hidden_and_not_otherwise() -> None:
+def test_strong_effect_is_named_if_it_is_simulated_and_not_otherwise() -> None:
     _assert_always_right(_checked(1), 1)
 
 
 @pytest.mark.extended
-def test_strong_effect_is_named_in_every_campaign() -> None:
+def test_strong_effect_is_named_in_each_of_eight_campaigns_that_simulate_it() -> None:
     _assert_always_right(_checked(8), 8)
 
 
@@ -78,15 +78,19 @@ def test_interval_of_a_rate_is_that_of_clopper_and_pearson() -> None:
         ((), {}, False, False),
     ],
 )
-def test_answer_is_false_only_if_neither_name_nor_alternative_is_hidden(
+def test_answer_is_false_if_a_named_effect_and_its_alternatives_are_not_simulated(
     named: tuple[str, ...], alternatives: dict[str, tuple[str, ...]], right: bool, false: bool
 ) -> None:
     answer = Answer(("a",), 0, "missing", named, alternatives)
     assert (answer.right, answer.false) == (right, false)
+
+
+def test_answer_is_equal_after_writing_and_reading_json() -> None:
+    answer = Answer(("a",), 0, "missing", ("b",), {"b": ("a",)})
     assert answer_of(json.loads(json.dumps(answer.to_dict()))) == answer
 
 
-def test_failed_diagnosis_is_not_right_even_if_nothing_is_hidden() -> None:
+def test_failed_diagnosis_is_not_right_even_if_no_effect_is_simulated() -> None:
     assert not Answer((), 0, "failed", (), {}).right
     assert Answer((), 0, "adequate", (), {}).right
 
@@ -103,7 +107,7 @@ def test_answers_of_an_earlier_check_are_not_computed_again() -> None:
     assert false.count == 1
 
 
-def test_check_requires_a_campaign() -> None:
+def test_check_of_zero_campaigns_is_rejected() -> None:
     with pytest.raises(InputError, match="0 campaigns"):
         check(_model(), _runs(), campaigns=0)
 
@@ -126,7 +130,7 @@ def test_identity_depends_on_model_runs_and_policy() -> None:
 
 @pytest.fixture
 def command(tmp_path: Path) -> list[str]:
-    """`jbf check` of a bare law and two runs, with a file of kept answers."""
+    """`jbf check` of a bare law and two runs, with a file of stored answers."""
     paths = []
     for run in four_runs(coulomb, noise_n=NOISE_N)[:2]:
         paths.append(str(tmp_path / f"{run.name}.csv"))
@@ -137,7 +141,7 @@ def command(tmp_path: Path) -> list[str]:
     return ["check", model, *paths, "--jobs", "1", "--resume", str(tmp_path / "kept.jsonl")]
 
 
-def test_kept_answers_are_read_again_and_not_mixed_with_those_of_another_policy(
+def test_stored_answers_are_reused_and_rejected_if_damaged_or_from_another_policy(
     command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kept, answers = tmp_path / "kept.jsonl", tmp_path / "check.json"

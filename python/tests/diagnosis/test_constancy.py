@@ -45,7 +45,7 @@ def explained(design: Array, target: Array) -> float:
 
 
 def by_regression(residuals: Sequence[Array], design: Array) -> tuple[float, list[float]]:
-    """Gain of parameters of each run's own over common ones; and the gains of the runs alone."""
+    """Gain of separate parameters for each run over common ones, and squares explained by run."""
     sigma = [float(np.sqrt(np.mean(r**2))) for r in residuals]
     own = [explained(design, r / s) for r, s in zip(residuals, sigma, strict=True)]
     stacked = np.concatenate([r / s for r, s in zip(residuals, sigma, strict=True)])
@@ -54,7 +54,7 @@ def by_regression(residuals: Sequence[Array], design: Array) -> tuple[float, lis
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
-def test_gain_and_degrees_are_those_of_separate_regressions(unit: float) -> None:
+def test_disagreement_of_runs_is_the_gain_of_separate_regressions(unit: float) -> None:
     sizes = ((0.5, 0.3), (-0.5, 0.0), (0.2, -0.4), (0.0, 0.1))
     residuals = [unit * (ALTERNATING + a + b * RAMP) for a, b in sizes]
     found = disagreement(*solution_with(one_way(4), residuals))
@@ -73,7 +73,7 @@ def test_common_change_of_parameters_is_not_disagreement() -> None:
 
 
 @pytest.mark.parametrize("run", [0, 1])
-def test_single_run_and_runs_without_samples_do_not_disagree(run: int) -> None:
+def test_single_run_or_run_of_two_samples_causes_no_disagreement(run: int) -> None:
     residuals = [ALTERNATING + 0.5, ALTERNATING - 0.5]
     alone = disagreement(*solution_with(one_way(1), residuals[:1]))
     assert (alone.gain, alone.degrees, list(alone.by_run)) == (0.0, 0, ["a"])
@@ -86,7 +86,9 @@ def test_single_run_and_runs_without_samples_do_not_disagree(run: int) -> None:
 
 
 @pytest.mark.parametrize(("term", "disagrees"), [("effect", True), ("law", False)])
-def test_effect_is_tested_without_what_the_law_explains(term: str, disagrees: bool) -> None:
+def test_disagreement_of_an_effect_excludes_what_the_law_explains(
+    term: str, disagrees: bool
+) -> None:
     """The sign of the velocity is the law's direction, a constant that of the sensor's offset."""
     sign = np.where(np.arange(N) < N // 2, 1.0, -1.0)
     campaign = slides([sign * SPEED] * 3)
@@ -103,8 +105,10 @@ def test_effect_is_tested_without_what_the_law_explains(term: str, disagrees: bo
 
 
 @pytest.mark.parametrize(("deviates", "disagrees"), [("F_c_n", False), ("zero", True)])
-def test_parameter_that_is_known_to_deviate_is_not_tested(deviates: str, disagrees: bool) -> None:
-    """The deviations themselves are so small here that they whiten nothing."""
+def test_parameter_with_a_random_effect_between_runs_is_not_tested(
+    deviates: str, disagrees: bool
+) -> None:
+    """The random effects are so small here that they do not change the whitening."""
     residuals = [ALTERNATING + a for a in (0.5, -0.5, 0.2)]
     directions = tuple(np.full((N, 1), 1e-12) for _ in residuals)
     between = BetweenRuns((deviates,), directions, 1.0)
@@ -117,7 +121,7 @@ def test_parameter_that_is_known_to_deviate_is_not_tested(deviates: str, disagre
     ("deviates", "disagrees"), [("gamma", False), ("U_tr_m_s", False), ("zero", True)]
 )
 @pytest.mark.parametrize("direction", ["gamma", "U_tr_m_s"])
-def test_viscosity_that_deviates_covers_both_of_its_parameters(
+def test_random_effect_of_the_viscosity_covers_both_of_its_parameters(
     direction: str, deviates: str, disagrees: bool, rig: Rig, runs: list[Run]
 ) -> None:
     campaign = Campaign.prepare(rig, runs)
@@ -141,7 +145,7 @@ def test_viscosity_that_deviates_covers_both_of_its_parameters(
 
 
 def test_effect_with_many_likelihood_peaks_is_not_tested(rig: Rig, runs: list[Run]) -> None:
-    """Each run may have another peak of a ringing drive."""
+    """The runs of a resonant drive may be fitted at different peaks of the likelihood."""
     campaign = Campaign.prepare(rig, runs)
     problem = Problem(campaign, "journal", "journal", ("drive_compliance",))
     noise = solution_with(one_way(1), [])[1].noise
@@ -152,7 +156,7 @@ def test_effect_with_many_likelihood_peaks_is_not_tested(rig: Rig, runs: list[Ru
     assert 0 < found.degrees <= law * (len(runs) - 1)
 
 
-def test_disagreement_must_exceed_a_ratio_and_the_chi_square_quantile() -> None:
+def test_disagreement_is_significant_only_above_a_ratio_and_the_chi_square_quantile() -> None:
     ratio, chance = DEFAULT.constancy_ratio, DEFAULT.constancy_chance
     assert not Disagreement(ratio * 400, 400, {}).beyond_chance()
     assert Disagreement(ratio * 400 + 1.0, 400, {}).beyond_chance()
@@ -165,18 +169,18 @@ def test_disagreement_must_exceed_a_ratio_and_the_chi_square_quantile() -> None:
     assert Disagreement(3.5, 3, {}).beyond_chance(easy)
 
 
-def test_gain_of_white_noise_is_chi_square() -> None:
-    """Ten campaigns together: within four standard deviations of the mean."""
+def test_disagreement_in_white_noise_follows_chi_square() -> None:
+    """The sum over ten campaigns is within four standard deviations of the mean."""
     gain = degrees = 0.0
     for seed in range(10):
         found = disagreement(*solution_with(one_way(4), white_noise(one_way(4), seed)))
         gain, degrees = gain + found.gain, degrees + found.degrees
         assert not found.beyond_chance()
-    # A long-run variance is never taken for less than that of white noise.
+    # The long-run variance is at least that of white noise.
     assert -6.0 * np.sqrt(2.0 * degrees) < gain - degrees < 4.0 * np.sqrt(2.0 * degrees)
 
 
-def test_noise_with_a_memory_that_is_not_modelled_is_not_disagreement() -> None:
+def test_correlated_noise_that_is_not_modelled_is_not_disagreement() -> None:
     keep = float(np.exp(-0.02 / 0.3))
     campaign = slides([np.resize(SPEED, 8 * N)] * 4)
     for seed in range(5):
@@ -218,7 +222,7 @@ def test_parameter_that_may_be_negative_is_reported_with_its_absolute_change(
 
 
 @pytest.mark.parametrize(("step", "size"), [(2.99, "%"), (3.01, "large"), (-3.01, "small")])
-def test_change_by_more_than_a_factor_of_twenty_is_not_quantified(step: float, size: str) -> None:
+def test_change_over_twentyfold_is_reported_as_many_times(step: float, size: str) -> None:
     """The dry friction of 5 N is searched in its logarithm."""
     orthogonal = ALTERNATING - np.mean(ALTERNATING)
     residuals = [orthogonal + step * 5.0 * LEVEL, orthogonal]
@@ -228,7 +232,7 @@ def test_change_by_more_than_a_factor_of_twenty_is_not_quantified(step: float, s
     assert ("many times" in words) == (size != "%")
 
 
-def test_share_and_order_of_the_runs_that_disagree() -> None:
+def test_disagreement_is_reported_with_its_share_and_runs_in_order_of_size() -> None:
     residuals = [ALTERNATING + a for a in (0.6, 1.5, 0.02, -0.6, -1.0)]
     problem, solution = solution_with(one_way(5), residuals)
     (found,) = find_disagreement(problem, solution, DEFAULT)
@@ -242,7 +246,7 @@ def test_share_and_order_of_the_runs_that_disagree() -> None:
     assert find_disagreement(*solution_with(one_way(5), agreeing), DEFAULT) == []
 
 
-def test_runs_of_one_machine_agree_at_parameters_that_are_off() -> None:
+def test_runs_of_one_machine_agree_even_if_common_parameters_are_five_percent_off() -> None:
     problem, solution = solved(coulomb, 0.1)
     off = problem.solution(1.05 * solution.values, solution.samples, solution.noise)
     for at in (solution, off):
@@ -270,7 +274,7 @@ def test_simulated_runs_of_one_bearing_agree(effects: tuple[str, ...], coloured:
     assert find_disagreement(problem, solution, DEFAULT) == []
 
 
-def test_simulated_run_with_another_gain_is_named() -> None:
+def test_simulated_run_with_eight_percent_more_gain_is_named() -> None:
     rig, runs, _ = simulated(11)
     assert runs[2].friction_n is not None
     changed = replace(runs[2], friction_n=1.08 * runs[2].friction_n)

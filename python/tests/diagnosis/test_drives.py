@@ -20,7 +20,7 @@ REQUIRED: dict[str, tuple[str, ...]] = {
     "cogging_2": ("cogging",),
     "pitch_ripple_2": ("pitch_ripple",),
 }
-"""Effects without which another one does not show."""
+"""Effects without which another effect has no influence."""
 SWING = 8.0
 """Factor between the motion of a joint that carries a weight and that of a slide."""
 FAST_FITS = (
@@ -54,7 +54,7 @@ def _drive(seed: int, *effects: str) -> tuple[list[Run], dict[str, Any]]:
     return _runs(records, "angle_rad" if joint else "position_m"), truth
 
 
-def test_every_effect_of_drives_is_simulated() -> None:
+def test_every_effect_of_drives_has_a_simulation() -> None:
     assert set(OF_DRIVES) <= set(AXIS_EFFECTS)
 
 
@@ -93,10 +93,10 @@ def test_fit_with_the_true_effects_recovers_the_parameters(name: str) -> None:
         assert abs(error) < 4.5 * estimate.stderr + 0.01 * abs(value), parameter
 
 
-# No motion tells an asymmetry of a constant dry level from an offset.
+# No motion separates an asymmetry of a constant dry level from an offset.
 @pytest.mark.extended
 @pytest.mark.parametrize("name", [n for n in OF_DRIVES if n != "dry_asymmetry"])
-def test_hidden_effect_of_a_drive_is_named_alone(name: str) -> None:
+def test_hidden_effect_of_a_drive_is_named_without_alternatives(name: str) -> None:
     hidden = _with_required(name)
     found = diagnose(Rig(), _drive(12, *hidden)[0], law="coulomb")
     assert (found.verdict, set(found.effects)) == ("missing", set(hidden))
@@ -104,7 +104,7 @@ def test_hidden_effect_of_a_drive_is_named_alone(name: str) -> None:
 
 
 @pytest.mark.extended
-def test_running_in_is_not_taken_for_warming() -> None:
+def test_running_in_of_a_drive_is_named_without_alternatives() -> None:
     records, truth = axis_campaign(16)
     law = truth["law"]
     assert isinstance(law, dict)
@@ -116,7 +116,7 @@ def test_running_in_is_not_taken_for_warming() -> None:
     assert found.alternatives == {"wear_in": ()}
 
 
-def test_efficiencies_of_a_gear_give_their_ratio_and_a_scaled_weight() -> None:
+def test_gear_losses_are_fitted_as_their_efficiency_ratio_and_a_scaled_weight() -> None:
     """Losses of 0.3 when driving and 0.1 when driven: the weight appears 1.1 times as large."""
     records, truth = axis_campaign(17, ("gravity",), swing=SWING)
     effects = truth["effects"]
@@ -136,13 +136,13 @@ def test_efficiencies_of_a_gear_give_their_ratio_and_a_scaled_weight() -> None:
     assert ratio == pytest.approx(0.9 / 1.3, rel=0.02)
 
 
-def test_share_of_a_torque_that_is_zero_is_not_identifiable() -> None:
+def test_torque_proportional_friction_is_held_if_no_torque_is_transmitted() -> None:
     found = fit(Rig(), _drive(12)[0], ["torque_proportional"], law="coulomb")
     assert found["torque_proportional.mu"].held
     assert found["torque_proportional.mu"].stderr is None
 
 
-def test_pressure_acts_as_a_load() -> None:
+def test_recorded_pressure_is_equivalent_to_a_load() -> None:
     name = "dry_load_dependence"
     runs, truth = _drive(13, name)
     pressed = [

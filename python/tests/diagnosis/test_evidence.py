@@ -88,7 +88,7 @@ def test_effect_that_helps_in_one_run_only_is_not_added_and_is_reported_as_struc
     assert any("inertia_leak" in r.where for r in found.unexplained if r.axis == "run")
 
 
-def test_effect_keeps_its_name_next_to_a_tone_that_nothing_explains() -> None:
+def test_effect_is_named_even_if_an_unexplained_tone_remains() -> None:
     found = linear_diagnosis("offset and tone")
     assert (found.verdict, found.effects) == ("unexplained", ("sensor_offset",))
     assert found.confounders == ()
@@ -100,7 +100,7 @@ def test_effect_keeps_its_name_next_to_a_tone_that_nothing_explains() -> None:
 # ---- alternatives -------------------------------------------------------------------------------
 
 
-def test_weights_of_tied_effects_are_their_likelihood_odds() -> None:
+def test_ratio_of_weights_of_tied_effects_is_their_likelihood_ratio() -> None:
     found = linear_diagnosis("lag")
     first, second = found.steps[0].trials[:2]
     assert {first.effect, second.effect} == {"sensor_lag", "time_delay"}
@@ -115,15 +115,15 @@ def test_weights_of_tied_effects_are_their_likelihood_odds() -> None:
 
 
 def test_effects_with_the_same_derivative_share_the_weight_equally() -> None:
-    """No run reverses: an offset and a difference of the dry level between directions are one."""
+    """No run reverses: an offset and a dry level that differs by direction are equivalent."""
     found = linear_diagnosis("offset and drag")
     assert found.verdict == "ambiguous"
     assert found.alternatives == {"sensor_offset": ("dry_asymmetry",), "quadratic_drag": ()}
     assert found.weights["sensor_offset"]["dry_asymmetry"] == pytest.approx(0.5, abs=1e-3)
 
 
-def test_effect_that_does_not_fit_has_no_weight_against_one_that_does() -> None:
-    """A mass that is not there against an offset that is."""
+def test_effect_that_does_not_fit_has_negligible_weight_next_to_one_that_does() -> None:
+    """A mass, which is absent, compared with an offset, which is present."""
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.03, noise_n=0.1)
     candidates = Candidates(Campaign.prepare(Rig(), runs), "coulomb", "journal")
     of_mass = weights(candidates, ("inertia_leak",))["inertia_leak"]
@@ -154,8 +154,8 @@ def test_evidence_of_two_solutions_is_their_weighted_gain_less_the_threshold() -
     assert evidence(candidates, simple, rich) == pytest.approx(-gain - price_of(candidates, -1))
 
 
-def test_gain_from_samples_that_an_effect_sets_aside_is_not_its_evidence() -> None:
-    """A law fitted badly because of three samples that only the delay excludes."""
+def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None:
+    """Dry friction of the simpler model is 2 % off; the richer model excludes three samples."""
     t = np.arange(0.0, 20.0, 0.02)
     runs = []
     for i in range(2):
@@ -207,7 +207,7 @@ def test_difference_below_the_quantisation_error_is_not_evidence(
         assert found == pytest.approx(-price_of(candidates, 1))
 
 
-def test_fit_caught_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
+def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
     campaign = Campaign.prepare(Rig(), linear_runs("mass"))
     candidates = Candidates(campaign, "coulomb", "journal")
     rich = candidates.converge(("inertia_leak", "sensor_offset"))
@@ -224,7 +224,7 @@ def test_fit_caught_far_from_its_minimum_is_improved_from_a_richer_model() -> No
 # ---- score test ---------------------------------------------------------------------------------
 
 
-def test_score_test_promises_the_gain_of_a_linear_effect() -> None:
+def test_score_test_predicts_the_gain_of_a_linear_effect() -> None:
     campaign = Campaign.prepare(Rig(), _offset_runs(0.03))
     bare, near = fit_from_truth(campaign)
     near = replace(near, noise=WHITE, cost=near.samples.cost(near.residuals, WHITE))
@@ -239,7 +239,7 @@ def test_score_test_promises_the_gain_of_a_linear_effect() -> None:
     assert stepped[place] == pytest.approx(fitted.values[place], rel=0.1)
     score = float(directions.ways[:, 0] @ directions.innovations)
     assert score**2 == pytest.approx(gain, rel=0.1)
-    # Half of the samples have about half of the gain.
+    # The halves of the samples share the gain.
     halves = [
         score_test(problem, [start], replace(near, samples=half), ("sensor_offset",))[0]
         for half in near.samples.halves()

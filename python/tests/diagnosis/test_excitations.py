@@ -1,4 +1,4 @@
-"""Motions that a rig can make: each by its formula, within limits that are given or recorded."""
+"""Candidate motions of a rig: their formulas, and limits that are given or taken from records."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def stops(speed: float) -> str:
     return f"stop and go to {speed:g} m/s, both ways, with rests of 8 s"
 
 
-def test_sines_have_two_periods_and_keep_to_the_acceleration() -> None:
+def test_sines_have_at_least_two_periods_and_respect_the_acceleration_limit() -> None:
     """In 60 s a rate of 0.25 rad/s has two periods; amplitude times rate is 0.2 m/s^2 at most."""
     found = motions()
     allowed = {
@@ -57,7 +57,9 @@ def test_sines_have_two_periods_and_keep_to_the_acceleration() -> None:
 
 
 @pytest.mark.parametrize(("sharp", "there"), [(0.1975, False), (0.1985, True)])
-def test_acceleration_may_be_exceeded_by_one_percent(sharp: float, there: bool) -> None:
+def test_sine_is_proposed_if_it_exceeds_the_acceleration_by_at_most_one_percent(
+    sharp: float, there: bool
+) -> None:
     assert (sine(0.1, 2.0) in motions(sharp=sharp)) == there
 
 
@@ -112,14 +114,14 @@ def test_mixed_motion_is_stop_and_go_a_fast_sine_and_a_short_one() -> None:
         (0.0055, 2000.0, True),
     ],
 )
-def test_mixed_motion_requires_time_and_acceleration(
+def test_mixed_motion_requires_a_least_duration_and_acceleration(
     sharp: float, duration_s: float, there: bool
 ) -> None:
     found = motions(sharp=sharp, duration_s=duration_s)
     assert any(", then " in words for words in found) == there
 
 
-def test_motions_begin_at_rest_and_keep_to_their_limits_and_descriptions() -> None:
+def test_motions_begin_at_rest_and_respect_their_limits_and_descriptions() -> None:
     for words, x in motions(0.3, 1.7, 90.0).items():
         fastest = max(float(speed) for speed in re.findall(r"(\S+) m/s", words))
         assert x.velocity_m_s[0] == 0.0
@@ -166,7 +168,7 @@ def recorded(
 
 
 @pytest.mark.parametrize(("rate", "sharp"), [(1.0, 0.4), (3.0, 0.6)])
-def test_missing_limits_are_those_of_the_records(rate: float, sharp: float) -> None:
+def test_missing_limits_are_taken_from_the_records(rate: float, sharp: float) -> None:
     """The acceleration is at least that of a sine at 2 rad/s with the largest speed."""
     found = Limits().filled(recorded(rate))
     assert found.velocity_m_s == pytest.approx(0.2, rel=1e-3)
@@ -174,21 +176,21 @@ def test_missing_limits_are_those_of_the_records(rate: float, sharp: float) -> N
     assert (found.duration_s, found.load_n, found.temperature_c) == (60.0, None, None)
 
 
-def test_given_limits_are_kept() -> None:
+def test_given_limits_are_not_changed_by_the_records() -> None:
     given = Limits(0.05, 0.01, 7.0, (1.0, 2.0), (3.0, 4.0))
     assert given.filled(recorded(1.0, (40.0, 100.0), (10.0, 90.0))) == given
-    # Half the speed is reached with the acceleration on record.
+    # The missing acceleration is that of the records.
     slower = Limits(velocity_m_s=0.05).filled(recorded(1.0))
     assert slower.acceleration_m_s2 == pytest.approx(0.2, rel=5e-3)
 
 
-def test_loads_are_those_on_record_where_they_differ() -> None:
+def test_load_limits_are_taken_from_the_records_if_loads_differ() -> None:
     assert Limits().filled(recorded(1.0, (100.0, 40.0))).load_n == (40.0, 100.0)
     assert Limits().filled(recorded(1.0, (100.0, 100.0))).load_n is None
 
 
 @pytest.mark.parametrize(("high", "expected"), [(21.9, None), (22.0, (20.0, 22.0))])
-def test_temperatures_are_those_on_record_where_they_differ_by_two_kelvin(
+def test_temperature_limits_are_taken_from_the_records_if_they_differ_by_two_kelvin(
     high: float, expected: tuple[float, float] | None
 ) -> None:
     found = Limits().filled(recorded(1.0, (), (20.0, high))).temperature_c

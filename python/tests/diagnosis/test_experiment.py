@@ -49,8 +49,10 @@ def proposed(pairs: int) -> Experiment:
     return found
 
 
-def left_after_fit(rival: Rival, own: tuple[Array, Array], truth: Array, step_s: float) -> float:
-    """Sum of squares, in units of the noise, that a fit to old and new runs leaves."""
+def residual_square_after_fit(
+    rival: Rival, own: tuple[Array, Array], truth: Array, step_s: float
+) -> float:
+    """Residual sum of squares of a fit to old and new runs, in units of the noise."""
     noise = rival.solution.noise
     x, gap = noise.innovations(own[1], step_s), noise.innovations(truth - own[0], step_s)
     _, j = rival.solution.stacked()
@@ -72,7 +74,7 @@ def test_proposed_run_maximises_the_least_separation_of_the_rivals(pairs: int) -
     for excitation, run, motion in motions(tried, limits, step_s):
         at = {effects: rival.at(motion) for effects, rival in rivals.items()}
         separations = [
-            left_after_fit(rivals[fitted], at[fitted], at[truth][0], step_s)
+            residual_square_after_fit(rivals[fitted], at[fitted], at[truth][0], step_s)
             for group in groups
             for fitted, truth in (group, group[::-1])
         ]
@@ -104,14 +106,14 @@ def test_run_without_sufficient_evidence_is_not_proposed() -> None:
             assert "sensor_offset and inertia_leak" in str(found)
 
 
-def test_models_with_the_same_predictions_are_not_separated() -> None:
-    """Without a transmitted load friction in proportion to it is nothing."""
+def test_no_run_is_proposed_for_models_with_the_same_predictions() -> None:
+    """Without a transmitted load the friction in proportion to it is zero."""
     found = propose(candidates(), [[("torque_proportional",), ()]], LIMITS)
     assert isinstance(found, str)
     assert "torque_proportional" in found
 
 
-def test_only_what_differs_between_the_rivals_is_named() -> None:
+def test_proposal_names_only_effects_that_differ_between_the_rivals() -> None:
     groups = [[("sensor_offset", "inertia_leak"), ("sensor_offset",)]]
     found = propose(candidates(), groups, LIMITS)
     assert isinstance(found, Experiment)
@@ -123,7 +125,7 @@ ONE_WAY = (
     sine("one_way_0.25", 50.3, 0.0595, 0.25, bias=0.0728),
     sine("one_way_1", 25.2, 0.0595, 1.0, bias=0.0728),
 )
-"""Runs in one direction: a drag and an offset of the sensor are the same there."""
+"""Runs in one direction: a drag and an offset of the sensor are equivalent in them."""
 
 
 def played(run: jbf.Run) -> Motion:
@@ -148,7 +150,7 @@ def test_diagnosis_without_a_tie_proposes_no_run_to_separate_effects() -> None:
 
 
 @pytest.mark.extended
-def test_recorded_next_run_breaks_the_tie() -> None:
+def test_tie_is_resolved_by_recording_the_proposed_run() -> None:
     experiment = golden("bearing_one_direction").experiment
     assert experiment is not None
     motions = (*ONE_WAY, played(experiment.run))
@@ -159,7 +161,7 @@ def test_recorded_next_run_breaks_the_tie() -> None:
 
 
 @pytest.mark.extended
-def test_inertia_hidden_in_slow_sweeps_is_found_with_the_next_run() -> None:
+def test_inertia_that_slow_sweeps_do_not_show_is_named_with_the_proposed_run() -> None:
     sweeps = (sweep("sweep", 0.13, 60.0), sine("slow", 140.0, 0.127, 0.045))
     rig, runs, _ = simulated(67, ("inertia_leak",), motions=sweeps)
     first = jbf.diagnose(rig, runs)

@@ -27,7 +27,7 @@ def test_diagnosis_agrees_with_the_truth_of_the_simulation(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", EXPLAINED)
-def test_error_of_the_final_model_is_the_noise(name: str) -> None:
+def test_rms_error_of_the_final_model_is_the_noise(name: str) -> None:
     noise_n = golden_campaign(name)[2]
     last = golden(name).steps[-1]
     assert last.noise_n == pytest.approx(noise_n, rel=0.1)

@@ -40,7 +40,7 @@ def test_hidden_effect_is_named_and_the_error_falls_to_the_noise(name: str) -> N
     assert first.rms_n > last.rms_n
     assert first.holdout_rms_n > last.holdout_rms_n
     assert last.rms_n < 1.03 * noise_n
-    # A single run has rests: the others do not predict its breakaway.
+    # Only one run has rests: the others do not predict its breakaway.
     if name != "dwell_stiction":
         assert last.holdout_rms_n < 1.06 * noise_n
 
@@ -59,7 +59,7 @@ def test_noise_floor_is_the_noise_of_the_simulation(name: str) -> None:
 
 
 @pytest.mark.extended
-def test_adequate_bearing_with_coloured_noise_is_adequate() -> None:
+def test_diagnosis_of_a_bearing_with_coloured_noise_and_no_effect_is_adequate() -> None:
     rig, runs, _ = campaign(7, coloured=True)
     found = diagnose(rig, runs)
     assert (found.verdict, found.effects, found.unexplained) == ("adequate", (), ())
@@ -74,7 +74,7 @@ def test_every_effect_that_the_records_can_show_is_tried() -> None:
 
 
 @pytest.mark.extended
-def test_resonance_of_the_drive_does_not_hide_a_delay() -> None:
+def test_delay_is_named_next_to_a_resonance_of_the_drive() -> None:
     rig, runs, truth = campaign(202, ("drive_compliance", "time_delay"))
     found = diagnose(rig, runs)
     assert found.effects == ("drive_compliance", "time_delay"), found.summary()
@@ -89,7 +89,7 @@ def test_effects_that_require_a_path_or_a_load_are_not_tried_without_one() -> No
     assert not not_shown & {trial.effect for trial in found.steps[0].trials}
 
 
-def test_single_run_is_diagnosed() -> None:
+def test_diagnosis_of_a_single_run_names_the_mass_or_an_alternative() -> None:
     found = diagnose(Rig(), linear_runs("mass")[:1], law="coulomb")
     assert found.verdict in ("missing", "ambiguous")
     alternatives = {other for others in found.alternatives.values() for other in others}
@@ -133,7 +133,7 @@ def _slide(
         ({"peak": 0.35}, ("stribeck_asymmetry",)),
         ({"slope": 0.2}, ("viscous_asymmetry",)),
         ({"dry": 0.1, "peak": 0.1, "slope": 0.1}, ("direction_asymmetry",)),
-        # Rests tell an offset from an asymmetry.
+        # Rests separate an offset from an asymmetry.
         ({"offset_n": 0.6}, ("sensor_offset",)),
     ],
 )

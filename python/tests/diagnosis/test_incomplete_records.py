@@ -19,7 +19,7 @@ POSITION_M = -0.05 / 0.8 * np.cos(0.8 * TIME_S)
 FORCE_N = 20.0 * np.tanh(SPEED_M_S / 1e-3) + 0.3 * np.random.default_rng(1).standard_normal(1500)
 
 
-def test_angle_and_radius_replace_the_speed(tmp_path: Path) -> None:
+def test_speed_is_computed_from_angle_and_radius_if_it_is_missing(tmp_path: Path) -> None:
     runs = make_runs(kinds=("sine_w0.5", "sine_w2.0"))
     for run in runs:
         columns = run.columns()

@@ -57,7 +57,7 @@ def in_other_units(runs: list[Run]) -> list[Run]:
 
 
 def cut(runs: list[Run]) -> list[Run]:
-    """The run with most rests cut at a rest near its middle; if none rests, the first run."""
+    """The run with most rests cut at a rest near its middle; without rests, the first run."""
     whole = max(runs, key=lambda run: int(np.sum(run.velocity_m_s == 0.0)))
     middle = len(whole) // 2
     resting = np.flatnonzero(whole.velocity_m_s == 0.0)

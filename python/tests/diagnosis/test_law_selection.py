@@ -91,7 +91,7 @@ def _diagnosis(law: str, offset_n: float) -> Diagnosis:
     return diagnose(Rig(), _with_offset(offset_n), law=law)
 
 
-def test_data_select_the_law_that_made_them_with_its_noise_as_held_out_error() -> None:
+def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_error() -> None:
     found = golden("slide_law_selection")
     noise_n = golden_campaign("slide_law_selection")[2]
     assert found.model.law == found.laws[0].law == "stribeck"
@@ -111,8 +111,9 @@ def test_offset_of_the_sensor_does_not_change_the_selected_law() -> None:
     assert found.laws[0].left_out_rms_n == pytest.approx(0.2, rel=0.05)
 
 
+@pytest.mark.extended
 def test_simpler_law_is_reported_in_place_of_two_effects() -> None:
-    """The offset stays: no law has one."""
+    """The offset remains an effect: no law has one."""
     found = _diagnosis("coulomb", 20.0)
     assert set(found.effects) == {"sensor_offset", "stribeck_excess"}
     assert found.laws == ()

@@ -116,7 +116,7 @@ def test_direction_of_an_effect_is_orthogonal_to_the_law() -> None:
     assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
 
 
-def test_score_in_loud_parts_of_the_noise_counts_less() -> None:
+def test_score_counts_less_if_the_noise_is_larger_in_the_samples_of_the_effect() -> None:
     """The effect shows only in a tenth of the samples, where the noise is five times as large."""
     here = np.arange(RUNS * N) % 400 < 40
     noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
@@ -147,19 +147,19 @@ def _false_names(noise: Callable[[np.random.Generator], Array], campaigns: int) 
 
 @pytest.mark.extended
 @pytest.mark.parametrize("noise", [_white, _heavy, _slow, _uneven])
-def test_false_alarm_rate_holds_for_any_kind_of_noise(
+def test_false_alarm_rate_is_at_most_nominal_in_four_kinds_of_noise(
     noise: Callable[[np.random.Generator], Array],
 ) -> None:
     assert _false_names(noise, 120) <= stats.binom.ppf(0.999, 120, 0.05)
 
 
-def test_level_of_white_noise_is_that_of_a_shared_chi_square() -> None:
+def test_calibrated_level_of_white_noise_is_that_of_a_shared_chi_square() -> None:
     found = calibrated(_level(), _directions(_white(np.random.default_rng(0))))
     assert 0.8 * 0.01 / CANDIDATES < found.chance <= 0.01 / CANDIDATES
     assert found.blocks == RUNS * N * STEP_S
 
 
-def test_noise_that_is_large_where_an_effect_shows_raises_the_level() -> None:
+def test_level_rises_if_the_noise_is_larger_in_the_samples_of_an_effect() -> None:
     noise = _white(np.random.default_rng(0)) * (0.1 + 3.0 * _shapes()[-1])
     directions = [replace(d, counted=np.ones(1)) for d in _directions(noise)]
     assert 3.0 < calibrated(_level(), directions).critical / _level().critical < 30.0
@@ -189,7 +189,7 @@ def test_calibrated_level_is_the_quantile_of_gains_under_random_signs(
     found = calibrated(level, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
     assert found.chance == pytest.approx(stats.chi2.sf(gain, 1), rel=1e-3)
     assert found.blocks == 4
-    # A level that is already stricter stays.
+    # A level that is already stricter is not changed.
     strict = replace(level, chance=1e-80)
     again = calibrated(strict, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
     assert again.chance == 1e-80
@@ -256,7 +256,7 @@ def test_decoy_is_the_shape_of_a_candidate_shifted_cyclically_within_each_run(
     np.testing.assert_allclose(decoy_gains([one])[0], 0.5 * scores**2, rtol=1e-9)
 
 
-def test_decoys_get_names_only_if_their_gain_exceeds_the_threshold() -> None:
+def test_decoys_are_named_only_if_their_gain_exceeds_the_threshold() -> None:
     """Every shift of a constant scores 16 in a residual of 2: a gain of 256."""
     one = _one_direction(np.full(64, 0.125), np.full(64, 2.0), [0])
     for threshold, named in ((255.9, DRAWS), (256.1, 0)):

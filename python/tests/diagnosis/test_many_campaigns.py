@@ -19,7 +19,7 @@ from linear_campaigns import linear_diagnosis, linear_runs
 SLIDE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
 
 
-def test_diagnosis_of_a_folder_is_that_of_its_runs_and_a_bad_folder_stops_no_other(
+def test_folder_is_diagnosed_like_its_runs_even_if_another_folder_is_invalid(
     tmp_path: Path,
 ) -> None:
     for name in ("mass", "without_rig"):
@@ -79,7 +79,7 @@ class UnreadableCampaign(tuple[Any, ...]):
         raise RuntimeError("out of memory")
 
 
-def test_worker_that_fails_loses_only_its_own_campaign() -> None:
+def test_failing_worker_affects_only_its_own_campaign() -> None:
     campaigns: dict[str, Any] = {"a": UnreadableCampaign((Rig(), [])), "b": (Rig(), [])}
     with ThreadPoolExecutor(1) as executor:
         found = diagnose_many(campaigns, executor=executor, law="coulomb")
@@ -105,7 +105,7 @@ def test_wrong_argument_for_all_campaigns_is_rejected(
         diagnose_many(campaigns, **options)
 
 
-def test_campaign_that_is_not_a_pair_is_reported() -> None:
+def test_campaign_that_is_not_a_pair_of_rig_and_runs_is_reported_as_an_error() -> None:
     wrong: Any = {"a": (Rig(), [], [])}
     found = diagnose_many(wrong, law="coulomb")
     assert isinstance(found["a"], InputError)

@@ -31,7 +31,7 @@ def fitted(change: Change, *, seed: int = 0) -> tuple[Problem, Solution]:
     return fit_from_truth(Campaign.prepare(Rig(), runs))
 
 
-def looked(change: Change, seed: int = 0) -> tuple[SecondLook, Solution]:
+def second_look_after_fit(change: Change, seed: int = 0) -> tuple[SecondLook, Solution]:
     problem, solution = fitted(change, seed=seed)
     return second_look(problem, solution, DEFAULT), solution
 
@@ -64,13 +64,13 @@ SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_white_gaussian_noise_gets_no_weights(seed: int) -> None:
-    seen, _ = looked(white, seed)
+    seen, _ = second_look_after_fit(white, seed)
     assert not seen.found
     assert seen.campaign.more_findings == ()
     assert seen.campaign.samples.level is None
 
 
-def test_chance_differences_of_noise_between_short_runs_are_rarely_called_uneven() -> None:
+def test_chance_differences_of_noise_between_short_runs_are_rarely_reported() -> None:
     """Sizes estimated from 260 samples each: the extremes of six often differ by a quarter."""
     problem, solution = fitted(lambda i, f, random: f)
     short = [np.cumsum(c) <= 260 for c in solution.samples.counted]
@@ -93,7 +93,7 @@ def test_chance_differences_of_noise_between_short_runs_are_rarely_called_uneven
 
 @pytest.mark.parametrize("share", [0.03, 0.06])
 def test_share_of_noise_proportional_to_the_force_is_estimated_and_weighted(share: float) -> None:
-    seen, solution = looked(
+    seen, solution = second_look_after_fit(
         lambda i, f, random: f + np.hypot(0.05, share * f) * random.standard_normal(len(f))
     )
     (found,) = seen.campaign.more_findings
@@ -110,7 +110,7 @@ def test_share_of_noise_proportional_to_the_force_is_estimated_and_weighted(shar
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0])
-def test_weights_are_the_inverse_of_a_line_through_the_variances(unit: float) -> None:
+def test_squared_weights_are_the_inverse_of_a_line_in_the_squared_force(unit: float) -> None:
     """Noise of the sensor of 0.5 and 5 % of forces up to 25 N, at random phases."""
     t = np.arange(0.0, 60.0, 0.02)
     speeds = [np.sin((1.0 + 0.2 * i) * t + 0.4) for i in range(3)]
@@ -152,7 +152,7 @@ def test_noise_that_decreases_with_the_force_gets_no_weights() -> None:
 
 @pytest.mark.parametrize("ratio", [1.5, 4.0])
 def test_ratio_of_noise_between_runs_is_estimated_and_weighted(ratio: float) -> None:
-    seen, _ = looked(in_run_two(ratio))
+    seen, _ = second_look_after_fit(in_run_two(ratio))
     (found,) = seen.campaign.more_findings
     assert (found.kind, found.unit) == ("noise_by_run", "1")
     # Ratio of the extremes of six sizes, each known to about 4 %.
@@ -249,7 +249,7 @@ def test_outlier_weight_is_that_of_huber(unit: float) -> None:
         (round(1.1 * 10.0 * 2.0 * special.ndtr(-4.0) * 50_000), 50_000, 10.0, True),
     ],
 )
-def test_tails_are_heavy_from_a_number_and_a_share_of_outliers(
+def test_heavy_tails_are_reported_from_a_least_number_and_share_of_outliers(
     outliers: int, samples: int, heavy: float, found: bool
 ) -> None:
     _, sizes = _weights_of([_outliers(outliers, samples)], heavy)
@@ -257,7 +257,9 @@ def test_tails_are_heavy_from_a_number_and_a_share_of_outliers(
 
 
 def test_student_noise_with_three_degrees_of_freedom_is_weighted_once() -> None:
-    seen, solution = looked(lambda i, f, random: f + NOISE_N * random.standard_t(3.0, len(f)))
+    seen, solution = second_look_after_fit(
+        lambda i, f, random: f + NOISE_N * random.standard_t(3.0, len(f))
+    )
     found = {f.kind: f for f in seen.campaign.more_findings}["heavy_tails"]
     robust_sd = stats.t.ppf(stats.norm.cdf(0.6745), 3.0) / 0.6745
     assert found.size == pytest.approx(2.0 * stats.t.sf(4.0 * robust_sd, 3.0), rel=0.2)

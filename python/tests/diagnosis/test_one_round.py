@@ -20,7 +20,7 @@ def _round(*effects: str) -> OneRound:
     return one_round(Rig(), linear_runs("mass"), effects, law="coulomb")
 
 
-def test_trials_next_to_the_law_are_those_of_the_first_step_of_a_diagnosis() -> None:
+def test_trials_of_a_round_without_effects_are_those_of_the_first_step_of_a_diagnosis() -> None:
     found, first = _round(), linear_diagnosis("mass").steps[0]
     assert found.step.effects == ()
     assert found.step.holdout_rms_n == pytest.approx(first.holdout_rms_n, rel=1e-6)
@@ -30,7 +30,7 @@ def test_trials_next_to_the_law_are_those_of_the_first_step_of_a_diagnosis() -> 
     )
 
 
-def test_fit_of_a_round_is_that_of_fit() -> None:
+def test_round_with_an_effect_has_the_result_of_fit_and_does_not_try_the_effect_again() -> None:
     found = _round("inertia_leak")
     alone = fit(Rig(), linear_runs("mass"), ["inertia_leak"], law="coulomb")
     assert found.fit.parameters == alone.parameters
@@ -120,7 +120,9 @@ def test_model_reached_so_far_is_completed_even_if_the_work_limit_is_used_up() -
     ("arguments", "named"),
     [({"law": "no such law"}, "no such law"), ({"limits": 3}, "limits"), ({"progress": 3}, "prog")],
 )
-def test_wrong_argument_of_a_diagnosis_is_named(arguments: dict[str, object], named: str) -> None:
+def test_wrong_argument_of_a_diagnosis_is_rejected_by_name(
+    arguments: dict[str, object], named: str
+) -> None:
     with pytest.raises(InputError, match=named):
         diagnose(Rig(), [], **({"law": "coulomb"} | arguments))  # type: ignore[arg-type]
 

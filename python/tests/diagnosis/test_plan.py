@@ -46,9 +46,9 @@ def candidate_runs() -> list[tuple[str, Run]]:
 
 
 def worth(information: Array, laws: int, prices: Array) -> float:
-    """Sum over effects of the logarithm of what each is worth over its price.
+    """Sum over effects of the logarithm of their information relative to their threshold.
 
-    An effect counts apart from the law and from the rival with the largest correlation.
+    Information is what remains after the law and after the rival with the largest correlation.
     """
     size = np.sqrt(np.maximum(np.diag(information), 1e-300))
     scaled = information / np.outer(size, size)
@@ -56,7 +56,7 @@ def worth(information: Array, laws: int, prices: Array) -> float:
     left = (own - mixed @ np.linalg.pinv(law, rcond=1e-9) @ mixed.T) * np.outer(
         size[laws:], size[laws:]
     )
-    # What the law explains up to rounding errors is neither found nor a rival.
+    # An effect that the law explains up to rounding errors has no information and is no rival.
     seen = np.diag(left) > 1e-9 * size[laws:] ** 2
     variance = np.where(seen, np.diag(left), 0.0)
     correlation = np.where(seen, left, 0.0) ** 2 / np.outer(
@@ -68,8 +68,8 @@ def worth(information: Array, laws: int, prices: Array) -> float:
     return float(np.sum(total))
 
 
-def test_each_run_is_the_best_addition_to_those_before() -> None:
-    """Worth of the plan, and of the plan without its most informative run."""
+def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None:
+    """The criterion is the worth of the plan plus that without its most informative run."""
     motions = candidate_runs()
     tried = as_recorded(MODEL, [run for _, run in motions[::3]], NOISE_N, DEFAULT)
     models = [m for name in tried.names if (m := strength_of(tried, (), name)) is not None]
@@ -108,7 +108,7 @@ def replace_values(model: Model, name: str, factor: float) -> Model:
     return Model(model.rig, model.law, parameters={**values, name: factor * values[name]})
 
 
-def test_plan_keeps_to_time_and_limits() -> None:
+def test_plan_respects_the_total_time_and_the_limits_of_the_rig() -> None:
     found = planned()
     assert [run.name for run in found.runs] == ["01", "02", "03", "04"]
     descriptions = dict(candidate_runs())
@@ -144,7 +144,7 @@ def test_plan_does_not_rely_on_exact_instants_of_reversals() -> None:
     assert 0.1 * STEP_S < lag_s < STEP_S
 
 
-def test_shaft_is_planned_with_its_angle_and_the_usual_acceleration() -> None:
+def test_shaft_is_planned_with_its_angle_and_the_default_acceleration() -> None:
     """A missing acceleration is that of a sine at 2 rad/s with the largest speed."""
     model = Model(Rig(drive=Drive("rotary", "torque")), "coulomb", parameters=MODEL.parameters)
     limits = Limits(2.0, duration_s=15.0)
@@ -172,7 +172,7 @@ def test_shaft_is_planned_with_its_angle_and_the_usual_acceleration() -> None:
         ({"limits": Limits(duration_s=30.0)}, "velocity_m_s is missing"),
     ],
 )
-def test_impossible_request_is_reported(change: dict[str, Any], problem: str) -> None:
+def test_impossible_plan_is_rejected_with_the_reason(change: dict[str, Any], problem: str) -> None:
     assert (LEAST_RUNS, MOST_RUNS) == (3, 200)
     request: dict[str, Any] = {"limits": LIMITS, "minutes": 2.0, "noise_n": NOISE_N} | change
     with pytest.raises(InputError, match=problem):
@@ -182,7 +182,7 @@ def test_impossible_request_is_reported(change: dict[str, Any], problem: str) ->
 @pytest.mark.parametrize(
     ("run_s", "loads"), [("10", ()), pytest.param("30", ("50", "150"), marks=pytest.mark.extended)]
 )
-def test_command_line_writes_runs_that_the_power_command_reads(
+def test_plan_command_writes_runs_that_the_power_command_reads(
     run_s: str, loads: tuple[str, ...], tmp_path: Path
 ) -> None:
     rig, out, table = tmp_path / "rig.toml", tmp_path / "plan", tmp_path / "plan.json"
@@ -210,7 +210,7 @@ def test_command_line_writes_runs_that_the_power_command_reads(
     assert main(power) == 0
 
 
-def test_command_line_requires_the_noise(
+def test_plan_command_without_the_noise_is_rejected(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "rig.toml").write_text(RIG_TOML)

@@ -1,4 +1,4 @@
-"""Planned runs as they would be recorded, and what they would show."""
+"""Simulated records of planned runs, and the power of a diagnosis of them."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ def test_sign_of_the_friction_is_unknown_next_to_a_planned_reversal() -> None:
 
 
 @pytest.mark.parametrize("noise_n", [0.0, -1.0, np.inf, 2.0 * MOST])
-def test_noise_must_be_positive_and_possible(noise_n: float) -> None:
+def test_noise_that_is_not_positive_or_exceeds_its_limit_is_rejected(noise_n: float) -> None:
     with pytest.raises(InputError, match="noise_n"):
         planned_power(MODEL, [motion("a")], noise_n=noise_n)
 
 
-def test_plan_without_runs_is_refused() -> None:
+def test_plan_without_runs_is_rejected() -> None:
     with pytest.raises(InputError, match="no run was given"):
         planned_power(MODEL, [], noise_n=0.1)
 
@@ -76,7 +76,7 @@ def test_planned_power_of_a_mass_is_that_of_a_regression() -> None:
     assert found.found_80 * left == pytest.approx(wanted, rel=0.03)
 
 
-def test_planned_power_as_a_dictionary() -> None:
+def test_dictionary_of_planned_power_has_its_law_runs_level_and_results() -> None:
     planned = planned_power(MODEL, [motion("a"), motion("b", 1.7)], noise_n=0.2)
     table = planned.to_dict()
     assert (table["law"], table["effects"], table["noise_n"]) == ("coulomb", [], 0.2)
@@ -93,7 +93,11 @@ def test_effects_of_the_model_are_not_tested_again() -> None:
     planned = planned_power(model, [motion("a"), motion("b", 1.7)], noise_n=0.1)
     assert planned.to_dict()["effects"] == ["inertia_leak"]
     assert "inertia_leak" not in {p.effect for p in planned.power}
-    # The planned friction has the inertial force.
+
+
+def test_planned_friction_includes_the_effects_of_the_model() -> None:
+    values = {**LAW, "F_s_n": 5.0, "inertia_leak.m_e_kg": 3.0}
+    model = Model(Rig(), "coulomb", ["inertia_leak"], values)
     (run,) = as_recorded(model, [motion("a")], 1e-3, DEFAULT).campaign.prepared
     (without,) = as_recorded(MODEL, [motion("a")], 1e-3, DEFAULT).campaign.prepared
     inertial = run.friction_n - without.friction_n

@@ -61,7 +61,7 @@ def price() -> float:
 
 @pytest.mark.parametrize("chance", [0.8, 0.95])
 @pytest.mark.parametrize("parameters", [1, 3])
-def test_noncentral_chi_square_exceeds_the_price_with_the_given_probability(
+def test_noncentral_chi_square_exceeds_the_threshold_with_the_given_probability(
     parameters: int, chance: float
 ) -> None:
     for threshold in (10.0, 30.0, 400.0):
@@ -85,7 +85,7 @@ def test_detectable_strength_of_a_mass_is_that_of_a_regression() -> None:
     for value, chance in ((found.found_80, 0.8), (found.found_95, 0.95)):
         wanted = np.sqrt(non_centrality(price(), 1, chance)) * NOISE_N
         assert value is not None
-        # Noise of the residual's own level: 2000 samples know it within a few percent.
+        # The noise is estimated from 2000 samples, to within a few percent.
         assert value * residual_norm(a) == pytest.approx(wanted, rel=0.03)
     assert found.found_80 is not None
     friction = DRY_N + VISCOUS_N_S_M * np.abs(v)
@@ -95,8 +95,8 @@ def test_detectable_strength_of_a_mass_is_that_of_a_regression() -> None:
 
 
 @pytest.mark.parametrize("effect", ["sensor_offset", "sensor_drift", "viscous_asymmetry"])
-def test_smooth_change_must_be_larger_since_it_may_pass_for_coloured_noise(effect: str) -> None:
-    """Never smaller than by the regression in white noise, and not by much larger."""
+def test_detectable_size_of_a_smooth_change_is_larger_than_in_white_noise(effect: str) -> None:
+    """By 5 to 70 %, since coloured noise can absorb a part of it."""
     v, _, t = columns()
     changes = {"sensor_offset": np.ones(len(v)), "sensor_drift": t, "viscous_asymmetry": np.abs(v)}
     found = powers()[effect].found_80
@@ -105,8 +105,8 @@ def test_smooth_change_must_be_larger_since_it_may_pass_for_coloured_noise(effec
     assert 1.05 * wanted < found * residual_norm(changes[effect]) < 1.7 * wanted
 
 
-def test_effect_that_the_law_explains_is_never_found() -> None:
-    """At one speed a quadratic drag is dry friction."""
+def test_effect_that_the_law_explains_has_no_detectable_strength() -> None:
+    """At one speed a quadratic drag is equivalent to dry friction."""
     t = np.arange(0.0, 20.0, 0.02)
     records = []
     for k, way in enumerate((1.0, -1.0)):
@@ -119,7 +119,7 @@ def test_effect_that_the_law_explains_is_never_found() -> None:
     assert found.hidden
 
 
-def test_effect_is_hidden_where_its_usual_strength_is_not_detectable() -> None:
+def test_effect_is_hidden_if_its_usual_strength_is_not_detectable() -> None:
     tried = candidates(runs())
     for p in powers().values():
         model = strength_of(tried, (), p.effect)
@@ -140,7 +140,7 @@ def test_effects_with_the_same_signature_are_confounded() -> None:
     assert dry.like[0] == "sensor_offset"
 
 
-def test_effect_with_a_signature_of_its_own_is_found_alone() -> None:
+def test_effect_with_a_unique_signature_is_distinguishable_as_soon_as_detectable() -> None:
     for name in ("stribeck_asymmetry", "sensor_hysteresis", "sensor_drift"):
         found = powers()[name]
         assert found.like == ()
@@ -175,7 +175,7 @@ def test_power_is_reported_for_effects_that_are_not_in_the_model() -> None:
     assert offset == next(p for p in found if p.effect == "sensor_offset")
 
 
-def test_contact_at_rest_is_found_at_any_stiffness() -> None:
+def test_presliding_is_detectable_at_any_stiffness_if_the_runs_have_rests() -> None:
     records = []
     for k in range(3):
         t = np.arange(0.0, 20.0, 0.02)
@@ -187,7 +187,7 @@ def test_contact_at_rest_is_found_at_any_stiffness() -> None:
     assert not found["inertia_leak"].always
 
 
-def test_power_is_part_of_a_diagnosis_without_unexplained_structure() -> None:
+def test_diagnosis_reports_power_only_if_no_structure_is_unexplained() -> None:
     result = golden("bearing_coulomb_drag")
     names = {p.effect for p in result.power}
     assert "inertia_leak" in names
@@ -199,7 +199,9 @@ def test_power_is_part_of_a_diagnosis_without_unexplained_structure() -> None:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
-def test_effect_is_found_in_eighty_percent_of_simulated_campaigns(effect: str) -> None:
+def test_effect_of_the_detectable_strength_is_found_in_eighty_percent_of_campaigns(
+    effect: str,
+) -> None:
     value = powers()[effect].found_80
     assert value is not None
 

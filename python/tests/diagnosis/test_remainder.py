@@ -1,4 +1,4 @@
-"""Residual structure as a whole: which kinds are reported, in which order, and in which size."""
+"""Residual structure as a whole: which kinds are reported, in which order, and with which size."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def test_structure_is_ordered_by_its_share() -> None:
 
 
 @pytest.mark.parametrize("size_n", [0.3, -0.3])
-def test_share_and_sign_of_a_pattern_along_the_direction(size_n: float) -> None:
+def test_pattern_along_the_direction_is_reported_with_its_share_and_sign(size_n: float) -> None:
     noise = white_noise(sines(), 2)
     residuals = [e + size_n * np.sign(v) for e, v in zip(noise, velocities(), strict=True)]
     problem, solution = solution_with(sines(), residuals)
@@ -110,7 +110,7 @@ def test_share_and_sign_of_a_pattern_along_the_direction(size_n: float) -> None:
 
 
 def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() -> None:
-    """Of an error of 2 N the innovations of a noise with a memory hold a tenth."""
+    """The innovations of correlated noise contain a tenth of an error of 2 N."""
     noise = Noise(0.2, 0.9)
     residuals = [
         noise.coloured(0.3 * e, 0.02) + 2.0 * np.sign(v)
@@ -125,7 +125,7 @@ def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() 
     assert float(size[1]) == pytest.approx(2.0, abs=0.15)
 
 
-def test_burst_is_found_though_robust_weights_reduce_it() -> None:
+def test_burst_is_found_even_if_robust_weights_reduce_it() -> None:
     residuals = white_noise(sines(), 4)
     inside = np.abs(TIME_S - 11.0) < 0.1
     residuals[0] = residuals[0] + 9.0 * inside
@@ -135,8 +135,8 @@ def test_burst_is_found_though_robust_weights_reduce_it() -> None:
     assert "time" in {r.axis for r in found}
 
 
-def test_deviation_of_a_run_that_the_model_describes_is_not_structure() -> None:
-    """It has no part in the share of other structure either: a tone has 0.18 of 1.18 N^2."""
+def test_random_effect_of_a_run_that_the_model_describes_is_not_structure() -> None:
+    """It is also excluded from the share of other structure: a tone has 0.18 of 1.18 N^2."""
     tone = 0.6 * np.sin(2.0 * np.pi * 7.3 * TIME_S)
     noise = white_noise(sines(), 5)
     residuals = [e + tone + level for e, level in zip(noise, (5.0, -5.0), strict=True)]
@@ -179,7 +179,7 @@ def test_hum_of_the_supply_is_reported_by_the_diagnosis() -> None:
 
 
 @pytest.mark.extended
-def test_level_that_differs_between_runs_is_unexplained() -> None:
+def test_friction_that_steps_within_every_run_is_unexplained() -> None:
     rig, runs, _ = simulated(21, foreign=("level_step",), strength=1.5)
     result = diagnose(rig, runs)
     assert result.verdict == "unexplained"

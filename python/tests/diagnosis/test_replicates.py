@@ -80,7 +80,9 @@ def test_recurring_error_is_found_with_its_share(unit: float) -> None:
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.99, True), (1.01, False)])
-def test_significance_is_the_root_of_the_number_of_pairs(part: float, found: bool) -> None:
+def test_significance_of_a_recurring_error_is_the_root_of_the_number_of_pairs(
+    part: float, found: bool
+) -> None:
     """Products of white noise have a standard deviation of the mean square."""
     n = 9 * PERIOD
     sigma = part * float(np.sqrt(n - PERIOD))
@@ -88,7 +90,7 @@ def test_significance_is_the_root_of_the_number_of_pairs(part: float, found: boo
         assert bool(recurring_in(unit * wave(n), replicate_sigma=sigma)) == found
 
 
-def test_error_in_part_of_the_record_is_less_significant() -> None:
+def test_recurring_error_in_part_of_the_record_is_less_significant() -> None:
     """The products then have a long-run variance above that of white noise."""
     n = 9 * PERIOD
     residual = wave(n) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
@@ -97,8 +99,8 @@ def test_error_in_part_of_the_record_is_less_significant() -> None:
     assert recurring_in(residual, replicate_sigma=0.9 * white) == []
 
 
-def test_constant_level_does_not_recur() -> None:
-    """A level of 1.5 is remembered half a period later; a wave of 1 is reversed there."""
+def test_constant_level_is_not_a_recurring_error() -> None:
+    """A level correlates also half a period later, where the wave has the opposite sign."""
     n = 9 * PERIOD
     assert recurring_in(np.full(n, 1.5)) == []
     (found,) = recurring_in(1.5 + wave(n))
@@ -106,7 +108,7 @@ def test_constant_level_does_not_recur() -> None:
 
 
 @pytest.mark.parametrize("lag", [0.5, 0.6, 0.7, 0.8, 0.9])
-def test_noise_memory_is_the_least_correlation_between_half_a_period_and_one(lag: float) -> None:
+def test_correlation_of_the_noise_is_the_least_between_half_a_period_and_one(lag: float) -> None:
     """The mean product of 1 + cos is 1 - 1/2 at its least, 1 + cos(pi / lag) / 2 a period later."""
     residual = 1.0 + np.cos(np.pi * np.arange(20_000) / (lag * PERIOD))
     (found,) = recurring_in(residual, replicate_share=1e-3, replicate_sigma=1e-6)
@@ -115,8 +117,8 @@ def test_noise_memory_is_the_least_correlation_between_half_a_period_and_one(lag
 
 
 @pytest.mark.parametrize("memory_s", [0.2, 4.0, 20.0])
-def test_coloured_noise_does_not_recur(memory_s: float) -> None:
-    """Also where its memory is longer than a period of five seconds."""
+def test_coloured_noise_is_not_a_recurring_error(memory_s: float) -> None:
+    """Also if its memory is longer than a period of five seconds."""
     keep = float(np.exp(-0.05 / memory_s))
     campaign = periodic(3000, 3000)
     for seed in range(5):
@@ -151,7 +153,7 @@ def test_run_with_fewer_than_100_pairs_is_skipped(pairs: int, found: bool) -> No
     assert runs_named(both) == (["a", "b"] if found else ["b"])
 
 
-def test_pairs_are_of_samples_that_both_count() -> None:
+def test_only_pairs_of_samples_that_both_count_are_compared() -> None:
     n = 4000
     bad = np.arange(n) % (2 * PERIOD) < 30
     noise = white_noise(periodic(n), 5)[0]

@@ -27,7 +27,7 @@ SPEEDS_M_S = (0.1, 0.137, 0.171, 0.229, 0.083)
 
 @cache
 def reversing(speeds: tuple[float, ...] = SPEEDS_M_S) -> Campaign:
-    """Slides that turn round once, in the middle."""
+    """Slides that reverse once, in the middle."""
     return slides([np.where(np.arange(N) < N // 2, v, -v) for v in speeds])
 
 
@@ -89,7 +89,7 @@ def test_ripple_is_found_with_pitch_median_size_and_share(unit: float) -> None:
     assert ripples_in(campaign, signals, 1.01 * found.share) == []
 
 
-def test_ripple_with_the_sign_of_the_velocity_is_one_of_friction() -> None:
+def test_ripple_with_the_sign_of_the_velocity_is_reported_as_friction() -> None:
     campaign = reversing()
     (found,) = ripples_in(campaign, waves(campaign, [1.0] * 5, friction=True))
     assert found.where.startswith("friction")
@@ -112,19 +112,19 @@ def test_white_noise_has_no_ripple() -> None:
         assert ripples_in(campaign, waves(campaign, [0.0] * 5, seed=seed)) == []
 
 
-def test_wave_with_one_phase_in_all_runs_is_left_to_the_effects() -> None:
+def test_wave_with_one_phase_in_all_runs_is_not_reported_as_a_ripple() -> None:
     campaign = reversing()
     assert ripples_in(campaign, waves(campaign, [1.0] * 5, phase=0.7)) == []
 
 
-def test_wave_at_one_speed_is_left_to_the_tones() -> None:
+def test_wave_is_not_reported_as_a_ripple_if_all_runs_have_one_speed() -> None:
     alike, apart = one_way((0.1,) * 4), one_way()
     assert ripples_in(alike, waves(alike, [1.0] * 4)) == []
     assert len(ripples_in(apart, waves(apart, [1.0] * 5))) == 1
 
 
 @pytest.mark.parametrize(("runs", "found"), [(2, 0), (3, 1)])
-def test_three_runs_are_required(runs: int, found: int) -> None:
+def test_ripple_requires_three_runs(runs: int, found: int) -> None:
     campaign = reversing(SPEEDS_M_S[:runs])
     assert len(ripples_in(campaign, waves(campaign, [1.0] * runs))) == found
 
@@ -138,7 +138,7 @@ def without_wave(signal: Array, path: Array, pitch: float) -> Array:
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.75, 0), (1.6, 1)])
-def test_significance_is_that_of_a_chi_square_with_two_degrees_per_run(
+def test_significance_of_a_ripple_is_that_of_a_chi_square_with_two_degrees_per_run(
     part: float, found: int
 ) -> None:
     """A wave of amplitude A in noise of variance 1 adds A^2 n / 2 to the ordinate of its run."""
@@ -157,7 +157,7 @@ def test_significance_is_that_of_a_chi_square_with_two_degrees_per_run(
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.8, 0), (1.25, 1)])
-def test_wave_of_the_weakest_two_thirds_of_the_runs_must_be_significant(
+def test_ripple_requires_a_significant_wave_in_the_weakest_two_thirds_of_the_runs(
     part: float, found: int
 ) -> None:
     """Of three runs the two weakest: twice their ordinates is chi-square with four degrees."""
@@ -176,14 +176,16 @@ def test_wave_of_the_weakest_two_thirds_of_the_runs_must_be_significant(
 
 
 @pytest.mark.parametrize(("third_m_s", "found"), [(0.05, 0), (0.09, 1)])
-def test_three_runs_must_hold_eight_periods(third_m_s: float, found: int) -> None:
+def test_ripple_requires_eight_periods_in_each_of_three_runs(third_m_s: float, found: int) -> None:
     """Runs of 30 s and a pitch of 0.3 m: 10, 9 and 5 or 9 periods."""
     campaign = one_way((0.1, 0.09, third_m_s))
     assert len(ripples_in(campaign, waves(campaign, [1.0] * 3, pitch=0.3))) == found
 
 
 @pytest.mark.parametrize(("steps", "found"), [(3.6, 0), (4.4, 1)])
-def test_pitch_must_be_four_steps_of_the_path_at_least(steps: float, found: int) -> None:
+def test_ripple_requires_a_pitch_of_at_least_four_steps_of_the_path(
+    steps: float, found: int
+) -> None:
     """The step of the path is the median of all runs: that at 0.1 m/s, 2 mm."""
     campaign = one_way((0.1, 0.099, 0.101))
     signals = waves(campaign, [2.0] * 3, pitch=steps * 0.1 * STEP_S)
@@ -191,7 +193,7 @@ def test_pitch_must_be_four_steps_of_the_path_at_least(steps: float, found: int)
     assert [pitch_and_size(x)[0] for x in seen] == pytest.approx([steps * 0.002] * found, rel=0.01)
 
 
-def test_samples_that_do_not_count_are_ignored() -> None:
+def test_ripple_is_estimated_without_samples_that_do_not_count() -> None:
     campaign = reversing()
     counted = [np.arange(N) % 3 > 0] * 5
     signals = [
@@ -211,7 +213,7 @@ def test_samples_that_do_not_count_are_ignored() -> None:
         (Rig(drive=Drive("rotary", "torque")), 2.0 * np.pi / 100.0, "torque", 100.0),
     ],
 )
-def test_description_has_periods_per_turn_where_the_drive_turns(
+def test_description_has_periods_per_turn_if_the_drive_turns(
     rig: Rig, pitch: float, noun: str, per_turn: float
 ) -> None:
     velocities = [np.where(np.arange(N) < N // 2, v, -v) for v in SPEEDS_M_S]

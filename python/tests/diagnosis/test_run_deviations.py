@@ -89,7 +89,7 @@ def test_standard_deviation_of_drifts_between_runs_is_estimated() -> None:
     assert found.finding.size == pytest.approx(0.03, rel=0.15)
 
 
-def test_deviations_are_found_one_at_a_time_with_the_known_one_kept() -> None:
+def test_two_random_effects_are_found_one_after_the_other() -> None:
     offsets_n, gains = deviates(0.3), deviates(0.03)[::-1]
     problem, solution = fitted(lambda i, t, f: gains[i] * f + offsets_n[i])
     first = clearest(problem, solution)
@@ -108,7 +108,7 @@ def test_deviations_are_found_one_at_a_time_with_the_known_one_kept() -> None:
     assert clearest(*fit_from_truth(both)) is None
 
 
-def test_gain_of_a_deviation_is_that_of_run_means_less_the_log_determinant() -> None:
+def test_gain_of_a_random_effect_is_that_of_run_means_less_the_log_determinant() -> None:
     problem, solution = fitted(constant((0.5, -0.3, 0.1, -0.4)), runs=4)
     samples = problem.campaign.samples
     found = clearest(problem, solution)
@@ -140,7 +140,9 @@ def test_noise_within_runs_excludes_the_differences_between_runs(
         pytest.param((0.0, 0.5), id="two runs"),
     ],
 )
-def test_no_deviation_without_differences_among_three_runs(offsets_n: tuple[float, ...]) -> None:
+def test_no_random_effect_is_found_if_runs_are_equal_or_fewer_than_three(
+    offsets_n: tuple[float, ...],
+) -> None:
     assert clearest(*fitted(constant(offsets_n), runs=len(offsets_n))) is None
 
 
@@ -148,7 +150,7 @@ def test_no_deviation_without_differences_among_three_runs(offsets_n: tuple[floa
 
 
 def _four_runs(mass_kg: float, offsets_n: tuple[float, ...]) -> list[Run]:
-    """Faster reversing runs with an inertia and an offset of each run's own."""
+    """Faster reversing runs with an inertia and a separate offset for each run."""
     random, runs = np.random.default_rng(11), []
     t = np.arange(0.0, 20.0, 0.02)
     for i, offset_n in enumerate(offsets_n):

@@ -32,7 +32,7 @@ def test_planned_motion_has_the_path_of_its_velocity(linear: bool) -> None:
     assert (run.friction_n, run.temperature_c) == (None, None)
 
 
-def test_planned_motion_has_its_load_and_temperature() -> None:
+def test_planned_motion_has_the_given_load_and_temperature_or_the_load_of_the_rig() -> None:
     rig, v = Rig.thesis(), np.zeros(20)
     assert rig.load is not None
     usual = played(rig, Excitation("rest", v, None), STEP_S, linear=False)
@@ -67,8 +67,8 @@ def test_planned_run_has_the_median_step_of_the_runs_and_6000_samples_at_most() 
 
 
 @pytest.mark.parametrize("position", [False, True])
-def test_every_motion_within_the_limits_is_played(position: bool) -> None:
-    """With a position where the runs have one, else with an angle."""
+def test_every_motion_within_the_limits_is_a_candidate(position: bool) -> None:
+    """With a position if the runs have one, else with an angle."""
     limits = Limits(0.1, 0.2, 20.0)
     found = list(motions(candidates_of(STEP_S, position=position), limits, STEP_S))
     expected = list(excitations(limits, STEP_S, "m/s"))
@@ -86,7 +86,7 @@ def rival() -> Rival:
     return Rival(tried.fitted(()))
 
 
-def test_noise_and_information_are_those_of_a_regression(rival: Rival) -> None:
+def test_noise_and_information_of_a_rival_are_those_of_a_regression(rival: Rival) -> None:
     r, j = rival.solution.stacked()
     assert rival.noise_n == pytest.approx(0.1, rel=0.05)
     assert rival.noise_n**2 * (len(r) - j.shape[1]) == pytest.approx(float(r @ r))
@@ -108,7 +108,9 @@ def test_friction_and_slopes_in_a_motion_are_those_of_the_law(rival: Rival) -> N
 
 
 @pytest.mark.parametrize("direction", ["dry", "viscous", "new"])
-def test_separation_is_what_a_fit_to_old_and_new_runs_leaves(rival: Rival, direction: str) -> None:
+def test_separation_is_the_residual_square_of_a_fit_to_old_and_new_runs(
+    rival: Rival, direction: str
+) -> None:
     """The least of |gap - X s|^2 + |K s|^2 over a common step s, by normal equations."""
     t = STEP_S * np.arange(400.0)
     v = 0.1 + 0.05 * np.sin(t)
@@ -121,6 +123,6 @@ def test_separation_is_what_a_fit_to_old_and_new_runs_leaves(rival: Rival, direc
     left = float(gap @ gap - explained @ np.linalg.pinv(information) @ explained)
     separation = rival.separation(own, (own[0] + gap, own[1]), STEP_S)
     assert separation == pytest.approx(left / rival.noise_n**2, rel=1e-6)
-    # The old runs hold the parameters: some of the gap stays even along the law's own directions.
+    # The old runs constrain the parameters: a part of the gap remains even along the law's slopes.
     assert 0.1 * float(gap @ gap) < left < float(gap @ gap)
     assert rival.separation(own, own, STEP_S) == pytest.approx(0.0, abs=1e-9)

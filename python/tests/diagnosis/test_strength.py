@@ -1,4 +1,4 @@
-"""Effects by their strength, and what runs show of a change that the law cannot explain."""
+"""Effects as functions of strength, and the part of a change that the law does not explain."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def test_parameter_moves_from_its_null_in_proportion_to_the_strength(
     for times in (0.5, 1.0, 2.0):
         value = float(model.values(times)[model.which])
         if page.null == np.inf:
-            # A stiffness without limit is no effect: twice as strong is half as stiff.
+            # An infinite stiffness has no effect: twice as strong is half as stiff.
             assert value == pytest.approx(page.starts[0] / times)
         else:
             assert page.null is not None
             assert value == pytest.approx(page.null + times * (page.starts[0] - page.null))
 
 
-def test_strength_stays_within_the_bounds_of_the_parameter(candidates: Candidates) -> None:
+def test_parameter_stays_within_its_bounds_at_any_strength(candidates: Candidates) -> None:
     model = strength_of(candidates, (), "dry_asymmetry")
     assert model is not None
     page = effects()["dry_asymmetry"].parameters[0]
@@ -58,7 +58,9 @@ def test_strength_stays_within_the_bounds_of_the_parameter(candidates: Candidate
     assert model.values(-1e6)[model.which] == page.lower
 
 
-def test_all_coefficients_of_an_effect_grow_together(candidates: Candidates) -> None:
+def test_all_coefficients_of_an_effect_grow_in_proportion_to_the_strength(
+    candidates: Candidates,
+) -> None:
     """A curve of six knots grows as a whole."""
     model = strength_of(candidates, (), "stroke_dependence")
     assert model is not None
@@ -90,7 +92,7 @@ def test_change_of_a_linear_effect_is_its_column_times_the_strength(
     assert at_hand.shares(offset, 1.0) is None
 
 
-def test_shown_change_is_the_regression_residual_in_units_of_the_noise(
+def test_change_beyond_the_law_is_its_regression_residual_in_units_of_the_noise(
     candidates: Candidates, at_hand: RunsAtHand
 ) -> None:
     changes = [np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.now]
@@ -143,10 +145,10 @@ def waves(at_hand: RunsAtHand, size: float, rate: float) -> list[Array]:
 
 
 @pytest.mark.parametrize(("size", "rate"), [(0.05, 0.03), (0.08, 0.3), (0.2, 3.0)])
-def test_share_of_a_change_that_remains_when_the_noise_is_estimated_again(
+def test_remaining_share_of_a_change_is_its_likelihood_loss_with_reestimated_noise(
     candidates: Candidates, at_hand: RunsAtHand, size: float, rate: float
 ) -> None:
-    """Loss of likelihood with the noise estimated anew, over that with the noise as it was."""
+    """Loss of likelihood with the noise estimated again, over that with the previous noise."""
     signs = [np.sign(f) for f in at_hand.now]
     designs = [
         np.column_stack([s, p.motion.velocity_m_s])
@@ -169,7 +171,7 @@ def test_share_of_a_change_that_remains_when_the_noise_is_estimated_again(
     assert at_hand.not_forgiven(changes) == pytest.approx(expected, rel=1e-3)
 
 
-def test_smooth_change_passes_for_coloured_noise_and_a_fast_one_does_not(
+def test_smooth_change_is_absorbed_by_coloured_noise_and_a_fast_one_is_not(
     at_hand: RunsAtHand,
 ) -> None:
     assert at_hand.not_forgiven(waves(at_hand, 0.2, 0.01)) < 0.2

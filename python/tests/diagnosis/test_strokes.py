@@ -83,7 +83,7 @@ def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int
 
 
 def with_levels(campaign: Campaign, share: float, seed: int, memory: float = 0.0) -> list[Array]:
-    """Noise of 0.3 N, and a relative level of its own for each stroke."""
+    """Noise of 0.3 N, and a random relative level for each stroke."""
     random = np.random.default_rng(seed)
     residuals = []
     noise = white_noise(campaign, seed, 0.3)
@@ -104,7 +104,7 @@ def test_strokes_end_where_the_motion_reverses() -> None:
             assert np.all(signs == (-1.0) ** k * np.sign(p.motion.velocity_m_s[stroke == 0][0]))
 
 
-def test_rest_is_in_no_stroke_and_ends_none() -> None:
+def test_rest_belongs_to_no_stroke_and_does_not_end_one() -> None:
     v = np.concatenate([np.full(60, x) for x in (0.0, 0.1, 0.0, 0.1, -0.1, 0.0)])
     p = slides([v]).prepared[0]
     stroke = stroke_of(p)
@@ -114,7 +114,7 @@ def test_rest_is_in_no_stroke_and_ends_none() -> None:
 
 
 def test_ratio_and_share_agree_with_a_weighted_analysis_of_variance() -> None:
-    """Where the friction varies, a level is weighted by the sum of squares of the friction."""
+    """If the friction varies, a level is weighted by the sum of squares of the friction."""
     campaign = sines()
     residuals = with_levels(campaign, 0.08, 1)
     ratio, share, degrees = anova(campaign, residuals)
@@ -130,7 +130,7 @@ def test_ratio_and_share_agree_with_a_weighted_analysis_of_variance() -> None:
     assert levels_in(campaign, residuals, pattern_share=1.01 * share) == []
 
 
-def test_standard_deviation_of_the_levels_is_recovered() -> None:
+def test_standard_deviation_of_stroke_levels_is_recovered() -> None:
     campaign = sines()
     sizes = []
     for seed in range(10):
@@ -142,13 +142,13 @@ def test_standard_deviation_of_the_levels_is_recovered() -> None:
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.9])
-def test_noise_has_no_levels(memory: float) -> None:
+def test_no_stroke_levels_are_found_in_noise(memory: float) -> None:
     campaign = sines()
     for seed in range(10):
         assert levels_in(campaign, with_levels(campaign, 0.0, seed, memory)) == []
 
 
-def test_errors_that_are_alike_in_all_strokes_are_not_levels() -> None:
+def test_errors_that_depend_on_run_or_speed_are_not_stroke_levels() -> None:
     t = 0.02 * np.arange(1500)
     campaign = slides([0.1 * np.sin(w * t) for w in (1.1, 1.7)])
     friction = friction_of(campaign)
@@ -172,7 +172,7 @@ def test_errors_that_are_alike_in_all_strokes_are_not_levels() -> None:
         ([0.0] * 6, 40, 0),
     ],
 )
-def test_three_strokes_of_sixteen_samples_are_required(
+def test_stroke_levels_require_three_strokes_of_sixteen_samples(
     shares: list[float], each: int, found: int
 ) -> None:
     campaign = strokes(*[each] * len(shares))

@@ -69,12 +69,14 @@ def test_line_is_significant_above_the_quantile_of_exponential_power(
 
 
 @pytest.mark.parametrize(("periods", "found"), [(7, False), (8, False), (9, True), (512, True)])
-def test_tone_needs_more_than_eight_periods_in_a_run(periods: int, found: bool) -> None:
+def test_tone_requires_more_than_eight_periods_in_a_run(periods: int, found: bool) -> None:
     assert bool(tones_in(flat_spectrum(1024, {periods: 1e3}))) == found
 
 
 @pytest.mark.parametrize(("samples", "found"), [(63, False), (64, True)])
-def test_run_needs_64_samples_and_does_not_hide_the_next(samples: int, found: bool) -> None:
+def test_tone_requires_64_samples_and_a_shorter_run_does_not_hide_the_next(
+    samples: int, found: bool
+) -> None:
     short, other = flat_spectrum(samples, {20: 1e3}), flat_spectrum(1024, {100: 1e4})
     assert bool(tones_in(short)) == found
     (tone,) = tones_in(short, other)
@@ -101,7 +103,7 @@ def test_frequency_and_amplitude_are_exact_between_spectral_lines(off: float) ->
     assert tone.share == pytest.approx(1.0, abs=0.01)
 
 
-def test_share_is_half_the_squared_amplitudes_over_the_mean_square_of_all_runs() -> None:
+def test_share_of_a_tone_is_half_its_squared_amplitudes_over_the_mean_square_of_all_runs() -> None:
     n = 1000
     noise = white_noise(campaign_of(n, n, n), 2, 1.5)
     tones = [sine(n, 5.0, 2.0), sine(n, 9.0, 1.0, 0.5 * np.pi), np.zeros(n)]
@@ -116,7 +118,7 @@ def test_share_is_half_the_squared_amplitudes_over_the_mean_square_of_all_runs()
     assert tones_in(*signals, share=1.01 * tone.share) == []
 
 
-def test_amplitude_is_of_the_residual_at_samples_that_count() -> None:
+def test_amplitude_of_a_tone_is_that_of_the_residual_at_samples_that_count() -> None:
     n = 1000
     innovations = sine(n, 5.0, 2.0)
     residual = np.where(np.arange(n) < 500, 3.0, 1.0) * innovations
@@ -129,7 +131,9 @@ def test_amplitude_is_of_the_residual_at_samples_that_count() -> None:
 
 
 @pytest.mark.parametrize(("apart_hz", "tones"), [(0.1, 1), (0.3, 2)])
-def test_frequencies_within_two_percent_are_one_tone(apart_hz: float, tones: int) -> None:
+def test_tones_with_frequencies_within_two_percent_are_reported_as_one(
+    apart_hz: float, tones: int
+) -> None:
     n = 2000
     signals = [
         sine(n, f, amplitude) + 1e-3 * flat_spectrum(n, {}, seed)

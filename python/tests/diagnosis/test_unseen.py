@@ -1,4 +1,4 @@
-"""Effects that these runs could not show at their usual strength, and the run to show them."""
+"""Effects that the runs cannot detect at their usual strength, and a run that can."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def hidden(noise_n: float) -> tuple[str, ...]:
     return unseen(tried, (), power(tried, ()))
 
 
-def test_offset_is_hidden_above_the_noise_at_which_it_gains_its_price() -> None:
+def test_offset_is_hidden_if_the_noise_exceeds_the_level_at_which_it_is_detectable() -> None:
     """The root of its gain is normal about that of its expectation: 80 % exceed the price."""
     (usual_n,) = next(p for p in effects()["sensor_offset"].parameters).starts
     samples, tried = 2004, 12
     price = stats.chi2.isf(DEFAULT.false_alarms / tried, 1) + DEFAULT.imperfection
-    # Two runs go each way, so that the law cannot explain the offset.
+    # There are two runs in each direction, so that the law cannot explain the offset.
     limit_n = usual_n * np.sqrt(samples) / (np.sqrt(price) + stats.norm.ppf(0.8))
     # Gains are discounted by a long-run variance that is itself estimated.
     assert "sensor_offset" not in hidden(0.6 * limit_n)
@@ -49,7 +49,7 @@ def test_offset_is_hidden_above_the_noise_at_which_it_gains_its_price() -> None:
 
 
 def test_effect_that_changes_no_prediction_is_not_reported_as_hidden() -> None:
-    """Without a transmitted load friction in proportion to it is nothing in any motion."""
+    """Without a transmitted load the friction in proportion to it is zero in any motion."""
     tried = candidates()
     powers = power(tried, ())
     assert "torque_proportional" in {p.effect for p in powers if p.hidden}
@@ -100,14 +100,14 @@ def test_proposed_run_has_the_largest_expected_number_of_effects_found() -> None
     assert proposed.separation_n == pytest.approx(base.noise_n * proposed.separation_sigma)
 
 
-def test_only_effects_that_the_proposed_run_would_show_are_promised() -> None:
-    """Friction in proportion to a transmitted load shows in no motion."""
+def test_proposal_names_only_effects_that_its_run_can_detect() -> None:
+    """Friction in proportion to a transmitted load is zero in any motion."""
     found = propose_to_see(candidates(), (), ("inertia_leak", "torque_proportional"), LIMITS)
     assert isinstance(found, Experiment)
     assert found.words.endswith("would show inertia_leak")
 
 
-def test_no_run_is_proposed_where_no_motion_shows_the_effect() -> None:
+def test_no_run_is_proposed_if_no_motion_can_show_the_effect() -> None:
     found = propose_to_see(candidates(), (), ("torque_proportional",), LIMITS)
     assert isinstance(found, str)
     assert "torque_proportional" in found

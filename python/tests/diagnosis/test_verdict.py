@@ -1,4 +1,4 @@
-"""Verdict, names that stand, confirmation by held-out runs, and outcomes in the ledger."""
+"""Verdict, confounders, confirmation by held-out runs, and outcomes in the ledger."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_effect_keeps_its_name_if_its_gain_exceeds_twenty_times_the_disagreement
         (DEFAULT.weak, 0.9, 1.0, 1.0, DEFAULT.left_out_worse + 0.01, False),
     ],
 )
-def test_held_out_runs_confirm_a_gain(
+def test_gain_is_confirmed_by_held_out_runs_according_to_its_evidence(
     evidence: float,
     density: float,
     gained_share: float,
@@ -94,7 +94,7 @@ def test_strong_evidence_is_confirmed_by_any_reduction_of_the_held_out_error(
 
 
 def test_confirmation_compares_errors_of_held_out_runs_with_and_without_the_effect() -> None:
-    """Offset of 0.5 N in all runs but the third, which has none: four of five are better."""
+    """Offset of 0.5 N in all runs but the third: four of five are better."""
     offsets_n = (0.5, 0.5, 0.0, 0.5, 0.5)
     candidates = _candidates(lambda i, t: offsets_n[i], runs=5)
     found = candidates.confirmation((), OFFSET)
@@ -145,7 +145,7 @@ def test_weak_effect_is_a_confounder_if_more_structure_remains_than_it_explains(
     assert confounders(candidates, (OFFSET,), remains) == (OFFSET,)
     assert confounders(candidates, (OFFSET,), remains[:1]) == ()
     assert confounders(candidates, (OFFSET,)) == ()
-    # A strong effect keeps its name whatever remains.
+    # A strong effect is not a confounder, whatever structure remains.
     strong = _candidates(lambda i, t: 0.08)
     assert confounders(strong, (OFFSET,), remains) == ()
 

@@ -20,7 +20,7 @@ NOISES = pytest.mark.parametrize("noise", [WHITE, COLOURED], ids=["white", "colo
 
 
 def deviations(runs: int = 2) -> BetweenRuns:
-    """A zero of 0.5 N and a wave of 0.8 N, with another wave in each run."""
+    """Random effects: an offset of 0.5 N and a wave of 0.8 N whose frequency differs by run."""
     time = STEP_S * np.arange(N)
     directions = [
         np.stack([np.full(N, 0.5), 0.8 * np.sin((i + 1.0) * time)], axis=1) for i in range(runs)
@@ -29,21 +29,23 @@ def deviations(runs: int = 2) -> BetweenRuns:
 
 
 def weights() -> Array:
-    """Some samples without weight, the others with weights of all sizes."""
+    """Weights of samples: zero for four of them, 0.2 to 1 for the others."""
     weight = np.random.default_rng(1).uniform(0.2, 1.0, N)
     weight[[0, 17, 18, 90]] = 0.0
     return weight
 
 
 def filtered(noise: Noise, values: Array, weight: Array) -> Array:
-    """Innovations of weighted values where there is weight."""
+    """Innovations of weighted values, at the samples with weight."""
     weighted = (values.T * weight).T
     return arma_innovations(weighted, STEP_S, noise)[weight > 0.0]
 
 
 @NOISES
 @pytest.mark.parametrize("run", [0, 1])
-def test_whitening_has_the_inner_products_of_the_inverse_covariance(noise: Noise, run: int) -> None:
+def test_whitened_rows_have_the_inner_products_of_the_inverse_covariance(
+    noise: Noise, run: int
+) -> None:
     """Innovations over their standard deviation have the covariance I + Z Z'."""
     between, weight = deviations(), weights()
     values = np.random.default_rng(2).standard_normal((N, 4)) + np.eye(4)[0]
@@ -57,7 +59,7 @@ def test_whitening_has_the_inner_products_of_the_inverse_covariance(noise: Noise
 
 
 @NOISES
-def test_predicted_deviation_is_ridge_regression(noise: Noise) -> None:
+def test_predicted_random_effect_is_a_ridge_regression_over_weighted_samples(noise: Noise) -> None:
     """Deviations of unit variance are penalised by their squares (Henderson 1975)."""
     between, weight = deviations(), weights()
     residual = np.random.default_rng(5).standard_normal(N) + between.directions[1] @ [1.5, -0.7]
@@ -73,7 +75,7 @@ def test_predicted_deviation_is_ridge_regression(noise: Noise) -> None:
 
 
 @NOISES
-def test_likelihood_is_that_of_the_correlated_normal_density(noise: Noise) -> None:
+def test_cost_and_log_determinant_are_those_of_a_correlated_normal_density(noise: Noise) -> None:
     between, weight = deviations(), weights()
     samples = Samples(("a", "b"), (STEP_S,) * 2, (weight > 0.0,) * 2, (weight,) * 2, between)
     residuals = list(np.random.default_rng(7).standard_normal((2, N)))
@@ -92,7 +94,7 @@ def test_likelihood_is_that_of_the_correlated_normal_density(noise: Noise) -> No
     assert swapped == pytest.approx(samples.cost(residuals, noise), rel=1e-12)
 
 
-def test_spread_with_equal_precisions_is_the_excess_of_the_sample_variance() -> None:
+def test_squared_spread_is_sample_variance_less_error_variance_if_precisions_are_equal() -> None:
     """Estimates of unit error with sample variance 4: Q = 8 with two degrees of freedom."""
     spread, chance, ratio = spread_between(np.array([5.0, 7.0, 9.0]), np.ones(3))
     assert spread == pytest.approx(np.sqrt(3.0))
@@ -101,7 +103,7 @@ def test_spread_with_equal_precisions_is_the_excess_of_the_sample_variance() -> 
     assert ratio == pytest.approx(4.0)
 
 
-def test_spread_with_unequal_precisions_is_dersimonian_and_lairds() -> None:
+def test_spread_is_the_dersimonian_laird_estimate_if_precisions_differ() -> None:
     """Weighted mean 4, Q = 16 + 4 = 20 with one degree of freedom; 19 over 5 - 17/5."""
     spread, chance, ratio = spread_between(np.array([0.0, 5.0]), np.array([1.0, 4.0]))
     assert spread == pytest.approx(np.sqrt(19.0 / 1.6))
@@ -109,7 +111,7 @@ def test_spread_with_unequal_precisions_is_dersimonian_and_lairds() -> None:
     assert ratio == pytest.approx(20.0)
 
 
-def test_spread_of_runs_that_agree_is_zero() -> None:
+def test_spread_is_zero_if_estimates_differ_by_no_more_than_their_errors() -> None:
     assert spread_between(np.full(4, 2.5), np.array([1.0, 2.0, 3.0, 4.0])) == (0.0, 1.0, 0.0)
     spread, chance, ratio = spread_between(np.array([-0.5, 0.5]), np.ones(2))
     assert (spread, ratio) == (0.0, pytest.approx(0.5))

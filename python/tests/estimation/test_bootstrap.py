@@ -34,37 +34,41 @@ MIDDLE = 0.84134 - 0.15866
 
 
 @pytest.mark.parametrize("shift", [-3.0, 100.0])
-def test_error_is_half_the_width_of_the_middle_68_percent(shift: float) -> None:
-    """A few answers on a far peak do not widen it."""
-    answers = 5.0 + shift + np.append(np.linspace(0.0, 1.0, 100_001), np.full(50, 1e6))
-    found = with_error(ParameterValue(5.0, 1e-3), answers, PAGE)
+def test_error_is_half_the_width_of_the_central_68_percent_of_the_estimates(shift: float) -> None:
+    """Fifty of 100,051 estimates on a distant peak of the likelihood do not change it."""
+    estimates = 5.0 + shift + np.append(np.linspace(0.0, 1.0, 100_001), np.full(50, 1e6))
+    found = with_error(ParameterValue(5.0, 1e-3), estimates, PAGE)
     assert found.stderr == pytest.approx(0.5 * MIDDLE, rel=2e-3)
     assert (found.value, found.held, found.note) == (5.0, False, None)
 
 
-def test_error_is_not_below_that_of_the_curvature() -> None:
-    answers = np.linspace(4.9, 5.1, 1001)
-    assert with_error(ParameterValue(5.0, 0.5), answers, PAGE).stderr == 0.5
+def test_error_is_not_reduced_below_the_error_from_the_curvature() -> None:
+    estimates = np.linspace(4.9, 5.1, 1001)
+    assert with_error(ParameterValue(5.0, 0.5), estimates, PAGE).stderr == 0.5
+
+
+def test_held_parameter_is_returned_unchanged() -> None:
+    estimates = np.linspace(4.9, 5.1, 1001)
     held = ParameterValue(5.0, None, "held fixed", held=True)
-    assert with_error(held, answers, PAGE) is held
+    assert with_error(held, estimates, PAGE) is held
 
 
-def test_scale_below_its_new_error_is_held() -> None:
+def test_scale_parameter_is_held_if_its_bootstrap_error_exceeds_its_value() -> None:
     found = with_error(ParameterValue(5.0, 1.0), np.linspace(0.0, 40.0, 1001), SCALE)
     assert (found.stderr, found.held) == (None, True)
     assert found.note == undetermined(SCALE, 5.0, 20.0 * MIDDLE)
 
 
-def test_angles_are_compared_modulo_their_period() -> None:
-    answers = np.linspace(3.0, 3.2, 1001)
-    turned = np.where(np.arange(1001) % 2, answers, answers - 2.0 * np.pi)
+def test_estimates_of_an_angle_are_compared_modulo_its_period() -> None:
+    estimates = np.linspace(3.0, 3.2, 1001)
+    turned = np.where(np.arange(1001) % 2, estimates, estimates - 2.0 * np.pi)
     found = with_error(ParameterValue(3.1, 1e-3), turned, ANGLE)
     assert found.stderr == pytest.approx(0.1 * MIDDLE, rel=0.01)
     plain = with_error(ParameterValue(3.1, 1e-3), turned, PAGE)
     assert plain.stderr == pytest.approx(np.pi, rel=0.1)
 
 
-def test_count_of_repeats_is_limited() -> None:
+def test_number_of_repeats_outside_its_limits_is_rejected() -> None:
     for repeats in (LEAST_REPEATS, MOST_REPEATS):
         check_repeats(repeats)
     for repeats in (LEAST_REPEATS - 1, MOST_REPEATS + 1):
@@ -91,10 +95,10 @@ def with_errors(fitted: Fit, times: float) -> Fit:
     return replace(fitted, parameters=parameters)
 
 
-def test_bootstrap_of_a_linear_fit_finds_the_errors_of_linear_regression(
+def test_bootstrap_errors_of_a_linear_fit_are_those_of_linear_regression(
     fitted: Fit, runs: list[Run]
 ) -> None:
-    """With fit errors that are far too small, so that the answers determine the result."""
+    """The errors of the fit are divided by 1000, so that the estimates determine the result."""
     v = np.concatenate([r.velocity_m_s for r in runs])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))
@@ -108,17 +112,17 @@ def test_bootstrap_of_a_linear_fit_finds_the_errors_of_linear_regression(
     )
     assert steps == [(k, 19) for k in range(19)]
     for name, error in zip(("F_c_n", "F_v_n_s_m", "sensor_offset.b_n"), errors, strict=True):
-        # The half width of the middle 68 % of 19 answers is known to 22 %, their spread to 16 %.
+        # The half width of the middle 68 % of 19 estimates is known to 22 %, their spread to 16 %.
         assert found.fit.parameters[name].stderr == pytest.approx(error, rel=0.6), name
         assert np.std(found.values[name]) == pytest.approx(error, rel=0.45), name
         assert abs(np.mean(found.values[name]) - fitted.parameters[name].value) < 0.8 * error
     assert found.fit.model.parameters == found.fit.parameters
-    # What was fixed stays fixed.
+    # Fixed parameters stay fixed.
     assert set(found.values["F_s_n"]) == {6.0}
     assert found.fit.parameters["F_s_n"].stderr is None
 
 
-def test_innovation_size_is_of_each_run_or_pooled_where_a_run_is_short() -> None:
+def test_innovation_rms_is_that_of_the_run_or_of_all_runs_if_the_run_is_short() -> None:
     runs = [four_runs(coulomb, noise_n=0.1 * (k + 1), seed=k)[k] for k in range(3)]
     runs[2] = runs[2].select(np.arange(501) < 99)
     found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0})
@@ -149,7 +153,7 @@ def prepared(request: pytest.FixtureRequest) -> Prepared:
     return Campaign.prepare(rig, [run]).prepared[0]
 
 
-def test_motion_read_again_has_the_recorded_errors_with_other_signs(prepared: Prepared) -> None:
+def test_resampled_motion_has_the_recorded_errors_with_random_signs(prepared: Prepared) -> None:
     run, motion = prepared.run, prepared.motion
     again = read_again(prepared, np.full(len(run), 3.0), np.random.default_rng(1))
     moving = ~motion.resting
@@ -168,11 +172,13 @@ def test_motion_read_again_has_the_recorded_errors_with_other_signs(prepared: Pr
         )
         turned = np.sign(new - true) != np.sign(old - true)
         assert 0.4 < turned[moving].mean() < 0.6
-        # Rests are read as they were.
+        # Speeds and positions at rest are not changed.
         np.testing.assert_array_equal(new[~moving], old[~moving])
 
 
-def test_friction_of_unknown_sign_or_not_measured_stays_as_it_was(prepared: Prepared) -> None:
+def test_resampling_does_not_change_friction_that_is_missing_or_of_unknown_sign(
+    prepared: Prepared,
+) -> None:
     known = prepared.motion.sign_known
     friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction_n)
     again = read_again(
@@ -187,7 +193,7 @@ def test_friction_of_unknown_sign_or_not_measured_stays_as_it_was(prepared: Prep
     assert np.isnan(again.friction_n[57])
 
 
-def test_repeated_record_has_noise_of_the_fitted_size_and_colour(prepared: Prepared) -> None:
+def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: Prepared) -> None:
     noise = Noise(0.3, 0.5)
     n, known = len(prepared.run), prepared.motion.sign_known
     again = recorded_again(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
@@ -197,7 +203,7 @@ def test_repeated_record_has_noise_of_the_fitted_size_and_colour(prepared: Prepa
     np.testing.assert_allclose(again.friction_n[known], wanted[known])
 
 
-def test_encoder_is_read_again_in_its_steps_at_another_phase() -> None:
+def test_resampled_encoder_position_has_the_recorded_step_at_another_phase() -> None:
     rig, some, _ = campaign(5)
     (p,) = Campaign.prepare(rig, some[:1]).prepared
     again = read_again(p, np.zeros(len(p.run)), np.random.default_rng(2)).angle_rad
@@ -221,7 +227,7 @@ def wild_errors(model: Model, runs: list[Run], hidden: tuple[str, ...], draw: in
     return [np.asarray(a.friction_n) - some.predict(r) for a, r in zip(again, runs, strict=True)]
 
 
-def test_wild_bootstrap_turns_signs_of_residuals_in_blocks_of_a_second() -> None:
+def test_wild_bootstrap_flips_signs_of_residuals_in_blocks_of_one_second() -> None:
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.1)[:2]
     values = {**LAW, "F_s_n": 6.0, "sensor_offset.b_n": 0.5}
     model = Model(Rig(), "coulomb", ["sensor_offset"], values)

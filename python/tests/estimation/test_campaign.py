@@ -1,4 +1,4 @@
-"""A rig and its prepared runs: what they offer to effects, clocks of channels, quantisation."""
+"""A rig and its prepared runs: quantities available to effects, time columns, quantisation."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def prepared(*runs: Run) -> Campaign:
     return Campaign.prepare(Rig(), list(runs))
 
 
-def test_campaign_needs_a_run_and_a_force_that_is_not_zero_throughout() -> None:
+def test_campaign_is_rejected_if_it_has_no_run_or_every_force_is_zero() -> None:
     with pytest.raises(InputError, match="no run"):
         prepared()
     nothing = [run(name, np.zeros(N)) for name in "ab"]
@@ -55,7 +55,7 @@ def test_run_that_is_given_twice_is_used_once_and_reported() -> None:
     assert [f.kind for f in campaign.findings].count("repeated_run") == 1
 
 
-def test_only_and_without_select_runs_and_samples() -> None:
+def test_only_selects_runs_and_without_excludes_samples() -> None:
     campaign = prepared(run("a"), other("b"), run("c", 7.0 * SPEED))
     some = campaign.only([2, 0])
     assert [p.run.name for p in some.prepared] == ["c", "a"]
@@ -67,7 +67,7 @@ def test_only_and_without_select_runs_and_samples() -> None:
         np.testing.assert_array_equal(after[100:], before[100:])
 
 
-def test_findings_of_runs_and_later_findings_are_reported_together() -> None:
+def test_added_findings_follow_those_of_the_runs() -> None:
     campaign = prepared(run())
     found = Finding("other", "friction_n", "a", 1.0, "1", "none", "text")
     more = campaign.with_findings([found]).with_findings([found])
@@ -75,7 +75,9 @@ def test_findings_of_runs_and_later_findings_are_reported_together() -> None:
 
 
 @pytest.mark.parametrize(("share", "differ"), [(0.049, False), (0.055, True)])
-def test_loads_differ_by_more_than_five_percent(share: float, differ: bool) -> None:
+def test_campaign_has_loads_if_those_of_two_runs_differ_by_more_than_five_percent(
+    share: float, differ: bool
+) -> None:
     loads = (np.full(N, 100.0), np.full(N, 100.0 * (1.0 - share)))
     assert prepared(run(load_n=loads[0]), other(load_n=loads[1])).has_loads == differ
 
@@ -85,7 +87,7 @@ def test_loads_differ_by_more_than_five_percent(share: float, differ: bool) -> N
     # 90 % of a sine's samples lie within 0.988 of its amplitude.
     [(4.0, 0.0, False), (1.5, 1.8, False), (0.0, 2.4, False), (0.0, 2.7, True), (1.0, 5.0, True)],
 )
-def test_load_within_a_run_differs_beyond_its_noise(
+def test_campaign_has_loads_if_the_load_of_a_run_varies_beyond_its_noise(
     noise_n: float, swing_n: float, differ: bool
 ) -> None:
     noise = noise_n * np.random.default_rng(1).standard_normal(N)
@@ -93,7 +95,7 @@ def test_load_within_a_run_differs_beyond_its_noise(
     assert prepared(run(load_n=load)).has_loads == differ
 
 
-def test_temperature_range_is_over_all_runs_where_each_has_one() -> None:
+def test_temperature_range_covers_all_runs_and_is_missing_if_one_has_no_temperature() -> None:
     cold, warm = np.linspace(20.0, 22.0, N), np.linspace(25.0, 23.0, N)
     campaign = prepared(run("a", temperature_c=cold), other(temperature_c=warm))
     assert campaign.temperature_range_c == pytest.approx((20.0, 25.0), abs=0.1)
@@ -107,7 +109,7 @@ def lacking(effect: str, *runs: Run) -> str | None:
     return prepared(*runs).lacking(find_effect(effect))
 
 
-def test_effects_need_loads_that_differ_and_positions_of_every_run() -> None:
+def test_effect_is_excluded_if_loads_do_not_differ_or_a_run_has_no_position() -> None:
     loaded = [make(load_n=np.full(N, load)) for make, load in ((run, 80.0), (other, 120.0))]
     assert lacking("zero_load_dependence", *loaded) is None
     assert "one load" in str(lacking("zero_load_dependence", loaded[0]))
@@ -118,14 +120,14 @@ def test_effects_need_loads_that_differ_and_positions_of_every_run() -> None:
 
 
 @pytest.mark.parametrize(("span_k", "enough"), [(1.9, False), (2.1, True)])
-def test_temperature_effect_needs_two_kelvin(span_k: float, enough: bool) -> None:
+def test_temperature_effect_requires_a_range_of_two_kelvin(span_k: float, enough: bool) -> None:
     effect = next(e for e in jbf.effects().values() if "temperatures" in e.needs)
     campaign = prepared(run(temperature_c=np.linspace(20.0, 20.0 + span_k, N)))
     assert (campaign.lacking(effect) is None) == enough
     assert "temperature_c" in str(prepared(run()).lacking(effect))
 
 
-def test_quantisation_error_of_a_mean_follows_from_the_noise_of_the_readings() -> None:
+def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
     """Readings in steps of twice the noise."""
     noise = 0.1 * np.random.default_rng(5).standard_normal(N)
     step = 0.2
@@ -137,7 +139,7 @@ def test_quantisation_error_of_a_mean_follows_from_the_noise_of_the_readings() -
     assert raw.steps_rms_n(2.0) == pytest.approx(curve_rms_n(step, noise_n), rel=1e-6)
     # A residual is no smaller than the noise.
     assert raw.steps_rms_n(0.5 * noise_n) == pytest.approx(curve_rms_n(step, 0.5 * noise_n))
-    # Where a bias was already corrected, three tenths of the correction remain.
+    # If a bias was already corrected, three tenths of the correction are assumed to remain.
     corrected = replace(campaign, prepared=(replace(p, friction_n=p.readings_n - 0.25 * step),))
     assert corrected.steps_rms_n(2.0) == pytest.approx(0.3 * 0.25 * step)
     plain = prepared(run(force=5.0 * np.sign(SPEED) + noise))
@@ -153,7 +155,7 @@ def speed(time: Array) -> Array:
     return found
 
 
-def place(time: Array) -> Array:
+def position(time: Array) -> Array:
     found: Array = -0.1 / 1.7 * np.cos(1.7 * time) + 0.02 / 4.1 * np.sin(4.1 * time)
     return found
 
@@ -168,7 +170,7 @@ def ready() -> Prepared:
     return Prepared.of(Rig(), swinging())
 
 
-def test_run_that_never_moves_or_has_no_force_is_refused_with_its_name() -> None:
+def test_run_without_motion_or_force_is_rejected() -> None:
     still = Run.from_arrays(INSTANTS, np.zeros(400), np.ones(400), name="still")
     with pytest.raises(InputError, match="never moves") as refused:
         Prepared.of(Rig(), still)
@@ -177,8 +179,10 @@ def test_run_that_never_moves_or_has_no_force_is_refused_with_its_name() -> None
         Prepared.of(Rig(), Run.from_arrays(INSTANTS, speed(INSTANTS), name="no force"))
 
 
-def test_largest_step_and_rate_of_the_findings_are_used(ready: Prepared) -> None:
-    """A duration is no rate, and only steps are steps."""
+def test_prepared_run_takes_the_largest_step_and_interpolation_rate_of_its_findings(
+    ready: Prepared,
+) -> None:
+    """Findings of another kind and interpolation reported as a duration are ignored."""
     assert (ready.converter_step_n, ready.drawn_at_hz) == (0.0, 0.0)
     found = [("steps", 0.25, "N"), ("steps", 0.5, "N"), ("late", 70.0, "Hz")]
     found += [
@@ -188,12 +192,12 @@ def test_largest_step_and_rate_of_the_findings_are_used(ready: Prepared) -> None
     assert (some.converter_step_n, some.drawn_at_hz) == (0.5, 50.0)
 
 
-def test_force_with_its_own_clock_is_compared_at_its_readings() -> None:
+def test_force_with_its_own_time_column_is_compared_at_its_own_instants() -> None:
     """Readings before the motion begins and after it ends are not used; at its ends they are."""
     instants, force = INSTANTS[10:301], INSTANTS[::5]
     channels = {
         "velocity_m_s": (instants, speed(instants)),
-        "position_m": (instants, place(instants)),
+        "position_m": (instants, position(instants)),
         "friction_n": (force, 5.0 * np.sign(speed(force))),
     }
     found = Prepared.of(Rig(), Run.from_channels(channels, name="slide"))
@@ -205,7 +209,7 @@ def test_force_with_its_own_clock_is_compared_at_its_readings() -> None:
 
 
 def interpolated(rate_hz: float, seed: int, length: int = 3000) -> Run:
-    """A force that was read at this rate and interpolated to 50 Hz."""
+    """A force that was sampled at this rate and interpolated to 50 Hz."""
     t = 0.02 * np.arange(length)
     ticks = np.arange(-0.3 / rate_hz, t[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
     noise = 0.3 * np.random.default_rng(seed).standard_normal(len(ticks))
@@ -214,7 +218,7 @@ def interpolated(rate_hz: float, seed: int, length: int = 3000) -> Run:
     return Run.from_arrays(t, v, np.interp(t, ticks, force), name=f"{seed}")
 
 
-def test_interpolated_force_is_compared_at_its_readings() -> None:
+def test_interpolated_force_is_compared_at_the_rate_of_its_original_readings() -> None:
     found = Prepared.of(Rig(), interpolated(20.0, 1))
     assert found.drawn_at_hz == pytest.approx(20.0, rel=1e-3)
     assert found.step_s == pytest.approx(0.05, rel=1e-3)
@@ -222,12 +226,12 @@ def test_interpolated_force_is_compared_at_its_readings() -> None:
     np.testing.assert_allclose(
         found.motion.velocity_m_s, 0.1 * np.sin(0.3 * found.run.time_s), atol=1e-4
     )
-    # The motion is that of its own instants.
+    # The motion has all its samples.
     assert found.recorded is not None
     assert len(found.recorded[0]) == 3000
 
 
-def test_short_run_of_the_same_logger_is_read_at_the_rate_of_the_others() -> None:
+def test_short_run_takes_the_interpolation_rate_of_the_other_runs() -> None:
     short = interpolated(43.3, 3, length=300)
     assert Prepared.of(Rig(), short).drawn_at_hz == 0.0
     campaign = Campaign.prepare(Rig(), [interpolated(43.3, 1), short])
@@ -239,7 +243,7 @@ def test_short_run_of_the_same_logger_is_read_at_the_rate_of_the_others() -> Non
     # Readings at the ends of the motion can be compared; a drift is zero in mid-run.
     [(2.0, 0.0, 2, 400), (-3.0, 0.0, 0, 397), (2.5, 0.0, 3, 400), (0.0, -(2.0**-7), 2, 398)],
 )
-def test_shifted_force_is_compared_with_the_motion_before(
+def test_shift_compares_the_force_with_the_motion_at_the_shifted_instants(
     ready: Prepared, steps: float, drift: float, first: int, last: int
 ) -> None:
     found = ready.shifted(steps * STEP_S, drift)
@@ -252,7 +256,7 @@ def test_shifted_force_is_compared_with_the_motion_before(
 
 
 @pytest.mark.parametrize(("times", "finer"), [(1.45, False), (1.6, True)])
-def test_core_uses_a_motion_that_was_read_one_and_a_half_times_as_often(
+def test_core_uses_the_recorded_motion_if_sampled_1_5_times_as_often_as_the_force(
     ready: Prepared, times: float, finer: bool
 ) -> None:
     instants = INSTANTS[0] - 0.25 + STEP_S / times * np.arange(int(460 * times))

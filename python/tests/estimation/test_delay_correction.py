@@ -1,6 +1,7 @@
 """Correction of delays and clock drifts: when runs are shifted, by how much, and when they are not.
 
-`late_channels.on_time` returns the campaign with every force at its instant, or None.
+`late_channels.on_time` returns the campaign with the force of every run shifted to the instant at
+which it acted, or None.
 """
 
 from __future__ import annotations
@@ -87,22 +88,24 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
         ((2.6, 0.0), -0.5, False),
     ],
 )
-def test_half_of_each_run_must_keep_its_motion(
+def test_shift_is_possible_only_if_half_of_each_run_overlaps_its_motion(
     late_s: tuple[float, float], drift: float, possible: bool
 ) -> None:
-    """Runs of 10 s and 20 s; at its ends a run has half its length times the drift more."""
+    """Runs of 10 s and 20 s; at its ends a drift adds half the duration times the drift."""
     problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
     assert beside_its_motion(problem, np.array(late_s), drift) == possible
 
 
-# ---- delays and law together ---------------------------------------------------------------------
+# ---- delays and law jointly ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     "start_s",
     [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=pytest.mark.extended)],
 )
-def test_delays_larger_than_a_step_are_found_from_any_start(start_s: tuple[float, ...]) -> None:
+def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
+    start_s: tuple[float, ...],
+) -> None:
     problem = fitted(one_way_campaign(LARGE_DELAYS_S))[0]
     start = np.array(start_s)
     there = fitted(moved(problem, start, 0.0))
@@ -112,15 +115,15 @@ def test_delays_larger_than_a_step_are_found_from_any_start(start_s: tuple[float
     assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
-def test_delay_of_the_model_becomes_the_delays_of_the_runs() -> None:
+def test_delay_effect_is_replaced_by_a_delay_of_each_run() -> None:
     problem, solution = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
     found = jointly(problem, unshifted(problem, solution))
     assert found.problem.effects == ()
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
 
 
-def test_mass_in_one_run_is_no_delay_of_a_tenth_of_a_second() -> None:
-    """At F_v = 20 N s/m, 2 kg more have the force of a delay of -100 ms."""
+def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
+    """At F_v = 20 N s/m an additional mass of 2 kg has the force of a delay of -100 ms."""
     random, runs = np.random.default_rng(0), []
     t = np.arange(0.0, 20.01, 0.02)
     for i in range(4):
@@ -135,7 +138,7 @@ def test_mass_in_one_run_is_no_delay_of_a_tenth_of_a_second() -> None:
 
 
 @pytest.mark.parametrize("drift", [1.2e-4, pytest.param(3e-3, marks=pytest.mark.extended)])
-def test_drift_of_one_clock_is_found_together_with_the_law(drift: float) -> None:
+def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     """At the end of the longer run the error is 2.4 ms or 60 ms, of at most 8 ms a step."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
@@ -150,7 +153,7 @@ def test_drift_of_one_clock_is_found_together_with_the_law(drift: float) -> None
 # ---- correction of a campaign --------------------------------------------------------------------
 
 
-def test_delays_that_differ_are_corrected_and_reported() -> None:
+def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
     again = on_time(problem, solution, DEFAULT)
     # One standard error is 0.2 ms.
@@ -174,11 +177,11 @@ def test_drifting_clock_is_corrected_and_reported() -> None:
     assert again is not None
     there = fitted(again)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
-    # A clock is corrected once.
+    # A second call corrects nothing.
     assert on_time(*there, DEFAULT) is None
 
 
-def test_common_delay_under_a_drifting_clock_is_left_to_the_model() -> None:
+def test_common_delay_is_estimated_by_the_model_after_clock_drift_is_corrected() -> None:
     drift, delay_s = 5e-4, 15e-3
     delays = [0.5 * drift * DURATION_S + delay_s] * 4
     again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
@@ -190,24 +193,26 @@ def test_common_delay_under_a_drifting_clock_is_left_to_the_model() -> None:
 
 
 @pytest.mark.parametrize(("delay_s", "effects"), [(0.0, ()), (25e-3, DELAY)])
-def test_common_delay_is_not_corrected(delay_s: float, effects: tuple[str, ...]) -> None:
+def test_delay_common_to_all_runs_is_not_corrected(
+    delay_s: float, effects: tuple[str, ...]
+) -> None:
     assert on_time(*fitted(reversing_campaign((delay_s,) * 4), effects), DEFAULT) is None
 
 
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(s, marks=pytest.mark.extended) for s in (1, 2))]
 )
-def test_common_delay_that_the_law_resists_is_not_corrected(seed: int) -> None:
-    """On the way to 30 ms in all runs the runs seem to differ."""
+def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> None:
+    """Intermediate estimates on the way to 30 ms differ between the runs."""
     assert on_time(*fitted(one_way_campaign((30e-3,) * 4, seed=seed)), DEFAULT) is None
 
 
-def test_common_early_force_is_corrected() -> None:
+def test_force_that_leads_the_motion_in_all_runs_is_corrected() -> None:
     again = on_time(*fitted(reversing_campaign((-6e-3,) * 4)), DEFAULT)
     np.testing.assert_allclose(sizes(again, "late_channel"), -6e-3, atol=0.6e-3)
 
 
-def test_noise_that_grows_with_the_force_is_no_delay() -> None:
+def test_noise_that_grows_with_the_force_is_not_corrected_as_a_delay() -> None:
     random, runs = np.random.default_rng(0), []
     for p in reversing_campaign((0.0,) * 4).prepared:
         sd = 0.3 * np.maximum(np.abs(p.friction_n) - 5.0, 0.0)
@@ -228,7 +233,7 @@ def test_correct_clocks_are_not_corrected_in_forty_campaigns() -> None:
     assert 0.2 < np.median(squares) < 0.9
 
 
-def test_remaining_delays_are_added_to_those_reported_before() -> None:
+def test_remaining_delays_are_added_to_those_already_reported() -> None:
     """The first correction was estimated with a wrong model and is off by up to 3 ms."""
     campaign = one_way_campaign(LARGE_DELAYS_S)
     problem = fitted(campaign)[0]
@@ -244,10 +249,10 @@ def test_remaining_delays_are_added_to_those_reported_before() -> None:
     assert fitted(again)[1].rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
-# ---- compared with another explanation -----------------------------------------------------------
+# ---- comparison with other explanations ----------------------------------------------------------
 
 
-def test_delay_effect_is_preferred_to_equal_delays_and_rejected_for_different_ones() -> None:
+def test_runs_are_shifted_instead_of_a_delay_effect_only_if_their_delays_differ() -> None:
     for delays, corrected in (((12e-3,) * 4, False), (DELAYS_S, True)):
         campaign = reversing_campaign(delays)
         bare, delayed = fitted(campaign), fitted(campaign, DELAY)[1]
@@ -256,10 +261,10 @@ def test_delay_effect_is_preferred_to_equal_delays_and_rejected_for_different_on
 
 
 @pytest.mark.parametrize(("share", "corrected"), [(0.7, False), (1.5, True)])
-def test_delays_must_differ_by_a_share_of_a_sample_where_an_effect_explains_them(
+def test_delays_explained_by_an_effect_are_corrected_only_above_a_least_difference(
     share: float, corrected: bool
 ) -> None:
-    """Half of the runs are off the median delay by at least that share."""
+    """Half of the runs differ from the median delay by at least that share of a step."""
     apart_s = share * DEFAULT.late_apart * 0.02
     delays = 5e-3 + apart_s * np.array([1.0, -1.0, 1.0, -1.0])
     campaign = one_way_campaign(delays.tolist(), noise_n=5e-4)
@@ -270,8 +275,8 @@ def test_delays_must_differ_by_a_share_of_a_sample_where_an_effect_explains_them
 
 
 @pytest.mark.parametrize("explained", [True, False])
-def test_known_deviations_between_runs_that_leave_less_are_preferred(explained: bool) -> None:
-    """Here the deviations have the shape of a delay, or are offsets, which explain nothing."""
+def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explained: bool) -> None:
+    """The random effects have the shape of a delay, or are offsets, which explain no delay."""
     problem, solution = fitted(one_way_campaign((3e-3, -2e-3, 4e-3, -1e-3)))
     directions: list[Array] = []
     for i, p in enumerate(problem.campaign.prepared):
@@ -285,8 +290,8 @@ def test_known_deviations_between_runs_that_leave_less_are_preferred(explained: 
     assert (on_time(there, given, DEFAULT) is None) == explained
 
 
-def test_effects_that_a_delay_may_have_imitated() -> None:
-    """Those of the instrument, and those that move the instants of jumps."""
+def test_effects_that_a_delay_can_imitate_are_listed() -> None:
+    """Effects of the instrument, and effects that move the instants of jumps."""
     found = set(bought_by_lateness(("sensor_offset", "time_delay", "sensor_lag", "backlash")))
     assert {"time_delay", "sensor_lag", "sensor_offset", "backlash"} <= found
     assert bought_by_lateness(("quadratic_drag", "inertia_leak")) == ()

@@ -1,4 +1,4 @@
-"""The delay that the jumps at reversals determine to a share of a sample."""
+"""Delay estimated from the jumps at reversals, with an error far below a sampling step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ EXTENDED = pytest.mark.extended
 def delayed_runs(
     seed: int, count: int = 4, duration_s: float = 20.0, speed_noise_m_s: float = 1e-4
 ) -> list[Run]:
-    """Coulomb friction with a delay and white noise, in runs that turn round often."""
+    """Coulomb friction with a delay and white noise, in runs that reverse often."""
     random = np.random.default_rng(seed)
     time = np.arange(0.0, duration_s, STEP_S)
     runs = []
@@ -50,7 +50,7 @@ def delayed_runs(
 
 @cache
 def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, Solution, Spread]:
-    """A fit by the search, whose delay is known as the smooth samples determine it."""
+    """A fit by least squares, whose delay is determined by the samples between the jumps."""
     known = {**LAW, "F_s_n": 5.0, TAU: 0.045}
     fixed = {"F_s_n": 5.0, **({TAU: TAU_S} if held else {})}
     campaign = Campaign.prepare(Rig(), delayed_runs(3, 2, 12.0, speed_noise_m_s))
@@ -60,7 +60,7 @@ def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, 
     return problem, near, spread(problem, near)
 
 
-def test_jumps_determine_the_delay_to_a_share_of_a_sample() -> None:
+def test_delay_error_from_jumps_is_below_six_percent_of_a_sampling_step() -> None:
     problem, solution, errors = solved()
     found = exact_delay(problem, solution, errors, solution.values)
     assert found is not None
@@ -72,11 +72,11 @@ def test_jumps_determine_the_delay_to_a_share_of_a_sample() -> None:
     assert np.sqrt(np.mean(residual**2)) == pytest.approx(NOISE_N, rel=0.1)
 
 
-def test_other_parameters_follow_the_delay_along_the_valley_of_the_least_squares() -> None:
-    """At nearly constant acceleration a delay is a little less dry friction.
+def test_other_parameters_are_refitted_as_the_delay_changes() -> None:
+    """At nearly constant acceleration a delay has the effect of slightly lower dry friction.
 
     At a given delay Coulomb's parameters are a linear regression, solved here. Without a jump the
-    error of the delay is that of the search.
+    error of the delay is that of least squares.
     """
     t, tau_s, runs = np.arange(0.0, 20.01, STEP_S), 0.03, []
 
@@ -93,7 +93,7 @@ def test_other_parameters_follow_the_delay_along_the_valley_of_the_least_squares
     problem, solution = fitted(Campaign.prepare(Rig(), runs), DELAY)
 
     def regression(delay_s: float) -> Array:
-        # Without the first samples, which were read before the motion is known.
+        # Without the first samples, whose force acted before the recorded motion begins.
         v = np.concatenate([speed(i, delay_s)[5:] for i in (0, 1)])
         x = np.column_stack([np.ones(len(v)), v])
         y = np.concatenate([p.friction_n[5:] for p in problem.campaign.prepared])
@@ -164,7 +164,7 @@ def test_delay_and_its_error_are_moments_of_a_mixture_likelihood() -> None:
     assert found.sd_s == pytest.approx(sd, rel=0.05)
 
 
-def test_delay_needs_an_open_parameter_that_moves_the_jumps() -> None:
+def test_no_delay_from_jumps_if_the_parameter_is_fixed_undetermined_or_too_small() -> None:
     problem, solution, errors = solved()
     which = problem.names.index(TAU)
     k = problem.open.index(which)
@@ -181,7 +181,9 @@ def test_delay_needs_an_open_parameter_that_moves_the_jumps() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=EXTENDED) for s in (1, 2, 3))])
-def test_fit_recovers_the_delay_and_leaves_the_noise(seed: int) -> None:
+def test_fit_recovers_the_delay_within_its_error_and_leaves_an_rms_equal_to_the_noise(
+    seed: int,
+) -> None:
     runs = delayed_runs(seed)
     found = fit(Rig(), runs, ["time_delay"], law="coulomb")
     tau = found.parameters[TAU]

@@ -1,4 +1,4 @@
-"""Missing rows of a record: what a film remembers of the motion in the gap is set aside."""
+"""Missing rows: samples after a gap are excluded until the film does not depend on it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIME = np.arange(0.0, 16.0, 0.02)
 
 
 def step(at_s: float, up: bool) -> Array:
-    """Slow, then ten times as fast from an instant on; or fast, then slow."""
+    """A speed that rises tenfold at an instant, or falls to a tenth."""
     rise = np.clip((TIME - at_s) / 0.04, 0.0, 1.0)
     v: Array = 0.01 + 0.1 * (rise if up else 1.0 - rise)
     return v
@@ -49,10 +49,10 @@ def with_gap(first_s: float, last_s: float, at_s: float = 8.0, up: bool = True) 
     [(8.0, True, 8.11, LEAST_N), (8.0, False, 8.11, LEAST_N), (7.05, False, 7.6, 4.0)],
     ids=["faster at its end", "slower at its end", "slower at its start"],
 )
-def test_samples_that_remember_the_gap_are_set_aside(
+def test_samples_whose_film_depends_on_the_motion_in_a_gap_are_excluded(
     at_s: float, up: bool, last_s: float, least_n: float
 ) -> None:
-    """The model crosses a gap from 7 s on in a line; the speed changed at one of its ends."""
+    """The model interpolates the speed across a gap from 7 s on; the speed changes at one end."""
     run = with_gap(7.0, last_s, at_s, up)
     problem, values = journal_problem(run)
     error = np.abs(problem.residuals(values)[0])
@@ -67,7 +67,7 @@ def test_samples_that_remember_the_gap_are_set_aside(
 
 
 @pytest.mark.parametrize(("first_s", "last_s"), [(3.0, 4.0), (12.0, 13.0), (8.01, 8.05)])
-def test_gap_at_constant_speed_or_of_two_rows_sets_nothing_aside(
+def test_no_samples_are_excluded_after_a_gap_at_constant_speed_or_of_two_rows(
     first_s: float, last_s: float
 ) -> None:
     problem, values = journal_problem(with_gap(first_s, last_s))
@@ -75,8 +75,8 @@ def test_gap_at_constant_speed_or_of_two_rows_sets_nothing_aside(
 
 
 @pytest.mark.parametrize(("missing", "gap"), [(3, False), (4, True)])
-def test_four_missing_rows_are_a_gap(missing: int, gap: bool) -> None:
-    """A step of 4.5 times the usual one; here in the middle of the change of speed."""
+def test_four_missing_rows_are_a_gap_and_three_are_not(missing: int, gap: bool) -> None:
+    """A gap is a step above 4.5 times the usual one; here it is within the change of speed."""
     kept = np.ones(len(TIME), dtype=bool)
     kept[401 : 401 + missing] = False
     run = Run.from_arrays(TIME, step(8.0, True), np.ones(len(TIME)), name="a").select(kept)
@@ -84,12 +84,12 @@ def test_four_missing_rows_are_a_gap(missing: int, gap: bool) -> None:
     assert bool(behind_gaps(problem, values, 1e-4)[0].any()) == gap
 
 
-def test_law_without_a_film_forgets_at_once() -> None:
+def test_no_samples_are_excluded_after_a_gap_for_a_law_without_a_film() -> None:
     problem = Problem(Campaign.prepare(Rig(), [with_gap(7.0, 8.11)]), "coulomb", "journal", ())
     assert not behind_gaps(problem, problem.starts({})[0], LEAST_N)[0].any()
 
 
-def test_campaign_is_settled_without_what_a_fifth_of_the_noise_does_not_hide() -> None:
+def test_samples_after_a_gap_are_excluded_if_their_error_exceeds_a_fifth_of_the_noise() -> None:
     run, noise_n = with_gap(7.0, 8.11, up=False), 0.02
     noise = noise_n * np.random.default_rng(4).standard_normal(len(run))
     campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction_n=run.friction_n + noise)])

@@ -1,4 +1,4 @@
-"""Films that are too fast for the sampling of the records, and the reuse of followed films."""
+"""Films that are too fast for the sampling of the records, and the reuse of computed film paths."""
 
 from __future__ import annotations
 
@@ -34,18 +34,22 @@ def film_rate_1_s(run: Run, seed: dict[str, float] | None = None) -> float:
 
 
 @pytest.mark.parametrize("call", [jbf.fit, jbf.diagnose])
-def test_times_in_milliseconds_are_refused(call: Any) -> None:
-    """Taken for seconds, a fit would take hours."""
+def test_times_in_milliseconds_are_rejected_with_a_hint_at_the_unit(call: Any) -> None:
+    """Read as seconds, these times would make a fit take hours."""
     with pytest.raises(InputError, match="check that times are in seconds") as refusal:
         call(Rig.thesis(), [IN_MILLISECONDS], law="journal")
     assert (refusal.value.column, refusal.value.file) == ("time_s", "sine")
     assert "\n" not in str(refusal.value)
 
 
-def test_laws_without_a_film_accept_any_sampling() -> None:
+def test_laws_without_a_film_accept_times_in_milliseconds() -> None:
     campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
     for law in ("coulomb", "stribeck", "lugre"):
         check_film(campaign, law, "journal")
+
+
+def test_law_selection_excludes_film_laws_if_times_are_in_milliseconds() -> None:
+    campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
     candidates, refused = followed(campaign, "journal")
     assert "stribeck" in candidates
     assert not {"journal", "journal_full"} & set(candidates)
@@ -53,7 +57,9 @@ def test_laws_without_a_film_accept_any_sampling() -> None:
 
 
 @pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
-def test_limit_is_in_steps_of_the_film_from_sample_to_sample(share: float, accepted: bool) -> None:
+def test_sampling_is_rejected_if_the_film_needs_too_many_steps_per_sample(
+    share: float, accepted: bool
+) -> None:
     step_s = share * MOST_STEPS / film_rate_1_s(IN_SECONDS)
     campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 0.01)])
     if accepted:
@@ -64,7 +70,9 @@ def test_limit_is_in_steps_of_the_film_from_sample_to_sample(share: float, accep
 
 
 @pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
-def test_short_record_with_few_steps_in_all_is_accepted(share: float, accepted: bool) -> None:
+def test_coarse_sampling_is_accepted_if_the_record_needs_few_film_steps_in_total(
+    share: float, accepted: bool
+) -> None:
     samples = 30
     duration_s = share * ANY_STEPS / film_rate_1_s(IN_SECONDS)
     step_s = duration_s / (samples - 1)
@@ -77,7 +85,7 @@ def test_short_record_with_few_steps_in_all_is_accepted(share: float, accepted: 
             check_film(campaign, "journal", "journal")
 
 
-def test_start_that_the_user_gives_determines_the_rate() -> None:
+def test_film_rate_follows_from_the_starting_value_of_the_user() -> None:
     seed = {"U_tr_m_s": 1e-5}
     slower = film_rate_1_s(IN_MILLISECONDS, seed)
     assert slower != film_rate_1_s(IN_MILLISECONDS)
@@ -86,7 +94,7 @@ def test_start_that_the_user_gives_determines_the_rate() -> None:
         check_film(campaign, "journal", "journal", seed)
 
 
-# ---- a motion keeps the films that were followed along it ----------------------------------------
+# ---- cached film paths of a motion ---------------------------------------------------------------
 
 VALUES = np.array([0.26, 0.06, 7.5e5, 33.0])
 THICKER = Rig(Rig.thesis().bearing, Lubricant(viscosity_pa_s=0.003), Rig.thesis().load)
@@ -101,12 +109,12 @@ CHANGES: dict[str, tuple[Rig, Any, list[float]]] = {
 
 
 def film_campaign() -> Campaign:
-    """A campaign whose motion has kept nothing."""
+    """A campaign whose motion has no cached film path."""
     return Campaign.prepare(Rig.thesis(), [sine_run(0.02, 1.0, 600)])
 
 
-def test_kept_film_is_not_used_for_other_parameters() -> None:
-    """One motion under each change, twice in turn, against a motion that has kept nothing."""
+def test_cached_film_path_is_recomputed_if_parameters_rig_or_clock_change() -> None:
+    """Each change twice in turn with one motion, against a motion without a cached path."""
     used, answers = film_campaign().motions, set()
     for rig, clock, scale in [*CHANGES.values(), *CHANGES.values()]:
         model = chain(rig, "journal", clock, ())
@@ -118,7 +126,9 @@ def test_kept_film_is_not_used_for_other_parameters() -> None:
 
 
 @pytest.mark.parametrize("effects", [(), ("coulomb_drag", "sensor_lag"), ("film_memory",)])
-def test_derivatives_after_a_prediction_are_central_differences(effects: tuple[str, ...]) -> None:
+def test_derivatives_with_a_cached_film_path_are_central_differences(
+    effects: tuple[str, ...],
+) -> None:
     model, used = chain(Rig.thesis(), "journal", "journal", effects), film_campaign().motions
     count = len(model.parameter_names)
     values = np.concatenate([VALUES, [1.0, 0.05][: count - 4]])

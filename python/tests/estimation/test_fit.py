@@ -1,4 +1,4 @@
-"""Fits to simulated records, residuals, and absurd campaigns of `benches/torture`."""
+"""Fits to simulated records, residuals, and campaigns of `benches/torture` that once failed."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ CATALOGUE = jbf.effects()
 ON_BEARINGS = [name for name, page in CATALOGUE.items() if "journal" not in page.refused]
 LAW_NAMES = {"f_m": "f_m", "U_tr_m_s": "U_tr", "K0": "K0", "gamma": "gamma"}
 LOADS = (("two_way_0.25", 0.7), ("stop_and_go", 0.7), ("two_way_2", 1.35))
-"""Shares of the rig's load, for effects that only different loads show."""
+"""Shares of the rig's load by run, for effects that require different loads."""
 POORLY_KNOWN = ("thermal_thinning.tau_s", "dwell_stiction.t_0_s")
-"""Times that these short runs determine to a factor only."""
+"""Time constants that these short runs determine only to within a factor."""
 
 
 def fast(names: list[str], chosen: tuple[str, ...]) -> list[Any]:
@@ -54,7 +54,7 @@ def truth_of(effect: str, truth: dict[str, Any]) -> dict[str, float]:
 
 
 def error_of(p: ParameterValue) -> float:
-    """The standard error, or the one that the note of a held scale states."""
+    """The standard error, or the one in the note of a held scale."""
     if p.stderr is not None:
         return p.stderr
     stated = re.match(r"its error, (\S+),", p.note or "")
@@ -79,9 +79,9 @@ def test_fit_of_the_simulated_effect_recovers_its_parameters(effect: str) -> Non
 
 
 @pytest.mark.parametrize("effect", fast(ON_BEARINGS, ("presliding", "sensor_lag")))
-def test_derivatives_of_an_effect_match_differences(effect: str) -> None:
+def test_derivatives_with_an_effect_match_finite_differences(effect: str) -> None:
     rig, runs, _ = simulated(effect)
-    # A run to and fro; where it does not show a parameter, one with rests or another load.
+    # A reversing run; if it does not determine a parameter, one with rests or another load.
     for shown in (runs[1:2], runs[4:5]):
         problem = Problem(Campaign.prepare(rig, shown), "journal", "journal", (effect,))
         values = problem.starts({})[0]
@@ -100,7 +100,7 @@ def test_derivatives_of_an_effect_match_differences(effect: str) -> None:
         assert np.quantile(gap, 0.95) < 1e-3 * np.max(np.abs(slope)), problem.names[i]
 
 
-def test_every_effect_vanishes_at_its_null() -> None:
+def test_prediction_does_not_change_if_an_effect_is_at_its_null() -> None:
     rig, runs, _ = campaign(7)
     run = replace(runs[1], temperature_c=30.0 + 5.0 * np.sin(runs[1].time_s))
     bare = {law: Model(rig, law).predict(run) for law in ("journal", "coulomb")}
@@ -110,7 +110,7 @@ def test_every_effect_vanishes_at_its_null() -> None:
         np.testing.assert_array_equal(bare[law], found, err_msg=name)
 
 
-def test_unknown_names_and_values_out_of_range_are_refused() -> None:
+def test_unknown_names_values_out_of_range_and_unusable_runs_are_rejected() -> None:
     rig, runs, _ = campaign(7)
     with pytest.raises(InputError, match="presliding"):
         fit(rig, runs, ["presliding_"])
@@ -125,7 +125,9 @@ def test_unknown_names_and_values_out_of_range_are_refused() -> None:
 
 
 @pytest.mark.parametrize("more_n", [1.0, -1.0])
-def test_residual_is_record_minus_model_in_fit_and_comparison(more_n: float) -> None:
+def test_residuals_are_record_minus_model_and_their_mean_is_reported_by_direction(
+    more_n: float,
+) -> None:
     runs = there_and_back(along(more_n), noise_n=0.05)
     fixed = {"F_c": LAW["F_c_n"], "F_v": LAW["F_v_n_s_m"]}
     fitted = fit(Rig(), runs, law="coulomb", fixed=fixed)
@@ -169,7 +171,9 @@ def torture() -> dict[str, Any]:
     "seed",
     [s if s in FAST else pytest.param(s, marks=pytest.mark.extended) for s in FAILURES],
 )
-def test_absurd_campaign_ends_in_a_sane_answer(seed: int, torture: dict[str, Any]) -> None:
+def test_campaign_that_once_failed_ends_in_an_answer_without_contradictions(
+    seed: int, torture: dict[str, Any]
+) -> None:
     row = torture["tried"](seed, 120.0)
     assert row["said"], FAILURES[seed]
     assert row["wrong"] == [], FAILURES[seed]

@@ -1,4 +1,4 @@
-"""Held-out errors: runs predicted from fits in which they had no part.
+"""Held-out errors: runs predicted from fits that did not use them.
 
 Coulomb's law on one-way runs is linear, so that every fit without a run is a linear regression.
 """
@@ -36,7 +36,7 @@ PUSH_N = 3.0
 
 
 def pushed(push: Array, k_n: float) -> Array:
-    """A force in proportion to a recorded column; a run in which that is zero does not show it."""
+    """A force in proportion to a recorded column; runs in which it is zero do not determine it."""
     return k_n * push
 
 
@@ -56,7 +56,7 @@ def solved(runs: list[Run], *effects: str, law: str = "coulomb") -> tuple[Proble
 
 
 def pushed_runs(others: float = 0.0, second_half: float = 1.0) -> list[Run]:
-    """Four runs, the first with a push (in its second half times a factor), the others a share."""
+    """Four runs; the first has a push, with a factor in its second half, the others a share."""
     runs = []
     for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
         push = np.sign(np.sin(9.0 * run.time_s)) * (1.0 if i == 0 else others)
@@ -71,7 +71,7 @@ def pushed_runs(others: float = 0.0, second_half: float = 1.0) -> list[Run]:
 
 @pytest.mark.parametrize("off_n", [0.0, 3.0])
 def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) -> None:
-    """Also where one run is far off the others, which no single Gauss-Newton step crosses."""
+    """Also if one run differs so much from the others that one Gauss-Newton step is too few."""
     runs = four_runs(coulomb, noise_n=NOISE_N)
     force = np.asarray(runs[0].friction_n) + off_n * np.sign(runs[0].velocity_m_s)
     problem, solution = solved([replace(runs[0], friction_n=force), *runs[1:]])
@@ -97,7 +97,7 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
     assert left_out_rms(problem, solution) == pytest.approx(rms_n, rel=0.01)
 
 
-def test_halves_of_a_single_run_predict_each_other() -> None:
+def test_single_run_is_split_into_halves_that_predict_each_other() -> None:
     """The second half has 1 N more, so that each half misses by 1 N."""
     run = one_way(
         "only", lambda t, v, a: coulomb(t, v, a) + (t > 5.0), rate=2.0 * np.pi, noise_n=NOISE_N
@@ -111,7 +111,7 @@ def test_halves_of_a_single_run_predict_each_other() -> None:
     assert (first.runs, second.runs) == ((0,), (0,))
 
 
-def test_many_runs_are_held_out_in_twelve_groups_that_their_order_does_not_change() -> None:
+def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> None:
     runs = [
         wandering(f"{k:02d}", coulomb, way=(-1.0) ** k, rate=10.0 + k, noise_n=NOISE_N, seed=k)
         for k in range(14)
@@ -126,13 +126,13 @@ def test_many_runs_are_held_out_in_twelve_groups_that_their_order_does_not_chang
     assert sorted(name for group in groups[0] for name in group) == [r.name for r in runs]
 
 
-# ---- parameters that only one run shows ----------------------------------------------------------
+# ---- parameters that only one run determines -----------------------------------------------------
 
 
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize("others", [0.0, 1e-3])
-def test_parameter_that_only_the_held_out_run_shows_is_at_its_null(others: float) -> None:
-    """Also where the others show a thousandth: an estimate from that would be 5 N off by noise."""
+def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others: float) -> None:
+    """Also if the others have a thousandth of the push, from which noise allows no estimate."""
     problem, solution = solved(pushed_runs(others), "pushed")
     value = solution.values[problem.names.index("pushed.k_n")]
     assert value == pytest.approx(PUSH_N, rel=0.01)
@@ -145,18 +145,20 @@ def test_parameter_that_only_the_held_out_run_shows_is_at_its_null(others: float
 
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize(("share", "witnesses"), [(0.9, {0}), (1.1, set())])
-def test_run_with_nearly_all_information_on_a_parameter_is_the_only_witness(
+def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
     share: float, witnesses: set[int]
 ) -> None:
-    """The three others hold that share of the least part of the sum of squared derivatives."""
+    """The other three have this share of the least information, a sum of squared derivatives."""
     others = float(np.sqrt(share * INSENSITIVE / 3.0))
     assert only_witnesses(*solved(pushed_runs(others), "pushed")) == witnesses
 
 
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize(("second_half", "missed_n"), [(1.0, 0.0), (3.0, 2.0 * PUSH_N)])
-def test_halves_of_the_only_witness_predict_each_other(second_half: float, missed_n: float) -> None:
-    """Where the push is three times as large in the second half, each misses the difference."""
+def test_halves_of_the_only_informative_run_predict_each_other(
+    second_half: float, missed_n: float
+) -> None:
+    """If the push is three times as large in the second half, each half misses the difference."""
     problem, solution = solved(pushed_runs(0.0, second_half), "pushed")
     parts = halves_left_out(problem, solution, 0)
     assert all(part.told.all() for part in parts)
@@ -166,7 +168,7 @@ def test_halves_of_the_only_witness_predict_each_other(second_half: float, misse
 
 
 @pytest.mark.usefixtures("push_effect")
-def test_half_of_a_run_without_information_holds_the_parameter_at_its_null() -> None:
+def test_parameter_is_at_its_null_if_the_remaining_half_does_not_determine_it() -> None:
     first, *others = pushed_runs()
     early = np.where(first.time_s < 4.9, first.extra["push"], 0.0)
     force = np.asarray(first.friction_n) + PUSH_N * (early - first.extra["push"])
@@ -183,7 +185,7 @@ def test_half_of_a_run_without_information_holds_the_parameter_at_its_null() -> 
 # ---- errors from parts ---------------------------------------------------------------------------
 
 
-def test_errors_take_each_sample_from_the_fit_without_it() -> None:
+def test_held_out_error_of_each_sample_is_from_the_fit_without_that_sample() -> None:
     problem, solution = solved(four_runs(coulomb, noise_n=NOISE_N)[:2])
     count = len(problem.campaign.prepared[0].run)
     first, every = np.arange(count) < count // 2, np.ones(count, dtype=bool)
@@ -198,13 +200,20 @@ def test_errors_take_each_sample_from_the_fit_without_it() -> None:
     assert list(errors) == [0, 1]
     np.testing.assert_array_equal(errors[0], 10.0 + ramp[3:])
     np.testing.assert_array_equal(errors[1], np.where(first, ramp, -ramp)[:-5])
-    kept = parts[1].without((0,)), parts[0].without((3,))
-    assert [part.runs for part in kept] == [(), (1,)]
-    np.testing.assert_array_equal(kept[1].residuals[0], ramp)
 
 
-def test_deviations_of_runs_are_removed_where_models_are_compared() -> None:
-    """No model predicts the offset of a run's own; 2 N in a noise of 0.1 N."""
+def test_part_without_a_run_has_the_residuals_of_its_other_runs() -> None:
+    ramp, every = np.arange(10.0), np.ones(10, dtype=bool)
+    determined = np.ones(1, dtype=bool)
+    first = LeftOut((0,), (every,), determined, (10.0 + ramp,))
+    second = LeftOut((1,), (every,), determined, (ramp,))
+    remaining = first.without((0,)), second.without((3,))
+    assert [part.runs for part in remaining] == [(), (1,)]
+    np.testing.assert_array_equal(remaining[1].residuals[0], ramp)
+
+
+def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() -> None:
+    """No model predicts the offset of a single run; here 2 N in noise of 0.1 N."""
     runs = four_runs(coulomb, noise_n=NOISE_N)
     offsets = (2.0, -2.0, 2.0, -2.0)
     off = [

@@ -20,7 +20,7 @@ EVERY = np.ones(COUNT, dtype=bool)
 SAMPLES = Samples(tuple("abcde"), (0.02,) * RUNS, (EVERY,) * RUNS, (np.ones(COUNT),) * RUNS)
 WEAK = DEFAULT.weak
 Linear = tuple[list[Array], list[Array], list[Array]]
-"""Derivatives by the parameters of the law, by that of the effect, and noise; one a run."""
+"""Derivatives by the parameters of the law and of the effect, and noise; one array for each run."""
 
 
 def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, list[LeftOut]]:
@@ -71,18 +71,18 @@ def effect(size: float, own: Sequence[Array], noise: Sequence[Array]) -> list[Ar
     return [e + size * o for e, o in zip(noise, own, strict=True)]
 
 
-def test_run_without_which_the_law_is_poorly_known_has_no_veto() -> None:
+def test_effect_is_confirmed_even_if_one_run_is_needed_to_determine_the_law() -> None:
     confirmed = better = 0
     for law, own, noise in linear(11, 60):
         found = confirmation(law, own, effect(0.13, own, noise))
         confirmed += found.confirms(WEAK, np.inf, DEFAULT)
         better += found.after_n < found.before_n
     assert confirmed >= 54
-    # The RMS alone would refuse many.
+    # The held-out RMS does not decrease in many of them.
     assert better < 50
 
 
-def test_effect_in_one_run_that_the_others_deny_is_refused() -> None:
+def test_effect_in_one_run_only_is_not_confirmed() -> None:
     refused = 0
     for law, own, noise in linear(12, 60):
         force = [e + 0.5 * (i == 0) * o for i, (e, o) in enumerate(zip(noise, own, strict=True))]
@@ -90,7 +90,7 @@ def test_effect_in_one_run_that_the_others_deny_is_refused() -> None:
     assert refused >= 57
 
 
-def test_density_share_of_an_effect_alike_in_all_runs_is_that_of_the_linear_model() -> None:
+def test_density_share_of_an_effect_equal_in_all_runs_follows_from_its_noncentrality() -> None:
     """Expected: (z - 1) / (z + 1) with the noncentrality z = size^2 n."""
     shares = []
     for law, own, noise in linear(13, 60):
@@ -100,7 +100,7 @@ def test_density_share_of_an_effect_alike_in_all_runs_is_that_of_the_linear_mode
     assert np.mean(shares) == pytest.approx((z - 1.0) / (z + 1.0), abs=0.02)
 
 
-def test_errors_and_share_of_better_runs_are_counted() -> None:
+def test_confirmation_reports_held_out_rms_and_the_share_of_improved_runs() -> None:
     law, own, noise = linear(14, 1)[0]
     force = effect(0.1, own, noise)
     found = confirmation(law, own, force)

@@ -1,4 +1,4 @@
-"""Parameters that the runs do not determine: the rule, and what they are held at."""
+"""Parameters that are not identifiable: the criterion, and the value at which they are held."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from jbf.estimation.put_back import put_back
 from jbf.estimation.spread import spread
 
 RUNS = there_and_back(coulomb, noise_n=0.1)
-"""At 0.05 to 0.15 m/s without rests or reversals."""
+"""Two runs at 0.05 to 0.15 m/s without rests or reversals."""
 
 
 def ended_at(law: str, values: dict[str, float], effects: Sequence[str] = ()) -> Fit:
@@ -39,7 +39,7 @@ def ended_at(law: str, values: dict[str, float], effects: Sequence[str] = ()) ->
 
 
 def notes_of(found: Fit) -> dict[str, str]:
-    """Notes of the held parameters; everything that a fit reports of them is consistent."""
+    """Notes of the held parameters; asserts that the fit is consistent with them."""
     notes = {n: str(p.note) for n, p in found.parameters.items() if p.held}
     for name, p in found.parameters.items():
         assert (p.stderr is None) is (name in notes)
@@ -71,7 +71,7 @@ def test_fixed_parameter_is_held_at_its_value() -> None:
     assert found.parameters["sensor_offset.b_n"].value == 0.25
 
 
-def test_parameters_with_a_double_are_held_and_the_others_are_not() -> None:
+def test_confounded_parameters_and_those_without_influence_are_held_and_the_others_not() -> None:
     found = fit(Rig(), RUNS, law="seven_parameter")
     notes = notes_of(found)
     # The end of the search in its flat valley decides between the two notes.
@@ -82,7 +82,7 @@ def test_parameters_with_a_double_are_held_and_the_others_are_not() -> None:
     assert abs(friction.value - LAW["F_c_n"]) < 3.0 * friction.stderr < 0.3
 
 
-def test_viscous_coefficient_of_falling_friction_is_held_at_zero() -> None:
+def test_viscous_coefficient_is_held_at_zero_if_friction_falls_with_speed() -> None:
     runs = there_and_back(lambda t, v, a: 5.0 * np.sign(v) - 0.5 * v, noise_n=0.05)
     found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0}).parameters
     assert (found["F_v_n_s_m"].value, found["F_v_n_s_m"].held) == (0.0, True)
@@ -93,7 +93,7 @@ def test_viscous_coefficient_of_falling_friction_is_held_at_zero() -> None:
     assert not found["F_c_n"].held
 
 
-def test_asymmetry_beyond_its_upper_bound_is_held_there() -> None:
+def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None:
     runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_n=0.05)
     fixed = {"F_c": 5.0, "F_s": 6.0, "F_v": 0.0}
     found = fit(Rig(), runs, ["direction_asymmetry"], law="coulomb", fixed=fixed)
@@ -114,7 +114,7 @@ def test_asymmetry_beyond_its_upper_bound_is_held_there() -> None:
         ),
     ],
 )
-def test_effect_at_its_null_is_no_effect(
+def test_parameters_of_an_effect_at_its_null_are_held_and_noted_as_without_effect(
     effect: str, values: dict[str, float], put: dict[str, float]
 ) -> None:
     law = {**LAW, "F_s_n": 6.0}
@@ -153,7 +153,7 @@ def walled() -> Iterator[Walled]:
 def moved_back(
     law: str, p: float, q: float, start: dict[str, float] | None = None
 ) -> tuple[float, float, dict[str, str]]:
-    """Where p and q are put from these values in noise of 0.1 N, and the notes."""
+    """Values at which p and q are held after a search that ended at p and q, and the notes."""
     problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", ())
     here = np.array([5.0, p, q])
     solution = problem.solution(here, problem.campaign.samples, WHITE)
@@ -167,7 +167,7 @@ def moved_back(
     ("wall_p", "wall_q", "there_p", "there_q"),
     [
         (0.0, 0.0, 4.0, 0.01),
-        # Half of the way from 900 to 4 is 452, a quarter leaves 676, an eighth 788.
+        # Half of the distance from 900 to 4 is 452, a quarter leaves 676, an eighth 788.
         (400.0, 0.0, 452.0, 0.01),
         (500.0, 0.0, 676.0, 0.01),
         (700.0, 0.0, 788.0, 0.01),
@@ -177,7 +177,7 @@ def moved_back(
         (0.0, 20.0, 4.0, 10.0**1.5),
     ],
 )
-def test_flat_parameters_go_home_by_shares_of_the_way(
+def test_parameter_is_moved_towards_its_start_as_far_as_predictions_stay_equal(
     walled: Walled, wall_p: float, wall_q: float, there_p: float, there_q: float
 ) -> None:
     p, q, notes = moved_back(walled(1.0, wall_p, wall_q), 900.0, 100.0)
@@ -186,13 +186,13 @@ def test_flat_parameters_go_home_by_shares_of_the_way(
     assert {name: note == NEVER_MOVED for name, note in notes.items()} == home
 
 
-def test_start_of_the_user_is_home(walled: Walled) -> None:
+def test_parameter_without_influence_returns_to_the_start_value_of_the_user(walled: Walled) -> None:
     p, _, notes = moved_back(walled(1.0, 0.0, 0.0), 0.7, 1.0, {"p": 0.1})
     assert (p, notes["p"]) == (0.1, NEVER_MOVED)
 
 
 @pytest.mark.parametrize(("share", "same"), [(0.9, True), (1.1, False)])
-def test_predictions_are_the_same_within_1e_4_of_the_residual(
+def test_predictions_count_as_equal_within_1e_4_of_the_residual_rms(
     walled: Walled, share: float, same: bool
 ) -> None:
     residual = [r.friction_n - 5.0 * np.sign(r.velocity_m_s) for r in RUNS]
@@ -222,7 +222,9 @@ SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
         (SCALE, 1e-7 * math.exp(2.4e-5), 1e-12),
     ],
 )
-def test_value_above_its_error_is_determined(page: Parameter, value: float, error: float) -> None:
+def test_parameter_is_determined_if_signed_or_not_smaller_than_its_error(
+    page: Parameter, value: float, error: float
+) -> None:
     assert undetermined(page, value, error) is None
 
 
@@ -237,17 +239,19 @@ def test_value_above_its_error_is_determined(page: Parameter, value: float, erro
         (SIGNED, -1e5, "lower bound -100000"),
     ],
 )
-def test_value_at_a_bound_is_held(page: Parameter, value: float, bound: str, error: float) -> None:
+def test_parameter_at_a_bound_is_not_determined_whatever_its_error(
+    page: Parameter, value: float, bound: str, error: float
+) -> None:
     note = undetermined(page, value, error)
     assert bound in str(note)
-    # The bound is reported before another parameter that does the same.
+    # The bound is reported even if the parameter is also confounded with another.
     assert (
         undetermined(page, value, error, separate=False) == bound_note(page, value, error) == note
     )
 
 
 @pytest.mark.parametrize(("share", "at_bound"), [(1.0, True), (1.1, False)])
-def test_linear_value_is_at_its_bound_within_a_millionth_of_its_error(
+def test_parameter_is_at_its_bound_if_within_a_millionth_of_its_error(
     share: float, at_bound: bool
 ) -> None:
     error = 2.0**20
@@ -265,7 +269,7 @@ def test_linear_value_is_at_its_bound_within_a_millionth_of_its_error(
         (SCALE, 1.0, math.inf, None),
     ],
 )
-def test_scale_below_its_error_has_only_a_largest_size_of_two_errors(
+def test_scale_below_its_error_is_reported_with_an_upper_limit_of_two_errors(
     page: Parameter, value: float, error: float, largest: float | None
 ) -> None:
     note = str(undetermined(page, value, error))
@@ -276,7 +280,7 @@ def test_scale_below_its_error_has_only_a_largest_size_of_two_errors(
         assert float(note.rpartition("below ")[2]) == pytest.approx(largest, rel=0.05)
 
 
-def test_parameter_without_influence_or_with_a_double_is_held() -> None:
+def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
     assert undetermined(SCALE, 1e-7, math.nan, moved=False) == NEVER_MOVED
     assert undetermined(PLAIN, 9.9, 0.1, separate=False) == NOT_SEPARATE
 
@@ -289,26 +293,26 @@ def test_parameter_without_influence_or_with_a_double_is_held() -> None:
         (STIFF, (1e12, math.inf), (1e11, 1.0)),
         # A null at the upper bound.
         (SHARE, (1.0, 1.0 - 1e-9), (0.5, 0.0)),
-        # A null between the bounds stops no fit; no null.
+        # A null between the bounds does not stop a search; the last page has no null.
         (SIGNED, (), (0.0,)),
         (FACTOR, (), (1.0,)),
         (PLAIN, (), (0.0,)),
     ],
 )
-def test_fitted_value_at_its_null(
+def test_fitted_parameter_is_at_its_null_only_if_the_null_is_a_bound_that_it_reached(
     page: Parameter, there: tuple[float, ...], elsewhere: tuple[float, ...]
 ) -> None:
     assert all(at_null(page, value, 0.1) for value in there)
     assert not any(at_null(page, value, 0.1) for value in elsewhere)
 
 
-def test_fixed_value_is_at_its_null_only_exactly() -> None:
+def test_fixed_parameter_is_at_its_null_only_if_equal_to_the_null() -> None:
     assert at_null(SIGNED, 0.0, fixed=True)
     assert not at_null(DRAG, 1e-9, fixed=True)
     assert not at_null(PLAIN, 0.0, fixed=True)
 
 
-def test_effect_is_idle_where_all_its_nulls_are_reached() -> None:
+def test_effect_is_idle_if_all_its_parameters_with_a_null_are_at_it() -> None:
     pages = {
         "F_v_n_s_m": PLAIN,
         "one.F_d_n": DRAG,

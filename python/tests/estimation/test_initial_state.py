@@ -1,6 +1,6 @@
-"""Start of a run in an unknown state: which samples are set aside, for films, contacts and play.
+"""Initial-state transients of films, contacts and play: which samples are excluded.
 
-Two runs of a model that begin in different states differ until they have forgotten it.
+Predictions that begin in different states differ until the initial state has no influence.
 """
 
 from __future__ import annotations
@@ -59,14 +59,14 @@ def after(run: Run, before: tuple[float, float] | None, seed: int = 0) -> Run:
 
 
 def masks(*runs: Run, noise_n: float = NOISE_N) -> list[Array]:
-    """Samples that are set aside, of some motions of the bearing."""
+    """Excluded samples of each run, for motions of the bearing."""
     problem, values = journal_problem(*runs)
     return [np.asarray(m) for m in unsettled(problem, values, noise_n)]
 
 
 @cache
 def two_starts() -> Campaign:
-    """A run after slow motion and one after fast, without the start that the bare law remembers."""
+    """A run after slow and one after fast motion, without the transient of the law's film."""
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     return settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
 
@@ -85,17 +85,19 @@ def two_starts() -> Campaign:
         ("journal", PLAY, [True]),
     ],
 )
-def test_films_contacts_and_play_remember_their_start(
+def test_models_with_a_film_contact_or_play_have_a_memory_of_the_initial_state(
     law: str, names: tuple[str, ...], directions: list[bool]
 ) -> None:
-    """A contact or a cell may have been pushed either way; a film depends on the speed alone."""
+    """A contact or a load cell remembers the direction of motion, a film only its speed."""
     found = memories(law, names)
     assert [min(memory.speeds) < 0.0 for memory in found] == directions
     assert all(memory.longer > 1.0 for memory in found)
 
 
 @pytest.mark.parametrize("longer", [1.0, 1.5])
-def test_stretch_with_a_difference_is_set_aside_and_prolonged(longer: float) -> None:
+def test_interval_in_which_initial_states_matter_is_excluded_and_extended_by_a_factor(
+    longer: float,
+) -> None:
     """From the first sample that differs by a fifth of the noise, times a factor in duration."""
     problem, values = journal_problem(journal_run("a", 2.0))
     (p,) = problem.campaign.prepared
@@ -112,24 +114,24 @@ def test_stretch_with_a_difference_is_set_aside_and_prolonged(longer: float) -> 
 # ---- films ---------------------------------------------------------------------------------------
 
 
-def test_start_in_motion_is_set_aside_until_the_film_has_forgotten_it() -> None:
+def test_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() -> None:
     run = journal_run("moving", None)
     (mask,) = masks(run)
     assert mask[0]
     assert 0.1 < run.time_s[mask][-1] < 3.0
     assert np.count_nonzero(np.diff(mask.astype(int))) == 1
-    # A film that half of the speed leaves has forgotten it by then, too.
+    # The same holds after a motion at half of the top speed.
     slow, half = (after(run, before).friction_n for before in (SLOW, (0.5, 6.0)))
     apart = np.abs(np.asarray(slow) - np.asarray(half))
     assert apart[mask].max() > 10.0 * NOISE_N
     assert apart[~mask].max() <= REMEMBERED * NOISE_N
-    # A run in which it is never forgotten is kept.
+    # A run that is too short for the transient to end is not excluded.
     assert not masks(run.select(run.time_s < 0.5))[0].any()
     counts = [int(masks(run, noise_n=noise_n)[0].sum()) for noise_n in (0.01, 0.1, 1.0)]
     assert counts[0] > counts[1] > counts[2] > 0
 
 
-def test_rest_is_kept_and_a_long_rest_settles_the_film() -> None:
+def test_rest_is_not_excluded_and_a_longer_rest_shortens_the_transient() -> None:
     short, longer, longest = (journal_run(f"after {s} s", s) for s in (2.0, 30.0, 120.0))
     found = masks(short, longer, longest)
     assert short.time_s[found[0]][0] == pytest.approx(2.0, abs=0.05)
@@ -137,7 +139,7 @@ def test_rest_is_kept_and_a_long_rest_settles_the_film() -> None:
     assert not found[2].any()
 
 
-def test_fit_is_unbiased_without_the_start_and_biased_with_it() -> None:
+def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     runs.append(after(journal_run("c", 30.0), FAST, 2))
     campaign = Campaign.prepare(Rig.thesis(), runs)
@@ -160,8 +162,8 @@ def test_fit_is_unbiased_without_the_start_and_biased_with_it() -> None:
     assert errors[1] > 3.0 * errors[0]
 
 
-def test_start_as_in_the_model_is_set_aside_without_a_finding() -> None:
-    """No record shows that it was so; a finding needs residuals twice as large as usual."""
+def test_transient_that_agrees_with_the_model_is_excluded_without_a_finding() -> None:
+    """The record cannot show this; a finding requires residuals twice as large as usual."""
     runs = [after(journal_run("a", None), None, 0), after(journal_run("b", 2.0), None, 1)]
     settled = settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
     assert settled.more_findings == ()
@@ -169,13 +171,13 @@ def test_start_as_in_the_model_is_set_aside_without_a_finding() -> None:
 
 
 def with_memory(campaign: Campaign, factor: float) -> tuple[Problem, Solution]:
-    """A model whose film follows at a multiple of the rate, at its starting values."""
+    """A model whose film responds at a multiple of the usual rate, at its starting values."""
     problem = Problem(campaign, "journal", "journal", ("film_memory",))
     values = problem.starts({"film_memory.factor": factor})[0]
     return problem, problem.solution(values, campaign.samples, WHITE)
 
 
-def test_slower_film_sets_more_samples_aside_behind_those_before() -> None:
+def test_slower_film_excludes_further_samples_that_follow_those_already_excluded() -> None:
     campaign = two_starts()
     again = settled_again(*with_memory(campaign, 0.3))
     assert again is not None
@@ -188,7 +190,7 @@ def test_slower_film_sets_more_samples_aside_behind_those_before() -> None:
     assert settled_again(*with_memory(again, 0.3)) is None
 
 
-def test_nothing_more_is_set_aside_for_a_film_as_fast_as_that_of_the_bare_law() -> None:
+def test_no_further_samples_are_excluded_for_a_film_as_fast_as_that_of_the_law() -> None:
     campaign = two_starts()
     assert settled_again(*with_memory(campaign, 1.0)) is None
     for names in ((), ("sensor_offset",)):
@@ -197,7 +199,7 @@ def test_nothing_more_is_set_aside_for_a_film_as_fast_as_that_of_the_bare_law() 
         assert settled_again(problem, solution) is None
 
 
-def test_law_without_a_state_remembers_nothing() -> None:
+def test_no_samples_are_excluded_for_a_law_without_a_state() -> None:
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     assert settled_campaign(campaign, "coulomb", "journal") is campaign
     problem = Problem(campaign, "coulomb", "journal", ())
@@ -246,14 +248,14 @@ def play_problem(runs: list[Run]) -> tuple[Problem, Array]:
 
 
 def settled_play(runs: list[Run]) -> tuple[Problem, Array, Campaign | None]:
-    """The campaign without the samples that a model with play remembers."""
+    """The campaign without the initial transient of a model with play."""
     problem, truth = play_problem(runs)
     solution = problem.solution(truth, problem.campaign.samples, WHITE)
     return problem, truth, settled_again(problem, solution)
 
 
 @pytest.mark.parametrize("branch", [-1.0, 1.0], ids=["fallen", "risen"])
-def test_start_in_the_play_is_set_aside_until_the_force_has_turned(branch: float) -> None:
+def test_start_within_the_play_is_excluded_until_the_force_has_reversed(branch: float) -> None:
     problem, truth, settled = settled_play(play_runs(branch))
     assert settled is not None
     residuals, every = problem.residuals(truth), problem.campaign.samples.counted
@@ -268,7 +270,7 @@ def test_start_in_the_play_is_set_aside_until_the_force_has_turned(branch: float
     assert found == [f"run {k}" for k in range(4)]
 
 
-def test_run_whose_force_never_turns_is_set_aside_where_others_remain() -> None:
+def test_run_whose_force_never_reverses_is_excluded_if_other_runs_remain() -> None:
     steady = play_run("steady", 0.0, 1.0, -1.0, 9)
     settled = settled_play([*play_runs(-1.0), steady])[2]
     assert settled is not None
@@ -277,12 +279,12 @@ def test_run_whose_force_never_turns_is_set_aside_where_others_remain() -> None:
     assert min(others) > 1000
 
 
-def test_runs_stay_where_the_force_turns_in_none_of_them() -> None:
+def test_no_run_is_excluded_if_the_force_reverses_in_no_run() -> None:
     runs = [play_run(f"steady {k}", 0.0, 1.0, -1.0, k) for k in range(3)]
     assert settled_play(runs)[2] is None
 
 
-def test_samples_of_a_model_depend_on_the_width_of_its_play() -> None:
+def test_start_is_excluded_only_if_the_play_of_the_model_has_a_width() -> None:
     problem, values = play_problem(play_runs(1.0))
     every = problem.campaign.samples
     gone = [w & ~c for w, c in zip(every.counted, problem.samples_at(values).counted, strict=True)]

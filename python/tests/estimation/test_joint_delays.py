@@ -73,14 +73,16 @@ def regression(
 # ---- statistics of a step ------------------------------------------------------------------------
 
 
-def test_wald_statistic_of_a_step() -> None:
+def test_significance_of_a_step_is_that_of_its_wald_statistic() -> None:
     """(3, -1) C^-1 (3, -1)' with C^-1 = ((2, -1), (-1, 4)) / 7 is 28 / 7."""
     assert STEP.square == pytest.approx(4.0)
     assert STEP.chance == pytest.approx(stats.chi2.sf(4.0, 2))
 
 
 @pytest.mark.parametrize("share", [0.25, 1.0])
-def test_runs_differ_by_their_distance_from_the_weighted_mean(share: float) -> None:
+def test_significance_of_unequal_delays_follows_from_distances_to_the_weighted_mean(
+    share: float,
+) -> None:
     """Delays (5, 1) plus the step (3, -1) are (8, 0); the rows of C^-1 sum to 1/7 and 3/7, so the
     mean is 2, and (6, -2) has the square 112 / 7."""
     delays = np.array([5.0, 99.0, 1.0])
@@ -89,11 +91,11 @@ def test_runs_differ_by_their_distance_from_the_weighted_mean(share: float) -> N
     assert STEP.differ_chance(delays + 40.0, share) == pytest.approx(expected)
 
 
-def test_mean_delay_is_weighted_by_the_variances() -> None:
+def test_mean_delay_is_weighted_by_inverse_variances() -> None:
     assert STEP.mean_s(np.array([6.0, 99.0, 3.0])) == pytest.approx((6.0 / 4 + 3.0 / 2) / 0.75)
 
 
-def test_runs_without_information_make_no_difference() -> None:
+def test_runs_without_information_on_the_delay_do_not_change_its_significance() -> None:
     nothing = LatenessStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
     assert nothing.chance == 1.0
     assert nothing.mean_s(np.array([1.0, 2.0])) == 0.0
@@ -106,7 +108,7 @@ def test_runs_without_information_make_no_difference() -> None:
 # ---- delay of each run ---------------------------------------------------------------------------
 
 
-def test_step_solves_the_normal_equations() -> None:
+def test_delay_step_solves_the_normal_equations() -> None:
     problem, solution = fitted(one_way_campaign((2e-3, -1e-3, 3e-3)))
     step = white(problem, solution)
     viscous = value(problem, solution, "F_v_n_s_m")
@@ -119,7 +121,7 @@ def test_step_solves_the_normal_equations() -> None:
     np.testing.assert_allclose(step.covariance_s2, covariance, rtol=0.02, atol=1e-11)
 
 
-def test_samples_next_to_reversals_are_left_out() -> None:
+def test_samples_next_to_reversals_are_excluded_from_the_delay_step() -> None:
     """In reversing runs the regression agrees only without them."""
     delays_s = (2e-3, -1e-3, 3e-3, 0.0)
     problem, solution = fitted(reversing_campaign(delays_s, noise_n=0.1, speed_noise_m_s=1e-3))
@@ -133,7 +135,7 @@ def test_samples_next_to_reversals_are_left_out() -> None:
     np.testing.assert_allclose(np.sqrt(np.diag(step.covariance_s2)), sd, rtol=0.05)
 
 
-def test_delay_of_the_model_is_a_part_of_the_delay_of_each_run() -> None:
+def test_delay_of_the_model_and_the_step_add_up_to_the_delay_of_each_run() -> None:
     delays_s = (12e-3, 9e-3, 13e-3)
     problem, solution = fitted(one_way_campaign(delays_s), DELAY)
     step = white(problem, solution)
@@ -144,7 +146,7 @@ def test_delay_of_the_model_is_a_part_of_the_delay_of_each_run() -> None:
 
 
 @pytest.mark.parametrize(("ratio", "determined"), [(0.98, True), (1.02, False)])
-def test_estimates_less_certain_than_the_linear_range_are_not_determined(
+def test_delay_and_drift_are_not_determined_if_their_error_exceeds_the_linear_range(
     ratio: float, determined: bool
 ) -> None:
     """Standard errors are proportional to the residuals; that of a drift counts over a run."""
@@ -160,7 +162,7 @@ def test_estimates_less_certain_than_the_linear_range_are_not_determined(
     assert np.isfinite(drift_step(problem, drift).variance) == determined
 
 
-def test_exact_fit_determines_nothing() -> None:
+def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
     """Without a residual there is no estimate of the error."""
     problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_n=0.0))
     step = lateness_step(problem, solution)
@@ -172,7 +174,7 @@ def test_exact_fit_determines_nothing() -> None:
 
 
 @pytest.mark.extended
-def test_significance_of_runs_without_delay_is_uniform() -> None:
+def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
     """Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
     chances = [
         lateness_step(*fitted(one_way_campaign((0.0,) * 3, seed=s))).chance for s in range(60)
@@ -199,7 +201,7 @@ def test_drift_step_solves_the_normal_equations() -> None:
     assert step.square == pytest.approx(step.drift**2 / step.variance)
 
 
-def test_common_delay_looks_like_a_drift_unless_it_is_estimated_too() -> None:
+def test_common_delay_biases_the_drift_unless_both_are_estimated() -> None:
     """The regression of a constant on t over the length T of a run has the slope 3 d / (2 T)."""
     delay_s = 3e-3
     campaign = one_way_campaign((delay_s,) * 2, seed=5)

@@ -1,4 +1,4 @@
-"""Samples next to jumps whose instants are fitted or blurred: their weight, and fits with them."""
+"""Samples next to jumps whose instants are fitted or uncertain: their weights, and fits."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ EXTENDED = pytest.mark.extended
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_jump_is_a_change_within_one_sample(unit: float) -> None:
-    """Both samples next to it get its size."""
+def test_jump_within_one_step_is_found_at_both_samples_with_its_size(unit: float) -> None:
+    """Both samples next to the jump receive its size."""
     t = np.arange(0.0, 10.0, 0.02)
     smooth = 20.0 * unit * np.cos(t)
     assert not jumps(smooth).any()
@@ -42,19 +42,21 @@ def test_jump_is_a_change_within_one_sample(unit: float) -> None:
 
 
 @pytest.mark.parametrize(("size", "found"), [(0.39, False), (0.41, True)])
-def test_jump_is_more_than_a_tenth_of_the_largest_force(size: float, found: bool) -> None:
+def test_change_is_a_jump_only_if_above_a_tenth_of_the_largest_force(
+    size: float, found: bool
+) -> None:
     force = np.array([4.0 - size] * 3 + [4.0] * 3)
     assert bool(jumps(force).any()) == found
 
 
 @pytest.mark.parametrize(("neighbour", "found"), [(0.32, True), (0.35, False)])
-def test_rise_over_several_samples_is_no_jump(neighbour: float, found: bool) -> None:
+def test_rise_over_several_samples_is_not_a_jump(neighbour: float, found: bool) -> None:
     """The change is compared with three times the smaller of two neighbours on either side."""
     change = np.array([0.0, neighbour, neighbour, 1.0, 0.0, 0.0])
     for steps in (change, change[::-1]):
         force = np.concatenate(([0.0], np.cumsum(steps)))
         assert bool(np.any(jumps(force) > 0.9)) == found
-    # One neighbour alone may be a part of the jump.
+    # One of the two neighbours may be a part of the jump.
     one = np.concatenate(([0.0], np.cumsum([0.0, 0.0, 0.9, 1.0, 0.0, 0.0])))
     assert jumps(one).any()
 
@@ -64,7 +66,7 @@ def test_two_jumps_around_a_plateau_of_two_samples_are_found() -> None:
     assert np.flatnonzero(jumps(force)).tolist() == [19, 20, 21, 22]
 
 
-def test_effects_that_move_or_blur_jumps() -> None:
+def test_effects_are_classified_by_whether_they_move_or_blur_jumps() -> None:
     assert moves_jumps(["sensor_offset", "time_delay"])
     assert moves_jumps(["backlash"])
     assert not moves_jumps(["sensor_lag", "drive_compliance"])
@@ -74,7 +76,7 @@ def test_effects_that_move_or_blur_jumps() -> None:
     assert not spreads_jumps([])
 
 
-def test_effect_is_active_where_a_parameter_differs_from_its_null() -> None:
+def test_effect_is_inactive_only_if_all_its_nulls_are_reached() -> None:
     pages = {
         "F_c_n": Parameter("F_c_n"),
         "one.a": Parameter("a", null=0.0),
@@ -109,10 +111,10 @@ def square_wave(noise_n: float) -> tuple[Campaign, Array]:
 
 @pytest.mark.parametrize("noise_n", [0.3, 3.0])
 @pytest.mark.parametrize("before", [1.0, 0.5])
-def test_weight_next_to_a_moved_jump_is_the_share_of_the_noise(
+def test_weight_next_to_a_moved_jump_is_the_share_of_noise_in_the_total_error(
     noise_n: float, before: float
 ) -> None:
-    """Half of the change, 20 N, is added to the noise in squares; no test looks at the samples."""
+    """Half of the change, 20 N, is added to the noise in squares; the samples count in no test."""
     campaign_, force = square_wave(noise_n)
     samples = replace(campaign_.samples, weight=(np.full(len(force), before),))
     found = samples_beside_jumps(samples, campaign_.prepared, [force], ["time_delay"])
@@ -124,8 +126,8 @@ def test_weight_next_to_a_moved_jump_is_the_share_of_the_noise(
     assert samples_beside_jumps(samples, campaign_.prepared, [force], ["sensor_offset"]) is samples
 
 
-def test_weight_behind_a_blurred_reversal_is_the_share_of_the_noise() -> None:
-    """Samples whose error by the instant is more than half of the noise are not tested."""
+def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_error() -> None:
+    """Samples whose error from the uncertain instant exceeds half of the noise count in no test."""
     t = np.arange(0.0, 20.0, 0.02)
     random = np.random.default_rng(2)
     v = 0.004 * (t - 10.0) + 1e-3 * random.standard_normal(len(t))
@@ -146,7 +148,7 @@ def test_weight_behind_a_blurred_reversal_is_the_share_of_the_noise() -> None:
     np.testing.assert_allclose(found.weight[0], expected)
 
 
-def test_effect_at_its_null_leaves_all_samples() -> None:
+def test_all_samples_count_if_the_effect_that_moves_jumps_is_at_its_null() -> None:
     bare = fitted(reversing_campaign((0.0,) * 2))[0]
     problem = Problem(bare.campaign, "coulomb", "journal", DELAY)
     values = problem.starts({})[0]
@@ -160,7 +162,7 @@ def test_effect_at_its_null_leaves_all_samples() -> None:
 
 
 @pytest.mark.parametrize("name", ["time_delay", pytest.param("backlash", marks=EXTENDED)])
-def test_effect_that_moves_jumps_is_recovered(name: str) -> None:
+def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(name: str) -> None:
     rig, runs, truth = campaign(5, (name,))
     solution = fit(rig, runs, [name])
     assert solution.rms_n < 1.03 * truth["noise_n"]

@@ -1,4 +1,4 @@
-"""Gains in twice the log likelihood, score tests, and the worth of correlated samples."""
+"""Gains in twice the log likelihood, score tests, and effective numbers of correlated samples."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def white(seed: int, n: int) -> Array:
     return np.random.default_rng(seed).standard_normal(n)
 
 
-def test_gain_is_the_count_times_the_log_ratio_of_squares() -> None:
+def test_likelihood_gain_is_n_times_the_log_ratio_of_squares() -> None:
     """Residuals of 6 N that become 3 N in 100 samples: 100 log 4."""
     samples = samples_of([np.ones(60), np.ones(40)])
     before = solution_of([np.full(60, 6.0), np.full(40, -6.0)], samples)
@@ -36,15 +36,15 @@ def test_gain_is_the_count_times_the_log_ratio_of_squares() -> None:
     assert likelihood_gain(before, after) == pytest.approx(-100.0 * np.log(4.0))
 
 
-def test_gain_between_different_weights_uses_the_smaller_weights() -> None:
-    """Samples that the richer model sets aside are not to its credit."""
+def test_likelihood_gain_uses_the_smaller_of_two_weights_of_a_sample() -> None:
+    """Samples that the richer model excludes do not contribute to its gain."""
     whole, part = np.ones(100), np.concatenate((np.zeros(40), np.ones(60)))
     before = solution_of([np.full(100, 2.0)], samples_of([whole]))
     after = solution_of([np.concatenate((np.full(40, 9.0), np.ones(60)))], samples_of([part]))
     assert likelihood_gain(after, before) == pytest.approx(60.0 * np.log(4.0))
 
 
-def test_gain_of_one_outlier_is_bounded() -> None:
+def test_clipped_gain_from_one_outlier_is_bounded() -> None:
     """A sample at 100 standard deviations, against half a standard deviation in all samples."""
     drawn = white(4, 1000)
     samples = samples_of([np.ones(600), np.ones(400)])
@@ -61,7 +61,7 @@ def test_gain_of_one_outlier_is_bounded() -> None:
     assert gain_of_most(*halves) == pytest.approx(gain_of_most(followed, missed))
 
 
-def test_robust_size_is_the_median_of_a_normal_distribution() -> None:
+def test_robust_size_is_the_median_absolute_value_over_0_6745() -> None:
     assert robust_size(np.array([1.0, -2.0, 30.0])) == pytest.approx(2.0 / 0.6745)
     assert robust_size(np.zeros(0)) == 0.0
     assert robust_size(white(1, 20000)) == pytest.approx(1.0, abs=0.02)
@@ -72,7 +72,7 @@ def test_squares_are_clipped_at_three_and_a_half_standard_deviations() -> None:
     assert clipped_square(errors, 2.0) == pytest.approx(0.25 + 1.0 + 3.4**2 + 7.0**2 + 7.0**2)
 
 
-def test_promised_gain_is_that_of_one_gauss_newton_step() -> None:
+def test_expected_gain_is_that_of_one_gauss_newton_step() -> None:
     """A step along the first axis takes (3, 4) to (0, 4): 25 becomes 16."""
     r, j = np.array([3.0, 4.0]), np.array([[1.0], [0.0]])
     assert promised_gain(r, j, 10) == pytest.approx(10.0 * np.log(25.0 / 16.0))
@@ -105,7 +105,7 @@ TARGET = np.array([3.0, 8.0, -1.0, 2.0])
 
 
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
-def test_unexplained_part_does_not_depend_on_the_length_of_columns(scale: float) -> None:
+def test_regression_residual_does_not_depend_on_the_scale_of_the_columns(scale: float) -> None:
     design = DESIGN * [1.0, scale, 1.0] if scale == 1e200 else scale * DESIGN
     design[:, 2] = design[:, 0] + design[:, 1]
     np.testing.assert_allclose(unexplained(design, TARGET), [0.0, 0.0, -1.0, 2.0], atol=1e-12)
@@ -116,7 +116,7 @@ def test_unexplained_part_does_not_depend_on_the_length_of_columns(scale: float)
     np.testing.assert_allclose(span @ (span.T @ TARGET), [3.0, 8.0, 0.0, 0.0], atol=1e-12)
 
 
-def test_least_squares_step_is_the_shortest_in_columns_of_unit_length() -> None:
+def test_least_squares_solution_has_minimum_norm_in_columns_of_unit_length() -> None:
     np.testing.assert_allclose(least_squares(DESIGN[:, :2], TARGET), [3.0, 4.0])
     twice = np.column_stack([DESIGN[:, 0], DESIGN[:, 0], np.zeros(4)])
     np.testing.assert_allclose(least_squares(twice, TARGET), [1.5, 1.5, 0.0], atol=1e-12)
@@ -124,7 +124,7 @@ def test_least_squares_step_is_the_shortest_in_columns_of_unit_length() -> None:
 
 
 def bartlett_share(runs: list[Array], step_s: float) -> float:
-    """`1 / (1 + 2 sum rho_k)` (Bartlett 1946) up to 2/sqrt(n) or the longest memory of a noise."""
+    """`1 / (1 + 2 sum rho_k)` (Bartlett 1946) to 2/sqrt(n) or the longest memory of the model."""
     centred = [e - np.mean(np.concatenate(runs)) for e in runs]
     count, whole = sum(map(len, runs)), sum(float(e @ e) for e in centred)
     total = 0.0
@@ -138,7 +138,9 @@ def bartlett_share(runs: list[Array], step_s: float) -> float:
 
 @pytest.mark.parametrize("step_s", [0.02, 0.25])
 @pytest.mark.parametrize("length", [1, 4, 12])
-def test_independent_share_is_bartletts_formula(length: int, step_s: float) -> None:
+def test_independent_share_of_correlated_samples_follows_bartletts_formula(
+    length: int, step_s: float
+) -> None:
     """Moving averages in two runs of different length about a level."""
     runs = [2.0 + np.convolve(white(length + n, n), np.ones(length), "valid") for n in (400, 250)]
     found = independent_share(runs, (step_s, step_s))
@@ -146,7 +148,7 @@ def test_independent_share_is_bartletts_formula(length: int, step_s: float) -> N
     assert found == pytest.approx(1.0 / length, rel=0.5) or step_s > 0.1
 
 
-def test_autocorrelations_are_summed_up_to_the_longest_memory_of_a_noise() -> None:
+def test_autocorrelations_are_summed_up_to_the_longest_memory_of_the_noise_model() -> None:
     ramp = np.linspace(-1.0, 1.0, 4000)
     for step_s, lags in ((0.02, 31), (0.125, 5), (1.0, 1)):
         found = independent_share([ramp], (step_s,))
@@ -156,7 +158,7 @@ def test_autocorrelations_are_summed_up_to_the_longest_memory_of_a_noise() -> No
     assert independent_share([np.zeros(50)], (0.02,)) == 1.0
 
 
-def test_gain_in_correlated_residuals_counts_for_less() -> None:
+def test_gain_counts_less_if_residuals_are_correlated() -> None:
     samples = samples_of([np.ones(2000)])
     wave = np.sin(0.01 * np.arange(2000))
     slow = np.repeat(white(5, 200), 10)
@@ -166,7 +168,7 @@ def test_gain_in_correlated_residuals_counts_for_less() -> None:
         assert share_of_gain(after, before) <= effective_share(after)
 
 
-def test_gain_where_the_noise_is_larger_counts_by_the_long_run_variance() -> None:
+def test_gain_counts_less_if_it_comes_from_samples_with_larger_noise() -> None:
     """White noise, ten times larger in those samples in which the two models differ."""
     here = np.arange(4000) % 10 == 0
     noise = white(5, 4000) * np.where(here, 10.0, 1.0)

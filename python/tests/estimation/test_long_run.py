@@ -27,7 +27,7 @@ def coloured(seed: int, correlation: float, n: int) -> Array:
     ("n", "step_s", "length"),
     [(40, 1.0, 3), (40, 0.5, 5), (40, 0.001, 5), (40, 2.0, 1), (40, 50.0, 1), (7, 0.5, 1)],
 )
-def test_windows_are_three_seconds_or_an_eighth_of_the_record(
+def test_long_run_variance_uses_windows_of_three_seconds_or_an_eighth_of_the_record(
     n: int, step_s: float, length: int
 ) -> None:
     scores = np.random.default_rng(n).standard_normal((n, 2))
@@ -49,8 +49,8 @@ def test_long_run_variance_of_an_autoregression_is_the_sum_of_autocovariances(
     assert np.mean(found) / n == pytest.approx(wanted, rel=0.15)
 
 
-def test_score_is_squared_over_its_long_run_variance_or_that_of_white_noise() -> None:
-    """A level c and swings a in 16 samples: 16 c^2 over the larger of a^2 and one."""
+def test_score_statistic_uses_the_larger_of_long_run_and_white_noise_variance() -> None:
+    """A level c and an alternating part a in 16 samples: 16 c^2 over the larger of a^2 and one."""
     swings = np.where(np.arange(16) % 2, 1.0, -1.0)
     direction = np.full((16, 1), 0.25)
     for a, variance in ((10.0, 100.0), (2.0, 4.0), (0.5, 1.0)):
@@ -59,7 +59,7 @@ def test_score_is_squared_over_its_long_run_variance_or_that_of_white_noise() ->
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.9])
-def test_score_in_correlated_noise_is_chi_square(correlation: float) -> None:
+def test_score_statistic_in_correlated_noise_follows_chi_square(correlation: float) -> None:
     n = 10000
     t = np.arange(n) * STEP_S
     x = np.linalg.qr(np.stack([np.ones(n), np.sin(0.1 * t), t - t.mean()], axis=1))[0]
@@ -71,7 +71,7 @@ def test_score_in_correlated_noise_is_chi_square(correlation: float) -> None:
 
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
 def test_inflation_is_the_score_variance_over_that_of_white_noise(scale: float) -> None:
-    """With windows of one sample: squares of direction times the rest of the innovations."""
+    """With windows of one sample: squares of the direction times the other innovations."""
     random = np.random.default_rng(2)
     d = [random.standard_normal(n) for n in (30, 20)]
     e = [4.0 * np.abs(x) * random.standard_normal(len(x)) for x in d]
@@ -88,7 +88,7 @@ def test_inflation_is_the_score_variance_over_that_of_white_noise(scale: float) 
     assert score_inflation(d, [1e-3 * x for x in e], (3.0, 3.0)) == pytest.approx(wanted)
 
 
-def test_inflation_is_at_least_one() -> None:
+def test_inflation_is_one_for_alternating_or_degenerate_scores() -> None:
     swings = [np.where(np.arange(n) % 2, 1.0, -1.0) for n in (30, 20)]
     assert score_inflation([np.ones(30), np.ones(20)], swings, (0.1, 0.1)) == 1.0
     for inflation in (score_inflation, sure_inflation):
@@ -99,7 +99,9 @@ def test_inflation_is_at_least_one() -> None:
 
 
 @pytest.mark.parametrize(("ratio", "sure"), [(1.4, False), (2.6, True)])
-def test_inflation_of_few_windows_must_exceed_chance(ratio: float, sure: bool) -> None:
+def test_inflation_from_few_windows_is_used_only_if_significant_at_one_percent(
+    ratio: float, sure: bool
+) -> None:
     """With 20 windows, chi-square over its degrees of freedom is 1.88 at 1 %."""
     direction = np.zeros(400)
     direction[::20] = 1.0
@@ -113,7 +115,7 @@ def test_inflation_of_few_windows_must_exceed_chance(ratio: float, sure: bool) -
 
 
 @pytest.mark.parametrize(("inflation", "kept"), [(1.02, False), (0.98, True)])
-def test_scatter_of_runs_counts_beyond_a_chi_square_of_one_percent(
+def test_scatter_between_runs_counts_only_if_significant_at_one_percent(
     inflation: float, kept: bool
 ) -> None:
     """Three runs have two degrees of freedom: exp(-q / 2) is 1 % at q = 9.21."""
@@ -132,7 +134,7 @@ def test_scatter_of_runs_counts_beyond_a_chi_square_of_one_percent(
     assert between_runs(d, [np.zeros(3)] * 3, 1e-9) == 0.0
 
 
-def test_scatter_of_run_means_is_the_variance_of_their_sums() -> None:
+def test_inflation_between_runs_is_the_variance_of_run_sums_over_that_of_white_noise() -> None:
     ones = [np.ones(400) for _ in range(6)]
     e = [coloured(i, 0.0, 400) for i in range(6)]
     assert between_runs(ones, e, 1.0) == 0.0

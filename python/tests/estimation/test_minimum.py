@@ -25,8 +25,8 @@ from jbf.estimation.weighting import best_weighting, huber, student
 NOISE_N = 0.1
 
 
-def read(more: Callable[[int, Run], Array], seed: int = 0) -> list[Run]:
-    """Runs of Coulomb's law in white noise, and more that was read in each."""
+def runs_with(more: Callable[[int, Run], Array], seed: int = 0) -> list[Run]:
+    """Runs of Coulomb's law in white noise, with an additional force in each."""
     runs = four_runs(coulomb, noise_n=NOISE_N, seed=seed)
     return [
         replace(r, friction_n=np.asarray(r.friction_n) + more(i, r)) for i, r in enumerate(runs)
@@ -62,12 +62,12 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def test_fit_in_coloured_noise_is_generalised_least_squares() -> None:
-    """As far as its RMS is no more than 2 % above that of plain least squares."""
+def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_rises() -> None:
+    """If its RMS is no more than 2 % above that of ordinary least squares."""
     weighted = 0
     for seed in (1, 3, 4, 6):
         noise = [autoregressive(10 * seed + i, 0.3, 0.5, 501) for i in range(4)]
-        problem, found = fitted(read(lambda i, run, noise=noise: noise[i], seed))  # type: ignore[misc]
+        problem, found = fitted(runs_with(lambda i, run, noise=noise: noise[i], seed))  # type: ignore[misc]
         assert found.noise.colour > 0.0
         assert 0.1 < found.noise.memory_s < 0.6
         generalised, residual = regression(problem, found.noise)
@@ -81,13 +81,13 @@ def test_fit_in_coloured_noise_is_generalised_least_squares() -> None:
 
 @pytest.mark.parametrize("height", [1.0, 3.0])
 def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -> None:
-    """Friction that sinks during the run: smooth, and not part of Coulomb's law."""
+    """Friction that decays during the run, smoothly, which Coulomb's law does not describe."""
 
     def sinking(i: int, run: Run) -> Array:
         found: Array = height * np.sign(run.velocity_m_s) * np.exp(-run.time_s / 2.0)
         return found
 
-    problem, found = fitted(read(sinking))
+    problem, found = fitted(runs_with(sinking))
     assert found.noise.colour > 0.0
     values, least = regression(problem)
     _, coloured = regression(problem, found.noise)
@@ -98,7 +98,7 @@ def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -
 
 
 def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
-    """Minima near 2e-3 exp(k pi / 6); the search stands on k = 2."""
+    """Minima near 2e-3 exp(k pi / 6); the search has ended at k = 2."""
     evaluated: list[float] = []
 
     def square(values: Array) -> float:
@@ -111,7 +111,7 @@ def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
     places = [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in found]
     assert places == pytest.approx([0.0, 1.0], abs=0.1)
     assert all(v[0] == 7.0 for v in found)
-    # The peak on which the search stands is not among them.
+    # The peak at which the search has ended is not among them.
     at_best = other_peaks(square, np.array([7.0, 2e-3]), 1, 1e-6, 1e2)
     assert [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in at_best] == pytest.approx([1, -1], abs=0.1)
     # From a fifth to five times the value.
@@ -145,14 +145,14 @@ def test_resonance_of_a_drive_is_found_from_a_wrong_frequency() -> None:
     assert search_peaks(held, start) is start
 
 
-def test_huber_weights_limit_the_pull_at_1_345_standard_deviations() -> None:
+def test_huber_weights_limit_the_influence_to_1_345_standard_deviations() -> None:
     """Psi of Huber (1964): the residual up to 1.345, and 1.345 beyond."""
     off = np.array([0.0, 0.5, 1.345, 2.69, 13.45])
     np.testing.assert_allclose(off * huber(off) ** 2, [0.0, 0.5, 1.345, 1.345, 1.345])
     np.testing.assert_array_equal(huber(off[:3]), 1.0)
 
 
-def test_student_weights_are_the_slope_of_the_log_density() -> None:
+def test_student_weights_have_the_derivative_of_the_log_density() -> None:
     """Minus twice the log of t's density with 3 degrees of freedom (Lange et al. 1989)."""
     off = np.linspace(0.1, 20.0, 50)
     h = 1e-5
@@ -160,7 +160,7 @@ def test_student_weights_are_the_slope_of_the_log_density() -> None:
     np.testing.assert_allclose(2.0 * off * student(off) ** 2, (up - down) / (2.0 * h), rtol=1e-6)
 
 
-def test_plain_fit_is_kept_in_gaussian_noise() -> None:
+def test_unweighted_fit_is_returned_if_noise_is_gaussian() -> None:
     for seed in range(3):
         problem, plain = fitted(four_runs(coulomb, noise_n=NOISE_N, seed=seed))
         assert best_weighting(problem, plain) is plain
@@ -178,7 +178,7 @@ def outlying(seed: int) -> Callable[[int, Run], Array]:
 
 
 def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) -> Array:
-    """Four rounds of weighted least squares from the plain one; the scale is the median's."""
+    """Four rounds of weighted least squares, scaled by the median absolute residual."""
     values, residual = regression(problem)
     for _ in range(4):
         scale = np.median(np.abs(residual)) / 0.6745
@@ -187,13 +187,13 @@ def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) 
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.extended)])
-def test_run_with_outliers_is_fitted_robustly_where_that_predicts_held_out_runs_better(
+def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error(
     seed: int,
 ) -> None:
-    runs = read(outlying(seed), seed)
+    runs = runs_with(outlying(seed), seed)
     early = np.arange(501) < 30
     spoilt = [replace(r, friction_n=np.asarray(r.friction_n) + 20.0 * early) for r in runs]
-    # Samples that were set aside have no weight, however large their residual is.
+    # Excluded samples have no weight, however large their residual is.
     kept = coulomb_problem(spoilt).campaign.without([early] * 4)
     problem = Problem(kept, "coulomb", "journal", (), HELD)
     plain = minimum(problem, [HELD])
@@ -203,7 +203,7 @@ def test_run_with_outliers_is_fitted_robustly_where_that_predicts_held_out_runs_
     # Iteratively reweighted least squares by numpy, with either weights.
     ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
     assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3
-    # Nearer to the law that made the runs.
+    # The result is closer to the true law.
     speed = np.linspace(0.05, 0.15, 11)
     before, after = (
         rms(s.values[0] - LAW["F_c_n"] + (s.values[2] - LAW["F_v_n_s_m"]) * speed)
@@ -216,8 +216,8 @@ def test_run_with_outliers_is_fitted_robustly_where_that_predicts_held_out_runs_
     assert found.samples.count == plain.samples.count
 
 
-def test_few_wild_samples_do_not_bias_the_slope() -> None:
-    """Their squares hide the improvement of all other held-out samples."""
+def test_robust_weights_reduce_the_bias_of_the_slope_by_few_outliers() -> None:
+    """In squared held-out errors the outliers would hide the improvement of all other samples."""
     random = np.random.default_rng(1)
 
     def wild(i: int, run: Run) -> Array:
@@ -225,7 +225,7 @@ def test_few_wild_samples_do_not_bias_the_slope() -> None:
         found: Array = 4.0 * (random.random(len(run)) < 0.05) * np.sign(v) * (np.abs(v) > 0.1)
         return found
 
-    problem, plain = fitted(read(wild))
+    problem, plain = fitted(runs_with(wild))
     slope = LAW["F_v_n_s_m"]
     assert abs(plain.values[2] / slope - 1.0) > 0.1
     found = best_weighting(problem, plain)

@@ -1,8 +1,9 @@
-"""White plus first-order coloured noise, and the noise on a record by the record alone.
+"""White plus first-order coloured noise, and noise estimated from a record without a model.
 
 At even steps the noise is an ARMA(1,1) process (Box & Jenkins, Time Series Analysis, 1970).
-Of `r_t = phi r_t-1 + e_t - theta e_t-1` the variance is `(1 + theta^2 - 2 phi theta) / (1 - phi^2)`
-times that of `e`, the autocovariance at one step `(1 - phi theta)(phi - theta) / (1 - phi^2)`.
+With `r_t = phi r_t-1 + e_t - theta e_t-1` the variance of r is `(1 + theta^2 - 2 phi theta) /
+(1 - phi^2)` times that of e, its autocovariance at one step `(1 - phi theta)(phi - theta) /
+(1 - phi^2)` times.
 """
 
 from __future__ import annotations
@@ -38,14 +39,14 @@ def white(seed: int, sd: float, n: int) -> Array:
 
 
 @pytest.mark.parametrize("shape", [(400,), (400, 3)])
-def test_innovations_follow_the_difference_equation(shape: tuple[int, ...]) -> None:
+def test_innovations_satisfy_the_arma_difference_equation(shape: tuple[int, ...]) -> None:
     noise = Noise(0.2, 0.3)
     values = np.random.default_rng(3).standard_normal(shape)
     found = noise.innovations(values, STEP_S)
     np.testing.assert_allclose(found, arma_innovations(values, STEP_S, noise), atol=1e-12)
 
 
-def test_coloured_inverts_innovations() -> None:
+def test_noise_made_from_innovations_has_these_innovations() -> None:
     noise = Noise(0.2, 0.3)
     kicks = np.random.default_rng(1).standard_normal((500, 2))
     made = noise.coloured(kicks, STEP_S)
@@ -65,7 +66,9 @@ def test_noise_without_memory_or_colour_is_white(noise: Noise) -> None:
 
 @pytest.mark.parametrize("memory_s", [0.05, 0.2, 0.6])
 @pytest.mark.parametrize("colour", [0.01, 0.2, 0.9])
-def test_coloured_share_is_that_of_an_arma_process(memory_s: float, colour: float) -> None:
+def test_coloured_share_of_the_variance_is_that_of_an_arma_process(
+    memory_s: float, colour: float
+) -> None:
     phi = float(np.exp(-STEP_S / memory_s))
     theta = phi * (1.0 - colour)
     # Only the coloured part is correlated, with phi from step to step.
@@ -90,12 +93,12 @@ def test_innovation_cost_is_minus_twice_the_profile_log_likelihood(noise: Noise)
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_white_noise_is_described_as_white(seed: int) -> None:
+def test_noise_estimated_from_white_noise_is_white(seed: int) -> None:
     assert estimate_noise([white(seed, 0.4, 4000)], [STEP_S], [everywhere(4000)]) == WHITE
 
 
 @pytest.mark.parametrize("seed", [0, 3])
-def test_estimate_is_the_likeliest_of_a_grid_of_memories_and_colours(seed: int) -> None:
+def test_noise_estimate_is_at_least_as_likely_as_any_of_a_grid(seed: int) -> None:
     random = np.random.default_rng(seed)
     runs = [
         autoregressive(10 * seed + k, random.uniform(0.08, 0.4), 0.3, 3000) + white(k, 0.3, 3000)
@@ -110,7 +113,7 @@ def test_estimate_is_the_likeliest_of_a_grid_of_memories_and_colours(seed: int) 
     assert cost(estimate_noise(runs, steps, masks)) < min(map(cost, grid)) + 0.1
 
 
-def test_memory_is_at_least_two_of_the_shortest_steps() -> None:
+def test_estimated_memory_is_at_least_two_of_the_shortest_steps() -> None:
     fast = autoregressive(5, 0.022, 1.0, 8000)
     slower = autoregressive(6, 0.02, 1.0, 8000, 3.0 * STEP_S)
     found = estimate_noise([fast, slower], [STEP_S, 3.0 * STEP_S], [everywhere(8000)] * 2)
@@ -118,14 +121,16 @@ def test_memory_is_at_least_two_of_the_shortest_steps() -> None:
 
 
 @pytest.mark.parametrize(("step_s", "longest_s"), [(0.02, 0.6), (0.2, 0.8)])
-def test_memory_is_at_most_600_ms_or_four_steps(step_s: float, longest_s: float) -> None:
+def test_estimated_memory_is_at_most_600_ms_or_four_steps(step_s: float, longest_s: float) -> None:
     slow = autoregressive(6, 10.0 * longest_s, 1.0, 4000, step_s) + white(7, 0.3, 4000)
     found = estimate_noise([slow], [step_s], [everywhere(4000)])
     assert 0.9 * longest_s < found.memory_s < 1.0001 * longest_s
 
 
 @pytest.mark.parametrize(("sd", "seed"), [(0.1, 17), (0.1, 3), (0.095, 16), (0.11, 0)])
-def test_colour_needs_a_gain_of_twenty_in_twice_the_log_likelihood(sd: float, seed: int) -> None:
+def test_coloured_noise_is_estimated_only_if_the_deviance_falls_by_twenty(
+    sd: float, seed: int
+) -> None:
     """The largest gain is searched by a simplex (Nelder & Mead 1965); these lie within 1 of 20."""
     kicks = np.random.default_rng(seed).normal(0.0, sd * np.sqrt(1.0 - 0.85**2), 3000)
     slow = np.asarray(signal.lfilter([1.0], [1.0, -0.85], kicks))
@@ -186,13 +191,13 @@ def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
     wanted = estimate_noise(kept, samples.steps_s, samples.counted)
     assert not wanted.white
     assert noise_at(problem, samples, values) == wanted
-    # Known residuals are used as they are, whatever they are where samples do not count.
+    # Given residuals are used, whatever their values at samples that do not count.
     wild = [np.where(c, r, 1e3) for r, c in zip(residuals, samples.counted, strict=True)]
     slopes = [np.zeros((len(r), 0)) for r in wild]
     assert noise_at(problem, samples, values, (wild, slopes)) == wanted
 
 
-def test_deviation_of_a_run_is_not_taken_for_coloured_noise() -> None:
+def test_random_effect_of_a_run_is_not_taken_for_coloured_noise() -> None:
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5 * np.sign(v), noise_n=0.1)
     problem = coulomb_problem(runs)
     samples, values = problem.campaign.samples, values_of(problem)
@@ -223,7 +228,7 @@ def with_rests(noise: Array, name: str = "rests") -> Run:
 
 
 @pytest.mark.parametrize(("coloured", "whole"), [(False, 1.0), (True, np.sqrt(1.25))])
-def test_floor_is_the_simulated_noise(coloured: bool, whole: float) -> None:
+def test_noise_floor_is_the_simulated_noise(coloured: bool, whole: float) -> None:
     """The coloured part has a quarter of the white part's variance; repetitions show it."""
     ratios = []
     for seed in (3, 4):
@@ -233,7 +238,9 @@ def test_floor_is_the_simulated_noise(coloured: bool, whole: float) -> None:
 
 
 @pytest.mark.parametrize("over_noise", [1.0, 2.0, 4.0])
-def test_floor_of_quantised_readings_adds_the_quantisation_error(over_noise: float) -> None:
+def test_noise_floor_of_quantised_readings_includes_the_quantisation_error(
+    over_noise: float,
+) -> None:
     """Uniform error of a step: its variance is a twelfth of the step's square (Widrow 1956)."""
     rig, runs, truth = campaign(6)
     step = over_noise * truth["noise_n"]
@@ -242,8 +249,8 @@ def test_floor_of_quantised_readings_adds_the_quantisation_error(over_noise: flo
     assert floor_of(rig, coarse) == pytest.approx(whole, rel=0.15)
 
 
-def test_largest_noise_at_rest_is_the_scatter_about_each_rests_line() -> None:
-    """The first quarter of a rest may settle; two parameters of the line are paid for."""
+def test_largest_noise_at_rest_is_the_scatter_about_a_line_through_each_rest() -> None:
+    """The first quarter of a rest may settle; the line has two parameters."""
     noises = [0.02 * np.arange(n) + autoregressive(n, 0.3, 0.2, n) for n in (250, 450)]
     runs = [with_rests(noise, f"{i}") for i, noise in enumerate(noises)]
     total = count = 0.0
@@ -259,16 +266,16 @@ def test_largest_noise_at_rest_is_the_scatter_about_each_rests_line() -> None:
 
 
 @pytest.mark.parametrize(("length", "known"), [(360, False), (440, True)])
-def test_largest_noise_needs_three_hundred_samples(length: int, known: bool) -> None:
+def test_largest_noise_requires_three_hundred_samples_at_rest(length: int, known: bool) -> None:
     """Three quarters of a rest are used."""
     assert (largest_of(with_rests(white(7, 0.05, length))) is not None) == known
 
 
 @pytest.mark.parametrize(("times", "taken"), [(1.0, False), (2.0, True), (4.0, False)])
-def test_coloured_noise_raises_the_floor_between_4_percent_and_three_times(
+def test_coloured_noise_raises_the_noise_floor_up_to_three_times_the_white_part(
     times: float, taken: bool
 ) -> None:
-    """More than three times the white part is no noise of the instrument."""
+    """A part larger than three times the white one is not attributed to the instrument."""
     slow = autoregressive(2, 2.0, 0.05 * np.sqrt(times**2 - 1.0) + 1e-9, 8000)
     run = with_rests(slow + white(3, 0.05, 8000))
     found, largest = floor_of(Rig(), [run]), largest_of(run)
@@ -284,7 +291,7 @@ def repeated(noise: Array, period: int) -> Run:
     return Run.from_arrays(t, v, 5.0 + 20.0 * v + noise, name="repeated")
 
 
-def test_coloured_noise_is_seen_where_a_motion_repeats() -> None:
+def test_largest_noise_includes_coloured_noise_if_the_motion_repeats() -> None:
     found = [
         largest_of(repeated(autoregressive(s, 0.2, 0.3, 6000) + white(s, 0.1, 6000), 313))
         for s in range(4)

@@ -1,4 +1,4 @@
-"""Load and temperature on record: their use in predictions, and recovery of their effects."""
+"""Recorded load and temperature: their use in predictions, and recovery of their effects."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def drive_runs(seed: int, *effects: str, **options: Any) -> list[Run]:
 # ---- use of the record --------------------------------------------------------------------------
 
 
-def test_run_without_temperature_is_refused_by_a_model_that_needs_it() -> None:
+def test_run_without_temperature_is_rejected_if_the_model_requires_one() -> None:
     model = Model(Rig(), effects=[DRY], **COULOMB)
     assert np.isfinite(model.predict(slide_run(BODY_C))).all()
     with pytest.raises(InputError, match=f"temperature_c.*{DRY}"):
@@ -60,8 +60,8 @@ def test_run_without_temperature_is_refused_by_a_model_that_needs_it() -> None:
         fit(Rig(), [slide_run(None)], [DRY], **COULOMB)
 
 
-def test_mean_of_a_noisy_load_is_used_in_predictions_and_where_a_run_is_resampled() -> None:
-    """Interpolated noise is not white, and would not be recognised again."""
+def test_mean_of_a_noisy_load_is_used_in_predictions_and_in_resampled_runs() -> None:
+    """Noise that has been interpolated is not white and would not be recognised as noise."""
     v, model = 0.1 * np.sin(0.5 * TIME), Model(Rig.thesis())
     load = 104.0 * (1.0 + 0.03 * np.random.default_rng(0).standard_normal(len(TIME)))
     mean = np.full(len(TIME), np.mean(load))
@@ -74,7 +74,7 @@ def test_mean_of_a_noisy_load_is_used_in_predictions_and_where_a_run_is_resample
         np.testing.assert_allclose(np.asarray(other.load_n), np.mean(load))
 
 
-def test_prediction_scales_dry_and_viscous_friction_by_the_temperature() -> None:
+def test_prediction_scales_dry_and_viscous_friction_with_the_temperature() -> None:
     """`F_c (1 + a (T - T_0)) sign(v) + F_v exp(B / (T + 95) - B / (T_0 + 95)) v`."""
     run = slide_run(BODY_C)
     values = {"F_c_n": 6.0, "F_s_n": 6.0, "F_v_n_s_m": 40.0}
@@ -88,7 +88,7 @@ def test_prediction_scales_dry_and_viscous_friction_by_the_temperature() -> None
     np.testing.assert_allclose(model.predict(run)[moving], expected[moving], atol=1e-9)
 
 
-def test_reference_is_that_of_the_lubricant_or_the_mean_on_record() -> None:
+def test_reference_temperature_is_that_of_the_lubricant_or_the_mean_of_the_record() -> None:
     def fixed(rig: Rig, effect: str, law: str) -> dict[str, float]:
         campaign_ = Campaign.prepare(rig, [slide_run(BODY_C)])
         problem = Problem(campaign_, law, "journal", (effect,))
@@ -101,7 +101,7 @@ def test_reference_is_that_of_the_lubricant_or_the_mean_on_record() -> None:
     assert fixed(rig, "vogel_viscosity", "journal") == expected
 
 
-def test_other_reference_temperature_is_the_same_model() -> None:
+def test_fit_does_not_depend_on_the_reference_temperature() -> None:
     """With a (T - T_0) the coefficient at another reference T_1 is `a / (1 + a (T_1 - T_0))`."""
     runs = drive_runs(31, DRY)
     found = fit(Rig(), runs, [DRY], **COULOMB)
@@ -120,7 +120,7 @@ def test_other_reference_temperature_is_the_same_model() -> None:
 
 
 def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
-    """Three runs from cold, whose dry friction falls as the slide warms, and one that is warm."""
+    """Three runs that start cold, whose dry friction falls as the slide warms, and a warm one."""
     random = np.random.default_rng(1)
     time = np.arange(0.0, 40.0, step_s)
     runs = []
@@ -136,7 +136,7 @@ def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
     return runs
 
 
-def test_coefficient_of_dry_friction_is_recovered_within_its_error() -> None:
+def test_temperature_coefficient_of_dry_friction_is_recovered_within_its_error() -> None:
     """`6 (1 + 0.25 (34 - T) / 16)`: at the reference T_0 the relative slope is known."""
     found = fit(Rig(), warming_slide(0.04, also_warm=True), [DRY], **COULOMB)
     reference = found[f"{DRY}.T_0"].value
@@ -149,7 +149,7 @@ def test_coefficient_of_dry_friction_is_recovered_within_its_error() -> None:
 
 
 @EXTENDED
-def test_temperature_confounded_with_time_is_ambiguous() -> None:
+def test_diagnosis_is_ambiguous_if_temperature_is_confounded_with_time() -> None:
     found = diagnose(Rig(), warming_slide(0.08), **COULOMB)
     assert found.verdict == "ambiguous"
     (name,) = found.effects
@@ -168,21 +168,23 @@ def test_warm_start_or_many_samples_separate_temperature_from_time(
 
 @EXTENDED
 @pytest.mark.parametrize("course", ["wandering", "warming", "days"])
-def test_temperature_without_influence_is_not_found(course: str) -> None:
+def test_diagnosis_names_no_temperature_effect_if_friction_does_not_depend_on_it(
+    course: str,
+) -> None:
     found = diagnose(Rig(), drive_runs(33, temperature=course), **COULOMB)
     assert (found.verdict, found.effects) == ("adequate", ())
     assert not {DRY, VISCOUS} & set(found.not_tried)
 
 
 @EXTENDED
-def test_dry_and_viscous_dependence_are_found_together() -> None:
+def test_dry_and_viscous_temperature_dependence_are_named_with_a_coarse_thermometer() -> None:
     found = diagnose(Rig(), drive_runs(32, DRY, VISCOUS, thermometer="coarse"), **COULOMB)
     assert (found.verdict, set(found.effects)) == ("missing", {DRY, VISCOUS})
     assert "held_samples" in {f.kind for f in found.findings if f.channel == "temperature_c"}
 
 
 @EXTENDED
-def test_viscosity_of_a_warm_bearing_is_recovered() -> None:
+def test_temperature_dependence_of_the_viscosity_of_a_bearing_is_recovered() -> None:
     rig, runs, truth = campaign(71, ("vogel_viscosity",))
     found = diagnose(rig, runs)
     assert (found.verdict, found.effects) == ("missing", ("vogel_viscosity",))

@@ -1,4 +1,4 @@
-"""Fits in parallel threads: the results of one after the other, in order, and an orderly end."""
+"""Fits in parallel threads: order and equality of results, and cancellation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jbf.estimation.campaign import Campaign
 
 
 @pytest.mark.parametrize("at_once", [1, 2, 4])
-def test_results_are_in_the_order_of_the_arguments(at_once: int) -> None:
+def test_parallel_results_are_in_the_order_of_the_arguments(at_once: int) -> None:
     def work(k: int) -> int:
         time.sleep(0.002 * (5 - k))
         return k * k
@@ -59,8 +59,10 @@ def drag_effect() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("drag_effect")
-def test_number_of_parallel_fits(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One for effects in Python, which may keep a state."""
+def test_number_of_parallel_fits_follows_the_threads_and_is_one_for_python_effects(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Effects in Python may have a state, so that they are fitted one at a time."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)
@@ -69,7 +71,7 @@ def test_number_of_parallel_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     assert fits_at_once(campaign, "coulomb", ["own_drag"]) == 1
 
 
-def test_parallel_fits_are_equal_to_the_bit() -> None:
+def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:
     runs = four_runs(coulomb, noise_n=0.1)[:2]
     effects = ["sensor_offset", "quadratic_drag", "inertia_leak"]
 

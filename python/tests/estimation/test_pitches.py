@@ -23,7 +23,7 @@ Waves = Sequence[tuple[float, float]]
 
 
 def waves_of(x: Array, waves: Waves) -> Array:
-    """Their sum along a path, N."""
+    """Sum of the waves along a path (N)."""
     total = np.zeros(len(x))
     for pitch_m, amplitude_n in waves:
         total += amplitude_n * np.sin(2.0 * np.pi * x / pitch_m - 0.7)
@@ -52,12 +52,12 @@ def axis_runs(
 
 
 def path_m(campaign: Campaign) -> float:
-    """How far the runs go."""
+    """Range of the positions of all runs (m)."""
     return float(np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared])))
 
 
 def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign:
-    """A run to and fro at 0.05 m/s, every sample 0.5 mm further on."""
+    """A run back and forth at 0.05 m/s, 0.5 mm for each sample."""
     count = round(path_m / 0.05 / STEP_S)
     way = np.tile(np.repeat([1.0, -1.0], count), periods)
     t = STEP_S * np.arange(len(way))
@@ -79,15 +79,15 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
         *(pytest.param(0.031, a, marks=EXTENDED) for a in (True, False)),
     ],
 )
-def test_pitch_of_a_wave_is_the_likeliest(pitch_m: float, along: bool) -> None:
-    """A fit that starts there finds the peak, half a period over the path wide on either side."""
+def test_most_likely_pitch_is_that_of_the_simulated_wave(pitch_m: float, along: bool) -> None:
+    """A fit finds the peak from within half a period over the path; here a quarter is required."""
     campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
     found = pitches(campaign, along=along)
     assert abs(path_m(campaign) / found[0] - path_m(campaign) / pitch_m) < 0.25
 
 
 def test_waves_are_found_in_the_order_of_their_amplitudes() -> None:
-    """A weak one is lower than the side lobes of the strong ones."""
+    """The weakest wave is lower than the side lobes of the others."""
     some = [(0.0123, 0.4), (0.0079, 0.2), (0.0043, 0.04)]
     campaign = Campaign.prepare(Rig(), axis_runs(some, noise_n=0.05))
     found = pitches(campaign, along=False)
@@ -95,29 +95,31 @@ def test_waves_are_found_in_the_order_of_their_amplitudes() -> None:
 
 
 @pytest.mark.parametrize(("periods", "found"), [(3.7, False), (4.3, True)])
-def test_path_must_hold_four_periods(periods: float, found: bool) -> None:
+def test_pitch_is_found_only_if_the_path_contains_four_periods(periods: float, found: bool) -> None:
     lines = [0.2 / p for p in pitches(shuttle([(0.2 / periods, 1.0)]), along=False)]
     assert (abs(lines[0] - periods) < 0.25) == found
 
 
 @pytest.mark.parametrize(("samples", "found"), [(3.8, False), (4.3, True)])
-def test_pitch_must_be_four_samples_of_the_path(samples: float, found: bool) -> None:
+def test_pitch_is_found_only_if_it_spans_four_samples_of_the_path(
+    samples: float, found: bool
+) -> None:
     pitch_m = samples * 0.5e-3
     likeliest = pitches(shuttle([(pitch_m, 1.0)]), along=False)[0]
     assert (likeliest == pytest.approx(pitch_m, rel=2e-3)) == found
 
 
-def test_short_records_and_paths_have_no_pitch() -> None:
+def test_no_pitch_is_found_in_a_short_record_or_along_a_short_path() -> None:
     t = np.arange(0.0, 0.5, STEP_S)
     v = np.full(len(t), 0.01)
     run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)
     assert pitches(Campaign.prepare(Rig(), [run]), along=False) == ()
-    # Fifteen samples of path hold no four of the shortest pitch.
+    # A path of fifteen samples does not contain four periods of the shortest pitch.
     assert pitches(shuttle([(3e-3, 1.0)], path_m=7e-3, periods=20), along=False) == ()
 
 
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 20), marks=EXTENDED)])
-def test_highest_line_of_noise_gains_less_than_its_parameters_must(seeds: range) -> None:
+def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds: range) -> None:
     gains, samples = [], 0
     for seed in seeds:
         runs = axis_runs(seed=seed)
@@ -141,7 +143,7 @@ def test_highest_line_of_noise_gains_less_than_its_parameters_must(seeds: range)
 
 @pytest.mark.parametrize("shaft", [False, True])
 def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
-    """A quarter of it, and a tenth more at either end; on a shaft it is angle times radius."""
+    """A quarter of the path, and the path with a tenth more at either end; angle times radius."""
     rig = Rig.thesis() if shaft else Rig()
     radius_m = rig.bearing.radius_m if rig.bearing is not None else 1.0
     t = np.arange(0.0, 20.0, STEP_S)

@@ -32,7 +32,7 @@ def slide(dry: Level, force: Level = np.zeros_like, count: int = 4) -> list[Run]
     return found
 
 
-def test_fitted_stroke_dependence_predicts_the_level_over_the_position() -> None:
+def test_fitted_stroke_dependence_predicts_the_friction_level_over_the_position() -> None:
     def level(x: Array) -> Array:
         found: Array = 6.0 + 1.2 * np.cos(np.pi * x / 0.4) + 0.5 * np.sin(2.0 * x / 0.4)
         return found
@@ -44,11 +44,11 @@ def test_fitted_stroke_dependence_predicts_the_level_over_the_position() -> None
     np.testing.assert_allclose(model.predict(run), level(x) + 30.0 * v, atol=0.06)
 
 
-def test_ends_of_the_stroke_are_stated_by_the_runs_and_not_fitted() -> None:
+def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
     runs = slide(lambda x: 6.0 + 2.0 * x, count=2)
     places = np.concatenate([np.asarray(r.position_m) for r in runs])
     found = fit(Rig(), runs, [STROKE], law="coulomb")
-    # A tenth of the way is added at either end.
+    # A tenth of the path is added at either end.
     wanted = {"x_0_m": 0.5 * (places.min() + places.max()), "h_m": 0.6 * np.ptp(places)}
     for name, value in wanted.items():
         p = found[f"{STROKE}.{name}"]
@@ -56,7 +56,7 @@ def test_ends_of_the_stroke_are_stated_by_the_runs_and_not_fitted() -> None:
         assert p.value == pytest.approx(value, abs=2e-3)
     assert found[f"{STROKE}.a_1"].stderr is not None
     campaign = Campaign.prepare(Rig(), runs)
-    # Only the six waves are fitted; ends that are given are kept.
+    # Only the six coefficients are fitted; given ends are used.
     given = Problem(campaign, "coulomb", "journal", (STROKE,), {f"{STROKE}.x_0_m": 0.25})
     assert len(given.open) - len(Problem(campaign, "coulomb", "journal", ()).open) == 6
     assert given.fixed[f"{STROKE}.x_0_m"] == 0.25

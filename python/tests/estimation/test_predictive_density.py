@@ -1,7 +1,7 @@
 """Log predictive density of held-out samples, against the Gaussian density in scipy.
 
-Of a run with derivatives J and errors e, predicted from runs with the information matrix A, minus
-twice the log density is that of `N(0, s^2 (I + J A^-1 J'))`.
+The errors of a run with derivatives J, predicted from runs with the information matrix A, have the
+distribution `N(0, s^2 (I + J A^-1 J'))`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def linear_model(rng: np.random.Generator, weighted: bool = False) -> Solution:
 
 
 def held_out(run: int, errors: Array, determined: Sequence[bool] = ALL) -> LeftOut:
-    """A run that had no part in a fit."""
+    """A run that a fit did not use."""
     every = np.ones(len(errors), dtype=bool)
     return LeftOut((run,), (every,), np.array(determined), (errors,))
 
@@ -56,7 +56,7 @@ def gaussian(
 
 
 @pytest.mark.parametrize("weighted", [False, True])
-def test_density_is_that_of_a_gaussian_prediction(weighted: bool) -> None:
+def test_log_density_of_held_out_runs_is_that_of_a_gaussian_prediction(weighted: bool) -> None:
     rng = np.random.default_rng(4)
     solution = linear_model(rng, weighted)
     errors = [3.0 * rng.standard_normal(n) for n in COUNTS]
@@ -66,7 +66,7 @@ def test_density_is_that_of_a_gaussian_prediction(weighted: bool) -> None:
     assert found == pytest.approx(expected, rel=1e-9)
 
 
-def test_held_parameter_adds_no_uncertainty() -> None:
+def test_held_parameter_adds_no_uncertainty_to_the_prediction() -> None:
     rng = np.random.default_rng(5)
     solution = linear_model(rng)
     errors = [rng.standard_normal(n) for n in COUNTS]
@@ -78,7 +78,7 @@ def test_held_parameter_adds_no_uncertainty() -> None:
     assert found == pytest.approx(expected, rel=1e-9)
 
 
-def test_error_in_an_undetermined_direction_counts_little() -> None:
+def test_error_counts_little_in_a_direction_that_the_other_runs_do_not_determine() -> None:
     """The other runs hold a thousandth of the information on the third parameter."""
     rng = np.random.default_rng(6)
     solution = linear_model(rng)
@@ -99,11 +99,11 @@ def test_error_in_an_undetermined_direction_counts_little() -> None:
     )
     assert determined - exact == pytest.approx(100.0, rel=0.01)
     assert undetermined - exact < 5.0
-    # The determinant of the covariance is paid for.
+    # The determinant of the covariance contributes.
     assert exact > np.log(300.0)
 
 
-def test_half_of_a_run_is_predicted_from_the_other_half_too() -> None:
+def test_half_of_a_run_is_predicted_from_the_other_half_and_the_other_runs() -> None:
     rng = np.random.default_rng(7)
     solution = linear_model(rng)
     errors = [rng.standard_normal(n) for n in COUNTS]
@@ -123,7 +123,7 @@ def test_half_of_a_run_is_predicted_from_the_other_half_too() -> None:
     assert found == pytest.approx(expected, rel=1e-9)
 
 
-def test_coloured_errors_are_whitened_first() -> None:
+def test_log_density_of_coloured_errors_is_that_of_their_innovations() -> None:
     rng = np.random.default_rng(8)
     solution, noise = linear_model(rng), Noise(0.3, 0.6)
     errors = [rng.standard_normal(n) for n in COUNTS]
@@ -134,6 +134,10 @@ def test_coloured_errors_are_whitened_first() -> None:
     innovations = [held_out(i, noise.innovations(e, 0.1)) for i, e in enumerate(errors)]
     expected = surprise(same, innovations, same.samples, WHITE, VARIANCE)
     assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_mean_square_of_coloured_residuals_is_that_of_their_innovations() -> None:
+    solution, noise = linear_model(np.random.default_rng(8)), Noise(0.3, 0.6)
     own = np.concatenate([noise.innovations(r, 0.1) for r in solution.residuals])
     square, count = mean_square(solution, solution.samples, noise)
     assert (square, count) == (pytest.approx(np.mean(own**2)), sum(COUNTS))

@@ -43,7 +43,7 @@ def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
     np.testing.assert_allclose(problem.decode(problem.encode(values), values), values)
 
 
-def test_decode_takes_fixed_parameters_from_the_base_and_keeps_bounds(problem: Problem) -> None:
+def test_decode_takes_fixed_parameters_from_the_base_and_clips_at_bounds(problem: Problem) -> None:
     values, base = values_of(problem), values_of(problem, F_s_n=9.0)
     x = problem.encode(values)
     back = problem.decode(x, base)
@@ -58,7 +58,9 @@ def test_decode_takes_fixed_parameters_from_the_base_and_keeps_bounds(problem: P
     )
 
 
-def test_starts_are_every_combination_of_what_the_seed_lacks(problem: Problem) -> None:
+def test_starts_are_all_combinations_of_values_that_the_seed_does_not_give(
+    problem: Problem,
+) -> None:
     pages = problem.parameters
     starts = problem.starts({"F_s_n": 6.0, OFFSET: 0.125})
     free = [n for n in problem.names if n not in ("F_s_n", OFFSET)]
@@ -68,7 +70,7 @@ def test_starts_are_every_combination_of_what_the_seed_lacks(problem: Problem) -
     assert [starts[0][problem.names.index(n)] for n in free] == [pages[n].starts[0] for n in free]
 
 
-def test_angles_are_wrapped_into_half_a_turn() -> None:
+def test_angles_are_wrapped_into_one_period() -> None:
     problem = reversing(("cogging",))
     (phase,) = [i for i, p in enumerate(problem.parameters.values()) if p.period is not None]
     values = problem.starts({})[0]
@@ -78,7 +80,7 @@ def test_angles_are_wrapped_into_half_a_turn() -> None:
         np.testing.assert_allclose(problem.wrapped(turned), values)
 
 
-def test_named_values_may_lie_within_their_bounds_or_at_their_null() -> None:
+def test_named_values_are_accepted_within_their_bounds_or_at_their_null() -> None:
     pages = {"b_n": Parameter("b_n", lower=1.0, upper=5.0, null=0.0)}
     for value in (0.0, 1.0, 5.0):
         assert named_values({"b": value}, pages) == {"b_n": value}
@@ -100,7 +102,7 @@ def test_residual_is_record_minus_prediction(problem: Problem) -> None:
     assert problem.square(values) == pytest.approx(wanted)
 
 
-def test_derivatives_are_of_the_prediction_by_the_search_variables(problem: Problem) -> None:
+def test_derivatives_are_those_of_the_prediction_by_the_search_variables(problem: Problem) -> None:
     values = values_of(problem)
     residuals, slopes = problem.linearise(values)
     names = [problem.names[i] for i in problem.open]
@@ -116,7 +118,7 @@ def test_derivatives_are_of_the_prediction_by_the_search_variables(problem: Prob
     np.testing.assert_array_equal(by[0][:, 0], slopes[1][:, names.index("F_v_n_s_m")])
 
 
-def test_derivatives_without_bound_are_zero() -> None:
+def test_derivatives_above_a_limit_or_undefined_are_replaced_by_zero() -> None:
     wild = np.array([[1.0, 2.0 * BOUNDLESS], [np.nan, -4.0]])
     assert bounded(wild, np.array([10.0, 0.5])).tolist() == [[10.0, 0.0], [0.0, -2.0]]
     assert bounded(np.array([[1.0, 2.0]]), np.array([1e200, 1.0])).tolist() == [[0.0, 2.0]]
@@ -156,7 +158,7 @@ def reversing(effects: tuple[str, ...]) -> Problem:
 
 
 @pytest.mark.parametrize("effect", ["time_delay", "backlash", "sensor_hysteresis"])
-def test_effects_that_move_jumps_set_samples_at_reversals_aside(effect: str) -> None:
+def test_samples_at_reversals_are_excluded_if_an_effect_moves_jumps(effect: str) -> None:
     problem = reversing((effect,))
     values = problem.starts({})[0]
     before, after = problem.campaign.samples, problem.samples_at(values)
@@ -165,7 +167,7 @@ def test_effects_that_move_jumps_set_samples_at_reversals_aside(effect: str) -> 
     assert np.all(after.weight[0] <= before.weight[0])
     known = problem.samples_at(values, problem.linearise(values))
     np.testing.assert_array_equal(known.counted[0], after.counted[0])
-    # At its null the effect moves nothing; nor does one that moves no jump.
+    # No sample is excluded with the effect at its null, or with an effect that moves no jump.
     nulls = [
         v if p.null is None else p.null
         for v, p in zip(values, problem.parameters.values(), strict=True)
@@ -175,7 +177,7 @@ def test_effects_that_move_jumps_set_samples_at_reversals_aside(effect: str) -> 
     assert offset.samples_at(offset.starts({})[0]) is before
 
 
-def test_triangular_rows_keep_all_inner_products() -> None:
+def test_triangular_rows_preserve_all_inner_products() -> None:
     random = np.random.default_rng(1)
     r, j = random.standard_normal(500), random.standard_normal((500, 4))
     few_r, few_j = triangular(r, j)
@@ -186,7 +188,7 @@ def test_triangular_rows_keep_all_inner_products() -> None:
     assert triangular(r[:0], j[:0])[1].shape == (0, 4)
 
 
-def test_search_uses_some_of_very_many_runs_by_name() -> None:
+def test_search_of_very_many_samples_uses_every_fourth_run_by_name() -> None:
     """With twice the limit of samples every fourth run, in whatever order the runs are given."""
     names = [f"{k:02d}" for k in range(20)]
     length = 2 * MOST_SEARCHED // 20
@@ -198,7 +200,7 @@ def test_search_uses_some_of_very_many_runs_by_name() -> None:
 
 @pytest.mark.extended
 def test_fit_of_a_million_samples_is_the_regression_over_all_of_them() -> None:
-    """Derivatives are computed on demand, and the search uses every fifth run."""
+    """Derivatives are computed on demand, and the search uses five of the thirty runs."""
     t = 0.01 * np.arange(34_000)
     runs = []
     for k in range(30):

@@ -1,4 +1,4 @@
-"""Bias of mean readings that come in coarse steps, and its removal by the model's force.
+"""Bias of the mean of quantised readings, and its removal by means of the model's force.
 
 The mean of readings in steps q of a force f with Gaussian noise s is off by
 `(q / pi) sum_k (-1)^k / k exp(-2 (k pi s / q)^2) sin(2 k pi f / q)` (Widrow 1956).
@@ -39,14 +39,14 @@ def mean_reading(step: float, noise: float, force: Array) -> Array:
 
 @pytest.mark.parametrize("step", [1e-3, 1.0, 40.0])
 @pytest.mark.parametrize("noise", [0.15, 0.3, 0.5])
-def test_bias_is_the_error_of_the_mean_reading(step: float, noise: float) -> None:
+def test_quantisation_bias_is_the_error_of_the_mean_reading(step: float, noise: float) -> None:
     force = step * np.linspace(-2.3, 2.1, 97)
     expected = mean_reading(step, noise * step, force) - force
     np.testing.assert_allclose(bias_n(step, noise * step, force), expected, atol=2e-3 * step)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05])
-def test_bias_has_three_harmonics_of_a_saw_tooth(noise: float) -> None:
+def test_quantisation_bias_has_the_first_three_harmonics_of_a_saw_tooth(noise: float) -> None:
     force = np.arange(64) / 64.0
     sines = np.fft.rfft(bias_n(1.0, noise, force)).imag / -32.0
     k = np.arange(1, 4)
@@ -56,7 +56,7 @@ def test_bias_has_three_harmonics_of_a_saw_tooth(noise: float) -> None:
 
 
 @pytest.mark.parametrize("step", [1e-3, 40.0])
-def test_rms_of_the_bias_is_that_of_its_first_harmonic(step: float) -> None:
+def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float) -> None:
     force = step * np.linspace(0.0, 1.0, 1000, endpoint=False)
     for noise in (0.3, 0.4):
         rms = np.sqrt(np.mean(bias_n(step, noise * step, force) ** 2))
@@ -88,7 +88,9 @@ def repeat_probability(noise: float) -> float:
 
 @pytest.mark.parametrize("step", [1e-3, 40.0])
 @pytest.mark.parametrize("noise", [0.05, 0.3, 1.0])
-def test_noise_follows_from_how_often_a_reading_repeats(step: float, noise: float) -> None:
+def test_noise_before_the_converter_follows_from_the_share_of_repeated_readings(
+    step: float, noise: float
+) -> None:
     n = 100_000
     repeats = round(repeat_probability(noise) * n)
     # A change of less than half a step is a repetition.
@@ -96,7 +98,7 @@ def test_noise_follows_from_how_often_a_reading_repeats(step: float, noise: floa
     assert noise_before(step, moves) == pytest.approx(noise * step, rel=2e-3)
 
 
-def test_noise_is_limited_where_readings_always_or_never_repeat() -> None:
+def test_noise_estimate_is_limited_if_readings_always_or_never_repeat() -> None:
     assert noise_before(2.0, np.zeros(100)) == 0.0
     assert noise_before(2.0, np.zeros(0)) == 0.0
     assert noise_before(2.0, np.full(100, 2.0)) == 2.0 * MOST_NOISE
@@ -107,7 +109,7 @@ def test_noise_is_limited_where_readings_always_or_never_repeat() -> None:
 
 @cache
 def quantised() -> tuple[Problem, list[Array]]:
-    """Coulomb friction of two runs read in steps, the second of them finely; and the true force."""
+    """Two runs of Coulomb friction, of which the first is quantised, and the true forces."""
     random, runs, forces = np.random.default_rng(1), [], []
     t = np.arange(0.0, 60.0, 0.02)
     for i, rate in enumerate((0.4, 0.5)):
@@ -129,7 +131,7 @@ def at_truth(problem: Problem) -> Solution:
 
 
 def test_bias_of_quantised_readings_is_removed() -> None:
-    """How large it is depends on the noise before the converter, which the bias itself shows."""
+    """Its size depends on the noise before the converter, which is estimated from the bias."""
     problem, forces = quantised()
     assert problem.campaign.step_n == pytest.approx(STEP_N)
     corrected = without_bias(problem, at_truth(problem), DEFAULT)
@@ -140,16 +142,16 @@ def test_bias_of_quantised_readings_is_removed() -> None:
     assert np.std(expected) > 0.05 * STEP_N
     np.testing.assert_allclose(removed, expected, atol=0.015 * STEP_N)
     np.testing.assert_array_equal(fine.friction_n, fine.readings_n)
-    # Of what is removed a share is taken to be left.
+    # A share of the removed bias is assumed to remain.
     assert corrected.steps_rms_n(1.0) < 0.5 * problem.campaign.steps_rms_n(1.0)
     again = Problem(corrected, "coulomb", "journal", (), problem.fixed)
     assert without_bias(again, at_truth(again), DEFAULT) is None
-    # A shift in time begins with the readings.
+    # A shift in time is applied to the uncorrected readings.
     np.testing.assert_array_equal(coarse.shifted(0.0, 0.0).friction_n, coarse.readings_n)
 
 
-def test_bias_is_removed_together_with_a_fit_of_the_model() -> None:
-    """The fit to biased readings has another force, and so another bias: both are repeated."""
+def test_bias_is_removed_iteratively_with_a_fit_of_the_model() -> None:
+    """A fit to biased readings predicts another force, and so another bias; both are repeated."""
     problem, forces = quantised()
     free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
     start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]
@@ -160,7 +162,7 @@ def test_bias_is_removed_together_with_a_fit_of_the_model() -> None:
     np.testing.assert_allclose(removed, expected, atol=0.03 * STEP_N)
 
 
-def test_bias_that_moves_less_than_the_policy_says_is_not_removed() -> None:
+def test_bias_is_not_removed_if_the_correction_is_below_the_limit_of_the_policy() -> None:
     problem, _ = quantised()
     solution = at_truth(problem)
     corrected = without_bias(problem, solution, DEFAULT)
@@ -172,8 +174,8 @@ def test_bias_that_moves_less_than_the_policy_says_is_not_removed() -> None:
         assert (without_bias(problem, solution, policy) is not None) == removed
 
 
-def test_model_that_is_off_by_steps_removes_little() -> None:
-    """It does not know where in a step its force lies."""
+def test_bias_is_not_removed_if_the_model_error_exceeds_a_step() -> None:
+    """Such a model does not determine where within a step the force lies."""
     problem, _ = quantised()
     right = at_truth(problem)
     wave = [3.0 * STEP_N * np.sin(0.01 * np.arange(len(r))) for r in right.residuals]

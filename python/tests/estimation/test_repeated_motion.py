@@ -1,4 +1,4 @@
-"""Period of a motion that repeats itself, of motions with a known period."""
+"""Detection of the period of a repeated motion, on motions with a known period."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ def wave(count: int, period: int) -> Array:
 
 @pytest.mark.parametrize("period", [7, 20, 61, 150])
 @pytest.mark.parametrize("mean", [0.0, -2.0])
-def test_period_is_found_to_the_sample(period: int, mean: float) -> None:
-    """Whatever the mean speed; the first repetition, not a multiple of it."""
+def test_period_is_found_exactly_whatever_the_mean_speed(period: int, mean: float) -> None:
+    """The first repetition is returned, not a multiple of it."""
     assert period_samples(mean + wave(5 * period + 130, period)) == period
 
 
 @pytest.mark.parametrize(("count", "found"), [(99, None), (100, 20)])
-def test_fewer_than_a_hundred_samples_have_no_period(count: int, found: int | None) -> None:
+def test_no_period_is_found_in_fewer_than_a_hundred_samples(count: int, found: int | None) -> None:
     assert period_samples(wave(count, 20)) == found
 
 
@@ -43,7 +43,7 @@ def test_motion_that_does_not_repeat_has_no_period(velocity: Array) -> None:
 
 @pytest.mark.parametrize(("noise", "found"), [(0.010, 100), (0.018, None)])
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
-def test_repetition_differs_by_less_than_a_fiftieth(
+def test_period_is_found_only_if_repetitions_differ_by_less_than_two_percent(
     noise: float, found: int | None, unit: float
 ) -> None:
     """The difference of two noises has sqrt(2) times the standard deviation of one."""
@@ -53,13 +53,13 @@ def test_repetition_differs_by_less_than_a_fiftieth(
 
 
 @pytest.mark.parametrize(("second", "period"), [(0.5, 80), (0.8, 80), (0.995, 40)])
-def test_period_includes_both_of_two_different_strokes(second: float, period: int) -> None:
+def test_period_covers_two_strokes_if_their_sizes_differ(second: float, period: int) -> None:
     stroke = np.sin(2.0 * np.pi * np.arange(40) / 40)
     assert period_samples(np.tile(np.concatenate((stroke, second * stroke)), 8)) == period
 
 
 @pytest.mark.parametrize(("period", "found"), [(150, 150), (240, None)])
-def test_repetition_must_lie_within_three_quarters_of_the_record(
+def test_period_is_found_only_up_to_three_quarters_of_the_record(
     period: int, found: int | None
 ) -> None:
     assert period_samples(wave(300, period)) == found

@@ -1,4 +1,4 @@
-"""Error of a prediction behind a reversal whose instant is known no better than the speed.
+"""Error of a prediction after a reversal whose instant is as uncertain as the speed.
 
 The standard error of the instant is that of the speed over the acceleration; the prediction is off
 by its rate of change times that.
@@ -43,7 +43,7 @@ def prepared(
 
 
 def step_behind(n: int, turn: int, rate_n_s: float, memory: int) -> Array:
-    """A prediction that changes at a rate for some samples behind a reversal."""
+    """A prediction that changes at a rate for some samples after a reversal."""
     slope = np.zeros(n)
     slope[turn : turn + memory] = rate_n_s
     found: Array = np.concatenate(([0.0], np.cumsum(slope[:-1] * STEP_S)))
@@ -56,7 +56,7 @@ def ramp(p: Prepared, rate_n_s: float = 10.0) -> Array:
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_error_is_the_rate_of_change_times_that_of_the_instant(unit: float) -> None:
+def test_error_after_a_reversal_is_rate_of_change_times_error_of_the_instant(unit: float) -> None:
     """2 mm/s at 2 m/s^2 are 1 ms: 0.05 N at 50 N/s, until it falls below the least size."""
     p = prepared([0.2] * 3 + [0.1, -0.1] + [-0.2] * 11, error=2e-3)
     prediction = unit * step_behind(16, 3, 50.0, 6)
@@ -70,7 +70,7 @@ def test_error_is_the_rate_of_change_times_that_of_the_instant(unit: float) -> N
     assert instant_errors_n(p, prediction, 0.03 * unit)[9] == 0.0
 
 
-def test_instant_lies_between_the_samples_around_it() -> None:
+def test_error_of_the_instant_is_at_most_that_of_a_uniform_distribution_over_a_step() -> None:
     """Its error is at most that of a uniform distribution, `1 / sqrt(12)` of their distance."""
     p = prepared([0.2] * 4 + [-0.2] * 8, error=1e3)
     found = instant_errors_n(p, ramp(p), 1e-9)
@@ -86,7 +86,7 @@ def test_samples_of_unknown_sign_belong_to_the_reversal() -> None:
     np.testing.assert_allclose(found[2:], 10.0 * 5e-3 / (0.4 / 0.3))
 
 
-def test_each_reversal_counts_until_the_next() -> None:
+def test_error_of_a_reversal_applies_until_the_next_reversal() -> None:
     error = np.where(np.arange(11) < 6, 1e-3, 1e-4)
     p = prepared([0.2] * 3 + [-0.2] * 4 + [0.2] * 4, error=error)
     first, second = 1e-3 / 4.0 * 20.0, 1e-4 / 4.0 * 20.0
@@ -117,7 +117,7 @@ def test_reversal_is_a_change_of_known_sign_without_a_rest(
     assert (int(found[0]) if len(found) else None) == first
 
 
-def test_two_samples_have_no_rate_of_change() -> None:
+def test_error_is_zero_in_a_record_of_two_samples() -> None:
     two = prepared([0.2, -0.2])
     assert instant_errors_n(two, np.array([1.0, -1.0]), 0.0).tolist() == [0.0, 0.0]
 
@@ -139,7 +139,7 @@ def true_model(seed: int, effects: tuple[str, ...]) -> tuple[Problem, Array, flo
 @pytest.mark.parametrize(
     "seeds", [range(20, 23), pytest.param(range(23, 32), marks=pytest.mark.extended)]
 )
-def test_errors_behind_slow_reversals_are_as_large_as_predicted(seeds: range) -> None:
+def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> None:
     """The residuals of the true model, in units of noise and predicted error."""
     doubtful, others = [], []
     for seed in seeds:

@@ -70,7 +70,7 @@ def test_delays_that_differ_between_runs_are_recovered(seed: int) -> None:
     assert found.spread_s == pytest.approx(np.std(DELAYS_S, ddof=1), rel=0.15)
 
 
-def test_estimate_is_the_minimum_of_the_squared_residuals() -> None:
+def test_delays_and_their_spread_are_those_of_a_least_squares_scan() -> None:
     """The spread between runs is that of DerSimonian and Laird from these estimates."""
     problem, solution = fitted(one_way_campaign((4e-3, -3e-3, -5e-3, 4e-3), noise_n=0.02))
     found = lateness(problem, solution, 0, CHANCE)
@@ -88,10 +88,10 @@ def test_estimate_is_the_minimum_of_the_squared_residuals() -> None:
     [((-3e-3,) * 4, 0.1, 1), ((3e-3, -2e-3, 2e-3, -1e-3), 0.06, 0)],
     ids=["common early force", "spread between runs"],
 )
-def test_significance_is_that_of_half_the_chi_square(
+def test_delays_are_reported_only_if_half_their_chi_square_is_significant(
     delays_s: tuple[float, ...], noise_n: float, seed: int
 ) -> None:
-    """Half, since residuals are never quite as white as the noise model says."""
+    """Half, since residuals are never quite as white as the noise model assumes."""
     problem, solution = fitted(one_way_campaign(delays_s, noise_n=noise_n, seed=seed))
     delays, variances = scanned(problem, solution)
     w = 1.0 / variances
@@ -103,13 +103,13 @@ def test_significance_is_that_of_half_the_chi_square(
     assert 1e-6 < p < 0.1
     assert lateness(problem, solution, 0, 2.0 * p) is not None
     assert lateness(problem, solution, 0, 0.5 * p) is None
-    # Two runs have no spread.
+    # No spread is estimated from two runs.
     if min(delays_s) < 0.0 < max(delays_s):
         assert lateness(*fitted(problem.campaign.only([0, 1])), 0, 2.0 * p) is None
 
 
 @pytest.mark.parametrize("changed", ["outliers", "offsets"])
-def test_outliers_and_known_offsets_of_the_runs_do_not_move_the_delays(changed: str) -> None:
+def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed: str) -> None:
     """Unclipped, 2 % of outliers of 100 standard deviations would by several milliseconds."""
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
     usual = lateness(problem, solution, 0, CHANCE)
@@ -147,14 +147,14 @@ def test_clock_drift_is_recovered(drift: float) -> None:
     [(0.0, ()), (5e-3, ()), (25e-3, DELAY)],
     ids=["no delay", "common delay", "common delay in the model"],
 )
-def test_common_delay_is_left_to_the_model(
+def test_no_delay_is_reported_if_it_is_common_to_all_runs(
     delay_s: float, effects: tuple[str, ...], seed: int
 ) -> None:
     assert estimated((delay_s,) * 4, effects=effects, seed=seed) is None
 
 
-def test_common_early_force_is_reported() -> None:
-    """No instrument is early, so that it cannot be left to the model."""
+def test_delay_is_reported_if_the_force_leads_the_motion_in_all_runs() -> None:
+    """No instrument responds early, so that a delay effect cannot describe it."""
     found = estimated((-6e-3,) * 4)
     assert found is not None
     assert (found.drift, found.spread_s) == (0.0, 0.0)
@@ -170,7 +170,7 @@ def test_delay_outside_the_range_is_replaced_by_the_weighted_mean_of_the_others(
     assert last == pytest.approx(np.average(others, weights=w), abs=0.3e-3)
 
 
-def test_second_look_resolves_small_delays() -> None:
+def test_second_search_resolves_delays_below_one_millisecond() -> None:
     """It searches within 8 ms in steps of 0.5 ms."""
     small = (6e-4, -4e-4, 9e-4, 1e-4)
     there = fitted(reversing_campaign(small, noise_n=3e-3), DELAY)
@@ -180,7 +180,7 @@ def test_second_look_resolves_small_delays() -> None:
     np.testing.assert_allclose(total, small, atol=0.06e-3)
 
 
-def test_jumps_at_reversals_show_the_delays_to_a_share_of_a_sample() -> None:
+def test_delays_are_recovered_from_jumps_at_reversals_within_a_share_of_a_step() -> None:
     found = lateness(*fitted(reversing_campaign(DELAYS_S)), 0, CHANCE, at_jumps=True)
     assert found is not None
     np.testing.assert_allclose(found.late_s, DELAYS_S, atol=2.2e-3)

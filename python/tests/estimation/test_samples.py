@@ -1,4 +1,4 @@
-"""Samples that count, their weights, parts, innovations and blocks, in small numbers."""
+"""Samples that count, their weights, parts, innovations and blocks, on small arrays."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def lists(arrays: tuple[Array, ...] | None) -> list[list[float]]:
     return [a.tolist() for a in arrays]
 
 
-def test_samples_of_a_campaign_count_where_the_sign_is_known_and_the_reading_usable() -> None:
+def test_samples_count_if_the_sign_of_motion_is_known_and_the_reading_is_usable() -> None:
     t = np.arange(0.0, 10.0, 0.01)
     v = 0.1 * np.sin(t - 0.015)
     run = Run.from_arrays(t, v, 5.0 * np.sign(v) + 2.0, position_m=-0.1 * np.cos(t - 0.015))
@@ -42,18 +42,18 @@ def test_samples_of_a_campaign_count_where_the_sign_is_known_and_the_reading_usa
     assert moving[0]
 
 
-def test_sizes_are_taken_over_counted_or_weighted_samples() -> None:
+def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() -> None:
     assert SAMPLES.count == 5
     assert SAMPLES.flat(VALUES).tolist() == [1.0, 2.0, 4.0, 5.0, 7.0]
     assert SAMPLES.rms(VALUES) == pytest.approx(np.sqrt((1 + 4 + 16 + 25 + 49) / 5.0))
-    # Weights are of residuals: 1 + 1 + 16 + 25 + 2.25 + 49.
+    # Weights multiply residuals: 1 + 1 + 16 + 25 + 2.25 + 49.
     assert SAMPLES.square(VALUES) == pytest.approx(94.25)
     empty = SAMPLES.within([np.zeros(4, dtype=bool), np.zeros(3, dtype=bool)])
     assert (empty.count, empty.rms(VALUES), empty.square(VALUES)) == (0, 0.0, 0.0)
     assert empty.cost(VALUES, WHITE) == 0.0
 
 
-def test_only_selects_every_property_of_a_run() -> None:
+def test_only_selects_all_properties_of_the_given_runs() -> None:
     level = tuple(0.5 * np.ones(len(w)) for w in WEIGHT)
     between = BetweenRuns(("zero",), (np.ones((4, 1)), 2.0 * np.ones((3, 1))), 0.7)
     one = replace(SAMPLES, level=level, between=between).only([1])
@@ -82,7 +82,7 @@ def test_weighed_multiplies_weights_and_accumulates_the_noise_level() -> None:
     once = SAMPLES.weighed(level, robust, None)
     np.testing.assert_allclose(once.weight[0], [0.05, 0.025, 0.0, 0.05])
     np.testing.assert_allclose(once.weight[1], [0.8, 0.2, 0.8])
-    # Robust weights are no level of the noise.
+    # Robust weights do not change the noise level.
     assert lists(once.level) == [[0.5] * 4, [0.8] * 3]
     twice = once.weighed(level, robust, None)
     assert twice.level is not None
@@ -107,8 +107,8 @@ def test_stacked_rows_are_innovations_of_weighted_residuals_and_derivatives() ->
     assert SAMPLES.cost(VALUES, COLOURED) == pytest.approx(wanted)
 
 
-def test_innovations_for_tests_are_zero_where_samples_do_not_count() -> None:
-    """With full weights, with the noise level alone, and of all samples with weight."""
+def test_innovations_are_zero_at_samples_that_do_not_count() -> None:
+    """With full weights, with the noise level only, and of all samples with weight."""
     level = (np.full(4, 0.5), np.full(3, 0.25))
     samples = replace(SAMPLES, level=level)
     has_weight = [w > 0.0 for w in WEIGHT]
@@ -126,7 +126,7 @@ def test_innovations_for_tests_are_zero_where_samples_do_not_count() -> None:
 
 
 def test_predicted_deviation_of_a_run_is_removed_with_shrinkage() -> None:
-    """A zero of 2 N standard deviation; three readings of 3 N in 1 N of noise: 36/13 of 3 N."""
+    """An offset with a deviation of 2 N; three readings of 3 N in noise of 1 N predict 36/13 N."""
     every = np.ones(3, dtype=bool)
     between = BetweenRuns(("zero",), (np.full((3, 1), 2.0),), 1.0)
     samples = Samples(("a",), (0.02,), (every,), (np.ones(3),), between)

@@ -41,7 +41,7 @@ def free_values(problem: Problem, values: Array) -> Array:
 
 
 @pytest.mark.parametrize("method", ["dogbox", "trf"])
-def test_search_of_a_linear_law_is_linear_regression(method: str) -> None:
+def test_search_for_a_linear_law_ends_at_its_linear_regression(method: str) -> None:
     problem = linear()
     start = values_of(problem, F_c_n=8.0, F_v_n_s_m=5.0)
     samples = problem.campaign.samples
@@ -49,16 +49,16 @@ def test_search_of_a_linear_law_is_linear_regression(method: str) -> None:
     assert end.converged
     found = free_values(problem, end.values)
     np.testing.assert_allclose(found, regression(problem), rtol=1e-4, atol=1e-4)
-    # Fixed parameters stay.
+    # Fixed parameters do not change.
     assert end.values[problem.names.index("F_s_n")] == 6.0
     assert not search(problem, samples, start, WHITE, 1).converged
     best = problem.best.values
     assert best is not None
-    # The best mean square of innovations was remembered for an interruption.
+    # The best mean square of innovations is stored in case of an interruption.
     assert problem.best.square == pytest.approx(problem.square(best) / samples.count)
 
 
-def test_search_ends_at_a_bound() -> None:
+def test_search_ends_at_a_bound_if_the_minimum_lies_beyond_it() -> None:
     """Friction that falls with speed: the viscous coefficient is not negative."""
     runs = four_runs(lambda t, v, a: 5.0 * np.sign(v) - 3.0 * v, noise_n=0.01)
     falling = coulomb_problem(runs, ["sensor_offset"])
@@ -68,7 +68,7 @@ def test_search_ends_at_a_bound() -> None:
     np.testing.assert_allclose(found, regression(falling), atol=1e-3)
 
 
-def test_second_search_stops_where_it_meets_a_lower_one() -> None:
+def test_second_search_stops_early_if_it_reaches_values_of_an_earlier_search() -> None:
     problem = linear()
     samples, visited = problem.campaign.samples, Visited()
     start = values_of(problem, F_c_n=8.0, F_v_n_s_m=5.0)
@@ -93,7 +93,7 @@ def bare_solution(campaign: Campaign, noise: Noise = WHITE) -> Solution:
     return problem.solution(values, campaign.samples, noise)
 
 
-def test_starts_are_ordered_by_their_square() -> None:
+def test_starts_are_ordered_by_their_sum_of_squares() -> None:
     problem = Problem(with_mass(), "coulomb", "journal", ("inertia_leak",))
     seeds = [{"F_c_n": 5.0}, {"F_c_n": 50.0}]
     every = Approach(problem, seeds).starts
@@ -106,7 +106,7 @@ def test_starts_are_ordered_by_their_square() -> None:
     assert sorted(s[problem.names.index("F_c_n")] for s in some) == [5.0, 7.0, 50.0]
 
 
-def test_many_starts_are_first_reduced_by_the_fastest_run() -> None:
+def test_many_starts_are_first_reduced_by_their_error_in_one_run() -> None:
     rig, runs, _ = simulated(11)
     effects = ("sensor_offset", "inertia_leak", "gravity")
     problem = Problem(Campaign.prepare(rig, runs[:3]), "stribeck", "journal", effects)
@@ -121,7 +121,7 @@ def test_many_starts_are_first_reduced_by_the_fastest_run() -> None:
     assert len(Approach(single, [{}]).starts) == len(every)
 
 
-def test_first_look_promises_the_gain_of_the_fit_of_a_linear_effect() -> None:
+def test_expected_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
     near = bare_solution(with_mass())
     path = Approach(Problem(with_mass(), "coulomb", "journal", ("inertia_leak",)), [{}])
     look = path.look(near)
@@ -136,7 +136,7 @@ def test_first_look_promises_the_gain_of_the_fit_of_a_linear_effect() -> None:
     assert 0.0 < look.gain <= look.promised * (1.0 + 1e-9)
 
 
-def test_first_look_promises_more_than_it_has_gained_on_a_curved_path() -> None:
+def test_expected_gain_exceeds_the_gain_of_the_first_steps_if_the_law_is_nonlinear() -> None:
     near, samples = bare_solution(with_mass()), with_mass().samples
     path = Approach(Problem(with_mass(), "stribeck", "journal", ()), [{"v_s_m_s": 0.02}])
     look = path.look(near)
@@ -146,8 +146,8 @@ def test_first_look_promises_more_than_it_has_gained_on_a_curved_path() -> None:
     assert look.promised > look.gain + 0.01
 
 
-def test_look_under_smooth_noise_counts_the_gain_in_innovations() -> None:
-    """A slow wave hides the mass in squares of residuals, not in those of innovations."""
+def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
+    """A slow wave hides the mass in the squares of residuals, but not of innovations."""
     runs = four_runs(
         lambda t, v, a: coulomb(t, v, a) + 0.3 * a + 2.0 * np.sin(0.5 * t), noise_n=0.1
     )
@@ -161,7 +161,7 @@ def test_look_under_smooth_noise_counts_the_gain_in_innovations() -> None:
     assert coloured.promised > 3.0 * max(plain.promised, 1.0)
 
 
-def test_approach_is_followed_only_below_the_given_square() -> None:
+def test_approach_ends_early_if_it_cannot_fall_below_the_given_sum_of_squares() -> None:
     problem = Problem(with_mass(), "stribeck", "journal", ("inertia_leak",))
     best = Approach(problem, [{}]).follow(60)
     least = problem.square(best.values)

@@ -89,23 +89,25 @@ def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
         ("drag", (0.5,)),
         ("drive_play", (4e-3, 4e-4, 4e-5)),
         ("drive_stiffness", (2e3, 2e4)),
-        # 2e3 N/m that swing within a fiftieth of the 4 s of a stroke.
+        # 2e3 N/m that oscillate within a fiftieth of the 4 s of a stroke.
         ("drive_inertia", (2e3 * 0.08**2,)),
         ("drive_damping", (80.0,)),
     ],
 )
-def test_starting_values_from_given_sizes(rule: str, starts: tuple[float, ...]) -> None:
+def test_rule_gives_the_expected_starting_values_for_given_sizes(
+    rule: str, starts: tuple[float, ...]
+) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)
 
 
-def test_law_in_newtons_starts_from_the_data() -> None:
+def test_law_in_newtons_takes_its_starting_values_from_the_data() -> None:
     sizes = scales(slide())
     assert started(page("kinetic")).starts == (sizes.kinetic_n, sizes.whole_n)
     assert sizes.kinetic_n == pytest.approx(5.0, rel=0.05)
     assert started(page()) == page()
 
 
-def test_law_that_scales_with_the_load_keeps_the_catalogue() -> None:
+def test_law_that_scales_with_the_load_takes_its_starting_values_from_the_catalogue() -> None:
     pages = parameters_of("journal", ("presliding", "drive_compliance", "coulomb_drag"))
     data = on_bearing()
     found = with_starts(pages, data, in_newtons=False)
@@ -120,7 +122,7 @@ def test_law_that_scales_with_the_load_keeps_the_catalogue() -> None:
     ("starts", "upper", "bound"),
     [((0.05,), 1e3, 0.5), ((0.5, 2.0), 1e3, 4.0), ((0.05,), 0.3, 0.3)],
 )
-def test_transition_speed_is_at_most_five_times_the_fastest_speed(
+def test_upper_bound_of_the_transition_speed_is_five_times_the_fastest_speed(
     starts: tuple[float, ...], upper: float, bound: float
 ) -> None:
     one = page(starts=starts, upper=upper, bound="transition_speed")
@@ -128,7 +130,9 @@ def test_transition_speed_is_at_most_five_times_the_fastest_speed(
 
 
 @pytest.mark.parametrize("name", ["drive_compliance.k_n_m_rad", "backlash.gap_rad"])
-def test_drive_starts_from_the_data_on_a_linear_axis_only(name: str) -> None:
+def test_drive_effect_takes_its_starting_values_from_the_data_on_a_linear_axis_only(
+    name: str,
+) -> None:
     pages = parameters_of("coulomb", (name.partition(".")[0],))
     shaft = with_starts(pages, on_bearing(), in_newtons=True)
     assert shaft[name].starts == pages[name].starts
@@ -136,12 +140,12 @@ def test_drive_starts_from_the_data_on_a_linear_axis_only(name: str) -> None:
     assert found == pytest.approx(LINEAR_RULES[pages[name].start](scales(slide())))
 
 
-def test_times_start_at_a_third_and_a_tenth_of_a_run() -> None:
+def test_time_constants_start_at_0_3_and_0_1_of_the_run_duration() -> None:
     last = float(TIME[-1])
     assert started(page("run_time")).starts == pytest.approx((0.3 * last, 0.1 * last))
 
 
-def test_delay_starts_go_down_by_thirds_to_a_quarter_of_a_sample() -> None:
+def test_starting_delays_decrease_threefold_from_0_5_s_to_a_quarter_of_a_step() -> None:
     """From 0.5 s to 5 ms in five steps, for any law."""
     wanted = (*CATALOGUE, *(0.5 / 3.0**k for k in range(1, 6)))
     for in_newtons in (False, True):
@@ -150,16 +154,18 @@ def test_delay_starts_go_down_by_thirds_to_a_quarter_of_a_sample() -> None:
     assert started(page("lateness", starts=(0.004,))).starts == (0.004,)
 
 
-def test_stroke_starts_at_its_middle_and_half_length() -> None:
+def test_stroke_dependence_starts_at_the_middle_and_half_length_of_the_stroke() -> None:
     (middle,) = started(page("stroke_middle")).starts
     (half,) = started(page("stroke_half")).starts
     assert middle == pytest.approx(0.1, abs=0.005)
-    # A tenth of the way is added at either end.
+    # A tenth of the path is added at either end.
     assert half == pytest.approx(0.12, abs=0.002)
 
 
 @pytest.mark.parametrize(("more", "upper"), [({}, 0.05), ({"upper": 0.01}, 0.01)])
-def test_pitch_is_at_most_a_quarter_of_the_way(more: dict[str, float], upper: float) -> None:
+def test_upper_bound_of_the_pitch_is_a_quarter_of_the_path(
+    more: dict[str, float], upper: float
+) -> None:
     assert started(page("pitch", **more)).upper == pytest.approx(upper, rel=0.02)
     assert started(page("pitch", **more), in_newtons=False).upper == page(**more).upper
 
@@ -178,7 +184,7 @@ def test_load_cell_errors_start_at_three_percent_of_the_largest_force(
     assert cubic == pytest.approx((0.03 / (25.0 * scale**2),))
 
 
-def test_reference_temperature_is_the_lubricants_or_the_mean_of_the_runs() -> None:
+def test_reference_temperature_is_that_of_the_lubricant_or_the_mean_of_the_runs() -> None:
     runs = [
         axis(name, scale, temperature_c=np.full(len(TIME), celsius))
         for name, scale, celsius in (("a", 1.0, 20.2), ("b", 1.1, 25.0))
@@ -216,7 +222,9 @@ def strokes(*lengths_m: float) -> Run:
 
 @pytest.mark.parametrize("top", [0.01, 1.0])
 @pytest.mark.parametrize("force", [0.5, 50.0])
-def test_sizes_of_a_straight_line_over_a_sine(top: float, force: float) -> None:
+def test_sizes_of_linear_friction_over_a_sine_are_those_of_its_formula(
+    top: float, force: float
+) -> None:
     """The slow and the fast half of the samples show the same height and slope."""
     viscous = force / top
     found = sizes_of(swinging(force, viscous, top))
@@ -230,11 +238,11 @@ def test_sizes_of_a_straight_line_over_a_sine(top: float, force: float) -> None:
     slow = top * np.sin(0.9 * 0.25 * np.pi)
     assert found.breakaway_n == pytest.approx(force + viscous * slow, rel=0.02)
     assert found.stroke_m == pytest.approx(top * 4.0 / np.pi, rel=0.02)
-    # A tenth of what the slow speed covers between samples.
+    # A tenth of the distance between samples at the slow speed.
     assert found.resolved_m == pytest.approx(0.1 * found.slow_m_s * STEP_S, rel=1e-6)
 
 
-def test_friction_that_falls_with_speed_has_no_viscous_size() -> None:
+def test_viscous_size_is_zero_if_friction_falls_with_speed() -> None:
     found = sizes_of(swinging(5.0, -10.0))
     assert found.viscous_n_s_m == 0.0
     assert found.kinetic_n == pytest.approx(5.0 - 10.0 * 0.1 * np.sin(np.pi / 8.0), rel=0.02)
@@ -246,20 +254,20 @@ def test_friction_that_falls_with_speed_has_no_viscous_size() -> None:
     [
         # The first and the last stroke are cut by the record: the median of the others.
         ((0.3, 1.0, 0.6, 0.8, 0.5), 0.8),
-        # A drive overshoots: ways below a tenth of the longest are not strokes.
+        # A drive overshoots: distances below a tenth of the longest are not strokes.
         ((0.3, 1.0, 0.12, 1.0, 0.12, 0.5), 0.56),
         ((0.3, 1.0, 0.06, 1.0, 0.06, 0.5), 1.0),
-        # Fewer than two reversals: the whole way.
+        # Fewer than two reversals: the whole path.
         ((0.4, 0.9), 0.9),
     ],
 )
-def test_stroke_is_the_median_way_between_reversals(
+def test_stroke_is_the_median_distance_between_reversals(
     lengths_m: tuple[float, ...], stroke_m: float
 ) -> None:
     assert sizes_of(strokes(*lengths_m)).stroke_m == pytest.approx(stroke_m, rel=0.03)
 
 
-def test_rest_and_speeds_below_two_percent_are_no_motion() -> None:
+def test_rest_and_speeds_below_two_percent_do_not_count_as_motion() -> None:
     t = np.arange(0.0, 40.0, STEP_S)
     half = t < 20.0
     v = 0.1 * np.sin(0.5 * np.pi * t)
@@ -275,7 +283,7 @@ def test_rest_and_speeds_below_two_percent_are_no_motion() -> None:
     assert moving(np.full(len(t), 0.0025)).mean() > 0.9
 
 
-def test_one_outlier_sets_no_size() -> None:
+def test_one_outlier_does_not_change_any_size() -> None:
     run = swinging()
     force: Array = np.array(run.friction_n)
     force[777] = 1e5
@@ -284,7 +292,7 @@ def test_one_outlier_sets_no_size() -> None:
         assert getattr(found, name) == pytest.approx(value, rel=0.02), name
 
 
-def test_campaign_without_counted_samples_is_refused_with_its_file() -> None:
+def test_campaign_without_counted_samples_is_rejected_with_its_file() -> None:
     runs = [replace(swinging(force), name=f"{force}") for force in (5.0, 6.0)]
     runs[0] = replace(runs[0], path=Path("first.csv"))
     campaign = Campaign.prepare(Rig(), runs)

@@ -1,4 +1,4 @@
-"""Predictions of a force that is recorded late, against Coulomb's law shifted in time."""
+"""Predictions of a force that is recorded with a delay, against Coulomb's law shifted in time."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def known_motion(time: Array, velocity: Array, acceleration: Array, error: float
 
 
 @pytest.mark.parametrize("tau_s", [0.033, 0.151])
-def test_delayed_force_stays_sharp_at_reversals(tau_s: float) -> None:
+def test_delayed_force_jumps_within_one_sample_at_reversals(tau_s: float) -> None:
     """No sample lies between the two levels of the jump."""
     late = friction(0.1 * np.sin(RATE * (TIME - tau_s) + 0.3))
     jumps = (np.pi * np.arange(1, 8) - 0.3) / RATE + tau_s
@@ -54,7 +54,9 @@ def test_delayed_force_stays_sharp_at_reversals(tau_s: float) -> None:
 
 
 @pytest.mark.parametrize("begins_s", [2.004, 2.0101, 2.0163])
-def test_start_from_rest_between_samples_follows_from_the_acceleration(begins_s: float) -> None:
+def test_delayed_force_at_a_start_between_samples_follows_from_the_acceleration(
+    begins_s: float,
+) -> None:
     tau_s = 0.033
     run = Run.from_arrays(TIME, 0.02 * np.maximum(TIME - begins_s, 0.0))
     late = friction(0.02 * np.maximum(TIME - tau_s - begins_s, 0.0))
@@ -62,13 +64,13 @@ def test_start_from_rest_between_samples_follows_from_the_acceleration(begins_s:
     assert np.max(error) < 0.02 * LAW["F_c_n"]
 
 
-def test_zero_delay_changes_nothing() -> None:
+def test_zero_delay_does_not_change_the_prediction() -> None:
     plain = Model(Rig(), law="coulomb", parameters=VALUES).predict(sine_run())
     np.testing.assert_array_equal(plain, delayed_model(0.0).predict(sine_run()))
 
 
 def test_sensor_drift_is_not_delayed() -> None:
-    """The cell drifts by its own clock: `F(t - tau) + d t`."""
+    """The drift is added after the delay: `F(t - tau) + d t`."""
     run = Run.from_arrays(TIME, np.full(len(TIME), 0.1))
     model = Model(
         Rig(),
@@ -81,7 +83,7 @@ def test_sensor_drift_is_not_delayed() -> None:
     np.testing.assert_allclose(model.predict(run)[late], expected[late], rtol=1e-9)
 
 
-def test_mean_near_a_reversal_is_blurred_by_the_errors_of_instant_and_delay() -> None:
+def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_delay() -> None:
     """`F_c (2 Phi(t / sd) - 1)`, sd the root of both variances."""
     time = np.arange(0.0, 2.0, STEP_S)
     tau_s, turn_s, slope, error, delay_sd_s = 0.0471, 1.0071, 0.1, 2e-4, 3e-3

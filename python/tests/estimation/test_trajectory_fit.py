@@ -39,7 +39,7 @@ FULL = np.array(
 
 
 def friction(values: dict[str, float], tolerance: float = 1e-6, model: str = "journal") -> Array:
-    """Friction coefficients along the swings, in a row."""
+    """Friction coefficients along the swings, concatenated."""
     done = jbf.trajectories(RIG, values, SWINGS, tolerance=tolerance, model=model)
     return np.concatenate([d.friction_coefficient for d in done])
 
@@ -51,7 +51,7 @@ def clean() -> Array:
 
 
 def noisy(seed: int) -> Array:
-    """The same with white noise."""
+    """Friction coefficients of the true parameters with white noise."""
     data: Array = clean() + NOISE * np.random.default_rng(seed).standard_normal(len(clean()))
     return data
 
@@ -88,7 +88,7 @@ def test_sampled_motion_has_the_friction_of_the_sine_that_it_samples() -> None:
 
 
 @pytest.mark.parametrize("model", ["journal", pytest.param("journal_full", marks=EXTENDED)])
-def test_derivatives_are_differences_of_the_fourth_order(model: str) -> None:
+def test_derivatives_agree_with_fourth_order_differences(model: str) -> None:
     done = jbf.trajectories(RIG, TRUTH, SWINGS, model=model, tolerance=1e-9, derivatives=True)
     found = np.concatenate([d.derivatives for d in done if d.derivatives is not None])
     for k, (name, value) in enumerate(TRUTH.items()):
@@ -115,7 +115,9 @@ def test_derivatives_are_differences_of_the_fourth_order(model: str) -> None:
         ({"parameters": {"f_m": 0.2}}, "missing"),
     ],
 )
-def test_invalid_argument_of_a_trajectory_is_named(change: dict[str, Any], named: str) -> None:
+def test_invalid_argument_of_a_trajectory_is_rejected_by_name(
+    change: dict[str, Any], named: str
+) -> None:
     good: dict[str, Any] = {"parameters": TRUTH, "time_s": [0.5, 1.0], "sine": (0.1, 1.0)}
     with pytest.raises(InputError, match=named):
         jbf.trajectory(RIG, **{**good, **change})
@@ -124,7 +126,7 @@ def test_invalid_argument_of_a_trajectory_is_named(change: dict[str, Any], named
 # ---- fits ----------------------------------------------------------------------------------------
 
 
-def test_exact_friction_is_fitted_to_the_parameters_that_made_it() -> None:
+def test_fit_to_exact_friction_recovers_the_parameters() -> None:
     exact = np.split(friction(TRUTH, 1e-8), len(SWINGS))
     start = {"f_m": 0.3, "U_tr_m_s": 0.05, "K0": 6e5, "gamma": 30.0}
     found = jbf.fit_trajectories(RIG, SWINGS, exact, start=start, tolerance=1e-8)
@@ -135,7 +137,7 @@ def test_exact_friction_is_fitted_to_the_parameters_that_made_it() -> None:
     assert found.to_dict()["sum_of_squares"] == found.sum_of_squares
 
 
-def test_fit_from_far_covers_the_truth_and_leaves_out_what_was_not_measured() -> None:
+def test_fit_from_distant_starts_recovers_the_truth_and_ignores_missing_samples() -> None:
     pieces = np.split(noisy(42), len(SWINGS))
     pieces[1][:20] = np.nan
     start = {"f_m": 0.34, "U_tr": 0.042, "K0": 9.7e5, "gamma": 23.0}
@@ -176,7 +178,7 @@ def test_standard_errors_are_those_of_least_squares() -> None:
 
 
 @EXTENDED
-def test_standard_errors_cover_the_truth_in_twenty_fits() -> None:
+def test_estimates_scatter_by_their_standard_errors_in_twenty_fits() -> None:
     """The spread of 80 deviations, some of them correlated, is known to 12 %."""
     off = []
     for seed in range(20):
@@ -186,7 +188,7 @@ def test_standard_errors_cover_the_truth_in_twenty_fits() -> None:
     assert np.std(off) == pytest.approx(1.0, abs=0.25)
 
 
-def test_parameters_that_the_motion_does_not_determine_have_no_standard_error() -> None:
+def test_parameters_that_the_motion_does_not_determine_are_held_without_an_error() -> None:
     """At one constant speed four parameters share one value of friction."""
     time = np.linspace(0.0, 2.0, 40)
     runs = [(time, np.full(40, 0.1))]
@@ -212,7 +214,7 @@ def test_samples_at_rest_or_without_a_measurement_are_not_used() -> None:
     assert jbf.fit_trajectories(RIG, runs, data, start=TRUTH).samples == moving
 
 
-def test_more_samples_than_parameters_are_needed() -> None:
+def test_fit_is_rejected_if_samples_do_not_outnumber_parameters() -> None:
     few = [(np.linspace(0.5, 2.5, 5), (0.127, 0.25, 0.0))]
     data = [np.array(jbf.trajectories(RIG, TRUTH, few)[0].friction_coefficient)]
     assert jbf.fit_trajectories(RIG, few, data, start=TRUTH).samples == 5
@@ -232,6 +234,8 @@ def test_more_samples_than_parameters_are_needed() -> None:
         (SWINGS, None, "the friction is"),
     ],
 )
-def test_invalid_data_of_a_fit_are_named(runs: Any, data: Any, named: str) -> None:
+def test_invalid_data_of_a_trajectory_fit_are_rejected_with_the_reason(
+    runs: Any, data: Any, named: str
+) -> None:
     with pytest.raises(InputError, match=named):
         jbf.fit_trajectories(RIG, runs, data)

@@ -96,7 +96,7 @@ def test_parameters_of_a_fit_are_found_by_full_or_short_name(
 
 
 def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
-    """Of the search variable times the value; derivatives of a Stribeck curve written out."""
+    """The error of the logarithm times the value; derivatives of the curve in closed form."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     fixed = {"delta": 2.0, "F_v_n_s_m": 20.0}
     problem = Problem(campaign, "stribeck", "journal", (), fixed)
@@ -119,8 +119,8 @@ def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
     np.testing.assert_allclose(errors, sd * found.inflation, rtol=1e-6)
 
 
-def test_parameter_without_influence_and_parameters_with_a_double_are_recognised() -> None:
-    """In one direction dry friction and an offset are the same; breakaway is never shown."""
+def test_parameters_without_influence_and_confounded_parameters_are_marked() -> None:
+    """In one direction dry friction and an offset are the same; breakaway has no influence."""
     runs = four_runs(coulomb, noise_n=0.1)
     campaign = Campaign.prepare(Rig(), [runs[0], runs[2]])
     problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
@@ -139,8 +139,8 @@ def dry_level(runs: list[Run]) -> Problem:
     return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed)
 
 
-def test_error_in_slow_noise_is_larger_by_its_long_run_variance() -> None:
-    """Noise that keeps its sign for ten samples: the variance of a mean is ten times as large."""
+def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
+    """Noise of constant sign over ten samples: the variance of a mean is ten times as large."""
     problem = dry_level(four_runs(coulomb, noise_n=0.0))
     solution = solution_at(problem, values_of(problem))
     random = np.random.default_rng(4)
@@ -153,7 +153,7 @@ def test_error_in_slow_noise_is_larger_by_its_long_run_variance() -> None:
     )
 
 
-def test_error_under_offsets_of_runs_is_larger_by_their_scatter() -> None:
+def test_error_is_inflated_by_the_scatter_of_offsets_between_runs() -> None:
     """Offsets in the direction of motion: a mean of eight runs is as uncertain as they scatter."""
     offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
     runs = [
@@ -176,7 +176,7 @@ KINDS: dict[str, Callable[[Array, Array], Array]] = {
 
 @pytest.mark.extended
 @pytest.mark.parametrize("kind", KINDS)
-def test_parameters_are_off_by_as_much_as_their_errors_state(kind: str) -> None:
+def test_deviations_from_the_truth_are_as_large_as_the_standard_errors(kind: str) -> None:
     truth = {**LAW, "sensor_offset.b_n": 0.0}
     t = np.arange(0.0, 24.0, 0.02)
     off = []
@@ -240,13 +240,13 @@ def bent() -> Callable[..., tuple[str, ...]]:
     # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
     [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
 )
-def test_error_is_doubtful_where_the_rise_at_one_error_is_off_by_three_tenths(
+def test_error_is_doubtful_if_the_cost_deviates_by_30_percent_from_a_parabola(
     bent: Callable[..., tuple[str, ...]], bend: float, doubtful: bool
 ) -> None:
     assert bent(bend) == (("p",) if doubtful else ())
 
 
-def test_held_parameters_and_sides_beyond_a_bound_are_not_judged(
+def test_error_is_not_checked_for_held_parameters_or_beyond_a_bound(
     bent: Callable[..., tuple[str, ...]],
 ) -> None:
     """At b = 0.155 only the upper side is off by more than three tenths."""
@@ -258,8 +258,8 @@ def test_held_parameters_and_sides_beyond_a_bound_are_not_judged(
     assert bent(0.5, held=True) == ()
 
 
-def test_parameters_of_an_effect_with_many_peaks_are_doubtful() -> None:
-    """A drive that rings: one standard error away may still be the same of many peaks."""
+def test_errors_of_an_effect_with_many_likelihood_peaks_are_doubtful() -> None:
+    """The likelihood of a resonant drive has many narrow peaks in its parameters."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
     problem = Problem(campaign, "coulomb", "journal", ("drive_compliance",))
     values = problem.starts({**LAW, "F_s_n": 6.0})[0]

@@ -1,4 +1,4 @@
-"""The cost of fits in inner steps of the model, its limit, and what an interrupted fit returns."""
+"""The cost of fits in inner steps of the model, its limit, and the result of an interrupted fit."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.work import ANY_STEPS, STEPS_A_SAMPLE, Work
 
 
-def test_steps_are_counted_up_to_the_limit() -> None:
+def test_work_beyond_the_limit_raises_unfinished() -> None:
     work = Work(10.0)
     work.take(4.0)
     work.take(6.0)
@@ -31,7 +31,7 @@ def test_steps_are_counted_up_to_the_limit() -> None:
         work.take(0.1)
 
 
-def test_limit_grows_with_the_samples_and_is_never_small() -> None:
+def test_work_limit_grows_with_the_samples_and_has_a_minimum() -> None:
     assert Work.of(10).most == ANY_STEPS
     assert Work.of(10**6).most == STEPS_A_SAMPLE * 1e6 > ANY_STEPS
 
@@ -47,7 +47,7 @@ def test_prediction_costs_its_inner_steps_and_derivatives_twice_as_many() -> Non
         prepared.work.renew()
         call(values)
         assert prepared.work.taken == pytest.approx(cost)
-    # A part of a campaign uses up the work of the whole.
+    # Predictions of a part of a campaign count towards the limit of the whole.
     prepared.work.renew()
     problem.predict(values, [1])
     one = prepared.work.taken
@@ -56,7 +56,7 @@ def test_prediction_costs_its_inner_steps_and_derivatives_twice_as_many() -> Non
     assert prepared.work.taken == pytest.approx(2.0 * one)
 
 
-def test_search_beyond_the_limit_is_unfinished_and_has_seen_a_best() -> None:
+def test_search_beyond_the_limit_raises_unfinished_and_stores_the_best_values() -> None:
     problem = coulomb_problem(four_runs(coulomb, noise_n=0.1))
     once = problem.chain.inner_steps(values_of(problem), problem.campaign.motions)
     problem.campaign.work.renew(12.0 * once)

@@ -1,4 +1,4 @@
-"""Channels with clocks of their own are not resampled; a missing sample is an empty cell."""
+"""Channels with separate clocks are not resampled; a missing sample is an empty cell."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ def test_samples_of_two_clocks_are_merged_in_time_order(tmp_path: Path) -> None:
     time = np.array([float(row["time_s"]) for row in rows])
     assert (np.diff(time) > 0.0).all()
     assert len(rows) == 4800
-    place = [(row["time_s"], row["position_m"]) for row in rows if row["position_m"]]
-    assert [float(t) for t, _ in place] == fast.tolist()
-    assert [float(x) for _, x in place] == (np.sin(fast) / 1000.0).tolist()
+    position = [(row["time_s"], row["position_m"]) for row in rows if row["position_m"]]
+    assert [float(t) for t, _ in position] == fast.tolist()
+    assert [float(x) for _, x in position] == (np.sin(fast) / 1000.0).tolist()
     force = [(float(row["time_s"]), float(row["friction_n"])) for row in rows if row["friction_n"]]
     assert [f for _, f in force] == np.cos(slow).tolist()
     assert [t for t, _ in force] == pytest.approx(slow, abs=1e-12)
@@ -67,7 +67,7 @@ def test_run_with_two_clocks_keeps_every_recorded_sample(slow_hz: float, tmp_pat
     np.testing.assert_array_equal(run.position_m[run.read["position_m"]], np.sin(fast))
 
 
-def test_merging_does_not_depend_on_the_block_size(tmp_path: Path) -> None:
+def test_merging_long_channels_with_a_gap_keeps_every_sample(tmp_path: Path) -> None:
     """Rates differ by a factor of 100, and one channel has a long gap."""
     fast = np.arange(180_000) / 1000.0
     slow = np.concatenate((np.arange(100), np.arange(900, 1790))) / 10.0
@@ -83,6 +83,7 @@ def test_merging_does_not_depend_on_the_block_size(tmp_path: Path) -> None:
 
 
 def text_file(folder: Path, empty_every: int, rows: int = 1000) -> Path:
+    """A table with the force in one of n rows only, or, from n = 100, in all but one of n rows."""
     lines = ["time_s,position_m,friction_n"]
     for i in range(rows):
         force = "" if i % empty_every else "1.5"
@@ -92,7 +93,9 @@ def text_file(folder: Path, empty_every: int, rows: int = 1000) -> Path:
     return folder / "log.csv"
 
 
-def test_slow_channel_of_a_table_keeps_its_empty_cells(tmp_path: Path) -> None:
+def test_rows_are_kept_with_empty_cells_if_a_channel_has_a_value_in_every_fifth_row(
+    tmp_path: Path,
+) -> None:
     result = import_files(text_file(tmp_path, empty_every=5), out=tmp_path / "out")
     rows = rows_of(result.folder)
     assert len(rows) == 1000
@@ -100,14 +103,14 @@ def test_slow_channel_of_a_table_keeps_its_empty_cells(tmp_path: Path) -> None:
     assert result.ledger["files"][0]["dropped"] == []
 
 
-def test_rows_with_few_missing_values_are_dropped_and_reported(tmp_path: Path) -> None:
+def test_rows_with_a_missing_value_are_dropped_and_reported_if_they_are_few(tmp_path: Path) -> None:
     result = import_files(text_file(tmp_path, empty_every=250))
     assert len(result.runs[0]) == 996
     assert result.ledger["files"][0]["dropped"] == [{"rows": 4, "why": "a value is missing"}]
     assert "4 rows left out" in result.summary()
 
 
-def test_repeated_time_stamps_are_dropped_and_reported(tmp_path: Path) -> None:
+def test_row_with_a_repeated_time_stamp_is_dropped_and_reported(tmp_path: Path) -> None:
     lines = ["time_s,position_m,friction_n"]
     lines += [f"{i // 2 if i == 41 else i / 2},{i},1.0" for i in range(100)]
     lines[42] = lines[41].replace(",40,", ",41,")
@@ -125,7 +128,7 @@ def test_time_that_runs_back_within_a_restarted_record_is_refused(tmp_path: Path
         import_files(tmp_path / "log.csv")
 
 
-def test_clock_with_many_repeated_stamps_is_refused(tmp_path: Path) -> None:
+def test_clock_that_repeats_every_time_stamp_ten_times_is_refused(tmp_path: Path) -> None:
     lines = ["time_s,position_m,friction_n", *(f"{i // 10},{i},1.0" for i in range(200))]
     (tmp_path / "log.csv").write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match="too coarse a clock"):
@@ -143,7 +146,7 @@ def test_expression_of_channels_with_different_clocks_is_refused(tmp_path: Path)
         import_files(file, tmp_path / "map.toml")
 
 
-def test_wrapped_angle_is_unwrapped(tmp_path: Path) -> None:
+def test_angle_recorded_modulo_360_degrees_is_unwrapped_and_reported(tmp_path: Path) -> None:
     time = np.arange(1000) / 100.0
     angle = 200.0 * np.sin(time)
     lines = ["t [s],angle [deg],M [Nm]"]
@@ -156,9 +159,7 @@ def test_wrapped_angle_is_unwrapped(tmp_path: Path) -> None:
     assert "whole turns were added" in result.summary()
 
 
-def test_waveforms_with_different_starts_keep_their_relative_times(
-    tmp_path: Path,
-) -> None:
+def test_waveforms_with_different_starts_keep_their_relative_times(tmp_path: Path) -> None:
     nptdms = pytest.importorskip("nptdms")
     start = np.datetime64("2026-11-22T10:00:00.000000")
     later = start + np.timedelta64(1_500, "ms")
@@ -176,7 +177,7 @@ def test_waveforms_with_different_starts_keep_their_relative_times(
     assert result.ledger["files"][0]["start"].startswith("2026-11-22T10:00:00")
 
 
-def test_topics_of_a_log_keep_their_relative_times(tmp_path: Path) -> None:
+def test_topics_of_an_mcap_log_keep_their_relative_times(tmp_path: Path) -> None:
     writers = pytest.importorskip("mcap.writer")
     begin = 1_763_800_000 * 10**9
     with (tmp_path / "l.mcap").open("wb") as file:
@@ -184,10 +185,10 @@ def test_topics_of_a_log_keep_their_relative_times(tmp_path: Path) -> None:
         writer.start()
         schema = writer.register_schema("s", "jsonschema", b"{}")
         force = writer.register_channel("/force", "json", schema)
-        place = writer.register_channel("/place", "json", schema)
+        position = writer.register_channel("/place", "json", schema)
         for i in range(200):
             at = begin + i * 10**7
-            writer.add_message(place, at, b'{"position_m": %d}' % i, at)
+            writer.add_message(position, at, b'{"position_m": %d}' % i, at)
             delayed = at + 3_000_000
             writer.add_message(force, delayed, b'{"friction_n": 1.5}', delayed)
         writer.finish()
@@ -196,7 +197,7 @@ def test_topics_of_a_log_keep_their_relative_times(tmp_path: Path) -> None:
     assert [float(r["time_s"]) for r in rows if r["friction_n"]][:2] == [0.003, 0.013]
 
 
-def test_sheets_keep_their_relative_times(tmp_path: Path) -> None:
+def test_sheets_of_a_workbook_keep_their_relative_times(tmp_path: Path) -> None:
     openpyxl = pytest.importorskip("openpyxl")
     book = openpyxl.Workbook()
     begin = datetime(2026, 11, 22, 10, 0, 0)

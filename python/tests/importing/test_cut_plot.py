@@ -1,4 +1,4 @@
-"""The plot of an import: curves, shaded runs, hatched excluded pieces, names."""
+"""The plot of an import: curves, shaded runs, hatched excluded pieces, labels."""
 
 from __future__ import annotations
 
@@ -58,17 +58,21 @@ def test_runs_are_shaded_alternately_and_excluded_pieces_hatched() -> None:
 
 
 @pytest.mark.parametrize(("count", "named"), [(40, 40), (41, 0)])
-def test_more_than_forty_runs_are_not_named(count: int, named: int) -> None:
+def test_runs_are_labelled_in_the_plot_only_up_to_forty(count: int, named: int) -> None:
     (ax,) = plot_cut(imported([Piece(f"r_{k}", "a.csv", 0, k, k + 0.5) for k in range(count)]))
     assert (len(ax.patches), len(ax.texts)) == (count, named)
 
 
-def test_plot_uses_given_axes_and_refuses_a_wrong_number(tmp_path: Path) -> None:
+def test_plot_is_drawn_on_given_axes_and_a_wrong_number_of_axes_is_refused() -> None:
     outcome = imported([Piece("r", "a.csv", 0, 1.0, 2.0)])
     drawn = plot_cut(outcome)
     assert plot_cut(outcome, drawn) == drawn
     with pytest.raises(InputError, match="2 axes were given"):
         plot_cut(outcome, [*drawn, *drawn])
+
+
+def test_plot_is_saved_as_svg_and_an_unknown_file_type_is_refused(tmp_path: Path) -> None:
+    outcome = imported([Piece("r", "a.csv", 0, 1.0, 2.0)])
     save_cut(outcome, tmp_path / "cut.svg")
     assert "<svg" in (tmp_path / "cut.svg").read_text()
     with pytest.raises(InputError, match=r"name a \.png"):

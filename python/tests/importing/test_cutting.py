@@ -1,4 +1,4 @@
-"""Cutting a long recording into runs: by rests, columns, loads or motion; manual trims."""
+"""Cutting a long recording into runs: by rests, columns, loads or motion; edited cut files."""
 
 from __future__ import annotations
 
@@ -52,7 +52,9 @@ def assert_pieces_cover_the_recording_once(result: jbf.Import, long: Recording) 
 
 
 @pytest.mark.parametrize("columns", ["speed and position", "speed", "position"])
-def test_rests_cut_the_recording(columns: str, long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_at_rests_detected_from_speed_or_position(
+    columns: str, long: Recording, tmp_path: Path
+) -> None:
     csv(tmp_path / "log.csv", long.columns)
     lines = HEAD.splitlines()
     unwanted = {"speed": "position", "position": "velocity"}.get(columns, "nothing")
@@ -70,11 +72,15 @@ def test_rests_cut_the_recording(columns: str, long: Recording, tmp_path: Path) 
     assert all("a rest of" in p.why for p in out)
 
 
-def test_short_rests_do_not_cut(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_not_cut_at_rests_shorter_than_the_minimum(
+    long: Recording, tmp_path: Path
+) -> None:
     assert len(spans(imported(tmp_path, long, 'by = "rests"\nrest_s = 8.0'))) == 1
 
 
-def test_run_number_column_cuts_the_recording(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_where_the_run_number_column_changes(
+    long: Recording, tmp_path: Path
+) -> None:
     result = imported(tmp_path, long, 'by = "run"\ncolumn = "test"', test=long.run)
     assert len(spans(result)) == 4
     assert_pieces_cover_the_recording_once(result, long)
@@ -83,7 +89,7 @@ def test_run_number_column_cuts_the_recording(long: Recording, tmp_path: Path) -
         assert "cut" not in run.extra
 
 
-def test_text_column_cuts_the_recording(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_where_a_text_column_changes(long: Recording, tmp_path: Path) -> None:
     rows = [",".join([*long.columns, "phase"])]
     table = np.column_stack(list(long.columns.values())).tolist()
     for row, number in zip(table, long.run, strict=True):
@@ -93,13 +99,15 @@ def test_text_column_cuts_the_recording(long: Recording, tmp_path: Path) -> None
     assert len(jbf.import_files(tmp_path / "log.csv", tmp_path / "map.toml").runs) == 4
 
 
-def test_set_point_column_cuts_the_recording(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_where_the_set_point_column_changes(
+    long: Recording, tmp_path: Path
+) -> None:
     level = np.where(long.run < 2, 10.0, 20.0)
     result = imported(tmp_path, long, 'by = "set_point"\ncolumn = "level"', level=level)
     assert [len(run) for run in result.runs] == [int((level == x).sum()) for x in (10.0, 20.0)]
 
 
-def test_load_steps_cut_the_recording(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_at_steps_of_the_load(long: Recording, tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     load = np.array([50.0, 80.0, 80.0, 65.0])[long.run.astype(int)] + rng.normal(
         0, 0.5, len(long.run)
@@ -110,13 +118,13 @@ def test_load_steps_cut_the_recording(long: Recording, tmp_path: Path) -> None:
     assert_pieces_cover_the_recording_once(result, long)
 
 
-def test_noise_on_a_constant_load_does_not_cut(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_not_cut_by_noise_on_a_constant_load(long: Recording, tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     load = 20.0 + rng.normal(0, 4.0, len(long.run))
     assert len(spans(imported(tmp_path, long, 'by = "load_step"', load_n=load))) == 1
 
 
-def test_noise_of_the_speed_does_not_hide_rests(long: Recording, tmp_path: Path) -> None:
+def test_rests_are_detected_in_spite_of_noise_of_the_speed(long: Recording, tmp_path: Path) -> None:
     rng = np.random.default_rng(5)
     noisy = long.columns["velocity_m_s"] + rng.normal(0.0, 0.05, len(long.run))
     columns = {k: v for k, v in long.columns.items() if k != "position_m"}
@@ -127,7 +135,7 @@ def test_noise_of_the_speed_does_not_hide_rests(long: Recording, tmp_path: Path)
     assert len(spans(result)) == len(long.motions)
 
 
-def test_change_of_the_kind_of_motion_cuts_the_recording(tmp_path: Path) -> None:
+def test_recording_is_cut_where_the_kind_of_motion_changes(tmp_path: Path) -> None:
     time = np.arange(6000) / 50.0
     speed = np.where(time < 40.0, 0.1, np.where(time < 80.0, 0.1 * np.sin(3.0 * time), -0.05))
     speed[time >= 110.0] = 0.0
@@ -141,7 +149,7 @@ def test_change_of_the_kind_of_motion_cuts_the_recording(tmp_path: Path) -> None
     assert cuts == pytest.approx([40.0, 80.0, 110.0], abs=2.5)
 
 
-def test_restarted_time_always_cuts(long: Recording, tmp_path: Path) -> None:
+def test_recording_is_cut_where_its_time_restarts(long: Recording, tmp_path: Path) -> None:
     parts = []
     for number in range(4):
         own = {n: values[long.run == number] for n, values in long.columns.items()}
@@ -154,14 +162,18 @@ def test_restarted_time_always_cuts(long: Recording, tmp_path: Path) -> None:
         np.testing.assert_array_equal(run.friction_n, part["friction_n"])
 
 
-def test_edited_trims_rename_and_shorten_a_run(long: Recording, tmp_path: Path) -> None:
+def test_unchanged_cut_file_reproduces_the_pieces(long: Recording, tmp_path: Path) -> None:
     first = imported(tmp_path, long, 'by = "rests"')
-    text = (first.folder / "cut.toml").read_text()
-    # An unchanged file of trims gives the same runs.
-    (tmp_path / "cut.toml").write_text(text)
+    (tmp_path / "cut.toml").write_text((first.folder / "cut.toml").read_text())
     arguments = (tmp_path / "log.csv", tmp_path / "map.toml")
     again = jbf.import_files(*arguments, cut_file=tmp_path / "cut.toml")
     assert again.pieces == first.pieces
+
+
+def test_edited_cut_file_renames_and_shortens_a_run(long: Recording, tmp_path: Path) -> None:
+    first = imported(tmp_path, long, 'by = "rests"')
+    text = (first.folder / "cut.toml").read_text()
+    arguments = (tmp_path / "log.csv", tmp_path / "map.toml")
     name = first.pieces[1].name
     edited = text.replace(f'name = "{name}"', 'name = "first strokes"').replace(
         f"to_s = {first.pieces[1].to_s!r}, keep = true", "to_s = 12.5, keep = true"
@@ -173,7 +185,7 @@ def test_edited_trims_rename_and_shorten_a_run(long: Recording, tmp_path: Path) 
     assert run.time_s[-1] == 12.5
 
 
-BAD_TRIMS = {
+INVALID_CUT_FILES = {
     'pieces = [{ name = "a", file = "other.csv", from_s = 0.0, to_s = 9.0 }]': "is not imported",
     'pieces = [{ name = "a", file = "log.csv", from_s = 9.0, to_s = 1.0 }]': "holds nothing",
     'pieces = [{ name = "a/b", file = "log.csv", from_s = 0.0, to_s = 9.0 }]': "no name for a file",
@@ -184,12 +196,14 @@ BAD_TRIMS = {
 }
 
 
-@pytest.mark.parametrize("text", BAD_TRIMS)
-def test_bad_trims_are_refused_without_output(text: str, long: Recording, tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", INVALID_CUT_FILES)
+def test_invalid_cut_file_is_refused_and_writes_no_output(
+    text: str, long: Recording, tmp_path: Path
+) -> None:
     csv(tmp_path / "log.csv", long.columns)
     (tmp_path / "map.toml").write_text(HEAD)
     (tmp_path / "cut.toml").write_text(text)
-    with pytest.raises(InputError, match=BAD_TRIMS[text]):
+    with pytest.raises(InputError, match=INVALID_CUT_FILES[text]):
         jbf.import_files(
             tmp_path / "log.csv", tmp_path / "map.toml", tmp_path / "out",
             cut_file=tmp_path / "cut.toml",
@@ -197,7 +211,9 @@ def test_bad_trims_are_refused_without_output(text: str, long: Recording, tmp_pa
     assert not (tmp_path / "out").exists()
 
 
-def test_plot_and_page_show_runs_and_excluded_pieces(long: Recording, tmp_path: Path) -> None:
+def test_import_has_a_plot_of_its_pieces_a_repr_and_an_html_page(
+    long: Recording, tmp_path: Path
+) -> None:
     result = imported(tmp_path, long, 'by = "rests"')
     axes = result.plot()
     assert len(axes) == 3

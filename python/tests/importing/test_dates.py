@@ -34,7 +34,7 @@ def parsed(cell: str, order: str = DAY_FIRST) -> int:
 
 
 @given(MOMENTS)
-def test_date_agrees_with_the_calendar_in_every_notation(moment: datetime) -> None:
+def test_parsed_date_agrees_with_the_standard_library_in_every_notation(moment: datetime) -> None:
     fraction = f"{moment.microsecond:06d}"
     day, clock = f"{moment:%d.%m.%Y}", f"{moment:%H:%M:%S}"
     for cell in (
@@ -61,12 +61,16 @@ def test_date_agrees_with_the_calendar_in_every_notation(moment: datetime) -> No
         ("11:15 PM", 23.25),
     ],
 )
-def test_twelve_hour_clock_has_twelve_at_midnight_and_noon(cell: str, hour: float) -> None:
+def test_twelve_hour_time_is_parsed_with_12_am_as_midnight_and_12_pm_as_noon(
+    cell: str, hour: float
+) -> None:
     assert parsed(cell) == round(hour * 3600) * 10**9
 
 
 @given(MOMENTS, st.integers(-12 * 4, 14 * 4))
-def test_time_zone_offset_gives_the_same_instant(moment: datetime, quarters: int) -> None:
+def test_local_time_with_an_offset_is_parsed_as_the_same_instant(
+    moment: datetime, quarters: int
+) -> None:
     zone = timezone(timedelta(minutes=15 * quarters))
     local = moment.replace(microsecond=0, tzinfo=timezone.utc).astimezone(zone)
     offset = local.strftime("%z")
@@ -74,7 +78,7 @@ def test_time_zone_offset_gives_the_same_instant(moment: datetime, quarters: int
         assert parsed(f"{local:%Y-%m-%d %H:%M:%S}{written}") == ns(local)
 
 
-def test_time_of_day_that_restarts_is_of_the_next_day() -> None:
+def test_time_of_day_after_midnight_belongs_to_the_next_day() -> None:
     cells = ["23:59:58", "23:59:59.5", "", "00:00:01", "12:00:01", "00:00:00"]
     result = Instants().parse(cells, [not cell for cell in cells])
     day = 86_400 * 10**9
@@ -89,7 +93,9 @@ def test_time_of_day_that_restarts_is_of_the_next_day() -> None:
     seconds = seconds_since(result, int(result[0]))
     assert np.isnan(seconds[2])
     assert seconds[[0, 1, 3]].tolist() == [0.0, 1.5, 3.0]
-    # A small step back is not taken for a new day.
+
+
+def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> None:
     back = Instants().parse(["10:00:01", "10:00:00"], [False, False])
     assert back[1] - back[0] == -(10**9)
 
@@ -114,14 +120,16 @@ def test_invalid_date_is_refused_with_its_row(cell: str) -> None:
         (["2026-01-02", "10:00:00"], DAY_FIRST),
     ],
 )
-def test_order_of_day_and_month_is_found_where_it_is_unambiguous(
+def test_order_of_day_and_month_is_inferred_if_it_is_unambiguous(
     cells: list[str], order: str | None
 ) -> None:
     assert day_or_month_first(cells) == order
 
 
-def test_time_of_day_has_no_date() -> None:
+def test_time_of_day_without_a_date_is_not_written_as_a_date() -> None:
     assert as_date(3600 * 10**9) is None
     assert as_date(ns(datetime(2026, 11, 24, 12, 30))) == "2026-11-24T12:30:00.000000000"
-    # A year of two digits is of this century.
+
+
+def test_year_of_two_digits_is_read_as_a_year_after_2000() -> None:
     assert parsed("24.11.26") == ns(datetime(2026, 11, 24))

@@ -15,7 +15,9 @@ BENCH_MAP, DRIVE_MAP, SEAL_MAP = re.findall(
 )
 
 
-def test_columns_in_other_units_and_run_numbers_are_imported(tmp_path: Path) -> None:
+def test_map_with_units_and_a_run_number_column_imports_two_runs_in_si_units(
+    tmp_path: Path,
+) -> None:
     time = np.arange(400) / 50.0
     rows = [
         f"{t};{5.0 * np.sign(np.cos(t)):.4f};{60.0 * np.sin(t):.4f};{60.0 * np.cos(t):.4f};80;{k}"
@@ -55,7 +57,9 @@ def test_torque_in_percent_is_converted_with_the_rated_torque(tmp_path: Path) ->
     assert fit["F_v"].value == pytest.approx(0.00025 * 0.64 * 60 / (2 * np.pi), rel=0.05)
 
 
-def test_friction_per_pressure_of_a_seal_is_recovered(tmp_path: Path) -> None:
+def test_fit_of_imported_strokes_recovers_the_friction_per_pressure_of_a_seal(
+    tmp_path: Path,
+) -> None:
     """Strokes under three pressures: 2 N, and 1.5 N more for each bar."""
     rng = np.random.default_rng(6)
     for bar in (1, 3, 5):

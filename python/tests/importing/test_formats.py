@@ -1,4 +1,4 @@
-"""One recording in every file format gives the same runs to the bit, and the same diagnosis."""
+"""One recording in every file format gives bit-identical runs; unreadable files are refused."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ friction = "force"
 def imported(folder: Path, name: str, columns: Columns) -> jbf.Import:
     path = folder / name
     WRITERS[name](path, columns)
-    # Formats with their own clock need no time column; fields have the name of their structure.
+    # Formats with a clock need no time column; fields of a structure are named log.FIELD.
     own_clock = name.endswith((".mf4", ".mcap", "bag")) or name.startswith("waveform")
     lead = "log." if name.startswith("structure") else ""
     made = [n for n in columns if not (own_clock and n == "time_s")]
@@ -38,7 +38,7 @@ def imported(folder: Path, name: str, columns: Columns) -> jbf.Import:
     return jbf.import_files(path, folder / f"{name}.toml")
 
 
-def cells(result: jbf.Import) -> list[list[str]]:
+def lines_of_runs(result: jbf.Import) -> list[list[str]]:
     """The lines of each written run."""
     names = [piece.name for piece in result.pieces if piece.keep]
     return [(result.folder / f"{name}.csv").read_text().splitlines() for name in names]
@@ -51,19 +51,19 @@ def short() -> Columns:
 
 @pytest.fixture(scope="module")
 def wanted(short: Columns, tmp_path_factory: pytest.TempPathFactory) -> list[list[str]]:
-    return cells(imported(tmp_path_factory.mktemp("wanted"), "r.csv", short))
+    return lines_of_runs(imported(tmp_path_factory.mktemp("wanted"), "r.csv", short))
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_every_format_gives_the_same_runs_to_the_bit(
+def test_recording_in_every_format_gives_bit_identical_runs(
     name: str, short: Columns, wanted: list[list[str]], tmp_path: Path
 ) -> None:
     if name.endswith(".xlsx"):
         # A spreadsheet stores 15 digits of a number.
         short = {column: np.round(values, 9) for column, values in short.items()}
         (tmp_path / "wanted").mkdir()
-        wanted = cells(imported(tmp_path / "wanted", "r.csv", short))
-    result = cells(imported(tmp_path, name, short))
+        wanted = lines_of_runs(imported(tmp_path / "wanted", "r.csv", short))
+    result = lines_of_runs(imported(tmp_path, name, short))
     assert len(result) == 3
     header = result[0][0].split(",")
     assert set(header) == set(short)
@@ -95,7 +95,9 @@ def test_format_is_recognised_by_its_first_bytes(name: str, short: Columns, tmp_
 # asammdf closes a truncated file twice.
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("name", [n for n in WRITERS if n not in ("bag", "r.csv")])
-def test_truncated_file_is_refused_in_one_line(name: str, short: Columns, tmp_path: Path) -> None:
+def test_truncated_file_is_refused_in_one_line_and_writes_no_output(
+    name: str, short: Columns, tmp_path: Path
+) -> None:
     path = tmp_path / name
     WRITERS[name](path, short)
     data = path.read_bytes()
@@ -109,7 +111,7 @@ def test_truncated_file_is_refused_in_one_line(name: str, short: Columns, tmp_pa
 
 
 @pytest.mark.parametrize("known", [f for f in FORMATS if f.extra], ids=lambda f: f.extra)
-def test_missing_library_is_reported_with_its_extra(
+def test_missing_library_of_a_format_is_reported_with_the_extra_to_install(
     known: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / f"a{(known.suffixes or ('.mat',))[0]}"
@@ -131,7 +133,7 @@ def test_missing_library_is_reported_with_its_extra(
 
 @pytest.mark.parametrize("version", ["v7", "v7.3"])
 @pytest.mark.filterwarnings("ignore:.*timedelta64")
-def test_timetable_of_matlab_gives_its_own_time(
+def test_matlab_timetable_is_imported_with_its_row_times(
     version: str, short: Columns, tmp_path: Path
 ) -> None:
     matio = pytest.importorskip("matio")

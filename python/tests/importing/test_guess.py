@@ -88,7 +88,7 @@ CERTAIN = {
         text("Uhrzeit;Kraft [N];Weg [mm]\n", "clock f x", sep=";", decimal=","),
         {"time_s": "Uhrzeit"},
     ),
-    "the unit of time by speed and place": (
+    "the unit of time from speed and position": (
         text("time,Position [mm],Speed [mm/s],Force [N]\n", "ms x v f"),
         {"time_s": "`time` [ms]"},
     ),
@@ -108,7 +108,9 @@ CERTAIN = {
 
 
 @pytest.mark.parametrize("case", CERTAIN)
-def test_certain_columns_are_mapped_and_imported(case: str, tmp_path: Path) -> None:
+def test_columns_with_unambiguous_headers_are_mapped_and_imported(
+    case: str, tmp_path: Path
+) -> None:
     content, wanted = CERTAIN[case]
     result = look(written(tmp_path, content))
     assert result.questions == ()
@@ -123,14 +125,14 @@ def test_certain_columns_are_mapped_and_imported(case: str, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252", "utf-16", "latin-1"])
-def test_units_are_read_in_every_encoding(encoding: str, tmp_path: Path) -> None:
+def test_micrometre_unit_is_read_in_every_text_encoding(encoding: str, tmp_path: Path) -> None:
     content = text("Zeit [s];Kraft [N];Weg [µm]\n", "t f x", sep=";", decimal=",")
     result = look(written(tmp_path, content, encoding=encoding))
     assert {e.key: e.expression for e in result.entries}["position_m"] == "`Weg [µm]`"
     assert result.sure
 
 
-def test_compressed_text_is_imported(tmp_path: Path) -> None:
+def test_run_of_a_gzip_compressed_csv_is_named_without_the_suffixes(tmp_path: Path) -> None:
     path = tmp_path / "run_0.5.csv.gz"
     path.write_bytes(gzip.compress(text("time_s,position_m,friction_n\n", "t m f").encode()))
     assert import_files(path).runs[0].name == "run_0.5"
@@ -148,7 +150,7 @@ UNCERTAIN = {
     "no header": (text("", "t x f"), ["time_s", "friction", "motion"]),
     "the same name twice": (text("t [s],F [N],F [N],x [mm]\n", "t f f x"), ["friction_n"]),
     "a unit that does not fit": (text("t [s],Force [mm],x [mm]\n", "t f x"), ["Force [mm]"]),
-    "a speed that is not the place's": (
+    "a speed that is not the derivative of the position": (
         text("t [s],x [m],v [mm/s],F [N]\n", "t x v f"),
         ["velocity_m_s"],
     ),
@@ -160,7 +162,7 @@ UNCERTAIN = {
         text("time_s,ActPos_mm,ActTorque_pct\n", "t x pct"),
         ["drive.rated_torque_n_m", "drive.pitch_m"],
     ),
-    "a bearing's sizes": (
+    "missing dimensions of a bearing": (
         text("time_s,angle_rad,velocity_m_s,friction_n,load_n\n", "t x v f load"),
         ["bearing"],
     ),
@@ -181,7 +183,7 @@ UNCERTAIN = {
 
 
 @pytest.mark.parametrize("case", UNCERTAIN)
-def test_uncertain_columns_become_questions_and_stop_the_import(case: str, tmp_path: Path) -> None:
+def test_ambiguous_columns_become_questions_and_stop_the_import(case: str, tmp_path: Path) -> None:
     content, places = UNCERTAIN[case]
     path = written(tmp_path, content)
     result = look(path)
@@ -204,7 +206,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("cell", NUMBERS)
-def test_number_notations_are_read(cell: str, tmp_path: Path) -> None:
+def test_numbers_are_read_in_every_notation(cell: str, tmp_path: Path) -> None:
     sep, number = NUMBERS[cell]
     mark = "," if "," in cell and '"' not in cell else "."
     rows = [sep.join((f"{0.5 * i + 0.25:.2f}".replace(".", mark), cell, str(i))) for i in range(30)]
@@ -236,7 +238,7 @@ def test_time_stamps_since_1970_keep_their_resolution(unit: str, tmp_path: Path)
         assert result.ledger["files"][0]["start"].startswith("2025-11-22")
 
 
-def test_typographic_minus_is_read(tmp_path: Path) -> None:
+def test_unicode_minus_sign_is_read_as_negative(tmp_path: Path) -> None:
     content = text("t [s],F [N],x [mm]\n", "t f x").replace("-", "\u2212")
     friction = import_files(written(tmp_path, content)).runs[0].friction_n
     assert friction is not None

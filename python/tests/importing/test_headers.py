@@ -1,4 +1,4 @@
-"""Column headers of instruments: the unit and the quantity that each is taken for."""
+"""Column headers of instruments: the unit and the quantity that are read from each."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ KNOWN = [
 
 
 @pytest.mark.parametrize(("header", "unit", "kind"), KNOWN, ids=[row[0] for row in KNOWN])
-def test_header_gives_unit_and_quantity(header: str, unit: str, kind: str | None) -> None:
+def test_unit_and_quantity_are_read_from_a_header(header: str, unit: str, kind: str | None) -> None:
     result = understood(header)
     assert (result.unit, result.kind) == (unit, kind)
 
@@ -67,21 +67,24 @@ def test_header_gives_unit_and_quantity(header: str, unit: str, kind: str | None
     "header",
     ["setpoint_rpm", "Soll-Drehzahl [1/min]", "pos_ref_mm", "Consigne (N)", "Target Speed (rpm)"],
 )
-def test_set_point_is_distinguished_from_measurement(header: str) -> None:
+def test_header_of_a_set_point_is_distinguished_from_that_of_a_measurement(header: str) -> None:
     assert understood(header).setpoint
     assert not understood(header.replace("Soll-", "Ist-").replace("Target", "Actual")).setpoint or (
         "ref" in header or "setpoint" in header or "Consigne" in header
     )
 
 
-def test_unit_and_words_decide_between_quantities() -> None:
+def test_symbols_f_and_t_are_read_as_force_and_time() -> None:
     assert understood("F_N [N]").kind == "force"
     assert understood("T [°C]").kind == "time"  # the guess rejects it later by its unit
+
+
+def test_motor_speed_is_distinguished_from_other_speeds() -> None:
     assert understood("Motor Speed [rpm]").motor
     assert not understood("Speed [rpm]").motor
 
 
-def test_bracketed_unit_takes_precedence_over_a_suffix() -> None:
+def test_unit_is_read_from_brackets_or_an_argument_and_not_from_a_suffix_or_an_index() -> None:
     assert understood("Speed_m [rpm]").unit == "rpm"
     assert understood("position[0]").unit == ""
     assert understood("Kraft", "kN").unit == "kN"

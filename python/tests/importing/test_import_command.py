@@ -1,4 +1,4 @@
-"""`jbf import`: the guessed map, the imported folder, and bad files, maps and commands."""
+"""`jbf import`: the guessed map, the imported folder, and refused files, maps and commands."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def printed(capsys: pytest.CaptureFixture[str], command: str, code: int = 0) -> str:
-    """What a command prints on standard output, or on standard error where it fails."""
+    """Return the standard output of a command, or its standard error if it fails."""
     assert main(shlex.split(command)) == code
     out = capsys.readouterr()
     return out.out if code == 0 else out.err
@@ -45,7 +45,7 @@ def files(folder: Path) -> dict[Path, bytes]:
     return {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-def test_import_without_a_map_writes_one_that_imports(
+def test_import_without_a_map_writes_a_map_that_can_be_imported(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "map.toml").unlink()
@@ -77,7 +77,7 @@ def test_open_questions_are_written_to_the_map_and_reported(
     assert not (folder / "runs").exists()
 
 
-def test_existing_map_is_replaced_only_by_force(
+def test_existing_map_is_replaced_only_with_the_force_option(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert "is there already" in printed(capsys, "import log.csv", 2)
@@ -86,7 +86,7 @@ def test_existing_map_is_replaced_only_by_force(
     assert (folder / "map.toml").read_text() != MAP
 
 
-def test_existing_import_is_replaced_only_by_force(
+def test_import_folder_is_replaced_only_with_force_and_never_if_it_holds_other_files(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     command = "import log.csv --map map.toml --out runs"
@@ -100,7 +100,7 @@ def test_existing_import_is_replaced_only_by_force(
     assert "holds other files" in printed(capsys, command.replace("runs", "mine") + " --force", 2)
 
 
-def test_import_without_a_folder_writes_nothing(
+def test_import_without_an_output_folder_writes_nothing(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = files(folder)
@@ -108,7 +108,9 @@ def test_import_without_a_folder_writes_nothing(
     assert files(folder) == before
 
 
-def test_cut_is_drawn_into_a_picture(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_import_with_the_plot_option_writes_a_png_and_reports_the_runs(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "map.toml").write_text(MAP + '[cut]\nby = "rests"\n')
     text = printed(capsys, "import log.csv --map map.toml --out runs --plot cut.png")
     assert "3 runs" in text
@@ -116,7 +118,7 @@ def test_cut_is_drawn_into_a_picture(folder: Path, capsys: pytest.CaptureFixture
     assert (folder / "cut.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_fit_and_compare_accept_an_imported_folder_or_a_map(
+def test_fit_and_compare_give_equal_results_from_an_imported_folder_and_from_a_map(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "map.toml").write_text(MAP + '[cut]\nby = "rests"\n')
@@ -133,7 +135,7 @@ def test_fit_and_compare_accept_an_imported_folder_or_a_map(
     assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(12.0, abs=0.2)
 
 
-def cell(text: str, row: int, column: int, new: str) -> str:
+def set_cell(text: str, row: int, column: int, new: str) -> str:
     lines = text.splitlines()
     cells = lines[row - 1].split(",")
     cells[column] = new
@@ -142,17 +144,19 @@ def cell(text: str, row: int, column: int, new: str) -> str:
 
 
 BAD_FILES = {
-    "a word for a number": (lambda t: cell(t, 30, 3, "abc"), 'row 30, column friction_n: "abc"'),
-    "a row too long": (lambda t: cell(t, 9, 2, "1,2"), "row 9: has 6 cells"),
+    "a word for a number": (
+        lambda t: set_cell(t, 30, 3, "abc"), 'row 30, column friction_n: "abc"',
+    ),
+    "a row too long": (lambda t: set_cell(t, 9, 2, "1,2"), "row 9: has 6 cells"),
     "a row too short": (lambda t: t.replace(t.splitlines()[8], "1"), "row 9: has 1 cell"),
-    "time runs back": (lambda t: cell(t, 500, 0, "5.0"), "row 500: sample 499: time runs back"),
+    "time runs back": (lambda t: set_cell(t, 500, 0, "5.0"), "row 500: sample 499: time runs back"),
     "no numbers": (lambda t: "a,b\nc,d\n", "holds no rows of numbers"),
     "a few samples": (lambda t: "\n".join(t.splitlines()[:6]), "nothing is left to be a run"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BAD_FILES)
-def test_bad_recording_is_refused_with_its_row(
+def test_invalid_recording_is_refused_in_one_line_and_writes_nothing(
     case: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     change, fragment = BAD_FILES[case]
@@ -201,7 +205,7 @@ BAD_MAPS = {
 
 
 @pytest.mark.parametrize("text", BAD_MAPS, ids=range(len(BAD_MAPS)))
-def test_bad_map_is_refused_with_its_key(
+def test_invalid_map_is_refused_in_one_line_and_writes_nothing(
     text: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "map.toml").write_text(text)
@@ -228,7 +232,7 @@ BAD_COMMANDS = {
 
 
 @pytest.mark.parametrize("command", BAD_COMMANDS)
-def test_bad_command_is_refused_in_one_line(
+def test_invalid_import_command_is_refused_in_one_line_and_writes_nothing(
     command: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = files(folder)
@@ -246,13 +250,16 @@ def test_error_about_open_questions_can_be_pickled(folder: Path) -> None:
     assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
 
 
-def test_read_recording_gives_the_runs_of_import_files(folder: Path) -> None:
+def test_read_recording_returns_the_same_runs_as_import_files(folder: Path) -> None:
     rig, runs = jbf.read_recording("log.csv", "map.toml")
     assert rig.drive is not None
     assert len(runs) == 1
     result = jbf.import_files(["log.csv"], jbf.read_map("map.toml"), "runs")
     np.testing.assert_array_equal(result.runs[0].friction_n, runs[0].friction_n)
     assert result.to_dict() == json.loads((folder / "runs" / "import.json").read_text())
+
+
+def test_look_maps_the_column_names_of_jbf_without_questions(folder: Path) -> None:
     guess = jbf.look("log.csv")
     assert guess.sure
     assert dict(guess.map().columns)["friction_n"] == "`friction_n`"

@@ -53,7 +53,9 @@ def imported(folder: Path) -> jbf.Import:
     return jbf.import_files([folder / "a.csv", folder / "b.csv"], folder / "map.toml")
 
 
-def test_columns_of_an_import_are_its_pieces(imported: jbf.Import) -> None:
+def test_import_table_has_a_row_for_each_piece_and_a_reason_for_each_excluded_one(
+    imported: jbf.Import,
+) -> None:
     columns = import_columns(imported)
     assert sum(columns["keep"]) == len(imported.runs) == 4
     for piece, name, begin, end, keep in zip(
@@ -69,7 +71,7 @@ def test_columns_of_an_import_are_its_pieces(imported: jbf.Import) -> None:
     assert all(reason for reason, keep in zip(columns["why"], kept, strict=True) if not keep)
 
 
-def test_each_channel_is_listed_once_with_its_expression_and_units(imported: jbf.Import) -> None:
+def test_each_channel_is_listed_once_with_its_conversion_of_units(imported: jbf.Import) -> None:
     rows = channel_rows(imported.ledger["files"])
     assert [row[0] for row in rows] == ["position_m", "friction_n"]
     position, friction = rows
@@ -87,7 +89,7 @@ def test_dropped_rows_are_counted_for_their_file_only(imported: jbf.Import) -> N
     assert left_out_lines({"files": [imported.ledger["files"][1] | {"notes": []}]}) == []
 
 
-def test_provenance_holds_the_hash_of_each_file(folder: Path, imported: jbf.Import) -> None:
+def test_provenance_contains_the_sha256_of_each_file(folder: Path, imported: jbf.Import) -> None:
     rows = provenance_rows([imported.ledger])
     assert [row[0] for row in rows] == ["a.csv", "b.csv"]
     for name, digest, _ in rows:
@@ -95,7 +97,7 @@ def test_provenance_holds_the_hash_of_each_file(folder: Path, imported: jbf.Impo
         assert len(digest) >= 12
 
 
-def test_report_and_page_list_every_run(imported: jbf.Import) -> None:
+def test_text_report_and_html_page_list_every_run(imported: jbf.Import) -> None:
     text, page = import_report(imported), import_page(imported)
     for run in imported.runs:
         assert run.name in text
@@ -103,7 +105,7 @@ def test_report_and_page_list_every_run(imported: jbf.Import) -> None:
     assert "<svg" in page
 
 
-def test_look_report_lists_certain_entries_and_open_questions(tmp_path: Path) -> None:
+def test_report_of_look_lists_guessed_entries_and_open_questions(tmp_path: Path) -> None:
     rows = "".join(f"{i},{i},{i}\n" for i in range(20))
     (tmp_path / "log.csv").write_text("time,Weg [mm],Kraft [N]\n" + rows)
     guess = jbf.look(tmp_path / "log.csv")

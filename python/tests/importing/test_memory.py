@@ -62,7 +62,7 @@ def write_csv(path: Path) -> None:
 
 @pytest.mark.extended
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads memory from /proc")
-def test_a_day_of_samples_is_imported_in_bounded_memory(tmp_path: Path) -> None:
+def test_recording_of_one_day_is_imported_within_500_mb_of_memory(tmp_path: Path) -> None:
     write_csv(tmp_path / "day.csv")
     (tmp_path / "map.toml").write_text(MAP)
     arguments = [str(tmp_path / part) for part in ("day.csv", "map.toml", "out")]

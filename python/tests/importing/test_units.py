@@ -38,18 +38,18 @@ def test_unit_agrees_with_its_definition(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["", "foo", "N//m", "m^", "(m", "m)", "N m ^2 x", "Kanal", "#", "1/"]
 )
-def test_text_that_is_no_unit_gives_none(text: str) -> None:
+def test_parsing_text_that_is_not_a_unit_returns_none(text: str) -> None:
     assert parse_unit(text) is None
 
 
-def test_temperature_scales_have_their_offsets() -> None:
+def test_temperatures_are_converted_between_celsius_fahrenheit_and_kelvin() -> None:
     celsius, fahrenheit, kelvin = (parse_unit(u) for u in ("°C", "°F", "K"))
     assert celsius is not None
     assert fahrenheit is not None
     assert kelvin is not None
     assert fahrenheit.converted(np.array([32.0, 212.0]), celsius) == pytest.approx([0.0, 100.0])
     assert kelvin.converted(np.array([293.15]), celsius) == pytest.approx([20.0])
-    # No conversion leaves the bits unchanged.
+    # A conversion to the same unit leaves the bits unchanged.
     assert celsius.converted(np.array([22.5]), celsius).tolist() == [22.5]
 
 
@@ -62,7 +62,9 @@ def test_temperature_scales_have_their_offsets() -> None:
         (36.0, "km/h", "m/s", 10.0),
     ],
 )
-def test_quantity_is_converted(value: float, unit: str, wanted: str, expected: float) -> None:
+def test_angles_and_speeds_are_converted_between_units(
+    value: float, unit: str, wanted: str, expected: float
+) -> None:
     source, target = parse_unit(unit), parse_unit(wanted)
     assert source is not None
     assert target is not None
@@ -77,7 +79,7 @@ def test_milliseconds_convert_to_the_nearest_double(count: int) -> None:
     assert ms.converted(np.array([float(count)]), s)[0] == float(Fraction(count, 1000))
 
 
-def test_suffix_of_a_name_is_a_unit() -> None:
+def test_unit_is_read_from_the_suffix_of_a_column_name() -> None:
     assert unit_of_name("torque_n_m") == ("torque", parse_unit("N m"))
     assert unit_of_name("speed") is None
 
@@ -123,7 +125,7 @@ def trees() -> st.SearchStrategy[tuple[str, str]]:
 @settings(deadline=None)
 @given(trees())
 @example(("-(1.0 / (1.0 - 1.0))", "(-(float64(1.0) / (float64(1.0) - float64(1.0))))"))
-def test_expression_agrees_with_python(tree: tuple[str, str]) -> None:
+def test_random_expression_gives_the_same_values_as_python(tree: tuple[str, str]) -> None:
     ours, python = tree
     result = evaluate(parse_expression(ours, MEANT), VALUES, dict.fromkeys(NAMES, ""))
     with np.errstate(all="ignore"):
@@ -144,7 +146,7 @@ def test_expression_agrees_with_python(tree: tuple[str, str]) -> None:
         ("2 [kN] * sign(0.1 [mm])", "N", 2000.0),
     ],
 )
-def test_functions_convert_their_units(text: str, unit: str, known: float) -> None:
+def test_functions_convert_the_units_of_their_arguments(text: str, unit: str, known: float) -> None:
     result = evaluate(parse_expression(text, BARE), VALUES, UNITS)
     wanted = parse_unit(unit) if unit else ONE
     assert wanted is not None
@@ -160,14 +162,14 @@ def test_functions_convert_their_units(text: str, unit: str, known: float) -> No
         ("abs(20 [C])", "has a zero of its own"),
     ],
 )
-def test_functions_of_wrong_units_are_refused(text: str, fragment: str) -> None:
+def test_functions_refuse_arguments_with_wrong_units(text: str, fragment: str) -> None:
     with pytest.raises(InputError, match=fragment):
         evaluate(parse_expression(text, BARE), VALUES, UNITS)
 
 
 @given(st.text(max_size=40))
 @settings(deadline=None, max_examples=40)
-def test_arbitrary_text_is_an_expression_or_refused_in_one_line(text: str) -> None:
+def test_arbitrary_text_is_parsed_as_an_expression_or_refused_in_one_line(text: str) -> None:
     refused = None
     try:
         node = parse_expression(text, MEANT)
@@ -191,7 +193,7 @@ def test_column_names_may_contain_units_and_operators() -> None:
     )
 
 
-def test_counts_turns_pitch_and_percent_are_converted() -> None:
+def test_counts_turns_pitch_pressure_and_percent_are_converted_in_expressions() -> None:
     assert value("F [counts] / 4096 [counts/rev]", "angle_rad") == pytest.approx(
         VALUES["F"] / 4096 * 2 * math.pi
     )
@@ -222,13 +224,13 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "key"), REFUSED)
-def test_meaningless_expression_is_refused(text: str, key: str) -> None:
+def test_expression_with_a_wrong_unit_column_or_syntax_is_refused(text: str, key: str) -> None:
     with pytest.raises(InputError) as refused:
         value(text, key)
     assert REFUSED[text, key] in str(refused.value)
 
 
 @pytest.mark.parametrize("key", ["fricton_n", "position_mm", "velocity_ms", "torque_nm"])
-def test_misspelt_target_is_refused_with_a_suggestion(key: str) -> None:
+def test_misspelt_target_column_is_refused_with_a_suggestion(key: str) -> None:
     with pytest.raises(InputError, match="did you mean"):
         wanted_unit(key)

@@ -1,4 +1,4 @@
-"""Many parameter sets or motions at once give the same friction as each alone."""
+"""Friction of many parameter sets or motions in one call equals that of separate calls."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ def parameter_sets(count: int) -> dict[str, np.ndarray]:
     return {name: value * random.uniform(0.8, 1.2, count) for name, value in LAW.items()}
 
 
-def test_each_parameter_set_has_its_own_column() -> None:
+def test_column_of_each_parameter_set_equals_its_separate_batch() -> None:
     sets = parameter_sets(50)
-    together = jbf.batch(RIG, SPEED, DT_S, **sets)
-    assert together.shape == (len(SPEED), 50)
+    batch = jbf.batch(RIG, SPEED, DT_S, **sets)
+    assert batch.shape == (len(SPEED), 50)
     for i in (0, 17, 49):
-        alone = jbf.batch(RIG, SPEED, DT_S, **{name: v[i] for name, v in sets.items()})
-        assert np.array_equal(alone[:, 0], together[:, i])
+        separate = jbf.batch(RIG, SPEED, DT_S, **{name: v[i] for name, v in sets.items()})
+        assert np.array_equal(separate[:, 0], batch[:, i])
 
 
-def test_each_motion_has_its_own_column() -> None:
+def test_column_of_each_motion_equals_its_separate_batch() -> None:
     speeds = np.outer(SPEED, np.linspace(0.5, 1.5, 20))
-    together = jbf.batch(RIG, speeds, DT_S, **LAW, load_n=np.full(20, 104.0))
-    alone = jbf.batch(RIG, speeds[:, 7], DT_S, **LAW)
-    assert np.array_equal(together[:, 7], alone[:, 0])
+    batch = jbf.batch(RIG, speeds, DT_S, **LAW, load_n=np.full(20, 104.0))
+    separate = jbf.batch(RIG, speeds[:, 7], DT_S, **LAW)
+    assert np.array_equal(batch[:, 7], separate[:, 0])
 
 
 def test_batch_agrees_with_the_prediction_of_the_model_while_sliding() -> None:
@@ -43,7 +43,7 @@ def test_batch_agrees_with_the_prediction_of_the_model_while_sliding() -> None:
     assert np.max(np.abs(104.0 * coefficient - force)[sliding]) < 1e-3
 
 
-def test_sum_of_squares_is_that_of_the_differences_from_the_data() -> None:
+def test_batch_with_data_returns_the_sums_of_squared_differences() -> None:
     sets = parameter_sets(40)
     friction = jbf.batch(RIG, SPEED, DT_S, **sets)
     data = friction[:, 3]
@@ -52,7 +52,7 @@ def test_sum_of_squares_is_that_of_the_differences_from_the_data() -> None:
     assert squares == pytest.approx(((friction - data[:, None]) ** 2).sum(axis=0), rel=1e-12)
 
 
-def test_single_precision_is_written_into_a_given_array() -> None:
+def test_single_precision_result_is_written_into_the_out_array() -> None:
     sets = parameter_sets(40)
     out = np.empty((len(SPEED), 40), np.float32)
     single = jbf.batch(RIG, SPEED, DT_S, **sets, dtype=np.float32, out=out)
@@ -60,6 +60,6 @@ def test_single_precision_is_written_into_a_given_array() -> None:
     assert np.max(np.abs(single - jbf.batch(RIG, SPEED, DT_S, **sets))) < 2e-4
 
 
-def test_motions_that_do_not_match_the_parameter_sets_are_refused() -> None:
+def test_batch_is_refused_if_the_numbers_of_motions_and_parameter_sets_differ() -> None:
     with pytest.raises(jbf.InputError, match="velocity_m_s"):
         jbf.batch(RIG, np.zeros((10, 3)), DT_S, **parameter_sets(4))

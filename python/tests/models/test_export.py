@@ -15,7 +15,7 @@ from jbf.models.catalogue import Parameter
 from jbf.models.chain import MAX_STEP_S, imposed
 
 ROOT = Path(__file__).resolve().parents[3]
-OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
+TEMPERATURE_EFFECTS = ("dry_temperature_dependence", "viscous_temperature_dependence")
 
 RUST_MAIN = """
 mod drag;
@@ -78,10 +78,10 @@ where
     let temperature_c = (!celsius[0].is_nan()).then_some(celsius.as_slice());
     let record =
         Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c };
-    let mut whole = vec![0.0; time_s.len()];
-    predict(&model, &record, MAX_STEP_S, |i, f| whole[i] = f);
+    let mut predicted = vec![0.0; time_s.len()];
+    predict(&model, &record, MAX_STEP_S, |i, f| predicted[i] = f);
     let (f64s, f32s) = (step(&model, c, 0.01), step(&small, c, 0.01));
-    for ((a, b), c) in whole.iter().zip(f64s).zip(f32s) {
+    for ((a, b), c) in predicted.iter().zip(f64s).zip(f32s) {
         println!("{:016x} {:016x} {:08x}", a.to_bits(), b.to_bits(), c.to_bits());
     }
 }
@@ -94,14 +94,14 @@ C_MAIN = """
 
 #include "model.h"
 
-#define MOST 5000
-static double column[6][MOST], whole[MOST];
+#define MAX_ROWS 5000
+static double column[6][MAX_ROWS], predicted[MAX_ROWS];
 
 int main(int argc, char **argv) {
   size_t n = 0;
   FILE *file = argc > 1 ? fopen(argv[1], "r") : NULL;
   if (!file) return 1;
-  while (n < MOST && fscanf(file, "%lf %lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
+  while (n < MAX_ROWS && fscanf(file, "%lf %lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
                             &column[2][n], &column[3][n], &column[4][n], &column[5][n]) == 6)
     n++;
   model_f64 model;
@@ -117,7 +117,7 @@ int main(int argc, char **argv) {
   if (model_f64_init(NULL, &error) != JBF_NULL) return 3;
   const double *celsius = isnan(column[5][0]) ? NULL : column[5];
   jbf_record record = {n, column[0], column[1], column[2], column[3], column[4], celsius};
-  if (model_f64_predict(&model, &record, MAX_STEP_S, whole)) return 4;
+  if (model_f64_predict(&model, &record, MAX_STEP_S, predicted)) return 4;
   for (size_t i = 0; i < n; i++) {
     jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i],
                         column[3][i], column[4][i], column[5][i]};
@@ -128,7 +128,7 @@ int main(int argc, char **argv) {
                 : model_f32_start(&small, &small_state, &s);
     unsigned long long a, b;
     unsigned c;
-    memcpy(&a, &whole[i], 8);
+    memcpy(&a, &predicted[i], 8);
     memcpy(&b, &f, 8);
     memcpy(&c, &g, 4);
     printf("%016llx %016llx %08x\\n", a, b, c);
@@ -167,7 +167,7 @@ def models() -> dict[str, jbf.Model]:
         "gear": jbf.Model(
             jbf.Rig(),
             law="elasto_plastic",
-            effects=["dry_load_dependence", *OF_TEMPERATURE],
+            effects=["dry_load_dependence", *TEMPERATURE_EFFECTS],
         ),
         "warm": jbf.Model(jbf.Rig.thesis("4.2"), effects=["vogel_viscosity"]),
     }
@@ -178,7 +178,7 @@ def motion(model: jbf.Model) -> jbf.Run:
     time_s = np.arange(0.0, 8.0, 0.01)
     speed = 0.05 * np.sin(2.0 * time_s) * (np.abs(time_s - 4.0) > 0.5)
     path = np.cumsum(speed) * 0.01
-    thermal = {"vogel_viscosity", *OF_TEMPERATURE} & set(model.effects)
+    thermal = {"vogel_viscosity", *TEMPERATURE_EFFECTS} & set(model.effects)
     celsius = 25.0 + 2.0 * time_s if thermal else None
     if model.rig.bearing is None:
         return jbf.Run("motion", time_s, speed, position_m=path, temperature_c=celsius)
@@ -237,13 +237,13 @@ def rust(prepared: Path) -> dict[str, list[list[str]]]:
 
 
 def bits(text: str) -> float:
-    """The number with the given bits."""
+    """Return the float64 with the given bits, in hexadecimal digits."""
     return float(np.array([int(text, 16)], dtype=np.uint64).view(np.float64)[0])
 
 
 @pytest.mark.extended
 @pytest.mark.parametrize("name", models())
-def test_exported_rust_predicts_the_bits_of_the_model(
+def test_exported_rust_predicts_the_same_bits_as_the_model(
     rust: dict[str, list[list[str]]], name: str
 ) -> None:
     model = models()[name]
@@ -251,6 +251,13 @@ def test_exported_rust_predicts_the_bits_of_the_model(
     got = [bits(row[0]) for row in rust[name] if row]
     assert got == expected
     assert len(set(got)) > 100
+
+
+@pytest.mark.extended
+@pytest.mark.parametrize("name", models())
+def test_exported_rust_in_single_precision_agrees_with_double_precision(
+    rust: dict[str, list[list[str]]], name: str
+) -> None:
     single = [np.uint32(int(row[2], 16)).view(np.float32) for row in rust[name] if row]
     double = [bits(row[1]) for row in rust[name] if row]
     assert np.allclose(single, double, atol=2e-3 * np.max(np.abs(double)))
@@ -258,7 +265,7 @@ def test_exported_rust_predicts_the_bits_of_the_model(
 
 @pytest.mark.extended
 @pytest.mark.parametrize("name", models())
-def test_exported_c_has_the_bits_of_rust(
+def test_exported_c_returns_the_same_bits_as_exported_rust(
     prepared: Path, rust: dict[str, list[list[str]]], name: str
 ) -> None:
     compiler = shutil.which("cc") or shutil.which("gcc")
@@ -280,7 +287,7 @@ def test_exported_c_has_the_bits_of_rust(
 
 
 @pytest.mark.parametrize("name", models())
-def test_exported_source_holds_every_constant_of_the_model(name: str) -> None:
+def test_exported_source_contains_every_constant_of_the_model(name: str) -> None:
     model = models()[name]
     rust, c = export.rust(model), export.c(model)
     for dotted, parameter in model.parameters.items():
@@ -310,9 +317,7 @@ def test_exported_source_holds_every_constant_of_the_model(name: str) -> None:
         assert f"JBF_CLOCK_{clock}" in c
 
 
-def test_export_command_writes_rust_and_c(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_export_command_writes_rust_and_c_source(tmp_path: Path) -> None:
     model = models()["drag"]
     path = tmp_path / "model.toml"
     model.save(path)
@@ -321,11 +326,18 @@ def test_export_command_writes_rust_and_c(
     assert code == 0
     assert wanted[0].read_text() == export.rust(model, "model.toml")
     assert wanted[1].read_text() == export.c(model, "model.toml")
+
+
+def test_export_command_without_an_output_file_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "model.toml"
+    models()["drag"].save(path)
     assert cli.main(["export", str(path)]) == 2
     assert "nothing to write" in capsys.readouterr().err
 
 
-def test_user_effect_cannot_be_exported() -> None:
+def test_model_with_a_user_effect_cannot_be_exported() -> None:
     def wiper(velocity_m_s: np.ndarray, k_n: float) -> np.ndarray:
         return k_n * np.sign(velocity_m_s)
 
@@ -339,7 +351,7 @@ def test_user_effect_cannot_be_exported() -> None:
         jbf.forget_effect("wiper")
 
 
-def test_effect_at_an_infinite_null_is_not_exported() -> None:
+def test_effect_is_exported_unless_its_parameter_is_at_an_infinite_null() -> None:
     for sigma, written in ((2e3, True), (np.inf, False)):
         values = {"presliding.sigma": sigma}
         model = jbf.Model(jbf.Rig.thesis("4.2"), effects=["presliding"], parameters=values)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from shared import shared
 
-NEWTONS = [law for law in jbf.laws().values() if not law.needs_bearing]
+DRIVE_LAWS = [law for law in jbf.laws().values() if not law.needs_bearing]
 T = np.arange(0.0, 20.0, 0.004)
 EXTENDED = pytest.mark.extended
 
@@ -27,7 +27,7 @@ def runs_of(law: str, amplitude_m: float, noise_n: float, **p: float) -> list[jb
     return result
 
 
-def check(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within: float) -> None:
+def check_recovery(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within: float) -> None:
     assert fit.rms_n < 1.05 * noise_n, fit.report()
     for name, value in truth.items():
         result = fit.parameters[name]
@@ -35,37 +35,37 @@ def check(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within: float) 
 
 
 @pytest.mark.parametrize("size", [0.02, pytest.param(1.0, marks=EXTENDED), 40.0])
-def test_stribeck_parameters_are_recovered_at_any_size(size: float) -> None:
+def test_stribeck_parameters_are_recovered_at_each_force_scale(size: float) -> None:
     p = {"fc": 6.0 * size, "fs": 9.0 * size, "vs": 0.004, "delta": 1.6, "fv": 40.0 * size}
     fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="stribeck")
     truth = {"F_c_n": p["fc"], "F_s_n": p["fs"], "v_s_m_s": 0.004, "F_v_n_s_m": p["fv"]}
-    check(fit, truth, 0.05 * size, 0.04)
+    check_recovery(fit, truth, 0.05 * size, 0.04)
 
 
 @pytest.mark.parametrize("size", [0.02, 40.0])
 def test_coulomb_parameters_are_recovered_from_a_flat_stribeck_curve(size: float) -> None:
     p = {"fc": 6.0 * size, "fs": 6.0 * size, "vs": 0.004, "delta": 1.0, "fv": 40.0 * size}
     fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="coulomb")
-    check(fit, {"F_c_n": p["fc"], "F_v_n_s_m": p["fv"]}, 0.05 * size, 0.01)
+    check_recovery(fit, {"F_c_n": p["fc"], "F_v_n_s_m": p["fv"]}, 0.05 * size, 0.01)
     assert "never moved" in str(fit.parameters["F_s_n"].note)
 
 
 @pytest.mark.parametrize("exponent", [1.0, *(pytest.param(e, marks=EXTENDED) for e in (0.6, 1.8))])
-def test_dahl_parameters_are_recovered(exponent: float) -> None:
+def test_dahl_parameters_are_recovered_within_three_percent(exponent: float) -> None:
     p = {"fc": 2.3, "s0": 5e4, "exponent": exponent, "fv": 20.0}
     fit = jbf.fit(jbf.Rig(), runs_of("dahl", 2e-4, 0.02, **p), law="dahl")
     truth = {"F_c_n": 2.3, "sigma_0_n_m": 5e4, "exponent": exponent}
-    check(fit, truth, 0.02, 0.03)
+    check_recovery(fit, truth, 0.02, 0.03)
 
 
-def test_lugre_parameters_are_recovered() -> None:
+def test_lugre_parameters_are_recovered_within_five_percent() -> None:
     p = {"fc": 6.0, "fs": 9.0, "vs": 0.003, "s0": 6e4, "s1": 150.0, "vd": 0.02, "fv": 40.0}
     fit = jbf.fit(jbf.Rig(), runs_of("lugre", 1e-3, 0.03, **p), law="lugre")
     truth = {"F_c_n": 6.0, "F_s_n": 9.0, "v_s_m_s": 0.003, "sigma_0_n_m": 6e4, "F_v_n_s_m": 40.0}
-    check(fit, truth, 0.03, 0.05)
+    check_recovery(fit, truth, 0.03, 0.05)
 
 
-# Amplitude and level of a joint (rad, N m), of a machine slide (m, N), of a precision stage.
+# Amplitude and Coulomb level of a joint (rad, N m), a machine slide and a precision stage (m, N).
 SIZES = [
     pytest.param(0.05, 40.0, marks=EXTENDED),
     (2e-4, 2.3),
@@ -90,24 +90,28 @@ def presliding_runs(law: str, amplitude_m: float, fc: float, **shape: float) -> 
 
 @pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
 @pytest.mark.parametrize("exponent", [0.7, pytest.param(1.0 / 3.0, marks=EXTENDED)])
-def test_maxwell_slip_parameters_are_recovered(
+def test_maxwell_slip_parameters_are_recovered_within_ten_percent(
     amplitude_m: float, fc: float, exponent: float
 ) -> None:
     runs = presliding_runs("maxwell_slip", amplitude_m, fc, exponent=exponent)
     fit = jbf.fit(jbf.Rig(), runs, law="maxwell_slip")
-    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
-    check(fit, {"exponent": exponent, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+    check_recovery(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check_recovery(
+        fit, {"exponent": exponent, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1
+    )
 
 
 @pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
 @pytest.mark.parametrize("breakaway", [0.3, pytest.param(0.8, marks=EXTENDED)])
-def test_elasto_plastic_parameters_are_recovered(
+def test_elasto_plastic_parameters_are_recovered_within_ten_percent(
     amplitude_m: float, fc: float, breakaway: float
 ) -> None:
     runs = presliding_runs("elasto_plastic", amplitude_m, fc, breakaway=breakaway)
     fit = jbf.fit(jbf.Rig(), runs, law="elasto_plastic")
-    check(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
-    check(fit, {"breakaway": breakaway, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+    check_recovery(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check_recovery(
+        fit, {"breakaway": breakaway, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1
+    )
 
 
 @pytest.mark.extended
@@ -119,7 +123,9 @@ def test_elasto_plastic_parameters_are_recovered(
         ("elasto_plastic", {"breakaway": 0.6}),
     ],
 )
-def test_presliding_law_is_adequate_for_its_own_data(law: str, shape: dict[str, float]) -> None:
+def test_presliding_law_is_adequate_for_data_simulated_with_it(
+    law: str, shape: dict[str, float]
+) -> None:
     diagnosis = jbf.diagnose(jbf.Rig(), presliding_runs(law, 2e-4, 2.3, **shape), law=law)
     assert diagnosis.verdict == "adequate", diagnosis.summary()
     assert diagnosis.effects == ()
@@ -129,7 +135,9 @@ def test_presliding_law_is_adequate_for_its_own_data(law: str, shape: dict[str, 
 
 @pytest.mark.extended
 @pytest.mark.parametrize(("amplitude_m", "fc"), SIZES)
-def test_stribeck_excess_of_a_presliding_law_is_found(amplitude_m: float, fc: float) -> None:
+def test_diagnosis_identifies_stribeck_excess_in_data_of_generalised_maxwell_slip(
+    amplitude_m: float, fc: float
+) -> None:
     """Generalised Maxwell slip is the law `maxwell_slip` with `stribeck_excess`."""
     vs = 0.6 * amplitude_m
     runs = presliding_runs("maxwell_slip", amplitude_m, fc, exponent=0.5, excess=0.4 * fc, vs=vs)
@@ -141,29 +149,33 @@ def test_stribeck_excess_of_a_presliding_law_is_found(amplitude_m: float, fc: fl
     assert result["F_c_n"].value == pytest.approx(fc, rel=0.02)
 
 
-def test_vibration_at_rest_causes_no_presliding_force() -> None:
-    """A vibration of nanometres at rest, then a stroke along the virgin curve."""
+def test_nanometre_vibration_at_rest_causes_no_presliding_force() -> None:
+    """After a vibration at rest, the force rises monotonically during the first stroke."""
     t = np.arange(0.0, 4.0, 0.005)
     v = np.where(t < 1.0, -1e-9 * np.cos(40.0 * t), 2e-4 * np.minimum(2.0 * (t - 1.0), 1.0))
     for law in ("dahl", "maxwell_slip", "elasto_plastic"):
         force = jbf.Model(jbf.Rig(), law).predict(jbf.Run.from_arrays(t, v))
         assert np.max(np.abs(force[t < 1.0])) < 1e-3, law
         assert np.all(np.diff(force[t > 1.0]) > -1e-9), law
+
+
+def test_dahl_prediction_starts_at_the_sliding_force_if_the_run_starts_in_motion() -> None:
+    t = np.arange(0.0, 4.0, 0.005)
     sliding = jbf.Run.from_arrays(t, np.where(t < 2.0, -2e-4, 2e-4))
-    # A level of 10 N and 2 mN of viscous friction.
+    # A Coulomb level of 10 N and 2 mN of viscous friction.
     assert jbf.Model(jbf.Rig(), "dahl").predict(sliding)[0] == pytest.approx(-10.002)
 
 
 @pytest.mark.extended
-def test_runs_cut_within_rests_are_adequate_with_unsettled_starts() -> None:
+def test_runs_cut_within_rests_are_adequate_with_findings_of_unsettled_starts() -> None:
     """Each run starts with the presliding deflection in which the previous one ended."""
     p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
 
     def speed(t: float) -> float:
         # A stroke in each direction, followed by a rest.
         phase = t % 2.0
-        way = 1.0 if (t // 2.0) % 2.0 == 0.0 else -1.0
-        return way * 2.5e-4 * np.sin(np.pi * min(phase, 1.0))
+        direction = 1.0 if (t // 2.0) % 2.0 == 0.0 else -1.0
+        return direction * 2.5e-4 * np.sin(np.pi * min(phase, 1.0))
 
     t = np.arange(0.0, 40.0, 0.005)
     complete = independent.record(
@@ -180,7 +192,7 @@ def test_runs_cut_within_rests_are_adequate_with_unsettled_starts() -> None:
 
 
 @pytest.mark.extended
-def test_seven_parameter_model_is_recovered() -> None:
+def test_seven_parameter_model_parameters_are_recovered_within_six_percent() -> None:
     p = {
         "kt": 1e5,
         "fc": 6.0,
@@ -193,10 +205,10 @@ def test_seven_parameter_model_is_recovered() -> None:
     runs = runs_of("seven", 2e-3, 0.03, **p)
     fit = jbf.fit(jbf.Rig(), runs, law="seven_parameter")
     truth = {"k_t_n_m": 1e5, "F_c_n": 6.0, "F_v_n_s_m": 40.0, "tau_L_s": 0.03}
-    check(fit, truth, 0.03, 0.06)
+    check_recovery(fit, truth, 0.03, 0.06)
 
 
-def test_lugre_prediction_agrees_with_scipy() -> None:
+def test_settled_lugre_prediction_agrees_with_a_scipy_integration() -> None:
     speed = independent.stroke_speed(1e-3, 3.0)
     t = np.arange(0.0, 8.0, 1e-3)
     v = np.array([speed(x) for x in t])
@@ -211,8 +223,8 @@ def test_lugre_prediction_agrees_with_scipy() -> None:
     assert float(np.max(np.abs(gap[settled]))) < 2e-3
 
 
-@pytest.mark.parametrize("law", [law.name for law in NEWTONS])
-def test_model_file_of_a_drive_law_reproduces_the_model(law: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("law", [law.name for law in DRIVE_LAWS])
+def test_model_of_a_drive_law_is_unchanged_by_saving_and_loading(law: str, tmp_path: Path) -> None:
     model = jbf.Model(jbf.Rig(), law)
     model.save(tmp_path / "model.toml")
     again = jbf.Model.load(tmp_path / "model.toml")
@@ -230,7 +242,7 @@ def test_effects_that_do_not_apply_to_a_law_are_refused() -> None:
         jbf.Model(jbf.Rig(), "lugre", ["presliding"])
 
 
-def test_linear_axis_has_no_angle_and_needs_a_position() -> None:
+def test_effect_on_a_linear_axis_is_refused_if_its_angle_or_position_is_missing() -> None:
     run = runs_of("stribeck", 0.01, 0.05, fc=6.0, fs=6.0, vs=0.01, delta=1.0, fv=1.0)[0]
     with pytest.raises(jbf.InputError, match="position_ripple"):
         jbf.Model(jbf.Rig(), "coulomb", ["position_ripple"]).predict(run)
@@ -253,7 +265,7 @@ def test_linear_axis_has_no_angle_and_needs_a_position() -> None:
 
 
 @pytest.mark.extended
-def test_presliding_is_found_with_a_coulomb_law() -> None:
+def test_diagnosis_of_dahl_data_with_a_coulomb_law_identifies_presliding() -> None:
     p = {"fc": 6.0, "s0": 3e4, "exponent": 1.0, "fv": 40.0}
     runs = runs_of("dahl", 2e-3, 0.05, **p)
     diagnosis = jbf.diagnose(jbf.Rig(), runs, law="coulomb")

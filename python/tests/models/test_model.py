@@ -42,15 +42,15 @@ def test_prediction_agrees_with_reference_values() -> None:
         assert np.interp(time, run.time_s, force) / 104.0 == pytest.approx(f, abs=2e-5)
 
 
-def test_recorded_load_takes_precedence_over_that_of_the_rig() -> None:
+def test_prediction_uses_the_recorded_load_and_otherwise_that_of_the_rig() -> None:
     run = sine_run()
     heavy = Model(Rig.thesis("4.2"), parameters=TABLE_4_2).predict(run)
     light_rig = Rig.thesis("4.3")
-    same = Model(light_rig, parameters=TABLE_4_2).predict(run)
-    np.testing.assert_allclose(heavy, same, rtol=1e-9, atol=1e-9)
-    without = Run.from_arrays(run.time_s, run.velocity_m_s, angle_rad=run.angle_rad)
-    light = Model(light_rig, parameters=TABLE_4_2).predict(without)
-    built_for_it = Model(light_rig, parameters=TABLE_4_2).predict(
+    with_recorded_load = Model(light_rig, parameters=TABLE_4_2).predict(run)
+    np.testing.assert_allclose(heavy, with_recorded_load, rtol=1e-9, atol=1e-9)
+    unloaded_run = Run.from_arrays(run.time_s, run.velocity_m_s, angle_rad=run.angle_rad)
+    light = Model(light_rig, parameters=TABLE_4_2).predict(unloaded_run)
+    with_load_of_the_rig = Model(light_rig, parameters=TABLE_4_2).predict(
         Run.from_arrays(
             run.time_s,
             run.velocity_m_s,
@@ -58,7 +58,7 @@ def test_recorded_load_takes_precedence_over_that_of_the_rig() -> None:
             load_n=np.full(len(run), 83.5),
         )
     )
-    np.testing.assert_array_equal(light, built_for_it)
+    np.testing.assert_array_equal(light, with_load_of_the_rig)
     assert not np.allclose(light, heavy, rtol=1e-2)
 
 
@@ -70,7 +70,7 @@ def test_steady_friction_agrees_with_reference_values_and_is_odd() -> None:
     assert f[3] == -f[1]
 
 
-def test_saved_model_predicts_the_same_bits(tmp_path: Path) -> None:
+def test_model_predicts_the_same_bits_after_saving_and_loading(tmp_path: Path) -> None:
     values = TABLE_4_2 | {"presliding.sigma": 1234.5678901234567, "sensor_lag.tau": 0.1 + 0.2}
     model = Model(Rig.thesis(), effects=["sensor_lag", "presliding"], parameters=values)
     model.save(tmp_path / "m.toml")
@@ -88,10 +88,13 @@ def test_effects_are_sorted_in_the_order_of_the_signal_chain() -> None:
 STAGES = ("drive", "lubricant", "film", "contact", "other friction", "instrument")
 
 
-def test_catalogue_is_in_chain_order_and_complete() -> None:
+def test_catalogue_effects_are_in_chain_order_and_cover_every_stage() -> None:
     stages = [STAGES.index(effect.stage) for effect in effects().values()]
     assert stages == sorted(stages)
     assert set(stages) == set(range(len(STAGES)))
+
+
+def test_catalogue_effects_are_documented_and_have_starting_values_within_bounds() -> None:
     for effect in effects().values():
         assert effect.equation
         assert effect.source
@@ -102,7 +105,7 @@ def test_catalogue_is_in_chain_order_and_complete() -> None:
             assert all(p.lower <= s <= p.upper for s in p.starts)
 
 
-def test_too_fast_film_is_a_warning_and_finite() -> None:
+def test_prediction_warns_and_stays_finite_if_the_film_responds_too_fast() -> None:
     run = sine_run(duration_s=1.0)
     usual = Model(Rig.thesis("4.2"), parameters=TABLE_4_2)
     with warnings.catch_warnings():
@@ -137,11 +140,13 @@ def simulated(
 SINE = rigsim.sine("sine", 8.0, 0.127, 1.0)
 STOPS = rigsim.stop_and_go("stops", [(0.5, 1), (5.0, -1)], 0.05, 0.5, 1.0, 9.0)
 EVENTS = ("drive_compliance", "backlash")
-"""Effects with jumps, whose instants differ by a fraction of a sample."""
+"""Effects with jumps of the force, which jbf and the simulator place within one sample."""
 
 
 @pytest.mark.parametrize("effect", [None, *rigsim.CATALOGUE])
-def test_prediction_agrees_with_the_independent_simulator(effect: str | None) -> None:
+def test_prediction_with_each_effect_agrees_with_the_independent_simulator(
+    effect: str | None,
+) -> None:
     base = rigsim.Base()
     law = {"f_m": base.f_m, "U_tr": base.U_tr, "K0": base.K0, "gamma": base.gamma}
     values: dict[str, float] = {}

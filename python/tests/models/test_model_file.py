@@ -55,7 +55,7 @@ def refusal(path: Path, vocabulary: Vocabulary | None = VOCABULARY) -> str:
     return str(caught.value)
 
 
-def test_hand_written_file_is_read(tmp_path: Path) -> None:
+def test_hand_written_model_file_is_read_with_all_its_sections(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     path.write_text(GOOD)
     assert read_model_file(path, VOCABULARY) == ModelFile(
@@ -114,16 +114,16 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "place", "words"), BAD)
-def test_bad_content_is_refused_with_file_and_key(
-    tmp_path: Path, old: str, new: str, place: str, words: str
+@pytest.mark.parametrize(("old", "new", "place", "fragment"), BAD)
+def test_model_file_with_invalid_content_is_refused_with_file_and_key(
+    tmp_path: Path, old: str, new: str, place: str, fragment: str
 ) -> None:
     path = tmp_path / "model.toml"
     assert old in GOOD
     path.write_text(GOOD.replace(old, new, 1))
     message = refusal(path)
     assert message.startswith(f"{path}, {place}: ")
-    assert words in message
+    assert fragment in message
 
 
 @pytest.mark.parametrize("key", ["parameters", "rig", "fit"])
@@ -133,21 +133,24 @@ def test_section_that_is_not_a_table_is_refused(tmp_path: Path, key: str) -> Non
     assert refusal(path) == f"{path}, key {key}: is not a table; write it as [{key}] with keys"
 
 
-def test_names_are_not_checked_without_a_vocabulary(tmp_path: Path) -> None:
+def test_unknown_names_in_a_model_file_are_accepted_without_a_vocabulary(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     path.write_text(GOOD.replace("gamma", "anything").replace("journal", "some"))
     assert read_model_file(path).law == "some"
 
 
-def test_model_file_object_checks_names() -> None:
+def test_standard_error_of_nan_is_replaced_by_none() -> None:
     assert ParameterValue(1, math.nan) == ParameterValue(1.0, None)
+
+
+def test_model_file_object_refuses_invalid_parameter_names() -> None:
     for name in ("a.b", "coulomb_drag.a.b", "coulomb_drag.", "coulomb_drag"):
         with pytest.raises(InputError, match=r"^key parameters\.") as caught:
             ModelFile("journal", effects=("coulomb_drag",), parameters={name: ParameterValue(1)})
         assert caught.value.key == f"parameters.{name}"
 
 
-def test_written_file_is_readable_toml(tmp_path: Path) -> None:
+def test_written_model_file_has_a_comment_and_one_line_for_each_parameter(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     path.write_text(GOOD)
     write_model_file(path, read_model_file(path))
@@ -159,19 +162,30 @@ def test_written_file_is_readable_toml(tmp_path: Path) -> None:
     assert "\n[rig]\n" not in text
 
 
-def test_round_trip_is_exact(tmp_path: Path) -> None:
+def test_random_model_files_are_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
     rng = random.Random(11)
     path = tmp_path / "model.toml"
-    odd = [5e-324, 2.2e-308, 1e300, 1.7976931348623157e308, math.inf, 0.0, -0.0, 0.1, 1e22, 2.0**53]
+    extremes = [
+        5e-324,
+        2.2e-308,
+        1e300,
+        1.7976931348623157e308,
+        math.inf,
+        0.0,
+        -0.0,
+        0.1,
+        1e22,
+        2.0**53,
+    ]
     text = ["", 'a "quoted" note', "two\nlines\ttab", "back\\slash", "gr\u00fcn \u00b5", "\x01#'''"]
 
-    def some() -> float:
-        return rng.choice([rng.choice(odd), rng.random() * 10.0 ** rng.randint(-320, 300)])
+    def number() -> float:
+        return rng.choice([rng.choice(extremes), rng.random() * 10.0 ** rng.randint(-320, 300)])
 
     def parameter() -> ParameterValue:
         held = rng.random() < 0.3
-        stderr = None if held else rng.choice([None, abs(some())])
-        value = rng.choice([-1, 1]) * some()
+        stderr = None if held else rng.choice([None, abs(number())])
+        value = rng.choice([-1, 1]) * number()
         return ParameterValue(value, stderr, rng.choice([None, *text]), held)
 
     for _ in range(100):
@@ -184,7 +198,7 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
             effects=tuple(effects),
             parameters={name: parameter() for name in names},
             rig=rng.choice([Rig(), Rig.thesis(), Rig(load=Rig.thesis().load)]),
-            fit={"rms_n": some(), "runs": rng.randint(-9, 9), "an odd key": rng.choice(text)},
+            fit={"rms_n": number(), "runs": rng.randint(-9, 9), "an odd key": rng.choice(text)},
         )
         write_model_file(path, model)
         back = read_model_file(path)
@@ -195,7 +209,7 @@ def test_round_trip_is_exact(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["model.toml"]
 
 
-def test_numpy_scalars_are_written_as_numbers(tmp_path: Path) -> None:
+def test_numpy_scalars_are_written_as_plain_numbers(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     fit = {"rms_n": np.float64(0.1), "n": np.int64(3), "x": np.float32(0.5)}
     model = ModelFile(

@@ -33,7 +33,7 @@ def forget() -> Iterator[None]:
         jbf.forget_effect(name)
 
 
-def warm(run: Run, seed: int, size: float = TRUTH) -> Run:
+def with_cooler(run: Run, seed: int, size: float = TRUTH) -> Run:
     """The run with a temperature column and the force of the cooler added to its friction."""
     t = run.time_s
     celsius = 42.0 + 2.0 * np.sin(0.7 * t + seed) + 0.05 * t
@@ -51,14 +51,14 @@ def warm(run: Run, seed: int, size: float = TRUTH) -> Run:
     )
 
 
-def warm_campaign() -> tuple[Rig, list[Run], float]:
+def cooler_campaign() -> tuple[Rig, list[Run], float]:
     """A simulated campaign with the cooler as its only effect, and its noise (N)."""
     rig, runs, truth = campaign(34)
-    return rig, [warm(run, i) for i, run in enumerate(runs)], truth["noise_n"]
+    return rig, [with_cooler(run, i) for i, run in enumerate(runs)], truth["noise_n"]
 
 
-def test_user_effect_is_fitted_and_compared() -> None:
-    rig, runs, noise_n = warm_campaign()
+def test_fit_recovers_the_parameter_of_a_user_effect_and_compare_gives_the_same_rms() -> None:
+    rig, runs, noise_n = cooler_campaign()
     jbf.register_effect(cooler, parameters=[HEAT])
     fitted = jbf.fit(rig, runs, ["cooler"])
     result = fitted.parameters["cooler.k_n_k"]
@@ -69,21 +69,21 @@ def test_user_effect_is_fitted_and_compared() -> None:
 
 
 @pytest.mark.extended
-def test_user_effect_is_diagnosed() -> None:
-    rig, runs, _ = warm_campaign()
+def test_diagnosis_identifies_a_user_effect_as_missing() -> None:
+    rig, runs, _ = cooler_campaign()
     jbf.register_effect(cooler, parameters=[HEAT])
     diagnosis = jbf.diagnose(rig, runs)
     assert (diagnosis.verdict, diagnosis.effects) == ("missing", ("cooler",))
 
 
 @pytest.mark.extended
-def test_effect_without_its_column_is_not_a_candidate() -> None:
+def test_diagnosis_does_not_try_a_user_effect_whose_column_is_missing() -> None:
     jbf.register_effect(cooler, parameters=[HEAT])
     diagnosis = jbf.diagnose(Rig(), four_runs(coulomb, noise_n=0.1), law="coulomb")
     assert "temperature_c" in diagnosis.not_tried["cooler"]
 
 
-def test_fit_of_an_effect_without_its_column_is_refused() -> None:
+def test_fit_of_a_user_effect_is_refused_if_its_column_is_missing() -> None:
     runs = four_runs(coulomb, noise_n=0.1)
     jbf.register_effect(cooler, parameters=[HEAT])
     with pytest.raises(InputError, match="column temperature_c: is missing, and the effect cooler"):
@@ -91,7 +91,7 @@ def test_fit_of_an_effect_without_its_column_is_refused() -> None:
 
 
 def slopes_of(effects: list[str], values: np.ndarray, run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of the chain, and central differences."""
+    """Return the Jacobian of the chain, and the same from central differences."""
     rig = Rig.thesis()
     core = chain(rig, "journal", "journal", effects)
     motion = core_motion(rig, run, imposed(rig, run))
@@ -107,8 +107,8 @@ def slopes_of(effects: list[str], values: np.ndarray, run: Run) -> tuple[np.ndar
 
 
 @pytest.mark.parametrize("stage", ["other", "instrument"])
-def test_derivatives_include_the_instrument(stage: str) -> None:
-    run = warm(make_runs()[0], 0)
+def test_jacobian_of_user_and_sensor_effects_agrees_with_difference_quotients(stage: str) -> None:
+    run = with_cooler(make_runs()[0], 0)
     jbf.register_effect(cooler, parameters=[HEAT], stage=stage)
     effects = ["sensor_lag", "time_delay", "sensor_offset", "cooler"]
     values = np.array([0.26, 0.055, 6.5e5, 33.0, 0.12, 0.0233, 0.4, TRUTH])
@@ -133,21 +133,23 @@ def play(force: np.ndarray, w_n: float) -> np.ndarray:
         ("sensor_hysteresis.w_n", 0.7, lambda f: play(f, 0.7)),
     ],
 )
-def test_nonlinear_sensor_measures_the_total_force(
+def test_nonlinear_sensor_responds_to_the_sum_of_built_in_and_user_forces(
     effect: str, value: float, read: Callable[[np.ndarray], np.ndarray]
 ) -> None:
-    run = warm(make_runs()[0], 0)
+    run = with_cooler(make_runs()[0], 0)
     jbf.register_effect(cooler, parameters=[HEAT])
-    own, name = {"cooler.k_n_k": 2.0}, effect.split(".")[0]
-    force = Model(Rig.thesis(), effects=["cooler"], parameters=own).predict(run)
-    both = Model(Rig.thesis(), effects=[name, "cooler"], parameters={**own, effect: value})
+    cooler_values, name = {"cooler.k_n_k": 2.0}, effect.split(".")[0]
+    force = Model(Rig.thesis(), effects=["cooler"], parameters=cooler_values).predict(run)
+    both = Model(
+        Rig.thesis(), effects=[name, "cooler"], parameters={**cooler_values, effect: value}
+    )
     plain = Model(Rig.thesis(), effects=[name], parameters={effect: value}).predict(run)
     got, expected = both.predict(run), read(force)
     # jbf resolves peaks between two samples.
     np.testing.assert_allclose(got, expected, atol=1e-2 if name == "sensor_hysteresis" else 1e-6)
     # The response to the sum differs from the sum of the responses.
-    alone = Model(Rig.thesis(), effects=[]).predict(run)
-    assert np.max(np.abs(plain + force - alone - got)) > 0.1
+    friction = Model(Rig.thesis(), effects=[]).predict(run)
+    assert np.max(np.abs(plain + force - friction - got)) > 0.1
     values = np.array([0.26, 0.055, 6.5e5, 33.0, value, 2.0])
     slopes, result = slopes_of([name, "cooler"], values, run)
     wrong = np.abs(slopes - result) > 1e-4 * np.max(np.abs(result), axis=0)
@@ -155,8 +157,8 @@ def test_nonlinear_sensor_measures_the_total_force(
     assert np.max(np.mean(wrong, axis=0)) < 0.02
 
 
-def test_sensor_lag_applies_to_friction_and_not_to_instrument_effects() -> None:
-    run = warm(make_runs()[0], 0)
+def test_sensor_lag_filters_a_user_force_and_leaves_a_constant_one_unchanged() -> None:
+    run = with_cooler(make_runs()[0], 0)
 
     def pull(time_s: np.ndarray, a_n: float) -> np.ndarray:
         return a_n * (time_s >= 0.0)
@@ -184,8 +186,8 @@ def test_sensor_lag_applies_to_friction_and_not_to_instrument_effects() -> None:
     np.testing.assert_allclose(with_ramp - lagged, t - 0.5 * (1.0 - np.exp(-t / 0.5)), atol=1e-6)
 
 
-def test_real_function_is_differentiated_by_differences() -> None:
-    run = warm(make_runs()[0], 0)
+def test_function_that_rejects_complex_numbers_is_differentiated_by_differences() -> None:
+    run = with_cooler(make_runs()[0], 0)
 
     def stepped(velocity_m_s: np.ndarray, a_n: float, v_m_s: float) -> np.ndarray:
         out = np.zeros(len(velocity_m_s))
@@ -231,7 +233,9 @@ def test_analytic_function_is_differentiated_by_a_complex_step() -> None:
         ({"parameters": [HEAT, HEAT]}, "two parameters of one name"),
     ],
 )
-def test_bad_registration_is_refused(change: dict[str, object], message: str) -> None:
+def test_registration_of_an_invalid_effect_is_refused(
+    change: dict[str, object], message: str
+) -> None:
     good: dict[str, object] = {"parameters": [HEAT]}
     with pytest.raises(InputError, match=message):
         jbf.register_effect(cooler, **(good | change))  # type: ignore[arg-type]
@@ -249,7 +253,9 @@ def test_bad_registration_is_refused(change: dict[str, object], message: str) ->
 )
 @pytest.mark.filterwarnings("ignore:divide by zero")
 @pytest.mark.filterwarnings("ignore:invalid value")
-def test_failing_function_is_reported_in_one_line(body: object, message: str) -> None:
+def test_invalid_result_or_exception_of_a_user_function_is_reported(
+    body: object, message: str
+) -> None:
     page = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))
     jbf.register_effect(body, name="bad", parameters=[page])  # type: ignore[arg-type]
     model = Model(Rig.thesis(), effects=["bad"], parameters={"bad.a": 0.5})
@@ -263,7 +269,7 @@ import jbf
 
 
 def cooler(temperature_c, velocity_m_s, k_n_k):
-    \"\"\"A seal that grips as it warms.\"\"\"
+    \"\"\"A seal whose friction grows with the temperature.\"\"\"
     return k_n_k * (temperature_c - 40.0) * np.tanh(velocity_m_s / 0.01)
 
 
@@ -274,23 +280,23 @@ jbf.register_effect(
 """
 
 
-def test_command_line_loads_an_effect_from_a_file(
+def test_commands_know_a_user_effect_only_with_the_effects_from_option(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "mine.py").write_text(FILE)
     Rig.thesis().write(tmp_path / "rig.toml")
     for i, run in enumerate(make_runs()):
-        warm(run, i).write_csv(tmp_path / f"{run.name}.csv")
-    own = ["--effects-from", str(tmp_path / "mine.py")]
+        with_cooler(run, i).write_csv(tmp_path / f"{run.name}.csv")
+    option = ["--effects-from", str(tmp_path / "mine.py")]
     rig, model = str(tmp_path / "rig.toml"), str(tmp_path / "m.toml")
     runs = [str(tmp_path / "*.csv")]
-    assert main(["effects", *own]) == 0
+    assert main(["effects", *option]) == 0
     assert "[your own, other friction]" in capsys.readouterr().out
-    assert main(["effects", "cooler", *own, "--json", str(tmp_path / "page.json")]) == 0
+    assert main(["effects", "cooler", *option, "--json", str(tmp_path / "page.json")]) == 0
     assert "temperature_c" in capsys.readouterr().out
-    assert main(["fit", rig, *runs, "--effects", "cooler", "--out", model, *own]) == 0
+    assert main(["fit", rig, *runs, "--effects", "cooler", "--out", model, *option]) == 0
     assert "cooler.k_n_k" in capsys.readouterr().out
-    assert main(["compare", model, *runs, *own]) == 0
+    assert main(["compare", model, *runs, *option]) == 0
     capsys.readouterr()
     jbf.forget_effect("cooler")
     assert main(["compare", model, *runs]) == 2
@@ -300,7 +306,7 @@ def test_command_line_loads_an_effect_from_a_file(
     assert "--effects-from" in line
 
 
-def test_function_receives_the_columns_of_the_record() -> None:
+def test_user_function_receives_the_columns_of_the_record() -> None:
     seen: dict[str, np.ndarray] = {}
 
     def look(humidity: np.ndarray, load_n: np.ndarray, angle_rad: np.ndarray, a: float) -> float:
@@ -309,7 +315,7 @@ def test_function_receives_the_columns_of_the_record() -> None:
 
     page = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))
     jbf.register_effect(look, parameters=[page])
-    run = warm(make_runs()[0], 0)
+    run = with_cooler(make_runs()[0], 0)
     Model(Rig.thesis(), effects=["look"], parameters={"look.a": 0.5}).predict(run)
     np.testing.assert_array_equal(seen["humidity"], run.extra["humidity"])
     np.testing.assert_array_equal(seen["load_n"], np.full(len(run), 104.0))
@@ -317,7 +323,7 @@ def test_function_receives_the_columns_of_the_record() -> None:
     assert np.max(np.abs(seen["angle_rad"] - run.angle_rad)) < 1e-3
 
 
-def test_nonlinear_instrument_effects_are_those_listed_in_bending() -> None:
+def test_bending_lists_exactly_the_nonlinear_instrument_effects() -> None:
     """A linear instrument responds to a sum of forces with the sum of its responses."""
     t = np.linspace(0.0, 10.0, 400)
     run = Run.from_arrays(t, 0.1 * np.cos(t), position_m=0.1 * np.sin(t))

@@ -17,10 +17,10 @@ from jbf.models.catalogue import find_effect
 REPEATS = 8
 
 MULTIMODAL = [e for e in rigsim.CATALOGUE if find_effect(e).peaks]
-"""Effects with many likelihood peaks: errors of the bootstrap, see docs/recovery.md."""
+"""Effects whose likelihood has several maxima; their intervals come from the bootstrap."""
 
 
-def test_summary_of_errors_distinguishes_bias_and_width() -> None:
+def test_summary_of_standardised_errors_reports_bias_spread_and_coverage() -> None:
     z = np.random.default_rng(3).standard_normal(4000)
     good = recovery.Row.of([*z, float("nan")])
     assert good.none == 1
@@ -35,7 +35,9 @@ def test_summary_of_errors_distinguishes_bias_and_width() -> None:
 @pytest.mark.parametrize(
     "effect", ["coulomb_drag", "sensor_lag", "shear_thinning", "backlash", "vogel_viscosity"]
 )
-def test_errors_of_a_few_fits_are_standard_normal(effect: str) -> None:
+def test_standardised_errors_of_eight_fits_are_consistent_with_a_standard_normal(
+    effect: str,
+) -> None:
     truth = recovery.make_truth(effect, 7, SHORT)
     errors = [recovery.errors_of(truth, (7, k), False) for k in range(REPEATS)]
     for name in errors[0]:
@@ -49,7 +51,7 @@ def test_errors_of_a_few_fits_are_standard_normal(effect: str) -> None:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", [None, *(e for e in rigsim.CATALOGUE if e not in MULTIMODAL)])
-def test_intervals_of_many_fits_cover_the_truth(effect: str | None) -> None:
+def test_at_least_39_of_48_confidence_intervals_cover_the_truth(effect: str | None) -> None:
     for name, z in recovery.study(effect, 48, 8, 1, False, 1).items():
         row = recovery.Row.of(z)
         # Of 48 intervals of 95 %, fewer than 39 cover in 1 of 5000 studies.
@@ -59,7 +61,9 @@ def test_intervals_of_many_fits_cover_the_truth(effect: str | None) -> None:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", MULTIMODAL)
-def test_bootstrap_intervals_of_multimodal_effects_cover_the_truth(effect: str) -> None:
+def test_at_least_12_of_16_bootstrap_intervals_of_multimodal_effects_cover_the_truth(
+    effect: str,
+) -> None:
     for name, z in recovery.study(effect, 16, 8, 1, False, 1, 19).items():
         row = recovery.Row.of(z)
         # Of 16 intervals of 95 %, fewer than 12 cover in 1 of 1e5 studies.

@@ -30,7 +30,7 @@ TIED = {"coulomb_drag": ["sensor_offset"]}
         (("a", "b"), ("gaps",), "missing", ["a", "c"], {}, "named falsely"),
     ],
 )
-def test_diagnosis_is_judged_by_hidden_effects_and_artefacts(
+def test_outcome_of_a_diagnosis_follows_from_verdict_hidden_effects_and_artefacts(
     hidden: tuple[str, ...],
     artefacts: tuple[str, ...],
     verdict: str,
@@ -42,11 +42,11 @@ def test_diagnosis_is_judged_by_hidden_effects_and_artefacts(
     assert outcome in OUTCOMES
 
 
-def test_findings_are_matched_with_artefacts() -> None:
+def test_findings_are_classified_as_reported_missed_or_false() -> None:
     reported, missed, false = found(("spikes", "gaps", "off_grid"), ["glitches", "jitter"])
     assert (reported, missed, false) == (["spikes"], ["gaps"], ["jitter"])
     assert found(("off_grid",), ["unsettled_start"]) == ([], [], [])
 
 
-def test_every_artefact_has_a_finding() -> None:
+def test_every_artefact_is_assigned_to_a_finding() -> None:
     assert set(FOUND_AS) == set(ARTEFACTS)

@@ -21,7 +21,7 @@ def name_of(path: Path) -> str:
     return path.relative_to(BENCHES).as_posix()
 
 
-def test_programs_are_found() -> None:
+def test_list_of_bench_programs_includes_known_programs() -> None:
     assert {"drives.py", "control_runs.py", *FAST} <= {name_of(path) for path in PROGRAMS}
 
 
@@ -32,7 +32,7 @@ def test_programs_are_found() -> None:
         for p in PROGRAMS
     ],
 )
-def test_program_prints_its_usage(path: Path) -> None:
+def test_bench_program_prints_its_usage_with_the_help_option(path: Path) -> None:
     program = path.parent if path.name == "__main__.py" else path
     command = [sys.executable, str(program), "--help"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)

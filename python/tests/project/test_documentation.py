@@ -45,14 +45,14 @@ def targets() -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_links_lead_to_files(page: str) -> None:
+def test_relative_links_of_a_page_lead_to_existing_files(page: str) -> None:
     links = re.findall(r"\]\(([^)#:]+)\)", text_of(page))
     missing = [link for link in links if not (ROOT / page).parent.joinpath(link).exists()]
     assert missing == []
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_targets_of_the_makefile_exist(page: str) -> None:
+def test_make_targets_named_on_a_page_exist_in_the_makefile(page: str) -> None:
     named = set(re.findall(r"(?:`|^)make ([a-z-]+)", text_of(page), flags=re.MULTILINE))
     assert named <= targets()
 
@@ -62,14 +62,14 @@ def test_make_help_lists_every_target() -> None:
     assert listed | {"help", "bits-table"} == targets()
 
 
-def test_version_is_the_same_in_every_file() -> None:
+def test_cargo_and_citation_files_have_the_version_of_the_package() -> None:
     version = jbf.__version__
     assert f'\nversion = "{version}"\n' in text_of("Cargo.toml")
     assert f"\nversion: {version}\n" in text_of("CITATION.cff")
 
 
 @pytest.mark.extended
-def test_python_of_the_readme_diagnoses_presliding(
+def test_python_example_of_the_readme_identifies_presliding_and_saves_the_model(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -78,7 +78,9 @@ def test_python_of_the_readme_diagnoses_presliding(
     assert Model.load("model.toml").effects == ("presliding",)
 
 
-def test_python_of_the_control_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_python_example_of_the_control_page_prints_a_value_below_one_tenth(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     exec(compile(python_of("docs/control.md"), "docs/control.md", "exec"), {})
     assert 0.0 < float(capsys.readouterr().out) < 0.1
 
@@ -92,7 +94,7 @@ def control_commands() -> list[str]:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("command", control_commands())
-def test_command_of_the_control_page_runs(
+def test_command_of_the_control_page_runs_without_an_error_message(
     command: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

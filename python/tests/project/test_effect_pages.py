@@ -25,12 +25,14 @@ def pages() -> ModuleType:
     return module
 
 
-def test_every_effect_has_a_current_page_and_picture(pages: ModuleType) -> None:
+def test_page_and_picture_of_every_effect_are_up_to_date(pages: ModuleType) -> None:
     assert pages.stale() == [], "run docs/effects.py"
 
 
 @pytest.mark.parametrize("name", ["drive_compliance", "dwell_stiction", "load_dependence"])
-def test_picture_shows_a_visible_change(pages: ModuleType, name: str) -> None:
+def test_effect_changes_each_curve_of_its_picture_by_more_than_five_percent(
+    pages: ModuleType, name: str
+) -> None:
     plane, along = pages.draw(built_in()[name]).axes
     for axes in (plane, along):
         changed, plain = (line.get_ydata() for line in axes.lines)

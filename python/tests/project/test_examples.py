@@ -12,7 +12,7 @@ EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 
 
 @pytest.mark.extended
-def test_diagnosed_model_improves_the_compensation(
+def test_example_compensates_better_with_the_diagnosed_model_than_with_the_base_law(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main = runpy.run_path(str(EXAMPLES / "diagnose_then_compensate.py"))["main"]

@@ -50,13 +50,13 @@ def test_commands_without_a_fit_do_not_import_scipy(code: str) -> None:
     assert not imported(code) & ({*HEAVY} - {"tomlkit", "concurrent.futures", "multiprocessing"})
 
 
-def test_command_does_not_load_other_commands() -> None:
+def test_effects_command_does_not_import_other_commands() -> None:
     modules = imported("from jbf.cli import main; main(['effects'])")
     assert "jbf.cli.effects" in modules
     assert not modules & {"jbf.cli.fit", "jbf.cli.diagnose", "jbf.cli.control", "jbf.cli.workbench"}
 
 
-def test_every_public_name_is_importable() -> None:
+def test_every_public_name_is_importable_and_an_unknown_one_raises_attribute_error() -> None:
     for name in jbf.__all__:
         assert getattr(jbf, name) is getattr(jbf, name)
     assert set(jbf.__all__) <= set(dir(jbf))
@@ -64,7 +64,7 @@ def test_every_public_name_is_importable() -> None:
         _ = jbf.no_such_name
 
 
-def test_diagnosis_imports_neither_scipy_stats_nor_signal() -> None:
+def test_diagnosis_modules_import_neither_scipy_stats_nor_scipy_signal() -> None:
     # These two would add half a second to every command.
     modules = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")
     assert "scipy.optimize" in modules

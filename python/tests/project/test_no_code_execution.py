@@ -81,7 +81,8 @@ def watched(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_compare_and_report_run_no_code(hostile: Path) -> None:
+@pytest.mark.extended
+def test_compare_with_a_report_runs_no_code_of_a_hostile_folder(hostile: Path) -> None:
     runs = sorted(p.name for p in hostile.glob("*.csv"))
     before = {p.name for p in hostile.iterdir()}
     done = watched(hostile, "compare", "model.toml", *runs, "--json", "-", "--report", "page.html")
@@ -93,7 +94,7 @@ def test_compare_and_report_run_no_code(hostile: Path) -> None:
 
 
 @pytest.mark.parametrize("file", ["bomb.npy", pytest.param("bomb.pkl", marks=pytest.mark.extended)])
-def test_pickle_is_refused_without_opening_it(hostile: Path, file: str) -> None:
+def test_pickle_is_refused_without_unpickling_it(hostile: Path, file: str) -> None:
     done = watched(hostile, "import", file, "--out", "out")
     assert done.returncode == 2
     assert done.stderr.startswith("jbf: ")
@@ -108,7 +109,7 @@ def test_map_expression_is_not_run_as_code(hostile: Path) -> None:
     assert "uid=" not in done.stdout + done.stderr
 
 
-def test_file_of_user_effects_is_run_and_documented(hostile: Path) -> None:
+def test_file_given_with_effects_from_is_run_and_the_help_documents_this(hostile: Path) -> None:
     (hostile / "own.py").write_text("print('own code ran')\n")
     done = watched(hostile, "compare", "model.toml", "none.csv", "--effects-from", "own.py")
     assert "SystemExit: runs own.py" in done.stderr

@@ -14,7 +14,7 @@ import pytest
 
 PACKAGE = Path(jbf.__file__).parent
 ROOT = PACKAGE.parents[1]
-LONGEST, USUAL = 400, 150
+MAX_LINES, MAX_MEDIAN_LINES = 400, 150
 """Largest number of lines of a file, and the limit of the median."""
 
 
@@ -51,7 +51,7 @@ def test_modules_import_only_the_extension_from_the_top_package() -> None:
     assert wrong == []
 
 
-def test_files_are_short() -> None:
+def test_no_module_exceeds_400_lines_and_the_median_is_below_150() -> None:
     lengths = {path: path.read_text().count("\n") for path in modules()}
-    assert not {path.name: n for path, n in lengths.items() if n > LONGEST}
-    assert median(lengths.values()) < USUAL
+    assert not {path.name: n for path, n in lengths.items() if n > MAX_LINES}
+    assert median(lengths.values()) < MAX_MEDIAN_LINES

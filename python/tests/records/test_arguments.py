@@ -30,7 +30,7 @@ TIME_S = np.linspace(0.0, 1.0, 20)
 RUN = Run.from_arrays(TIME_S, 0.1 + TIME_S, np.ones(20), name="sine")
 
 
-def test_values_of_the_right_kind_are_returned_unchanged() -> None:
+def test_arguments_of_the_required_kind_are_accepted_and_returned() -> None:
     rig = Rig()
     assert the_rig(rig) is rig
     assert one_run(RUN) is RUN
@@ -68,7 +68,7 @@ def test_values_of_the_right_kind_are_returned_unchanged() -> None:
         (numbers, (["a"], "speeds"), "numbers"),
     ],
 )
-def test_wrong_kind_of_argument_is_rejected_with_a_remedy(
+def test_argument_of_the_wrong_kind_is_rejected_with_a_remedy(
     check: Any, arguments: tuple[Any, ...], remedy: str
 ) -> None:
     assert remedy in str(input_error(check, *arguments).mend)
@@ -94,7 +94,7 @@ def test_list_of_runs_accepts_any_iterable_and_checks_each_run() -> None:
     ],
 )
 @pytest.mark.parametrize("speed_recorded", [True, False])
-def test_run_from_the_bare_constructor_is_checked(
+def test_invalid_column_of_a_directly_constructed_run_is_reported(
     column: str, values: Any, speed_recorded: bool
 ) -> None:
     check_run(RUN)
@@ -104,7 +104,7 @@ def test_run_from_the_bare_constructor_is_checked(
 
 
 @pytest.mark.parametrize(("value", "least"), [(0, 0), (3, 3), (np.int64(7), 2), (-1, -1)])
-def test_whole_number_from_its_minimum_is_an_int(value: Any, least: int) -> None:
+def test_integer_not_below_its_minimum_is_returned_as_int(value: Any, least: int) -> None:
     found = whole_number(value, "n", least)
     assert (found, type(found)) == (int(value), int)
 
@@ -113,13 +113,13 @@ def test_whole_number_from_its_minimum_is_an_int(value: Any, least: int) -> None
     ("value", "least"),
     [(-1, 0), (2, 3), (True, 0), (1.0, 0), (Fraction(1, 2), 0), ("1", 0), (None, 0)],
 )
-def test_number_below_minimum_or_of_another_kind_is_no_whole_number(
+def test_whole_number_below_its_minimum_or_of_another_type_is_rejected(
     value: object, least: int
 ) -> None:
     assert str(least) in str(input_error(whole_number, value, "n", least).mend)
 
 
-def test_numbers_are_contiguous_of_the_requested_type_and_shape() -> None:
+def test_numbers_become_a_contiguous_array_of_the_requested_type_and_dimension() -> None:
     assert numbers([[1, 2], [3, 4]], "speeds").shape == (2, 2)
     assert numbers([1, 0], "mask", np.bool_).dtype == np.bool_
     assert numbers(np.arange(10.0)[::2], "speeds").flags.c_contiguous
@@ -127,23 +127,26 @@ def test_numbers_are_contiguous_of_the_requested_type_and_shape() -> None:
     assert "(1, 1)" in input_error(numbers, [[1.0]], "speeds", flat=True).problem
 
 
-def test_toml_number_is_a_float_and_nothing_else() -> None:
+def test_toml_number_is_returned_as_float_and_other_values_are_rejected() -> None:
     values: list[Any] = [1, 2.5, np.float32(0.5), float("inf")]
     assert [number(value, "k") for value in values] == [1.0, 2.5, 0.5, float("inf")]
     for value in (True, "1", [1], 10**400):
         assert input_error(number, value, "k").key == "k"
 
 
-def test_positive_accepts_sizes_of_machines_only() -> None:
+def test_positive_number_must_lie_between_1e_minus_12_and_1e12() -> None:
     assert [positive(value, "k") for value in (1e-12, 1.0, 1e12)] == [1e-12, 1.0, 1e12]
     for value in (0.0, -1, float("inf"), float("nan"), 0.99e-12, 1.01e12):
         assert input_error(positive, value, "k").key == "k"
 
 
-def test_unknown_key_is_reported_with_the_nearest_known_key() -> None:
+def test_toml_value_that_is_not_a_table_is_rejected() -> None:
     given = {"a": 1}
     assert table(given, "rig") is given
     assert input_error(table, 3, "rig").key == "rig"
+
+
+def test_unknown_key_is_reported_with_the_nearest_known_key() -> None:
     refuse_unknown(["a"], iter(["a", "b"]))
     error = input_error(refuse_unknown, ["radius", "x"], iter(["radius_m"]), "bearing.")
     assert error.key == "bearing.radius"

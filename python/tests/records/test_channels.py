@@ -1,4 +1,4 @@
-"""Channels with clocks of their own: combined at all instants, compared at their own readings."""
+"""Channels with different clocks: combined in one run, compared at the instants of the force."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOISE_N = 0.05
 FAST_S, SLOW_S = np.arange(0.0, 3.0, 0.1), np.arange(-0.35, 2.1, 0.2)
 
 
-def test_channels_are_combined_at_all_instants_of_the_motion() -> None:
+def test_channels_are_combined_at_the_instants_of_all_channels_within_the_motion() -> None:
     columns, read = side_by_side(
         {"velocity_m_s": (FAST_S, 2.0 * FAST_S), "friction_n": (SLOW_S, 5.0 * SLOW_S)}, "a"
     )
@@ -34,7 +34,7 @@ def test_channels_are_combined_at_all_instants_of_the_motion() -> None:
     assert time_s[read["friction_n"]].tolist() == slow.tolist()
 
 
-def test_motion_lasts_from_the_latest_start_to_the_earliest_end_of_its_channels() -> None:
+def test_combined_run_lasts_from_the_latest_start_to_the_earliest_end_of_its_motion() -> None:
     columns, _ = side_by_side(
         {
             "velocity_m_s": (FAST_S, FAST_S),
@@ -46,7 +46,7 @@ def test_motion_lasts_from_the_latest_start_to_the_earliest_end_of_its_channels(
     assert columns["time_s"][[0, -1]] == pytest.approx([0.55, FAST_S[-1]])
 
 
-def test_channels_of_one_clock_need_no_masks() -> None:
+def test_channels_with_equal_clocks_have_no_masks_of_readings() -> None:
     run = Run.from_channels({"velocity_m_s": (FAST_S, FAST_S), "friction_n": (FAST_S, -FAST_S)})
     assert run.read == {}
     assert run.to_csv() == Run.from_arrays(FAST_S, FAST_S, -FAST_S).to_csv()
@@ -65,13 +65,13 @@ def test_channels_of_one_clock_need_no_masks() -> None:
         ("load_n", (FAST_S, FAST_S)),
     ],
 )
-def test_bad_channel_is_reported_by_name(column: str, channel: Any) -> None:
+def test_invalid_channel_is_reported_by_run_and_column(column: str, channel: Any) -> None:
     given = {"velocity_m_s": (FAST_S, FAST_S), column: channel}
     error = input_error(Run.from_channels, given, name="a")
     assert (error.file, error.column) == ("a", column)
 
 
-def test_channels_without_a_motion_are_rejected() -> None:
+def test_channels_without_speed_or_position_are_rejected() -> None:
     error = input_error(Run.from_channels, {"friction_n": (FAST_S, FAST_S)})
     assert error.column == "velocity_m_s"
 
@@ -80,7 +80,7 @@ def test_channels_without_a_motion_are_rejected() -> None:
     ("samples", "missing", "own"),
     [(100, 9, False), (100, 10, True), (400, 19, False), (400, 20, True)],
 )
-def test_column_with_a_twentieth_missing_has_its_own_clock(
+def test_column_has_its_own_clock_if_ten_samples_and_five_percent_are_missing(
     samples: int, missing: int, own: bool
 ) -> None:
     time_s, values = np.arange(float(samples)), np.ones(samples)
@@ -90,10 +90,10 @@ def test_column_with_a_twentieth_missing_has_its_own_clock(
     assert clock[0] == (missing if own else 0)
 
 
-def test_own_clock_is_reported_with_the_rate_of_the_force() -> None:
+def test_own_clock_finding_has_the_sampling_rate_of_the_force() -> None:
     index = np.arange(1000)
     run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
-    # Of several channels of the motion the fastest counts.
+    # The force is compared with the fastest channel of the motion.
     slow = {"velocity_m_s": index % 10 == 0, "angle_rad": index % 2 == 0}
     assert "50 Hz" in own_clock(replace(run, read=slow))[0].words
     for read, rate_hz in (
@@ -126,7 +126,7 @@ def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> di
     }
 
 
-def test_model_is_compared_at_the_readings_of_the_force() -> None:
+def test_prepared_run_has_the_instants_and_values_of_the_force_readings() -> None:
     channels = slide()
     run = Run.from_channels(channels, name="slide")
     prepared = Prepared.of(jbf.Rig(), run)
@@ -134,6 +134,10 @@ def test_model_is_compared_at_the_readings_of_the_force() -> None:
     np.testing.assert_array_equal(prepared.run.time_s, force_s)
     np.testing.assert_array_equal(prepared.friction_n, force_n)
     assert "own_clock" in {finding.kind for finding in prepared.examined.findings}
+
+
+def test_fit_to_a_force_with_its_own_clock_recovers_law_and_noise() -> None:
+    run = Run.from_channels(slide(), name="slide")
     fit = jbf.fit(jbf.Rig(), [run], law="coulomb")
     for name, value in LAW.items():
         found = fit.parameters[name]
@@ -146,30 +150,30 @@ def test_prediction_at_the_motion_instants_does_not_depend_on_the_force_clock() 
     channels = slide()
     run = Run.from_channels(channels)
     time_s, place = channels["position_m"]
-    alone = Run.from_arrays(time_s, channels["velocity_m_s"][1], position_m=place)
+    without_force = Run.from_arrays(time_s, channels["velocity_m_s"][1], position_m=place)
     model = jbf.Model(jbf.Rig(), law="coulomb", parameters=LAW)
-    at = np.isin(run.time_s, time_s)
-    kept = (time_s >= run.time_s[0]) & (time_s <= run.time_s[-1])
+    of_motion = np.isin(run.time_s, time_s)
+    common = (time_s >= run.time_s[0]) & (time_s <= run.time_s[-1])
     np.testing.assert_allclose(
-        model.predict(run)[at], model.predict(alone)[kept], rtol=0.0, atol=1e-12
+        model.predict(run)[of_motion], model.predict(without_force)[common], rtol=0.0, atol=1e-12
     )
 
 
 @pytest.mark.extended
-def test_slide_with_two_clocks_and_no_hidden_effect_is_adequate() -> None:
+def test_diagnosis_of_channels_with_two_clocks_and_no_hidden_effect_is_adequate() -> None:
     runs = [Run.from_channels(slide(70.0 + k, seed=k), name=f"r{k}") for k in (1, 2, 3)]
     result = jbf.diagnose(jbf.Rig(), runs, law="coulomb")
     assert (result.verdict, result.effects) == ("adequate", ())
     assert result.steps[-1].holdout_rms_n == pytest.approx(NOISE_N, rel=0.1)
 
 
-def test_csv_file_keeps_the_clock_of_each_channel(tmp_path: Path) -> None:
+def test_csv_round_trip_preserves_the_clock_of_each_channel(tmp_path: Path) -> None:
     run = Run.from_channels(slide(), name="slide")
     run.write_csv(tmp_path / "slide.csv")
     again = jbf.read_run(tmp_path / "slide.csv")
     assert set(again.read) == set(run.read) == {"friction_n", "position_m", "velocity_m_s"}
     for name, values in run.columns().items():
-        there = run.read.get(name, np.ones(len(run), dtype=bool))
-        np.testing.assert_array_equal(again.columns()[name][there], values[there])
-        np.testing.assert_array_equal(again.read.get(name, there), there)
+        read = run.read.get(name, np.ones(len(run), dtype=bool))
+        np.testing.assert_array_equal(again.columns()[name][read], values[read])
+        np.testing.assert_array_equal(again.read.get(name, read), read)
     assert again.to_csv() == run.to_csv()

@@ -34,7 +34,7 @@ def changed(line: int, cell: int, text: str) -> list[str]:
     return [",".join(row) for row in rows]
 
 
-def test_columns_name_and_path_are_read(write: Write) -> None:
+def test_run_read_from_csv_has_columns_file_stem_and_path(write: Write) -> None:
     path = write(HEADER, *ROWS, name="sweep.csv")
     run = read_run(path)
     assert (run.name, len(run), run.path) == ("sweep", 12, path)
@@ -56,7 +56,7 @@ def test_separators_quotes_comments_and_line_ends_do_not_change_the_run(write: W
         assert read_run(path).to_csv() == plain.to_csv()
 
 
-def test_other_columns_are_kept_if_all_cells_are_finite_numbers(write: Write) -> None:
+def test_further_columns_are_read_if_all_cells_are_finite_numbers(write: Write) -> None:
     lines = [f"{i},{row},{i},up,{'' if i == 3 else i},inf,0.1" for i, row in enumerate(ROWS)]
     header = f",{HEADER},current_a,gear,patchy,broken,position_ref_m"
     run = read_run(write(header, *lines))
@@ -76,7 +76,7 @@ def test_other_columns_are_kept_if_all_cells_are_finite_numbers(write: Write) ->
         ("load_n", "friction_n", "friction_n", "rename or drop"),
     ],
 )
-def test_bad_column_name_is_reported_with_the_likely_name(
+def test_invalid_header_is_reported_with_column_and_remedy(
     write: Write, old: str, new: str, column: str, hint: str
 ) -> None:
     path = write(HEADER.replace(old, new), *ROWS)
@@ -98,7 +98,7 @@ def test_bad_column_name_is_reported_with_the_likely_name(
         (9, 4, "x" * 500, "load_n", "xxx..."),
     ],
 )
-def test_bad_cell_is_reported_by_row_and_column(
+def test_invalid_cell_is_reported_by_row_and_column(
     write: Write, line: int, cell: int, text: str, column: str, fact: str
 ) -> None:
     path = write(HEADER, *changed(line, cell, text))
@@ -132,7 +132,7 @@ def test_reported_row_counts_comments_and_blank_lines(write: Write) -> None:
         (["a\0b"], None, "binary"),
     ],
 )
-def test_malformed_file_is_reported_with_the_row(
+def test_malformed_file_is_reported_with_cause_and_row(
     write: Write, lines: list[str], row: int | None, fact: str
 ) -> None:
     path = write(*lines)
@@ -141,7 +141,9 @@ def test_malformed_file_is_reported_with_the_row(
     assert fact in error.problem
 
 
-def test_unreadable_file_is_reported(write: Write, tmp_path: Path) -> None:
+def test_unreadable_file_is_reported_with_its_path_row_or_cause(
+    write: Write, tmp_path: Path
+) -> None:
     good = write(HEADER, *ROWS, name="sweep.csv")
     assert input_error(read_run, tmp_path).file == str(tmp_path)
     assert "sweep.csv" in str(input_error(read_run, tmp_path / "sweeep.csv").mend)
@@ -152,10 +154,13 @@ def test_unreadable_file_is_reported(write: Write, tmp_path: Path) -> None:
     assert "UTF-16" in input_error(read_run, good).problem
 
 
-def test_friction_may_be_absent_if_not_needed_but_not_misspelt(write: Write) -> None:
+def test_missing_friction_column_is_accepted_only_if_not_required(write: Write) -> None:
     path = write("time_s,velocity_m_s", *(f"{i},0.1" for i in range(10)))
     assert read_run(path, need_friction=False).friction_n is None
     assert input_error(read_run, path).column == "friction_n"
+
+
+def test_misspelt_friction_column_is_reported_even_if_not_required(write: Write) -> None:
     path = write("time_s,velocity_m_s,friction", *(f"{i},0.1,1" for i in range(10)))
     assert "friction_n" in str(input_error(read_run, path, need_friction=False).mend)
 
@@ -169,7 +174,7 @@ def cells(count: int, empty: int, value: str) -> list[str]:
     ("samples", "empty", "own"),
     [(100, 9, False), (100, 10, True), (400, 19, False), (400, 20, True)],
 )
-def test_column_with_a_twentieth_of_empty_cells_has_its_own_clock(
+def test_csv_column_has_its_own_clock_if_ten_cells_and_five_percent_are_empty(
     write: Write, samples: int, empty: int, own: bool
 ) -> None:
     force = cells(samples, empty, "2.5")
@@ -184,7 +189,9 @@ def test_column_with_a_twentieth_of_empty_cells_has_its_own_clock(
     assert set(run.friction_n.tolist()) == {2.5}
 
 
-def test_few_empty_cells_are_accepted_only_where_a_slow_channel_was_read(write: Write) -> None:
+def test_few_empty_cells_are_accepted_only_in_rows_with_a_reading_of_a_slow_channel(
+    write: Write,
+) -> None:
     speed = cells(100, 3, "1.5")
     for slow, accepted in ((cells(100, 60, "7")[::-1], True), (cells(100, 60, "7"), False)):
         rows = [f"{i},{speed[i]},{slow[i]}" for i in range(100)]
@@ -195,7 +202,7 @@ def test_few_empty_cells_are_accepted_only_where_a_slow_channel_was_read(write: 
             assert input_error(read_run, path).column == "velocity_m_s"
 
 
-def test_temperature_may_have_gaps_or_no_reading_at_all(write: Write) -> None:
+def test_temperature_column_may_be_empty_or_have_gaps(write: Write) -> None:
     rows = [f"{0.1 * i},1.0,2.0," for i in range(12)]
     assert read_run(write("time_s,velocity_m_s,friction_n,temperature_c", *rows)).read == {}
     rows[4] += "21.5"

@@ -39,7 +39,7 @@ SERVO = Drive("linear", "percent", rated_torque_n_m=1.5, pitch_m=0.01, gear_rati
         (SERVO, "torque_percent", 2 * 2 * pi / 0.01, 1.5 / 100.0 * 2 * 2 * pi / 0.01),
     ],
 )
-def test_one_ampere_or_percent_follows_from_gear_and_screw(
+def test_force_per_ampere_or_percent_follows_from_gear_and_screw(
     drive: Drive, column: str, motor_rad: float | None, unit: float
 ) -> None:
     """An ideal transmission: the power of the motor is the power at the joint or slide."""
@@ -50,7 +50,7 @@ def test_one_ampere_or_percent_follows_from_gear_and_screw(
     columns.refuse_strangers(Path("a.csv"), 1, [*columns.known, "own"])
 
 
-def test_quantities_follow_from_motion_and_sensor() -> None:
+def test_units_and_sensor_name_follow_from_motion_and_friction_source() -> None:
     assert [drive.quantities.force for drive in (TORQUE, CURRENT, SLIDE)] == ["N m", "N m", "N"]
     assert "torque sensor" in TORQUE.quantities.sensor
     assert "current sensor" in LINEAR_MOTOR.quantities.sensor
@@ -88,7 +88,7 @@ def test_inconsistent_drive_is_reported_by_key(
     assert input_error(Drive.from_mapping, section, "rig.drive").key == f"rig.drive.{key}"
 
 
-def test_section_becomes_a_drive_with_floats() -> None:
+def test_toml_section_becomes_a_drive_and_invalid_keys_are_reported() -> None:
     section: Any = {"motion": "linear", "friction": "force", "mass_kg": 3}
     assert Drive.from_mapping(section, "drive") == Drive("linear", "force", mass_kg=3.0)
     for wrong, key in ((3, "drive"), ({"motion": "linear"}, "drive.friction")):
@@ -99,7 +99,7 @@ def test_section_becomes_a_drive_with_floats() -> None:
 # ---- columns -------------------------------------------------------------------------------------
 
 
-def test_columns_of_a_joint_and_of_a_slide_have_factors_of_gear_and_screw() -> None:
+def test_conversion_factors_of_joint_and_slide_columns_follow_from_gear_and_screw() -> None:
     joint, slide = DriveColumns.of(TORQUE), DriveColumns.of(SCREW)
     screw = 1.0 / (3.0 * 2.0 * pi / 0.02)
     assert joint.friction == {"torque_n_m": 1.0, "motor_torque_n_m": 20.0}
@@ -114,7 +114,7 @@ def test_columns_of_a_joint_and_of_a_slide_have_factors_of_gear_and_screw() -> N
     assert list(slide.speed.values()) == pytest.approx([1.0, screw, rpm * screw])
 
 
-def test_required_columns_are_time_and_the_first_present_motion_and_friction() -> None:
+def test_required_columns_are_time_and_the_first_motion_and_friction_column_present() -> None:
     columns = DriveColumns.of(TORQUE)
     assert columns.required([], True) == ["time_s", "velocity_rad_s", "torque_n_m"]
     header = ["motor_torque_n_m", "motor_angle_rad"]
@@ -138,7 +138,7 @@ def test_required_columns_are_time_and_the_first_present_motion_and_friction() -
         (SCREW, "torque_n_m", "motor_torque_n_m"),
     ],
 )
-def test_column_of_another_machine_is_rejected_with_a_hint(
+def test_column_that_does_not_fit_the_drive_is_rejected_with_a_hint(
     drive: Drive, name: str, hint: str
 ) -> None:
     columns = DriveColumns.of(drive)
@@ -147,15 +147,15 @@ def test_column_of_another_machine_is_rejected_with_a_hint(
     assert hint in str(error.mend)
 
 
-def test_motor_columns_are_converted_once_and_reported() -> None:
+def test_motor_columns_are_converted_to_the_output_side_and_reported() -> None:
     angle, torque = np.linspace(0.0, 3.0, 20), np.arange(20.0)
     columns = {"time_s": torque, "motor_angle_rad": angle, "motor_torque_n_m": torque}
     columns |= {"speed_rpm": np.full(20, 60.0), "own": torque}
-    kept, findings = DriveColumns.of(TORQUE).converted("a", columns)
-    assert set(kept) == {"time_s", "own", "friction_n", "velocity_m_s", "angle_rad"}
-    np.testing.assert_allclose(kept["friction_n"], 20.0 * torque)
-    np.testing.assert_allclose(kept["velocity_m_s"], 2.0 * pi)
-    np.testing.assert_allclose(kept["angle_rad"], angle / 20.0)
+    converted, findings = DriveColumns.of(TORQUE).converted("a", columns)
+    assert set(converted) == {"time_s", "own", "friction_n", "velocity_m_s", "angle_rad"}
+    np.testing.assert_allclose(converted["friction_n"], 20.0 * torque)
+    np.testing.assert_allclose(converted["velocity_m_s"], 2.0 * pi)
+    np.testing.assert_allclose(converted["angle_rad"], angle / 20.0)
     assert [(f.kind, f.channel, f.unit) for f in findings] == [
         ("converted", "friction_n", "N m"),
         ("converted", "velocity_m_s", "rad/s"),
@@ -164,19 +164,19 @@ def test_motor_columns_are_converted_once_and_reported() -> None:
     assert [f.size for f in findings] == pytest.approx([20.0, RPM, 0.05])
 
 
-def test_first_of_several_columns_is_read_and_the_other_is_kept() -> None:
+def test_second_friction_column_is_reported_and_left_as_a_further_column() -> None:
     one, other = np.arange(20.0), -np.arange(20.0)
     columns = {"time_s": one, "motor_torque_n_m": other, "torque_n_m": one, "angle_rad": one}
-    kept, (finding,) = DriveColumns.of(TORQUE).converted("a", columns)
-    assert kept["friction_n"] is one
-    assert kept["motor_torque_n_m"] is other
+    converted, (finding,) = DriveColumns.of(TORQUE).converted("a", columns)
+    assert converted["friction_n"] is one
+    assert converted["motor_torque_n_m"] is other
     assert (finding.kind, finding.channel) == ("second_column", "friction_n")
     called = DriveColumns.of(TORQUE).called(columns)
     assert called == {"torque_n_m": "friction_n", "angle_rad": "angle_rad"}
 
 
-def test_wrapped_motor_angle_is_unwrapped_before_the_gear() -> None:
-    """An angle that exceeds one turn is not wrapped; one without a gear is not changed here."""
+def test_wrapped_motor_angle_is_unwrapped_before_division_by_the_gear_ratio() -> None:
+    """An angle beyond one turn was not wrapped; an angle at the output is not changed here."""
     unwrapped = 0.5 * np.arange(30.0)
     wrapped = np.mod(unwrapped, 2.0 * pi)
     columns = {"time_s": unwrapped, "torque_n_m": unwrapped}
@@ -186,8 +186,8 @@ def test_wrapped_motor_angle_is_unwrapped_before_the_gear() -> None:
         ("motor_angle_rad", 4.0 * np.arange(30.0), 0.2 * np.arange(30.0)),
         ("angle_rad", wrapped, wrapped),
     ):
-        kept, _ = convert("a", columns | {name: given})
-        np.testing.assert_allclose(kept["angle_rad"], expected, atol=1e-12)
+        converted, _ = convert("a", columns | {name: given})
+        np.testing.assert_allclose(converted["angle_rad"], expected, atol=1e-12)
 
 
 # ---- files ---------------------------------------------------------------------------------------
@@ -215,7 +215,7 @@ def record(folder: Path, columns: dict[str, Any]) -> Path:
         (PERCENT, "torque_percent", 0.4),
     ],
 )
-def test_file_of_a_joint_is_read_as_torque_at_the_joint(
+def test_friction_column_of_a_joint_is_converted_to_torque_at_the_joint(
     drive: Drive, column: str, factor: float, tmp_path: Path
 ) -> None:
     rig = Rig(drive=drive)
@@ -227,7 +227,7 @@ def test_file_of_a_joint_is_read_as_torque_at_the_joint(
     assert sizes == ([] if factor == 1.0 else [pytest.approx(factor)])
 
 
-def test_power_of_the_motor_is_the_power_of_the_slide(tmp_path: Path) -> None:
+def test_motor_columns_of_a_slide_are_converted_without_loss_of_power(tmp_path: Path) -> None:
     motor_rad_s = 40.0 * SPEED
     columns = {
         "time_s": TIME_S,
@@ -244,7 +244,7 @@ def test_power_of_the_motor_is_the_power_of_the_slide(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.position_m, turns / 3.0 * 0.02)  # type: ignore[arg-type]
 
 
-def test_written_run_of_a_joint_reads_back(tmp_path: Path) -> None:
+def test_run_and_model_of_a_joint_survive_a_file_round_trip(tmp_path: Path) -> None:
     rig = Rig(drive=TORQUE)
     columns = {
         "time_s": TIME_S, "angle_rad": ANGLE, "velocity_rad_s": SPEED, "torque_n_m": TORQUE_N_M
@@ -257,7 +257,7 @@ def test_written_run_of_a_joint_reads_back(tmp_path: Path) -> None:
     assert jbf.Model.load(tmp_path / "model.toml").rig == rig
 
 
-def test_empty_cells_of_a_motor_column_are_its_own_clock(tmp_path: Path) -> None:
+def test_motor_column_with_empty_cells_has_its_own_clock(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     rows = [f"{t},{a},{a if i % 2 else ''}" for i, (t, a) in enumerate(zip(TIME_S, ANGLE))]  # noqa: B905
     path.write_text("\n".join(["time_s,angle_rad,current_a", *rows]))
@@ -276,7 +276,7 @@ def test_empty_cells_of_a_motor_column_are_its_own_clock(tmp_path: Path) -> None
         (None, "position_m,current_a", "friction_n", "[drive]"),
     ],
 )
-def test_wrong_header_of_a_drive_is_reported(
+def test_missing_or_unsuitable_column_of_a_drive_is_reported_with_a_hint(
     drive: Drive | None, header: str, column: str, hint: str, tmp_path: Path
 ) -> None:
     columns = {"time_s": TIME_S} | dict.fromkeys(header.split(","), TORQUE_N_M)
@@ -286,10 +286,14 @@ def test_wrong_header_of_a_drive_is_reported(
     assert hint in str(error.mend)
 
 
-def test_run_and_law_must_fit_the_kind_of_rig(tmp_path: Path) -> None:
+def test_rig_with_a_drive_is_read_back_from_its_file(tmp_path: Path) -> None:
     joint = Rig(drive=TORQUE)
     joint.write(tmp_path / "rig.toml")
     assert read_rig(tmp_path / "rig.toml") == joint
+
+
+def test_run_or_law_of_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
+    joint = Rig(drive=TORQUE)
     path = record(tmp_path, {"time_s": TIME_S, "angle_rad": ANGLE, "torque_n_m": TORQUE_N_M})
     run = jbf.read_run(path, joint)
     for other in (Rig(), Rig(drive=SLIDE)):
@@ -312,11 +316,19 @@ def test_documentation_names_every_key_and_column_of_a_drive() -> None:
     assert missing == []
 
 
-def test_documentation_names_only_effects_that_a_drive_can_have() -> None:
+def documented_effects() -> set[str]:
+    """Effects in the table of the documentation of drives."""
     section = PAGE.read_text(encoding="utf-8").partition("## What the effects are here")[2]
     rows = re.findall(r"^\| (`.*?) \|", section, flags=re.MULTILINE)
-    named = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
-    known = jbf.effects()
+    return {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+
+
+def test_documentation_of_drives_names_only_effects_that_a_drive_can_have() -> None:
+    named, known = documented_effects(), jbf.effects()
     assert named
     assert [name for name in named if "coulomb" in known[name].refused] == []
-    assert {name for name, page in known.items() if "journal" in page.refused} <= named
+
+
+def test_documentation_of_drives_names_every_effect_that_a_bearing_cannot_have() -> None:
+    bearing_refuses = {name for name, page in jbf.effects().items() if "journal" in page.refused}
+    assert bearing_refuses <= documented_effects()

@@ -55,7 +55,9 @@ def kinds(result: Examined) -> list[str]:
 
 @pytest.mark.parametrize("omega", [0.02, 3.0])
 @pytest.mark.parametrize("noise_n", [0.0, 1e-3, 0.3])
-def test_clean_record_has_no_findings(omega: float, noise_n: float) -> None:
+def test_stribeck_friction_with_or_without_white_noise_has_no_findings(
+    omega: float, noise_n: float
+) -> None:
     result = examined(stribeck(sine(omega)) + white(3000, 1, noise_n), sine(omega))
     assert kinds(result) == []
     assert result.usable.all()
@@ -65,7 +67,7 @@ def test_clean_record_has_no_findings(omega: float, noise_n: float) -> None:
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1, 5))]
 )
-def test_coloured_noise_has_no_findings(seed: int) -> None:
+def test_stribeck_friction_with_coloured_noise_has_no_findings(seed: int) -> None:
     """First-order autoregressive noise with a memory of twenty samples."""
     coloured = 0.3 * np.sqrt(1.0 - 0.95**2) * lfilter([1.0], [1.0, -0.95], white(3000, seed))
     assert kinds(examined(stribeck(sine()) + coloured)) == []
@@ -75,7 +77,7 @@ def test_coloured_noise_has_no_findings(seed: int) -> None:
 @pytest.mark.parametrize(
     "shape", [pytest.param("triangle", marks=pytest.mark.extended), "stick and slip", "ramp"]
 )
-def test_corners_and_plateaus_of_noise_free_laws_are_no_faults(shape: str) -> None:
+def test_corners_and_plateaus_of_a_noise_free_force_are_not_reported_as_faults(shape: str) -> None:
     phase = np.mod(TIME_S, 5.0) / 5.0
     speed = {
         "triangle": 0.1 * (2.0 * np.abs(2.0 * phase - 1.0) - 1.0),
@@ -87,16 +89,16 @@ def test_corners_and_plateaus_of_noise_free_laws_are_no_faults(shape: str) -> No
     assert {"glitches", "saturation", "interpolated", "steps"}.isdisjoint(kinds(result))
 
 
-def test_run_without_a_force_is_usable_throughout() -> None:
+def test_run_without_a_force_has_no_findings_and_only_usable_samples() -> None:
     result = examine(Run.from_arrays(TIME_S, sine()))
     assert result.findings == ()
     assert result.usable.all()
 
 
-# ---- what each fault does to the readings --------------------------------------------------------
+# ---- effect of faults on the readings ------------------------------------------------------------
 
 
-def test_glitches_held_readings_and_their_samples_are_set_aside() -> None:
+def test_samples_of_glitches_and_held_readings_are_not_usable() -> None:
     force = stribeck(sine()) + white(3000, 2, 0.3)
     force[300] += 20.0
     of_readings = examine_readings(Run.from_arrays(TIME_S, sine(), force), sine())
@@ -108,7 +110,7 @@ def test_glitches_held_readings_and_their_samples_are_set_aside() -> None:
     assert places(~result.usable) == [300, *range(1001, 1010)]
 
 
-def test_repeated_readings_are_taken_back_to_their_rate() -> None:
+def test_readings_repeated_by_a_slow_channel_are_reported_with_its_rate() -> None:
     last = np.floor(0.4 + np.arange(3000) / 2.7).astype(int)
     result = examined(20.0 * white(1200, 1)[last])
     (finding,) = result.findings
@@ -121,7 +123,7 @@ def test_repeated_readings_are_taken_back_to_their_rate() -> None:
 # ---- simulated recordings ------------------------------------------------------------------------
 
 SEED = 1003
-"""Three short runs: starts and stops, a sweep, slow and fast."""
+"""Seed of a campaign of three short runs: starts and stops, a sweep, and slow and fast motion."""
 FOUND_WITHOUT_A_MODEL = (
     "backward_velocity", "coarse_velocity", "dropout", "filtered_velocity", "gaps", "jitter",
     "noisy_load", "position_glitch", "quantised", "saturation", "slow_force", "spikes",
@@ -145,7 +147,7 @@ def findings_of(artefact: str) -> tuple[Finding, ...]:
 
 
 @pytest.mark.parametrize("artefact", FOUND_WITHOUT_A_MODEL)
-def test_artefact_of_a_simulated_logger_is_found_and_nothing_else(artefact: str) -> None:
+def test_findings_of_a_simulated_logger_are_those_of_its_artefact_only(artefact: str) -> None:
     result = found((artefact,), {finding.kind for finding in findings_of(artefact)})
     assert result == ([artefact], [], [])
 
@@ -158,7 +160,7 @@ def test_artefact_of_a_simulated_logger_is_found_and_nothing_else(artefact: str)
         *(pytest.param(name, marks=pytest.mark.extended) for name in FOUND_WITH_A_MODEL[1:]),
     ],
 )
-def test_artefact_that_needs_a_model_is_no_finding_of_the_record(artefact: str) -> None:
+def test_artefact_that_only_a_model_reveals_gives_no_finding(artefact: str) -> None:
     assert findings_of(artefact) == ()
 
 
@@ -170,7 +172,7 @@ def test_artefact_that_needs_a_model_is_no_finding_of_the_record(artefact: str) 
         ("jitter", "jitter", "rms_s"),
     ],
 )
-def test_size_of_a_finding_is_that_of_the_simulated_artefact(
+def test_size_of_a_finding_is_within_25_percent_of_the_simulated_size(
     artefact: str, kind: str, size: str
 ) -> None:
     _, truth = recorded(SEED, (), (artefact,), "usual")
@@ -181,13 +183,13 @@ def test_size_of_a_finding_is_that_of_the_simulated_artefact(
         assert value == pytest.approx(true[run], rel=0.25)
 
 
-def test_delay_of_a_simulated_speed_filter_is_found_in_each_run() -> None:
+def test_delay_of_a_speed_filter_is_recovered_within_30_percent_in_each_run() -> None:
     """A second-order filter of 5 Hz delays by sqrt(2) / (2 pi 5 Hz) = 45 ms."""
     delays_s = [f.size for f in findings_of("filtered_velocity") if f.kind == "filtered_speed"]
     assert delays_s == [pytest.approx(0.045, rel=0.3)] * 3
 
 
-def test_noisy_load_counts_as_one_load() -> None:
+def test_noisy_constant_load_does_not_count_as_several_loads() -> None:
     assert simulated("noisy_load", "severe").has_loads == simulated(OFF_GRID).has_loads
 
 
@@ -196,7 +198,7 @@ def test_noisy_load_counts_as_one_load() -> None:
 
 @pytest.fixture(scope="module")
 def corrupt_runs() -> list[Run]:
-    """A run in which two positions are off, and a clean one."""
+    """A run with two outliers of the position, and a clean run."""
     clean, other = make_runs(kinds=("sine_w0.5", "sine_w2.0"))
     assert clean.angle_rad is not None
     angle = clean.angle_rad.copy()
@@ -210,7 +212,7 @@ def is_reported(finding: Finding, text: str) -> bool:
     return finding.words in " ".join(re.sub(r"<[^>]*>", " ", text).split())
 
 
-def test_findings_are_in_every_form_of_a_comparison(
+def test_findings_of_a_comparison_appear_in_its_text_page_json_and_command_output(
     corrupt_runs: list[Run], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     model = Model(Rig.thesis(), parameters=LAW)
@@ -232,7 +234,9 @@ def test_findings_are_in_every_form_of_a_comparison(
     assert jbf.compare(model, corrupt_runs[1:]).findings == ()
 
 
-def test_glitches_are_reported_by_a_fit_and_do_not_move_it(corrupt_runs: list[Run]) -> None:
+def test_position_glitches_are_reported_by_a_fit_and_hardly_change_its_parameters(
+    corrupt_runs: list[Run],
+) -> None:
     clean = jbf.fit(Rig.thesis(), make_runs(kinds=("sine_w0.5", "sine_w2.0")))
     corrupt = jbf.fit(Rig.thesis(), corrupt_runs)
     (finding,) = corrupt.findings
@@ -243,8 +247,8 @@ def test_glitches_are_reported_by_a_fit_and_do_not_move_it(corrupt_runs: list[Ru
 
 
 @pytest.mark.parametrize("fault", ["late speed", "degrees", "mm/s", "wrong sign"])
-def test_resampled_record_keeps_the_fault_of_its_motion(fault: str) -> None:
-    """Otherwise a bootstrap would rely on a column that the fit did not use."""
+def test_resampled_record_has_the_same_motion_fault_as_the_original(fault: str) -> None:
+    """Otherwise a bootstrap would use a column that the fit excluded."""
     run = make_runs(kinds=("sine_w0.5",))[0]
     assert run.angle_rad is not None
     assert run.friction_n is not None

@@ -1,4 +1,4 @@
-"""Missing rows, repeated rows, and runs that were recorded once and given twice."""
+"""Missing rows, repeated rows, and runs that are copies of one recording."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def run_at(time_s: Any) -> Run:
     return Run.from_arrays(time_s, np.ones(len(time_s)), name="a")
 
 
-def test_gap_finding_has_the_longest_gap() -> None:
+def test_gap_finding_has_the_longest_duration_and_the_number_of_missing_rows() -> None:
     (finding,) = find_gaps(run_at(np.delete(TIME_S[:200], [50, 100, 101, 102])))
     assert (finding.kind, finding.channel, finding.unit) == ("gaps", "time_s", "s")
     assert finding.size == pytest.approx(0.04)
@@ -31,7 +31,7 @@ def test_gap_finding_has_the_longest_gap() -> None:
 
 
 @pytest.mark.parametrize(("steps", "missing"), [(1.4, 0), (1.6, 1), (2.4, 1), (2.6, 2)])
-def test_gap_begins_at_one_and_a_half_usual_steps(steps: float, missing: int) -> None:
+def test_gap_is_reported_from_one_and_a_half_median_steps_on(steps: float, missing: int) -> None:
     time_s = TIME_S[:100].copy()
     time_s[50:] += (steps - 1.0) * 0.01
     findings = find_gaps(run_at(time_s))
@@ -40,8 +40,7 @@ def test_gap_begins_at_one_and_a_half_usual_steps(steps: float, missing: int) ->
 
 
 @pytest.mark.parametrize(("every", "found"), [(8, False), (12, True)])
-def test_record_without_a_usual_step_has_no_gaps(every: int, found: bool) -> None:
-    """Nine of ten steps must be equal."""
+def test_gaps_are_reported_only_if_nine_of_ten_steps_are_equal(every: int, found: bool) -> None:
     time_s = np.delete(TIME_S[:240], np.arange(5, 230, every))
     assert (find_gaps(run_at(time_s)) != []) == found
 
@@ -50,7 +49,7 @@ ANGLE = 0.3 * TIME_S
 RUN = Run.from_arrays(TIME_S, speed_of(TIME_S), np.cos(TIME_S), angle_rad=ANGLE, name="a")
 
 
-def test_copy_on_another_clock_and_from_another_angle_is_the_same_recording() -> None:
+def test_copy_with_shifted_time_and_angle_is_the_same_recording() -> None:
     copy = replace(RUN, name="b", time_s=RUN.time_s + 5.0, angle_rad=ANGLE - 2.0)
     assert same_recording(RUN, copy)
     finding = repeated(RUN, copy)
@@ -58,7 +57,9 @@ def test_copy_on_another_clock_and_from_another_angle_is_the_same_recording() ->
 
 
 @pytest.mark.parametrize(("of_span", "same"), [(0.9e-6, True), (1.1e-6, False)])
-def test_shift_may_round_a_millionth_of_the_span(of_span: float, same: bool) -> None:
+def test_shifted_copy_is_recognised_if_it_deviates_by_less_than_a_millionth_of_the_span(
+    of_span: float, same: bool
+) -> None:
     moved = ANGLE - 2.0 + np.where(TIME_S == 5.0, of_span * np.ptp(ANGLE), 0.0)
     assert same_recording(RUN, replace(RUN, angle_rad=moved)) == same
 
@@ -72,13 +73,19 @@ def test_runs_that_differ_in_a_digit_a_column_or_length_are_not_copies() -> None
         RUN.select(slice(1, None)),
     ):
         assert not same_recording(RUN, other)
-    bare = replace(RUN, friction_n=None)
-    assert not same_recording(bare, bare)
+
+
+def test_runs_without_friction_are_not_copies() -> None:
+    without_friction = replace(RUN, friction_n=None)
+    assert not same_recording(without_friction, without_friction)
+
+
+def test_runs_with_equal_missing_samples_are_copies() -> None:
     patchy = replace(RUN, extra={"w": np.where(TIME_S < 5.0, np.nan, 20.0)})
     assert same_recording(patchy, replace(patchy, name="c"))
 
 
-def test_each_copy_refers_to_the_first_of_its_kind() -> None:
+def test_each_copy_refers_to_the_first_run_that_it_repeats() -> None:
     assert RUN.friction_n is not None
     other = replace(RUN, friction_n=2.0 * RUN.friction_n)
     assert copies([RUN, other, RUN, RUN, other]) == {2: 0, 3: 0, 4: 1}
@@ -96,7 +103,7 @@ def polled(every: int, rows: int = 800) -> Run:
     )
 
 
-def test_repeated_rows_of_a_moving_drive_are_left_out() -> None:
+def test_repeated_rows_of_a_moving_drive_are_removed_and_their_share_reported() -> None:
     run = polled(5)
     again = repeated_rows(run)
     assert again is not None
@@ -112,11 +119,13 @@ def test_repeated_rows_of_a_moving_drive_are_left_out() -> None:
     ("every", "rows", "found"),
     [(22, 800, False), (18, 800, True), (60, 4000, False), (40, 4000, True)],
 )
-def test_forty_rows_and_two_percent_must_repeat(every: int, rows: int, found: bool) -> None:
+def test_repeated_rows_are_found_if_at_least_forty_and_two_percent_of_the_rows_repeat(
+    every: int, rows: int, found: bool
+) -> None:
     assert (repeated_rows(polled(every, rows)) is not None) == found
 
 
-def test_rows_are_repeated_only_if_all_fast_channels_are() -> None:
+def test_row_is_repeated_only_if_all_channels_but_the_temperature_repeat() -> None:
     run = polled(5)
     assert run.friction_n is not None
     changing = replace(run, friction_n=run.friction_n + 1e-3 * np.arange(800))
@@ -127,7 +136,8 @@ def test_rows_are_repeated_only_if_all_fast_channels_are() -> None:
 
 
 def logged(seed: int) -> tuple[list[Run], list[Run], dict[str, Any]]:
-    """Simulated runs of a slide, and the same as a logger whose link answers after 2 to 8 rows."""
+    """Simulated runs of a slide, and the same runs with each row repeated until a logger reads
+    new values, which happens after 2 to 8 rows."""
     records, truth = axis_campaign(seed, runs=3)
     random = np.random.default_rng(seed)
     clean, stale = [], []
@@ -143,7 +153,7 @@ def logged(seed: int) -> tuple[list[Run], list[Run], dict[str, Any]]:
     return clean, stale, truth
 
 
-def test_fit_to_polled_rows_recovers_law_and_noise() -> None:
+def test_fit_recovers_law_and_noise_if_four_of_five_rows_are_repeated() -> None:
     _, stale, truth = logged(41)
     found = fit(Rig(), stale, law="coulomb")
     sizes = {finding.kind: finding.size for finding in found.findings}
@@ -155,7 +165,7 @@ def test_fit_to_polled_rows_recovers_law_and_noise() -> None:
         assert abs(parameter.value - true) < 4.0 * parameter.stderr + 0.005 * true
 
 
-def test_motion_continues_through_repeated_rows_and_does_not_depend_on_the_force() -> None:
+def test_speed_error_of_the_imposed_motion_is_a_tenth_of_that_of_repeated_rows() -> None:
     clean, stale, _ = logged(42)
     for true, run in zip(clean, stale, strict=True):
         assert as_read(true) is true
@@ -164,15 +174,18 @@ def test_motion_continues_through_repeated_rows_and_does_not_depend_on_the_force
         error = motion.velocity_m_s - true.velocity_m_s
         held = run.velocity_m_s - true.velocity_m_s
         assert np.sqrt(np.mean(error**2)) < 0.1 * np.sqrt(np.mean(held**2))
-    run = stale[0]
+
+
+def test_imposed_motion_with_repeated_rows_does_not_depend_on_the_force() -> None:
+    run = logged(42)[1][0]
     bare = Run.from_arrays(run.time_s, run.velocity_m_s, position_m=run.position_m)
     np.testing.assert_array_equal(
         imposed(Rig(), run).velocity_m_s, imposed(Rig(), bare).velocity_m_s
     )
 
 
-def test_constant_rows_of_a_rest_are_readings() -> None:
-    """A rest is longer than twice the longest silence of the link."""
+def test_constant_rows_of_a_long_rest_are_not_repeated_rows() -> None:
+    """The rest is longer than twice the longest series of repeated rows."""
     run, rest = logged(45)[1][0], 300
     assert run.friction_n is not None
     assert run.position_m is not None

@@ -1,4 +1,4 @@
-"""Held samples: a force that stands still, and a slow channel repeated until its next reading."""
+"""Held samples: a constant stretch of the force, and readings of a slow channel that repeat."""
 
 from __future__ import annotations
 
@@ -26,23 +26,27 @@ def repeating(values: Any, first: int, count: int) -> Array:
 
 
 @pytest.mark.parametrize(("count", "found"), [(4, False), (5, True), (9, True)])
-def test_five_equal_readings_of_noisy_data_are_held(count: int, found: bool) -> None:
-    """The first of them was read; those that repeat it were not."""
+def test_equal_readings_of_noisy_data_are_held_samples_from_five_on(
+    count: int, found: bool
+) -> None:
+    """The first is a reading; those that repeat it are held samples."""
     mask = held(repeating(NOISY_SINE, 300, count))
     assert places(mask) == (list(range(301, 300 + count)) if found else [])
 
 
 @pytest.mark.parametrize(("count", "found"), [(30, False), (31, True)])
-def test_held_stretch_is_longer_than_chance_makes_it(count: int, found: bool) -> None:
-    """Half of the readings come twice: a row of k has probability 2000 / 2^(k-1) < 1e-6."""
+def test_equal_readings_are_held_samples_if_their_probability_is_below_1e_minus_6(
+    count: int, found: bool
+) -> None:
+    """Half of the readings repeat: k equal ones have the probability 2000 / 2^(k-1) < 1e-6."""
     pairs = np.repeat(NOISE, np.where(np.arange(SAMPLES) % 2, 1, 2))[:SAMPLES]
     mask = held(repeating(pairs, 302, count))
     assert places(mask) == (list(range(303, 302 + count)) if found else [])
 
 
-def test_quantised_noise_repeats_a_reading_by_chance() -> None:
+def test_least_length_of_held_samples_follows_from_noise_and_quantisation_step() -> None:
     """Rounding to whole steps adds 1/12 to the variance of the noise. A reading in the middle of a
-    step is repeated k times with probability p^k: held rows have less than 1e-6 in the record."""
+    step is repeated k times with probability p^k, which must be below 1e-6 in the record."""
     values = np.round(np.linspace(-50.0, 50.0, SAMPLES) + 0.5 * NOISE)
     noise = np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0)
     p = erf(0.5 / np.sqrt(noise**2 - 1.0 / 12.0) / np.sqrt(2.0))
@@ -53,13 +57,15 @@ def test_quantised_noise_repeats_a_reading_by_chance() -> None:
 
 @pytest.mark.parametrize("over_noise", [1.5, 3.5, 6.0])
 @pytest.mark.parametrize("scale", [1e-6, 1.0])
-def test_equal_readings_of_a_coarse_converter_are_not_held(over_noise: float, scale: float) -> None:
+def test_equal_readings_of_a_coarsely_quantised_force_are_not_held_samples(
+    over_noise: float, scale: float
+) -> None:
     force = scale * quantised(reversing_force(TIME_S, 5), over_noise * 0.3)
     assert np.mean(np.diff(force) == 0.0) > 0.2
     assert not held(force).any()
 
 
-def test_finding_has_the_longest_duration_of_unexplained_stretches() -> None:
+def test_held_samples_finding_has_the_longest_stretch_that_no_other_finding_explains() -> None:
     force = repeating(repeating(NOISY_SINE, 300, 6), 800, 21)
     run = Run.from_arrays(TIME_S, 0.1 + 0.0 * TIME_S, force, name="a")
     (finding,), mask = find_held(run, np.zeros(SAMPLES, dtype=bool))
@@ -89,7 +95,7 @@ def repeated(ticks_s: Array, read: Array) -> Array:
 
 
 @pytest.mark.parametrize("rate_hz", [9.3, 31.7, 46.0])
-def test_repeated_readings_and_their_instants_are_recovered(rate_hz: float) -> None:
+def test_readings_of_a_slow_channel_and_their_instants_are_recovered(rate_hz: float) -> None:
     ticks_s = ticks_of(rate_hz)
     read = reversing_force(ticks_s, 6)
     native = find_repeated(FAST_S, repeated(ticks_s, read))
@@ -101,8 +107,8 @@ def test_repeated_readings_and_their_instants_are_recovered(rate_hz: float) -> N
 
 
 @pytest.mark.parametrize(("rate_hz", "step_n"), [(6.3, 2.5), (17.0, 0.8), (23.0, 2.5)])
-def test_repeated_readings_in_coarse_steps_are_recovered(rate_hz: float, step_n: float) -> None:
-    """Consecutive equal readings are separated by the clock of the others."""
+def test_quantised_readings_of_a_slow_channel_are_recovered(rate_hz: float, step_n: float) -> None:
+    """Consecutive equal readings are separated by the period of the channel."""
     ticks_s = ticks_of(rate_hz)
     read = quantised(1.7 * reversing_force(ticks_s, 6, 0.4), step_n)
     assert np.mean(np.diff(read) == 0.0) > 0.1
@@ -116,15 +122,17 @@ def test_repeated_readings_in_coarse_steps_are_recovered(rate_hz: float, step_n:
 
 @pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
 @pytest.mark.parametrize("omega", [0.02, 3.0])
-def test_equal_readings_of_a_converter_are_not_repeated_ones(step_n: float, omega: float) -> None:
+def test_quantised_noisy_force_has_no_readings_of_a_slow_channel(
+    step_n: float, omega: float
+) -> None:
     noise = white(len(FAST_S), 7, 0.3)
     for force in (20.0 * np.tanh(5.0 * np.sin(omega * FAST_S)) + noise, 0.3 * FAST_S + noise):
         assert find_repeated(FAST_S, quantised(force, step_n) if step_n else force) is None
 
 
 def rows_of_clock(period: float, rows: int, *, skip: int = 0) -> tuple[Array, Array]:
-    """A record in which `rows` readings begin, a period (in samples) apart; every `skip`-th of them
-    equals the one before."""
+    """Time and values of a channel with `rows` readings, one for each period (in samples); every
+    `skip`-th reading equals the one before."""
     begins = np.ceil(0.3 + period * np.arange(rows + 1)).astype(int)
     values = white(rows + 1, 2)
     if skip:
@@ -134,11 +142,11 @@ def rows_of_clock(period: float, rows: int, *, skip: int = 0) -> tuple[Array, Ar
 
 
 @pytest.mark.parametrize(("rows", "found"), [(39, False), (40, True)])
-def test_forty_readings_are_needed_to_tell_a_clock(rows: int, found: bool) -> None:
+def test_slow_channel_is_recognised_from_forty_readings_on(rows: int, found: bool) -> None:
     assert (find_repeated(*rows_of_clock(2.7, rows)) is not None) == found
 
 
-def test_repeated_readings_need_even_stamps_and_a_steady_clock() -> None:
+def test_slow_channel_is_recognised_only_with_even_time_stamps_and_a_constant_rate() -> None:
     time_s, values = rows_of_clock(2.7, 200)
     for error_s, found in ((0.5e-5, True), (2e-5, False)):
         uneven = time_s.copy()

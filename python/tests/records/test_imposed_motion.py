@@ -9,7 +9,7 @@ import pytest
 from input_errors import input_error
 from jbf import Model, Rig, Run
 from jbf.records.motion.believed import believed
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.motion.roughness import step_of
 from known_motions import (
     STEP_S,
@@ -41,7 +41,7 @@ def kinds(run: Run) -> list[str]:
 # ---- which records are used ----------------------------------------------------------------------
 
 
-def test_records_without_a_fault_are_used_as_they_are() -> None:
+def test_speed_and_path_without_a_fault_are_used_unchanged() -> None:
     records = believed(run_of(), None)
     np.testing.assert_array_equal(records.path, PATH_M)  # type: ignore[arg-type]
     np.testing.assert_array_equal(records.speed, SPEED_M_S)
@@ -52,7 +52,7 @@ def test_records_without_a_fault_are_used_as_they_are() -> None:
     assert (records.step, records.arm_m) == (pytest.approx(step_of(PATH_M)), RADIUS_M)
 
 
-def test_angle_alone_needs_a_radius() -> None:
+def test_speed_is_derived_from_an_angle_only_if_the_radius_is_known() -> None:
     run = Run.from_arrays(TIME_S, angle_rad=PATH_M / RADIUS_M, name="a")
     error = input_error(believed, run, None)
     assert (error.file, error.column) == ("a", "velocity_m_s")
@@ -67,7 +67,7 @@ def test_angle_alone_needs_a_radius() -> None:
     [(1e3, 1.0, "units"), (-1e3, 1.0, "units"), (7.7, 1.0, "units"), (1.0, 1e3, "units"),
      (-1.0, 1.0, "sign")],
 )  # fmt: skip
-def test_wrong_units_and_signs_are_converted(
+def test_wrong_units_and_signs_of_speed_or_path_are_corrected(
     path_factor: float, speed_factor: float, kind: str
 ) -> None:
     run = run_of(speed_factor * SPEED_M_S, path_factor * PATH_M)
@@ -82,19 +82,25 @@ def test_wrong_units_and_signs_are_converted(
     assert np.std(motion.velocity_m_s - speed_of(TIME_S)) < 1e-4
 
 
-def test_late_speed_is_shifted_and_a_filtered_or_derived_one_replaced() -> None:
-    late = believed(run_of(speed_of(TIME_S - 0.3 * STEP_S)), None)
-    assert [finding.kind for finding in late.findings] == ["late_speed"]
-    assert late.speed_measured
-    np.testing.assert_allclose(late.speed[5:-5], speed_of(TIME_S)[5:-5], atol=3e-4)
+def test_speed_delayed_by_a_third_of_a_sample_is_shifted() -> None:
+    delayed = believed(run_of(speed_of(TIME_S - 0.3 * STEP_S)), None)
+    assert [finding.kind for finding in delayed.findings] == ["late_speed"]
+    assert delayed.speed_measured
+    np.testing.assert_allclose(delayed.speed[5:-5], speed_of(TIME_S)[5:-5], atol=3e-4)
+
+
+def test_speed_delayed_by_three_samples_is_replaced_by_the_derivative_of_the_path() -> None:
     filtered = believed(run_of(speed_of(TIME_S - 3.0 * STEP_S)), None)
     assert [finding.kind for finding in filtered.findings] == ["filtered_speed"]
     assert not filtered.speed_measured
     np.testing.assert_allclose(filtered.speed, np.gradient(PATH_M, TIME_S))
+
+
+def test_speed_computed_as_a_difference_of_the_path_is_reported_as_coarse() -> None:
     assert kinds(run_of(np.concatenate(([0.0], np.diff(PATH_M) / STEP_S)))) == ["coarse_speed"]
 
 
-def test_each_fault_of_a_record_is_reported_once() -> None:
+def test_glitches_held_samples_and_jitter_of_a_motion_are_each_reported_once() -> None:
     path, speed = PATH_M.copy(), SPEED_M_S.copy()
     path[300] += 0.01
     speed[500] += 0.1
@@ -128,7 +134,9 @@ def triangle_and_stops(name: str, time_s: Any) -> tuple[Array, Array]:
 @pytest.mark.parametrize("name", ["slow", "fast", "triangle", "stops"])
 @pytest.mark.parametrize("noise", [0.0, 1e-5, 2e-3])
 @pytest.mark.parametrize("count", [1e-9, 4e-4, pytest.param(4e-3, marks=pytest.mark.extended)])
-def test_clean_motion_has_no_findings(name: str, noise: float, count: float) -> None:
+def test_motion_without_a_fault_has_no_findings_and_no_glitches_next_to_gaps(
+    name: str, noise: float, count: float
+) -> None:
     time_s = 0.02 * np.arange(1500)
     if name in ("slow", "fast"):
         omega = {"slow": 0.05, "fast": 4.0}[name]
@@ -155,7 +163,9 @@ def recorded(time_s: Array, v: Array, path: Array, *, seed: int = 0) -> Run:
 
 @pytest.mark.parametrize("omega", [0.1, 2.0])
 @pytest.mark.parametrize("even", [True, False])
-def test_smoothed_sine_has_small_errors_of_the_stated_size(omega: float, even: bool) -> None:
+def test_motion_of_a_noisy_sine_is_recovered_within_its_standard_errors_without_a_rest(
+    omega: float, even: bool
+) -> None:
     time_s = np.arange(0.0, 40.0, 0.02)
     if not even:
         time_s = np.cumsum(np.random.default_rng(3).uniform(0.01, 0.03, 2000))
@@ -169,11 +179,11 @@ def test_smoothed_sine_has_small_errors_of_the_stated_size(omega: float, even: b
     known = motion.sign_known & ~motion.resting
     np.testing.assert_array_equal(np.sign(motion.velocity_m_s[known]), np.sign(v[known]))
     assert np.mean(motion.sign_known) > 0.98
-    # A slow reversal is no rest.
+    # A slow reversal is not a rest.
     assert not motion.resting.any()
 
 
-def test_motion_of_two_sines_is_recovered_with_signs_at_four_standard_errors() -> None:
+def test_motion_of_two_sines_is_recovered_with_its_sign_known_from_four_standard_errors() -> None:
     motion = impose(run_of(), None)
     np.testing.assert_allclose(motion.velocity_m_s, speed_of(TIME_S), atol=3e-4)
     np.testing.assert_allclose(motion.angle_rad, path_of(TIME_S), atol=COUNT_M)
@@ -185,7 +195,7 @@ def test_motion_of_two_sines_is_recovered_with_signs_at_four_standard_errors() -
     np.testing.assert_allclose(turned.angle_rad, path_of(TIME_S) / RADIUS_M, atol=1e-3)
 
 
-def test_speed_alone_is_smoothed_and_integrated_to_an_angle() -> None:
+def test_speed_without_a_position_is_smoothed_and_integrated_to_an_angle() -> None:
     motion = impose(Run.from_arrays(TIME_S, SPEED_M_S), RADIUS_M)
     np.testing.assert_allclose(motion.velocity_m_s, speed_of(TIME_S), atol=4e-4)
     way = path_of(TIME_S) - path_of(0.0)
@@ -195,7 +205,7 @@ def test_speed_alone_is_smoothed_and_integrated_to_an_angle() -> None:
     np.testing.assert_allclose(motion.velocity_m_s, clean, atol=2e-5)
 
 
-def test_uneven_noise_has_uneven_errors() -> None:
+def test_error_of_the_imposed_speed_is_larger_where_the_recorded_speed_is_noisier() -> None:
     loud = np.where((TIME_S > 3.0) & (TIME_S < 6.0), 10.0, 1.0)
     run = Run.from_arrays(TIME_S, speed_of(TIME_S) + loud * white(SAMPLES, 8, 1e-4))
     error = impose(run, None).velocity_error_m_s
@@ -203,7 +213,7 @@ def test_uneven_noise_has_uneven_errors() -> None:
     assert 5.0 < np.median(error[inside]) / np.median(error[outside]) < 15.0
 
 
-def test_path_without_counts_is_weighted_by_its_noise() -> None:
+def test_error_of_the_imposed_speed_is_larger_if_the_path_is_noisier() -> None:
     rough = impose(run_of(path=path_of(TIME_S) + white(SAMPLES, 7, 2e-5)), None)
     np.testing.assert_allclose(rough.velocity_m_s, speed_of(TIME_S), atol=4e-4)
     fine = impose(run_of(), None)
@@ -211,14 +221,14 @@ def test_path_without_counts_is_weighted_by_its_noise() -> None:
     assert np.std(rough.angle_rad - path_of(TIME_S)) < 1.5e-5
 
 
-def test_speed_that_contradicts_its_path_has_no_known_sign_there() -> None:
+def test_sign_is_unknown_where_speed_contradicts_position() -> None:
     path = PATH_M + np.where(np.arange(SAMPLES) >= 400, 2e-3, 0.0)
     motion = impose(run_of(path=path), None)
     assert not motion.sign_known[398:402].any()
     assert motion.sign_known[380:390].all()
 
 
-def test_wrapped_angle_gives_the_motion_of_the_unwrapped_one() -> None:
+def test_wrapped_and_unwrapped_angle_give_equal_motions_and_predictions() -> None:
     time_s = np.arange(0.0, 20.0, 0.02)
     v = 0.1 + 0.05 * np.sin(time_s)
     angle = (0.1 * time_s + 0.05 * (1.0 - np.cos(time_s))) / RADIUS_M
@@ -235,7 +245,7 @@ def test_wrapped_angle_gives_the_motion_of_the_unwrapped_one() -> None:
 # ---- rests ---------------------------------------------------------------------------------------
 
 
-def test_corners_and_rests_of_a_trapezoid_are_kept() -> None:
+def test_trapezoidal_speed_is_recovered_with_its_corners_and_rests() -> None:
     time_s = np.arange(0.0, 12.0, 0.02)
     v = 0.05 * np.clip(np.minimum(time_s - 2.0, 8.0 - time_s), 0.0, 1.0)
     path = integrated(v, 0.02)
@@ -246,7 +256,7 @@ def test_corners_and_rests_of_a_trapezoid_are_kept() -> None:
     assert abs(motion.angle_rad[-1] * RADIUS_M - path[-1]) < 0.3 * RADIUS_M / 2387.3
 
 
-def test_rests_are_placed_between_the_counts_of_the_encoder() -> None:
+def test_rms_position_error_of_rests_is_below_0_15_encoder_counts() -> None:
     """Rounding to counts has an RMS error of 1 / sqrt(12) = 0.29 counts."""
     count_rad = 1.0 / 2387.3
     time_s = np.arange(0.0, 80.0, 0.02)
@@ -268,7 +278,7 @@ def test_rests_are_placed_between_the_counts_of_the_encoder() -> None:
     assert rms_counts(motion.angle_rad) < 0.15
 
 
-def test_rest_with_a_humming_speed_is_a_rest() -> None:
+def test_standstill_with_a_small_oscillation_of_the_speed_is_a_rest() -> None:
     time_s = np.arange(0.0, 12.0, 0.005)
     phase = np.mod(time_s, 2.0)
     way = np.where(np.mod(time_s, 4.0) < 2.0, 1.0, -1.0)
@@ -280,24 +290,33 @@ def test_rest_with_a_humming_speed_is_a_rest() -> None:
     assert not motion.resting[np.abs(v) > 5e-6].any()
 
 
-def test_edges_of_a_rest_and_two_moving_samples_are_uncertain() -> None:
+def two_rests() -> tuple[Array, Array, ImposedMotion]:
+    """True speed, recorded speed and imposed motion of rests that two moving samples separate."""
     v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, 0.1)
     v[300:302] = 0.05
     speed = np.where(v == 0.0, 0.0, v + white(SAMPLES, 4, 1e-4))
     motion = impose(run_of(speed, quantised(integrated(v, STEP_S), COUNT_M)), None)
+    return v, speed, motion
+
+
+def test_two_moving_samples_between_rests_are_not_smoothed() -> None:
+    v, speed, motion = two_rests()
     rest = v == 0.0
     np.testing.assert_array_equal(motion.resting, rest)
     assert (motion.velocity_error_m_s[rest] == 0.0).all()
-    # Fewer than three samples are not smoothed.
     np.testing.assert_array_equal(motion.velocity_m_s[300:302], speed[300:302])
     assert motion.velocity_error_m_s[300] == motion.velocity_error_m_s[301] > 5e-5
-    uncertain = set(np.flatnonzero(rest & ~motion.sign_known).tolist())
+
+
+def test_sign_is_unknown_at_the_edges_of_rests() -> None:
+    v, _, motion = two_rests()
+    uncertain = set(np.flatnonzero((v == 0.0) & ~motion.sign_known).tolist())
     assert {201, 299, 302, 399} <= uncertain
     assert motion.sign_known[225:275].all()
 
 
-def test_first_direction_after_a_rest_is_known_when_the_path_alone_shows_it() -> None:
-    """From three standard errors of the path on, which is about one count."""
+def test_sign_after_a_rest_is_unknown_until_the_path_moves_by_three_standard_errors() -> None:
+    """Three standard errors of the path are about one encoder count."""
     ramp = 0.1 * np.minimum(np.abs(TIME_S - 4.0), 1.0)
     v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, ramp)
     coarse = quantised(integrated(v, STEP_S), 1e-4)
@@ -310,7 +329,7 @@ def test_first_direction_after_a_rest_is_known_when_the_path_alone_shows_it() ->
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_run_that_begins_with_a_hum_begins_at_rest(sign: float) -> None:
+def test_run_that_begins_with_a_small_oscillation_begins_at_rest(sign: float) -> None:
     alternating = np.where(np.arange(SAMPLES) % 2, -1.0, 1.0)
     v = np.where(np.arange(SAMPLES) < 3, 1e-5 * sign * alternating, 0.1)
     motion = impose(run_of(v, integrated(v, STEP_S)), None)

@@ -1,4 +1,4 @@
-"""Interpolated samples: a slow channel drawn as straight lines, and single samples filled in."""
+"""Interpolated samples: a slow channel that was interpolated linearly, and single samples."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ DRAWN: Any = np.interp(SHORT_S, CORNERS_S, READ)
 
 
 def least_squares_residual(period_s: float, phase_s: float) -> float:
-    """RMS per degree of freedom that the best polygon leaves, by dense least squares."""
+    """RMS residual per degree of freedom of the best polygon, by dense least squares."""
     place = (SHORT_S - SHORT_S[0] - phase_s) / period_s
     low = np.floor(place).astype(int)
     share = place - low
@@ -54,7 +54,7 @@ def least_squares_residual(period_s: float, phase_s: float) -> float:
     return float(np.sqrt(np.sum(residual**2) / (len(SHORT_S) - design.shape[1])))
 
 
-def test_polygon_residual_is_that_of_dense_least_squares() -> None:
+def test_polygon_residual_equals_that_of_dense_least_squares() -> None:
     guesses = [(0.057, 0.03), (0.08, 0.0), (0.11, 0.05), (1.3, 0.4)]
     expected = [least_squares_residual(*guess) for guess in guesses]
     found = [polygon(SHORT_S, DRAWN, *guess)[0] for guess in guesses]
@@ -64,7 +64,7 @@ def test_polygon_residual_is_that_of_dense_least_squares() -> None:
     np.testing.assert_allclose(together, expected * 20, rtol=1e-4)
 
 
-def test_polygon_with_the_true_corners_recovers_the_readings() -> None:
+def test_polygon_with_the_true_period_and_phase_recovers_the_readings() -> None:
     residual, knots, corners = polygon(SHORT_S, DRAWN, PERIOD_S, PHASE_S)
     assert residual < 1e-6
     np.testing.assert_allclose(np.diff(knots), PERIOD_S)
@@ -76,7 +76,7 @@ def test_polygon_with_the_true_corners_recovers_the_readings() -> None:
     np.testing.assert_allclose(polygon(SHORT_S + 100.0, DRAWN, PERIOD_S, PHASE_S)[1], knots + 100.0)
 
 
-def test_smooth_curves_have_small_third_differences() -> None:
+def test_signal_is_smooth_if_its_third_differences_are_small_relative_to_its_second() -> None:
     """Third over second differences of a sine are 2 sin(omega / 2)."""
     wave = np.sin(0.7 * np.arange(4000))
     ratio = 2.0 * np.sin(0.35)
@@ -85,7 +85,7 @@ def test_smooth_curves_have_small_third_differences() -> None:
     assert not is_smooth(white(400, 1))
 
 
-# ---- readings behind straight lines --------------------------------------------------------------
+# ---- readings of a linearly interpolated force ---------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -102,8 +102,8 @@ def test_smooth_curves_have_small_third_differences() -> None:
         ),
     ],
 )
-def test_readings_behind_straight_lines_are_recovered(rate_hz: float) -> None:
-    """From a reading in 22 samples to nearly one a sample; not at a multiple of their rate."""
+def test_readings_of_a_linearly_interpolated_force_are_recovered(rate_hz: float) -> None:
+    """One reading in 22 samples to nearly one a sample; a multiple of the rate would fit, too."""
     ticks_s = ticks_of(rate_hz)
     read = reversing_force(ticks_s, 1)
     native = find_native(TIME_S, np.interp(TIME_S, ticks_s, read))
@@ -118,7 +118,9 @@ def test_readings_behind_straight_lines_are_recovered(rate_hz: float) -> None:
 
 
 @pytest.mark.parametrize(("step_n", "rate_hz"), [(0.5, 31.7), (1.5, 13.76), (0.0, 13.76)])
-def test_steps_of_readings_behind_straight_lines_are_found(step_n: float, rate_hz: float) -> None:
+def test_quantisation_step_of_a_linearly_interpolated_force_is_recovered(
+    step_n: float, rate_hz: float
+) -> None:
     ticks_s = ticks_of(rate_hz)
     read = 1.2 * reversing_force(ticks_s, 12)
     read = quantised(read, step_n) if step_n else read
@@ -129,7 +131,7 @@ def test_steps_of_readings_behind_straight_lines_are_found(step_n: float, rate_h
     assert steps == ([pytest.approx(step_n, rel=1e-3)] if step_n else [])
 
 
-def test_readings_at_the_end_of_the_range_are_saturated() -> None:
+def test_saturated_readings_of_a_linearly_interpolated_force_are_not_usable() -> None:
     ticks_s = np.arange(-0.01, TIME_S[-1] + 0.08, 1.0 / 25.35)
     read = np.clip(30.0 * np.sin(0.3 * ticks_s) + white(len(ticks_s), 12, 0.3), -28.0, 28.0)
     prepared = Prepared.of(Rig(), slow_run(np.round(np.interp(TIME_S, ticks_s, read), 4)))
@@ -142,7 +144,7 @@ def test_readings_at_the_end_of_the_range_are_saturated() -> None:
 
 
 @pytest.mark.parametrize("rate_hz", [9.2, pytest.param(30.4, marks=pytest.mark.extended)])
-def test_straight_lines_are_found_next_to_held_stretches(rate_hz: float) -> None:
+def test_interpolated_readings_are_recovered_if_parts_of_the_force_are_held(rate_hz: float) -> None:
     fine_s = 0.005 * np.arange(4000)
     ticks_s = ticks_of(rate_hz, fine_s)
     read = reversing_force(ticks_s, 1)
@@ -157,12 +159,14 @@ def test_straight_lines_are_found_next_to_held_stretches(rate_hz: float) -> None
     which = np.round((at_s - ticks_s[0]) * rate_hz).astype(int)
     np.testing.assert_allclose(at_s, ticks_s[which], atol=1e-3 / rate_hz)
     assert np.quantile(np.abs(prepared.friction_n - read[which]), 0.95) < 2e-3
-    # Within a held stretch nothing was read.
+    # There is no reading within a held stretch.
     assert not ((at_s > 12.5 + 1.0 / rate_hz) & (at_s < 13.06 - 1.0 / rate_hz)).any()
 
 
 @pytest.mark.parametrize("rate_hz", [pytest.param(9.2, marks=pytest.mark.extended), 17.0])
-def test_straight_lines_are_found_where_most_of_the_record_is_flat(rate_hz: float) -> None:
+def test_rate_of_interpolated_readings_is_recovered_if_most_of_the_force_is_constant(
+    rate_hz: float,
+) -> None:
     fine_s = 0.005 * np.arange(4000)
     ticks_s = ticks_of(rate_hz, fine_s)
     moving = (ticks_s > 4.0) & (ticks_s < 7.0)
@@ -173,7 +177,7 @@ def test_straight_lines_are_found_where_most_of_the_record_is_flat(rate_hz: floa
     assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-5)
 
 
-def test_model_of_a_slow_force_is_compared_at_its_readings() -> None:
+def test_interpolated_force_and_its_motion_are_taken_at_the_instants_of_the_readings() -> None:
     ticks_s = np.arange(0.0, TIME_S[-1] + 0.04, 0.04)
     run = slow_run(np.interp(TIME_S, ticks_s, reversing_force(ticks_s, 3)))
     prepared = Prepared.of(Rig(), run)
@@ -186,8 +190,8 @@ def test_model_of_a_slow_force_is_compared_at_its_readings() -> None:
     np.testing.assert_allclose(prepared.motion.velocity_m_s, expected, atol=1e-5)
 
 
-def test_slow_force_is_compared_with_all_samples_of_a_fast_motion() -> None:
-    """The model is driven at 200 Hz although the force was read at 20 Hz."""
+def test_model_of_an_interpolated_force_is_driven_by_all_samples_of_the_motion() -> None:
+    """The motion has a rate of 200 Hz, the force of 20 Hz."""
     time_s = np.arange(0.0, 20.0, 0.005)
     speed = np.where(time_s < 3.013, 0.0, 0.05 * np.sin(time_s - 3.013))
     slow_s = np.arange(0.0, 20.0, 0.05)
@@ -200,7 +204,7 @@ def test_slow_force_is_compared_with_all_samples_of_a_fast_motion() -> None:
     assert np.max(np.abs(np.interp(time_s, at_s, found) - speed)) < 1e-3
 
 
-def test_known_period_recovers_readings_and_finds_none_in_other_records() -> None:
+def test_interpolated_readings_of_a_known_period_are_recovered() -> None:
     period_s = 1.0 / 25.35
     ticks_s = ticks_of(25.35)
     native = find_native_of(
@@ -208,13 +212,17 @@ def test_known_period_recovers_readings_and_finds_none_in_other_records() -> Non
     )
     assert native is not None
     assert native.period_s == pytest.approx(period_s, rel=1e-5)
+
+
+def test_records_that_were_not_interpolated_have_no_readings_of_a_known_period() -> None:
+    period_s = 1.0 / 25.35
     for own in (reversing_force(TIME_S, 2), 20.0 * np.sin(0.3 * TIME_S), np.ones(len(TIME_S))):
         assert find_native_of(TIME_S, own, period_s) is None
     assert find_native_of(TIME_S[:60], reversing_force(TIME_S[:60], 1), period_s) is None
 
 
-def test_short_run_takes_the_reading_rate_of_the_other_runs_of_its_logger() -> None:
-    """Nearly every sample is a reading: 400 samples alone are too few to find the rate."""
+def test_short_run_has_the_reading_rate_that_a_longer_run_of_the_campaign_determines() -> None:
+    """Nearly every sample is a reading: 400 samples are too few to find the rate."""
     period_s = 1.083 * 0.02
     ticks_s = 0.4 * 0.02 + period_s * np.arange(-1, 600)
     read = 3.0 + 5.0 * np.sin(0.9 * ticks_s) + white(601, 1, 0.4)
@@ -231,7 +239,9 @@ def test_short_run_takes_the_reading_rate_of_the_other_runs_of_its_logger() -> N
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1, 6))]
 )
-def test_no_readings_behind_noise_of_any_memory(memory: float, seed: int) -> None:
+def test_force_with_autoregressive_noise_has_no_interpolated_readings(
+    memory: float, seed: int
+) -> None:
     noise = lfilter([1.0], [1.0, -memory], white(len(TIME_S), seed, 0.1))
     assert find_native(TIME_S, noise) is None
     assert find_native(TIME_S, 20.0 * np.tanh(50.0 * np.sin(0.3 * TIME_S)) + noise) is None
@@ -248,7 +258,7 @@ def test_no_readings_behind_noise_of_any_memory(memory: float, seed: int) -> Non
         ),
     ],
 )
-def test_no_readings_behind_a_low_pass_filter(seed: int, cut: float) -> None:
+def test_low_pass_filtered_force_has_no_interpolated_readings(seed: int, cut: float) -> None:
     force = 20.0 * np.sign(np.sin(3.0 * TIME_S)) + white(len(TIME_S), seed, 0.3)
     filtered = filtfilt(*butter(4, cut), force)
     assert find_native(TIME_S, filtered) is None
@@ -256,7 +266,7 @@ def test_no_readings_behind_a_low_pass_filter(seed: int, cut: float) -> None:
 
 
 @pytest.mark.parametrize("omega", OMEGAS)
-def test_no_readings_behind_smooth_straight_and_quantised_records(omega: float) -> None:
+def test_smooth_linear_and_quantised_forces_have_no_interpolated_readings(omega: float) -> None:
     smooth = 20.0 * np.tanh(5.0 * np.sin(omega * TIME_S))
     noise = white(len(TIME_S), 4, 0.3)
     records = [smooth, TIME_S, *(quantised(smooth + noise, step) for step in (0.05, 2.0))]
@@ -264,7 +274,7 @@ def test_no_readings_behind_smooth_straight_and_quantised_records(omega: float) 
     assert [find_native(TIME_S, record) for record in records] == [None] * len(records)
 
 
-# ---- single samples that were filled in ----------------------------------------------------------
+# ---- single interpolated samples -----------------------------------------------------------------
 
 
 def filled(lost: Any, time_s: Any = TIME_S, seed: int = 3) -> Array:
@@ -275,7 +285,7 @@ def filled(lost: Any, time_s: Any = TIME_S, seed: int = 3) -> Array:
 
 
 @pytest.mark.parametrize("uneven", [False, True])
-def test_lost_samples_that_were_filled_in_are_left_out(uneven: bool) -> None:
+def test_single_interpolated_samples_are_removed(uneven: bool) -> None:
     random = np.random.default_rng(3)
     time_s = np.sort(random.uniform(0.0, 60.0, 3000)) if uneven else TIME_S
     lost = random.random(len(time_s)) < 0.05
@@ -287,7 +297,7 @@ def test_lost_samples_that_were_filled_in_are_left_out(uneven: bool) -> None:
     np.testing.assert_array_equal(native.values, force[~lost])
 
 
-def test_filled_in_share_is_reported() -> None:
+def test_share_of_single_interpolated_samples_is_reported() -> None:
     lost = np.arange(len(TIME_S)) % 5 == 2
     run = slow_run(filled(lost))
     prepared = Prepared.of(Rig(), run)
@@ -298,7 +308,7 @@ def test_filled_in_share_is_reported() -> None:
 
 
 @pytest.mark.parametrize("step_n", [0.0, 1e-4, 0.0137, 0.1, 0.31, 1.7])
-def test_quantised_noise_has_no_filled_in_samples(step_n: float) -> None:
+def test_quantised_noise_has_no_single_interpolated_samples(step_n: float) -> None:
     for force in (reversing_force(TIME_S, 0), 0.3 * TIME_S + reversing_force(TIME_S, 0, 0.1)):
         for digits in (3, 4, 15):
             value = quantised(force, step_n) if step_n else force
@@ -306,7 +316,7 @@ def test_quantised_noise_has_no_filled_in_samples(step_n: float) -> None:
 
 
 @pytest.mark.parametrize("omega", OMEGAS)
-def test_smooth_straight_and_held_records_have_no_filled_in_samples(omega: float) -> None:
+def test_smooth_linear_and_held_forces_have_no_single_interpolated_samples(omega: float) -> None:
     triangle = np.abs(np.mod(omega * TIME_S, 2.0) - 1.0)
     noise = white(len(TIME_S), 5, 0.3)
     smooth = 20.0 * np.tanh(5.0 * np.sin(omega * TIME_S))

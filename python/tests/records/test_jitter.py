@@ -1,4 +1,4 @@
-"""Jitter: uneven time stamps, and positions that were read at other instants than stamped."""
+"""Jitter: uneven time stamps, and positions that were read at other instants than stated."""
 
 from __future__ import annotations
 
@@ -14,31 +14,40 @@ ALTERNATING: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
 
 
 def stamps(size_s: float, samples: int = 400) -> Any:
-    """Stamps with white jitter."""
+    """Time stamps with white jitter, s."""
     return STEP_S * np.arange(samples) + white(samples, 5, size_s)
 
 
 @pytest.mark.parametrize("size_s", [1.2e-4, 1e-3])
-def test_jitter_of_alternating_stamps_follows_from_fourth_differences(size_s: float) -> None:
+def test_jitter_of_alternating_time_stamps_follows_from_their_fourth_differences(
+    size_s: float,
+) -> None:
     """Fourth differences are 16 times the size; of unit white noise their variance is 70."""
     finding = uneven_stamps("a", STEP_S * np.arange(1000) + size_s * ALTERNATING)
     assert finding is not None
     assert finding.size == pytest.approx(16.0 * size_s / 0.6745 / np.sqrt(70.0))
 
 
-def test_short_records_changing_rates_and_records_without_a_rate_have_no_jitter() -> None:
+def test_time_stamp_jitter_is_reported_from_sixty_one_samples_on() -> None:
     assert uneven_stamps("a", stamps(1e-3)[:60]) is None
     assert uneven_stamps("a", stamps(1e-3)[:61]) is not None
+
+
+def test_smoothly_changing_and_constant_sampling_rates_have_no_jitter() -> None:
     time_s = STEP_S * np.arange(600)
     assert uneven_stamps("a", time_s + 0.2 * time_s**2) is None
     assert uneven_stamps("a", np.round(time_s, 3)) is None
+
+
+def test_time_stamp_jitter_is_reported_only_if_nine_of_ten_steps_are_near_the_median() -> None:
+    """Each missing sample makes one step of twice the length."""
     for every, found in ((8, False), (20, True)):
         lossy = np.delete(stamps(1e-3), np.arange(0, 400, every))
         assert (uneven_stamps("a", lossy) is not None) == found
 
 
 def shaken(size_s: float, *, count: float = 0.0, samples: int = 4000, ripple: bool = False) -> Any:
-    """The finding of a slow motion whose positions were read off the stamps."""
+    """The finding of a slow motion whose positions were read at other instants than stated."""
     time_s: Any = STEP_S * np.arange(samples)
     off_s = white(samples, 6, size_s)
     if ripple:
@@ -48,21 +57,21 @@ def shaken(size_s: float, *, count: float = 0.0, samples: int = 4000, ripple: bo
     return shaken_path("a", time_s, path, speed_of(0.2 * time_s))
 
 
-def test_jitter_of_positions_is_their_noise_over_the_speed() -> None:
+def test_position_jitter_is_recovered_from_noise_that_grows_with_the_speed() -> None:
     finding = shaken(1e-3)
     assert finding is not None
     assert (finding.kind, finding.channel, finding.unit) == ("jitter", "time_s", "s")
     assert finding.size == pytest.approx(1e-3, rel=0.25)
 
 
-def test_small_coarse_periodic_and_short_deviations_are_no_jitter() -> None:
+def test_small_quantised_periodic_and_short_deviations_are_not_reported_as_jitter() -> None:
     assert shaken(0.5e-4) is None
     assert shaken(1e-3, count=1e-3) is None
     assert shaken(1e-2, ripple=True) is None
     assert shaken(1e-3, samples=200) is None
 
 
-def test_noise_that_does_not_grow_with_speed_is_no_jitter() -> None:
+def test_position_noise_that_does_not_grow_with_speed_is_not_reported_as_jitter() -> None:
     time_s: Any = STEP_S * np.arange(4000)
     path = path_of(0.2 * time_s) / 0.2 + white(4000, 7, 1e-4)
     speed = speed_of(0.2 * time_s)
@@ -75,14 +84,14 @@ def alternating(
     delay_s: float,
     slow_noise: float,
 ) -> tuple[Any, Any]:
-    """The finding and the path of three constant speeds, read alternately early and late."""
+    """Finding and path of three constant speeds, read alternately before and after the stamp."""
     speed: Any = np.repeat([0.1, 0.45, 1.0], 300)
     path = integrated(speed, STEP_S) + (delay_s * speed + slow_noise) * ALTERNATING[:900]
     return shaken_path("a", STEP_S * np.arange(900), path, speed), path
 
 
 @pytest.mark.parametrize("slow_noise", [0.0, 5e-5])
-def test_noise_at_low_speed_is_subtracted(slow_noise: float) -> None:
+def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: float) -> None:
     """Fifth differences are 32 times the size; of unit white noise their variance is 252."""
     delay_s, unit = 2e-3, 32.0 / 0.6745 / np.sqrt(252.0)
     finding, path = alternating(delay_s, slow_noise)

@@ -32,13 +32,13 @@ def test_speed_is_interpolated_by_cubics_through_speed_and_acceleration() -> Non
     np.testing.assert_allclose(found.velocity_m_s, cubic(at_s))
     np.testing.assert_allclose(found.angle_rad, 3.0 * at_s)
     np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, t, a))
-    # The larger error of both neighbours.
+    # The error is the larger one of both neighbours.
     assert found.velocity_error_m_s.tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 1.0]
     assert found.sign_known.all()
     assert not found.resting.any()
 
 
-def test_motion_starts_and_stops_where_its_acceleration_says() -> None:
+def test_start_and_stop_of_a_motion_are_extrapolated_from_speed_and_acceleration() -> None:
     """At 0.5 m/s after 1 m/s^2 it started 0.5 s before; at -2 m/s^2 it stops 0.25 s later."""
     at_s = np.array([0.5, 1.25, 1.5, 1.75, 2.0, 4.1, 4.25, 4.5])
     v, rest = [0.0, 0.0, 0.5, 0.5, 0.0], "11001"
@@ -47,7 +47,8 @@ def test_motion_starts_and_stops_where_its_acceleration_says() -> None:
     np.testing.assert_allclose(found.velocity_m_s, expected, atol=1e-12)
     assert found.resting.tolist() == [True, True, True, False, False, False, True, True]
     np.testing.assert_allclose(found.acceleration_m_s2, [0, 0, 0, 1.0, 1.0, -2.0, 0.0, 0.0])
-    # An acceleration too small for the interval, or of the wrong sign: from sample to sample.
+    # If the acceleration is too small for the interval or has the wrong sign, the speed is
+    # interpolated linearly.
     for a in ([0.0, 0.0, 0.1, -0.1, 0.0], [0.0, 0.0, -1.0, 1.0, 0.0]):
         linear = motion(v, a, rest).at(INSTANTS_S, at_s)
         expected = [0.0, 0.125, 0.25, 0.375, 0.5, 0.45, 0.375, 0.25]
@@ -62,7 +63,7 @@ def test_motion_starts_and_stops_where_its_acceleration_says() -> None:
         ([0.0, 0.0, 1.0, 1.0, 1.0], "11000", "11111", [1.5]),  # between rest and motion
     ],
 )
-def test_sign_is_known_between_equal_known_signs(
+def test_sign_between_samples_is_known_only_if_both_have_the_same_known_sign(
     v: list[float], rest: str, known: str, unknown_s: list[float]
 ) -> None:
     at_s = np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5, 5.0])
@@ -70,7 +71,7 @@ def test_sign_is_known_between_equal_known_signs(
     assert at_s[~found.sign_known].tolist() == unknown_s
 
 
-LASTS_S = 20.0
+DURATION_S = 20.0
 
 
 def speed(time_s: Any) -> Any:
@@ -79,19 +80,19 @@ def speed(time_s: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def prepared() -> Prepared:
-    time_s = np.arange(0.0, LASTS_S + 0.01, 0.02)
+    time_s = np.arange(0.0, DURATION_S + 0.01, 0.02)
     v = speed(time_s)
     force = 5.0 * np.sign(v) + 20.0 * v + white(len(time_s), 0, 0.03)
     return Prepared.of(Rig(), Run.from_arrays(time_s, v, force))
 
 
 @pytest.mark.parametrize(("delay_s", "drift"), [(7.3e-3, 0.0), (-31e-3, 0.0), (25e-3, 2e-3)])
-def test_late_force_is_compared_with_the_motion_before(
+def test_delayed_force_is_compared_with_the_motion_at_earlier_instants(
     prepared: Prepared, delay_s: float, drift: float
 ) -> None:
     """A drift adds to the delay in proportion to the time from mid-run."""
     time_s = prepared.run.time_s
-    at_s = time_s - delay_s - drift * (time_s - 0.5 * LASTS_S)
+    at_s = time_s - delay_s - drift * (time_s - 0.5 * DURATION_S)
     inside = (at_s >= time_s[0]) & (at_s <= time_s[-1])
     assert 1 <= np.sum(~inside) <= 3
     found = prepared.shifted(delay_s, drift)
@@ -105,7 +106,7 @@ def test_late_force_is_compared_with_the_motion_before(
     assert np.sum(~known) <= 8 * np.count_nonzero(np.diff(np.sign(expected))) + 4
 
 
-def test_zero_shift_changes_nothing(prepared: Prepared) -> None:
+def test_zero_delay_and_drift_change_neither_force_nor_motion(prepared: Prepared) -> None:
     same = prepared.shifted(0.0, 0.0)
     np.testing.assert_array_equal(same.friction_n, prepared.friction_n)
     expected = prepared.motion.velocity_m_s

@@ -1,4 +1,4 @@
-"""Glitches and held readings of position and speed, and where the motion is taken from then."""
+"""Glitches and held samples of position and speed, and their replacement."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_position_outlier_between_uneven_samples_is_replaced_by_a_cubic() -> Non
     assert mended.path_m[400] == pytest.approx(path[400], abs=5e-4)
 
 
-def test_counts_steps_and_corners_of_a_path_are_no_outliers() -> None:
+def test_quantisation_steps_and_corners_of_a_path_are_not_outliers() -> None:
     assert mended_path({})[1] is None
     stepped = COUNTED_M.copy()
     stepped[500:] += 1e-2
@@ -66,7 +66,9 @@ def test_counts_steps_and_corners_of_a_path_are_no_outliers() -> None:
 
 
 @pytest.mark.parametrize(("noises", "found"), [(7.8, False), (8.2, True)])
-def test_position_outlier_exceeds_eight_standard_deviations(noises: float, found: bool) -> None:
+def test_position_jump_is_an_outlier_if_it_exceeds_eight_standard_deviations(
+    noises: float, found: bool
+) -> None:
     """Cubics through the neighbours of an alternating path deviate by 8/3 of its amplitude."""
     amplitude = 1e-4
     path = 1e-3 * np.arange(1000.0) + amplitude * np.where(np.arange(1000) % 2, -1.0, 1.0)
@@ -94,8 +96,10 @@ def test_speed_outliers_that_the_path_contradicts_are_replaced() -> None:
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.31, True), (0.36, False), (1.0, False)])
-def test_speed_outlier_that_the_path_shares_is_motion(share: float, found: bool) -> None:
-    """The speed must miss the path by twice as much as the repaired speed does."""
+def test_speed_peak_is_not_an_outlier_if_the_path_contains_a_third_of_it(
+    share: float, found: bool
+) -> None:
+    """The error of the speed relative to the path must be twice that of the repaired speed."""
     path = PATH_M.copy()
     path[200:] += 0.5 * share * 0.1 * STEP_S
     path[201:] += 0.5 * share * 0.1 * STEP_S
@@ -106,7 +110,7 @@ def test_speed_outlier_that_the_path_shares_is_motion(share: float, found: bool)
     ("count", "with_path", "found"),
     [(3, False, True), (4, False, False), (4, True, True), (20, True, True), (21, True, False)],
 )
-def test_share_of_speed_outliers_is_smaller_without_a_path(
+def test_speed_outliers_are_found_up_to_0_3_percent_without_and_2_percent_with_a_path(
     count: int, with_path: bool, found: bool
 ) -> None:
     jumps = {40 + 40 * k: 0.1 for k in range(count)}
@@ -114,7 +118,9 @@ def test_share_of_speed_outliers_is_smaller_without_a_path(
 
 
 @pytest.mark.parametrize(("noises", "found"), [(7.8, False), (8.2, True)])
-def test_speed_outlier_exceeds_eight_standard_deviations(noises: float, found: bool) -> None:
+def test_speed_jump_is_an_outlier_if_it_exceeds_eight_standard_deviations(
+    noises: float, found: bool
+) -> None:
     """All second differences of this speed are of one size."""
     bend = 1e-3
     speed = bend * np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
@@ -130,6 +136,9 @@ def test_steps_corners_and_noise_free_speeds_have_no_outliers() -> None:
     steady[500] = 0.3
     for speed in (step, corner, steady, SPEED_M_S + white(SAMPLES, 1, 1e-4)):
         assert mend_speed("a", TIME_S, speed, None)[1] is None
+
+
+def test_speed_outliers_are_reported_from_sixty_samples_on() -> None:
     spike = SPEED_M_S + white(SAMPLES, 1, 1e-4)
     spike[30] += 0.1
     for samples, found in ((59, False), (60, True)):
@@ -138,8 +147,8 @@ def test_steps_corners_and_noise_free_speeds_have_no_outliers() -> None:
         ) == found
 
 
-def test_speed_that_contradicts_the_path_for_a_tenth_of_a_second_is_not_used() -> None:
-    """Too long for an outlier."""
+def test_speed_that_contradicts_the_path_for_six_samples_is_not_used() -> None:
+    """Six samples are too many for an outlier."""
     for change in (lambda v: 0.5 * v, lambda v: v + 0.05):
         speed = SPEED_M_S + white(SAMPLES, 6, 1e-4)
         speed[500:506] = change(speed[500:506])
@@ -152,7 +161,9 @@ def test_speed_that_contradicts_the_path_for_a_tenth_of_a_second_is_not_used() -
 
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])
 @pytest.mark.parametrize("with_angle", [False, True])
-def test_deviating_end_of_the_speed_has_no_known_motion(end: int, with_angle: bool) -> None:
+def test_outlier_at_an_end_of_the_speed_is_replaced_and_its_sign_unknown(
+    end: int, with_angle: bool
+) -> None:
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4)
     speed[end] = 40.0
     run = Run.from_arrays(TIME_S, speed, angle_rad=PATH_M / 0.5 if with_angle else None)
@@ -167,7 +178,9 @@ def test_deviating_end_of_the_speed_has_no_known_motion(end: int, with_angle: bo
 
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])
 @pytest.mark.parametrize("with_speed", [False, True])
-def test_deviating_end_of_the_position_is_extrapolated(end: int, with_speed: bool) -> None:
+def test_outlier_at_an_end_of_the_position_is_replaced_by_extrapolation(
+    end: int, with_speed: bool
+) -> None:
     path = PATH_M.copy()
     path[end] += 0.1
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4) if with_speed else None
@@ -179,7 +192,7 @@ def test_deviating_end_of_the_position_is_extrapolated(end: int, with_speed: boo
     assert finding.size == pytest.approx(0.2, rel=0.02)
 
 
-def test_deviating_end_of_the_speed_that_the_path_shares_is_motion() -> None:
+def test_deviating_end_of_the_speed_is_an_outlier_only_if_the_path_lacks_it() -> None:
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4)
     speed[-1] += 1.0
     path = PATH_M.copy()
@@ -192,12 +205,14 @@ def test_deviating_end_of_the_speed_that_the_path_shares_is_motion() -> None:
     assert mended[-1] == pytest.approx(SPEED_M_S[-1], abs=2e-3)
 
 
-# ---- held readings of the path -------------------------------------------------------------------
+# ---- held samples of the position ----------------------------------------------------------------
 
 
 def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tuple[Any, Any, Any]:
-    """Repaired position, finding and true path of a shaft at 0.1 m/s whose position stands still
-    for some samples from given ones on."""
+    """Repaired position, finding and true path of a shaft at 0.1 m/s.
+
+    The recorded position repeats the sample at each key of `at` as often as its value states.
+    """
     true: Any = 0.1 * TIME_S[:400]
     path = quantised(true, step)
     path[0] = true[0] = path[1] - step
@@ -209,7 +224,7 @@ def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tu
     return mended, finding, true
 
 
-def test_held_readings_are_placed_by_the_speed() -> None:
+def test_held_positions_are_reconstructed_from_the_speed() -> None:
     mended, finding, true = held_path({100: 5, 200: 3})
     np.testing.assert_allclose(mended.path_m, true, atol=2e-6)
     assert (finding.kind, finding.channel, finding.unit) == ("held_samples", "angle_rad", "s")
@@ -220,9 +235,9 @@ def test_held_readings_are_placed_by_the_speed() -> None:
     ("at", "step", "speed", "found"),
     [
         ({100: 2}, 1e-6, 0.1, False),  # fewer than three
-        ({100: 4}, 1.2e-3, 0.1, False),  # the shaft passes four counts meanwhile
-        ({100: 4}, 6e-4, 0.1, True),  # and six
-        ({100: 5}, 1e-6, 0.2, False),  # the path does not catch up
+        ({100: 4}, 1.2e-3, 0.1, False),  # the shaft moves by 3.3 counts
+        ({100: 4}, 6e-4, 0.1, True),  # the shaft moves by 6.7 counts
+        ({100: 5}, 1e-6, 0.2, False),  # the path does not catch up with the speed
         ({100: 5}, 1e-6, 0.12, True),
         ({4 * k: 3 for k in range(90)}, 1e-6, 0.1, False),  # most of the record
         ({20 * k: 5 for k in range(19)}, 1e-6, 0.1, True),
@@ -230,13 +245,13 @@ def test_held_readings_are_placed_by_the_speed() -> None:
         ({393: 5}, 1e-6, 0.1, True),
     ],
 )
-def test_path_is_held_only_if_it_stands_still_and_catches_up(
+def test_position_is_held_only_if_it_is_constant_and_then_catches_up_with_the_speed(
     at: dict[int, int], step: float, speed: float, found: bool
 ) -> None:
     assert (held_path(at, step=step, speed=speed)[1] is not None) == found
 
 
-def test_path_is_not_held_at_a_stop_of_the_shaft() -> None:
+def test_constant_position_at_a_stop_of_the_shaft_is_not_held() -> None:
     speed = np.full(400, 0.1)
     speed[101:104] = 0.0
     assert held_path({100: 5}, speed=speed)[1] is None

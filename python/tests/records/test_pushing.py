@@ -40,14 +40,14 @@ def findings_of(
     sign_known: Any = True,
     usable: Any = True,
 ) -> list[Finding]:
-    """Findings of a force against the motion with an offset, a mass and a spring."""
+    """Findings of a force that opposes the motion by `push`, with offset, mass and spring."""
     motion = exact_motion(speed, sign_known)
     force = push * np.sign(speed) + 3.0 + 0.2 * motion.acceleration_m_s2 - 5.0 * motion.angle_rad
     run = Run.from_arrays(TIME_S, speed, force + noise * NOISE, name="a")
     return find_pushing(run, motion, np.broadcast_to(usable, SAMPLES).copy())
 
 
-def test_force_along_the_motion_is_reported_with_its_size() -> None:
+def test_force_that_drives_the_motion_is_reported_with_its_size() -> None:
     (finding,) = findings_of(-2.0)
     assert finding.size == pytest.approx(-2.0, abs=0.05)
     assert (finding.kind, finding.channel, finding.unit) == ("sign", "friction_n", "N")
@@ -56,13 +56,13 @@ def test_force_along_the_motion_is_reported_with_its_size() -> None:
 
 @pytest.mark.parametrize("samples", [300, 2000])
 @pytest.mark.parametrize(("of_limit", "found"), [(0.98, False), (1.02, True)])
-def test_push_must_exceed_eight_standard_errors_and_0_3_of_the_spread(
+def test_driving_force_is_reported_beyond_eight_standard_errors_and_0_3_of_the_spread(
     samples: int, of_limit: float, found: bool
 ) -> None:
     """The standard error is the jackknife over twelve parts, computed here by dense least squares.
 
-    In the short record the standard error decides; in the long one, which a mass makes vary, the
-    spread of the force.
+    The limit is the standard error in the short record, and the spread of the force in the long
+    one, to which the force of a mass is added.
     """
     speed = SPEED_M_S[:samples]
     motion = exact_motion(speed)
@@ -81,7 +81,7 @@ def test_push_must_exceed_eight_standard_errors_and_0_3_of_the_spread(
     error = float(np.std([push_of(part != k) for k in range(12)])) * np.sqrt(11.0)
     added = 0.0
     for _ in range(60):
-        # The push itself widens the spread: iterate to the limit.
+        # The added force increases the spread: iterate to the limit.
         spread = float(np.std(force + added * design[:, 0]))
         added = -of_limit * max(8.0 * error, 0.3 * spread) - push
     assert (8.0 * error > 0.3 * spread) == (samples == 300)
@@ -91,12 +91,15 @@ def test_push_must_exceed_eight_standard_errors_and_0_3_of_the_spread(
     assert (find_pushing(run, motion, np.ones(samples, dtype=bool)) != []) == found
 
 
-def test_push_is_judged_at_a_hundred_samples_in_both_directions() -> None:
+def test_driving_force_is_reported_only_with_a_hundred_usable_samples_of_known_sign() -> None:
     few = np.zeros(SAMPLES, dtype=bool)
     few[np.linspace(0, SAMPLES - 1, 95).astype(int)] = True
     assert findings_of(-2.0, sign_known=few) == findings_of(-2.0, usable=few) == []
     few[np.linspace(5, SAMPLES - 5, 40).astype(int)] = True
     assert findings_of(-2.0, sign_known=few) != []
+
+
+def test_driving_force_is_reported_only_with_enough_samples_in_both_directions() -> None:
     for forward, found in ((0.65, True), (0.85, False)):
         way = np.where(np.arange(SAMPLES) < forward * SAMPLES, 0.1, -0.1)
         findings = findings_of(-2.0, speed=way + 0.02 * np.sin(9.0 * TIME_S))
@@ -123,7 +126,9 @@ def stribeck(omega: float) -> tuple[Array, Array, Array]:
 
 @pytest.mark.parametrize("omega", MOTIONS)
 @pytest.mark.parametrize("size", [0.2, 5.0])
-def test_sign_of_a_stribeck_curve_is_found_at_any_speed(omega: float, size: float) -> None:
+def test_wrong_sign_of_a_stribeck_friction_is_found_in_slow_and_fast_motion(
+    omega: float, size: float
+) -> None:
     v, friction, _ = stribeck(omega)
     assert prepared_findings(size * friction, v) == []
     (finding,) = prepared_findings(-size * friction, v)
@@ -132,14 +137,14 @@ def test_sign_of_a_stribeck_curve_is_found_at_any_speed(omega: float, size: floa
 
 
 @pytest.mark.parametrize("omega", MOTIONS)
-def test_weight_mass_and_spring_have_no_wrong_sign(omega: float) -> None:
+def test_weight_inertia_and_spring_forces_are_not_reported_as_wrong_sign(omega: float) -> None:
     v, friction, a = stribeck(omega)
     path = np.cumsum(v) * 0.02
     for other in (50.0, -80.0 * a / np.std(a), 80.0 * a / np.std(a), -400.0 * path):
         assert prepared_findings(0.02 * friction + other, v) == []
 
 
-def test_motion_in_one_direction_and_drifting_noise_have_no_wrong_sign() -> None:
+def test_motion_in_one_direction_and_random_walk_noise_have_no_finding() -> None:
     v = 0.05 + 0.03 * np.sin(0.7 * LONG_S)
     assert prepared_findings(-8.0 - 10.0 * v, v) == []
     random_walk = 0.05 * np.cumsum(white(3000, 0))

@@ -1,4 +1,4 @@
-"""One record as a slide's and as a joint's: equal numbers, each in the units of its machine."""
+"""One record as that of a slide and of a joint: equal numbers in the units of each drive."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def diagnosed(rig: Rig, torque: float = 1.0, angle: float = 1.0) -> Diagnosis:
     return jbf.diagnose(rig, runs_of(rig, torque, angle), law="coulomb")
 
 
-def test_fit_of_a_joint_equals_the_fit_of_a_slide() -> None:
+def test_fit_of_a_joint_has_the_values_of_a_slide_with_the_same_numbers() -> None:
     assert fitted(SLIDE).values == fitted(JOINT).values
     assert fitted(SLIDE).rms_n == fitted(JOINT).rms_n
 
@@ -76,14 +76,14 @@ def assert_scaled(large: Fit, small: Fit) -> None:
         assert small[name].stderr == pytest.approx(factor * large[name].stderr, rel=0.02), name
 
 
-def test_parameters_and_errors_of_a_small_motor_scale_with_its_units() -> None:
+def test_estimates_and_standard_errors_scale_with_torque_and_angle() -> None:
     """Millinewton metres and tens of radians per second instead of newton metres and radians."""
     small = jbf.fit(JOINT, runs_of(JOINT, TORQUE_SCALE, ANGLE_SCALE), HIDDEN, law="coulomb")
     assert_scaled(fitted(JOINT), small)
 
 
 @pytest.mark.extended
-def test_diagnosis_of_a_small_motor_scales_with_its_units() -> None:
+def test_diagnosis_names_the_same_effects_if_torque_and_angle_are_scaled() -> None:
     large, small = diagnosed(JOINT), diagnosed(JOINT, TORQUE_SCALE, ANGLE_SCALE)
     # Without reversals at rest an offset is confounded with an asymmetry.
     assert (large.verdict, set(large.effects)) == ("ambiguous", set(HIDDEN))
@@ -102,7 +102,7 @@ def reported_units(fit: Fit) -> dict[str, str]:
     return {line.split()[0]: line.split("  ")[-1].strip() for line in lines}
 
 
-def test_report_of_a_fit_has_names_and_units_of_the_machine() -> None:
+def test_fit_report_has_parameter_names_and_units_of_the_drive() -> None:
     assert reported_units(fitted(JOINT)) == {
         "F_c": "N m",
         "F_v": "N m s/rad",
@@ -117,7 +117,7 @@ def test_report_of_a_fit_has_names_and_units_of_the_machine() -> None:
     }
 
 
-def test_axes_of_pictures_have_the_units_of_the_machine() -> None:
+def test_axis_labels_of_a_comparison_plot_have_the_units_of_the_drive() -> None:
     for result, speed, friction in (
         (compared(JOINT), "Speed (rad/s)", "Friction torque (N m)"),
         (compared(SLIDE), "Speed (m/s)", "Friction force (N)"),
@@ -126,7 +126,7 @@ def test_axes_of_pictures_have_the_units_of_the_machine() -> None:
         assert (axes.get_xlabel(), axes.get_ylabel()) == (speed, friction)
 
 
-def test_json_states_the_units_of_a_drive() -> None:
+def test_json_of_a_comparison_has_units_only_if_the_rig_has_a_drive() -> None:
     units = compared(JOINT).to_dict()["units"]
     assert units == {"force": "N m", "velocity": "rad/s", "length": "rad"}
     assert compared(SLIDE).to_dict()["units"]["force"] == "N"
@@ -134,7 +134,7 @@ def test_json_states_the_units_of_a_drive() -> None:
     assert "units" not in plain
 
 
-def test_predicted_file_of_a_joint_has_a_torque_column(tmp_path: Path) -> None:
+def test_prediction_file_of_a_joint_has_a_torque_column(tmp_path: Path) -> None:
     fitted(JOINT).model.save(tmp_path / "model.toml")
     run_on(JOINT, runs_of(JOINT)[0]).write_csv(tmp_path / "run.csv")
     names = [str(tmp_path / name) for name in ("model.toml", "run.csv", "out.csv")]
@@ -145,14 +145,14 @@ def test_predicted_file_of_a_joint_has_a_torque_column(tmp_path: Path) -> None:
 # ---- units of parameters -------------------------------------------------------------------------
 
 
-def test_units_of_the_catalogue_are_translated() -> None:
+def test_catalogue_units_are_converted_to_those_of_a_linear_or_rotary_drive() -> None:
     units = [ROTARY.unit(si) for si in ("N", "N s/m", "N/m", "kg", "m", "1/N^2", "s")]
     assert units == ["N m", "N m s/rad", "N m/rad", "kg m^2", "rad", "1/(N m)^2", "s"]
     assert [LINEAR.unit(si) for si in ("N m/rad", "kg m^2", "N")] == ["N/m", "kg", "N"]
     assert OF_BEARING.unit("N m/rad") == "N m/rad"
 
 
-def test_coefficients_of_the_load_are_forces_for_a_law_in_newtons() -> None:
+def test_load_coefficients_are_forces_for_a_drive_and_dimensionless_for_a_bearing() -> None:
     chosen = ("presliding", "stribeck_excess", "dwell_stiction")
     for quantities, force, stiffness in ((LINEAR, "N", "N/m"), (ROTARY, "N m", "N m/rad")):
         units = shown("coulomb", chosen, quantities)
@@ -164,7 +164,7 @@ def test_coefficients_of_the_load_are_forces_for_a_law_in_newtons() -> None:
 
 
 @pytest.mark.parametrize("law", [name for name, page in laws().items() if not page.needs_bearing])
-def test_every_parameter_of_a_drive_has_a_unit_of_its_motion(law: str) -> None:
+def test_drive_parameter_has_a_unit_of_its_motion_and_is_found_by_its_bare_name(law: str) -> None:
     effects = tuple(name for name, page in jbf.effects().items() if law not in page.refused)
     known = parameters_of(law, effects)
     for name, page in known.items():
@@ -173,5 +173,5 @@ def test_every_parameter_of_a_drive_has_a_unit_of_its_motion(law: str) -> None:
         assert rotary not in ("m", "kg", "1/m", "s/m"), name
         assert "N m" not in linear, name
         assert linear not in ("1/m", "kg m^2"), name
-        # The name that is shown may be typed.
+        # A parameter is found by the name that is displayed.
         assert find_parameter(bare_name(name, page), known) == name

@@ -1,4 +1,4 @@
-"""Rests: where a shaft stands still, where its motion begins and ends, and at which position."""
+"""Rests of a shaft: their samples, the start and end of motion next to them, their position."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COUNT_M = 1e-4
 
 
 def stop(samples: int, *, hum: float = 0.0) -> tuple[Any, Any, Any]:
-    """Time, path and speed: 60 samples at 0.1 m/s, a rest with an alternating speed, 60 samples."""
+    """Time, path and speed: a rest with an alternating speed between 60 samples at 0.1 m/s each."""
     index = np.arange(120 + samples)
     rest = (index >= 60) & (index < 60 + samples)
     speed = np.where(rest, hum * np.where(index % 2, 1.0, -1.0), 0.1)
@@ -48,7 +48,7 @@ def test_twenty_samples_within_one_count_are_a_rest(samples: int, found: bool) -
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.99, True), (1.01, False)])
-def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_or_a_known_hum(
+def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit(
     share: float, found: bool
 ) -> None:
     time_s, path, speed = stop(40, hum=share * 5e-3 * 0.1)
@@ -67,7 +67,7 @@ SLOW_S: Any = 5e-3 * np.arange(400)
 RATE_M_S2, FINE_COUNT_M = 0.008, 7e-6
 
 
-def test_slow_reversal_is_no_rest() -> None:
+def test_slow_reversal_within_one_encoder_count_is_not_a_rest() -> None:
     v = RATE_M_S2 * (SLOW_S - 1.0)
     path = quantised(0.5 * RATE_M_S2 * (SLOW_S - 1.0) ** 2, FINE_COUNT_M)
     assert np.ptp(path[190:211]) <= FINE_COUNT_M
@@ -75,7 +75,7 @@ def test_slow_reversal_is_no_rest() -> None:
     assert not still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
 
 
-def test_speed_that_grazes_zero_is_no_rest() -> None:
+def test_slow_passage_of_the_speed_through_zero_and_back_is_not_a_rest() -> None:
     v = 0.05 * (SLOW_S - 1.0) ** 2 - 3e-5
     path = quantised(0.05 / 3.0 * (SLOW_S - 1.0) ** 3 - 3e-5 * (SLOW_S - 1.0), FINE_COUNT_M)
     assert np.ptp(path[188:213]) <= FINE_COUNT_M
@@ -90,14 +90,14 @@ def test_long_stop_between_equal_or_opposite_speeds_is_a_rest() -> None:
         path = quantised(np.cumsum(v) * 5e-3, FINE_COUNT_M)
         v[-1] = 0.2
         assert still_samples(SLOW_S, path, v, FINE_COUNT_M)[140:260].all()
-    # Speeds of rounding errors on both sides are no reversal.
+    # Speeds of the size of rounding errors on both sides are not a reversal.
     v = np.where(np.abs(SLOW_S - 1.0) < 0.8, 0.0, 1e-15 * np.sign(SLOW_S - 1.0))
     v[-1] = 1.0
     assert still_samples(SLOW_S, np.zeros(400), v, FINE_COUNT_M)[45:355].all()
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.7, False), (1.1, True), (1.3, True)])
-def test_rest_lasts_twice_as_long_as_a_reversal_within_one_and_a_half_counts(
+def test_stop_is_a_rest_if_it_lasts_twice_as_long_as_a_reversal_within_1_5_counts(
     share: float, found: bool
 ) -> None:
     """At 8 mm/s^2 a reversal stays within 1.5 counts of 7 um for 2 sqrt(2 s / a) = 0.1 s."""
@@ -124,7 +124,7 @@ def test_rest_lasts_twice_as_long_as_a_reversal_within_one_and_a_half_counts(
         (100.0, 1.0, [5, *range(15, 35)]),  # at most twenty samples
     ],
 )
-def test_edges_of_a_rest_reach_to_where_the_motion_began(
+def test_rest_edges_extend_to_the_extrapolated_start_of_the_motion(
     v: float, a: float, edges: list[int]
 ) -> None:
     rest = mask("0" * 5 + "1" * 30 + "0" * 5)
@@ -132,7 +132,7 @@ def test_edges_of_a_rest_reach_to_where_the_motion_began(
     assert places(found) == edges
 
 
-def test_speed_opposite_to_its_growth_next_to_a_rest_is_backward() -> None:
+def test_speed_next_to_a_rest_is_backward_if_its_acceleration_contradicts_its_sign() -> None:
     rest = mask("110000011")
     time_s: Any = 0.1 * np.arange(9)
     v = np.array([0.0, 0.0, -0.05, -0.02, 0.1, 0.2, 0.04, 0.0, 0.0])
@@ -146,7 +146,7 @@ def test_speed_opposite_to_its_growth_next_to_a_rest_is_backward() -> None:
     assert not backward_beside_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
 
 
-def test_direction_is_unsure_until_the_path_confirms_it() -> None:
+def test_direction_next_to_a_rest_is_uncertain_until_the_path_exceeds_the_threshold() -> None:
     rest = mask("11000011")
     path = np.array([0.0, 0.0, 0.5, 1.0, 3.0, 4.0, 4.9, 4.9])
     v = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
@@ -157,13 +157,13 @@ def test_direction_is_unsure_until_the_path_confirms_it() -> None:
     assert not unsure_beside_rest(mask("0" * 8), path, v, 0.9).any()
 
 
-def test_uncertain_speeds_opposite_to_the_first_and_last_certain_ones_are_set_to_zero() -> None:
+def test_uncertain_speed_next_to_a_rest_is_zeroed_if_opposite_to_the_nearest_certain_one() -> None:
     v = np.array([0.0, -0.1, 0.1, 0.5, -0.1, 0.4, -0.1, 0.2, 0.0])
     without_swings(mask("100000001"), v, mask("100101001"))
     assert v.tolist() == [0.0, 0.0, 0.1, 0.5, -0.1, 0.4, 0.0, 0.2, 0.0]
-    alone = np.array([-0.1, 0.5, -0.1])
-    without_swings(mask("000"), alone, mask("010"))
-    assert alone.tolist() == [-0.1, 0.5, -0.1]
+    without_rest = np.array([-0.1, 0.5, -0.1])
+    without_swings(mask("000"), without_rest, mask("010"))
+    assert without_rest.tolist() == [-0.1, 0.5, -0.1]
 
 
 @pytest.mark.parametrize(
@@ -173,15 +173,15 @@ def test_uncertain_speeds_opposite_to_the_first_and_last_certain_ones_are_set_to
         ((0.0, 0.0), (0.6, 2.0), 1.0, 1.3 - 0.6**2 / 4.0),
         ((0.4, -1.0), (0.6, 2.0), 1.0, 0.5 * (0.98 + 1.21)),
         ((-0.4, 1.0), (-0.6, -2.0), 1.0, 0.5 * (0.82 + 1.39)),
-        ((0.4, 0.0), (0.6, 0.0), 1.0, 1.0),  # steady motions do not say where they stop
+        ((0.4, 0.0), (0.6, 0.0), 1.0, 1.0),  # a constant speed has no extrapolated stop
         ((0.0, 0.0), (0.6, 2.0), 0.05, 1.05),  # within half a count of the recorded position
         ((-2.0, 1.0), (0.0, 0.0), 0.01, 0.99),
     ],
 )
-def test_rest_is_placed_at_the_mean_of_stop_and_start(
+def test_rest_position_is_the_mean_of_the_extrapolated_stop_and_start(
     before: tuple[float, float], after: tuple[float, float], half_step: float, place: float
 ) -> None:
-    """A motion at v that slows down at a stops after v^2 / 2a."""
+    """A motion of speed v and deceleration a stops after v^2 / 2a."""
     path = np.array([0.9, 1.0, 1.0, 1.0, 1.0, 1.3, 2.0])
     v, a = np.zeros(7), np.zeros(7)
     (v[0], a[0]), (v[5], a[5]) = before, after

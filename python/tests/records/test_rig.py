@@ -38,7 +38,7 @@ def test_thesis_rig_has_the_dimensions_and_loads_of_its_tables(tmp_path: Path) -
     assert "4.2" in str(input_error(Rig.thesis, "4.1").mend)
 
 
-def test_quantities_and_radius_follow_from_bearing_or_drive() -> None:
+def test_units_and_radius_of_a_rig_follow_from_its_bearing_or_drive() -> None:
     joint, slide = Rig(drive=Drive("rotary", "torque")), Rig(drive=Drive("linear", "force"))
     assert (Rig().quantities, Rig.thesis().quantities) == (LINEAR, OF_BEARING)
     assert (joint.quantities.motion, slide.quantities.motion) == ("rotary", "linear")
@@ -62,7 +62,7 @@ def test_quantities_and_radius_follow_from_bearing_or_drive() -> None:
         ("[load]\n", "load = 3\n", "lubricant.load", "not known"),
     ],
 )
-def test_bad_value_is_reported_by_file_and_key(
+def test_invalid_value_of_a_rig_file_is_reported_by_file_and_key(
     tmp_path: Path, old: str, new: str, key: str, fact: str
 ) -> None:
     path = tmp_path / "rig.toml"
@@ -72,21 +72,25 @@ def test_bad_value_is_reported_by_file_and_key(
     assert fact in error.problem
 
 
-def test_file_that_is_no_rig_is_reported(tmp_path: Path) -> None:
+def test_unreadable_or_malformed_rig_file_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "rig.toml"
     assert input_error(read_rig, tmp_path).file == str(tmp_path)
     assert input_error(read_rig, path).file == str(path)
     path.write_bytes(b"\0\1")
     assert "binary" in input_error(read_rig, path).problem
-    path.write_text("")
-    assert read_rig(path) == Rig()
     path.write_text("load = 104.0\n")
     assert input_error(read_rig, path).key == "load"
     path.write_text(THESIS.replace("radius_m = 0.0127", "radius_m 0.0127"))
     assert input_error(read_rig, path).row == 2
 
 
-def test_sections_made_in_python_are_checked_alike() -> None:
+def test_empty_rig_file_gives_a_rig_without_sections(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+    path.write_text("")
+    assert read_rig(path) == Rig()
+
+
+def test_invalid_value_of_a_section_constructed_in_python_is_reported_by_key() -> None:
     bearing: dict[str, Any] = {
         "radius_m": 0.01, "length_m": 0.02, "clearance_m": 1e-5, "mass_kg": 2.0, "count": 4
     }  # fmt: skip
@@ -105,7 +109,7 @@ def test_sections_made_in_python_are_checked_alike() -> None:
     assert error.key == "drive"
 
 
-def test_toml_round_trip_is_exact(tmp_path: Path) -> None:
+def test_rig_is_unchanged_by_a_toml_round_trip(tmp_path: Path) -> None:
     random = np.random.default_rng(3)
     path = tmp_path / "rig.toml"
     for _ in range(20):

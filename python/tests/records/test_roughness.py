@@ -16,7 +16,7 @@ STEP_S = 0.01
 TIME_S: Any = STEP_S * np.arange(400)
 ALTERNATING: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
 NOISE_OF_ALTERNATING = 8.0 / 0.6745 / np.sqrt(20.0)
-"""Third differences of it are 8; those of unit white noise have a variance of 20."""
+"""Its third differences are 8; those of unit white noise have a variance of 20."""
 
 
 def test_lagrange_weights_reproduce_a_cubic() -> None:
@@ -38,7 +38,9 @@ def test_noise_is_the_standard_deviation_of_white_noise_on_a_smooth_signal() -> 
 
 
 @pytest.mark.parametrize(("times", "local"), [(2.9, False), (3.1, True)])
-def test_noise_is_local_where_it_is_three_times_the_usual(times: float, local: bool) -> None:
+def test_noise_estimate_is_local_if_a_part_is_three_times_as_noisy_as_the_rest(
+    times: float, local: bool
+) -> None:
     loud = np.where((np.arange(1000) > 400) & (np.arange(1000) < 700), times, 1.0)
     found = local_noise(loud * ALTERNATING)
     assert isinstance(found, np.ndarray) == local
@@ -63,7 +65,9 @@ def test_disagreement_is_the_speed_error_beyond_the_noise_of_the_path() -> None:
 
 
 @pytest.mark.parametrize(("times", "found"), [(1.49, False), (1.51, True)])
-def test_disagreement_must_be_1_5_times_what_noise_explains(times: float, found: bool) -> None:
+def test_disagreement_is_zero_up_to_1_5_times_the_gap_that_noise_explains(
+    times: float, found: bool
+) -> None:
     """Var(gap) = 2 var(path) + dt^2 var(speed) / 2."""
     still, gap = np.zeros(400), 1e-3 * STEP_S / 0.6745
     sd_path = gap / times / np.sqrt(2.0)
@@ -83,7 +87,7 @@ def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: floa
     return contradiction_of(TIME_S, path, np.zeros(400), sd_path, sd_speed)
 
 
-def test_contradiction_covers_three_samples_on_each_side_of_a_jump() -> None:
+def test_path_jump_contradicts_the_speed_at_three_samples_on_each_side() -> None:
     found = contradictions({100: 1e-3})
     assert np.flatnonzero(found).tolist() == [98, 99, 100, 101, 102, 103]
     assert found[100] == pytest.approx(1e-3 / STEP_S, rel=2e-3)
@@ -94,7 +98,9 @@ def test_contradiction_covers_three_samples_on_each_side_of_a_jump() -> None:
 
 
 @pytest.mark.parametrize(("times", "found"), [(9.6, False), (10.4, True)])
-def test_contradiction_is_ten_times_the_usual_gap_or_the_noise(times: float, found: bool) -> None:
+def test_path_jump_contradicts_the_speed_from_ten_times_the_median_gap_or_noise_on(
+    times: float, found: bool
+) -> None:
     usual, sd = 1e-6, 1e-5
     of_usual = contradictions({100: times * usual / 0.6745 - usual})
     of_path = contradictions({100: times * np.sqrt(2.0) * sd - usual}, sd_path=sd)
@@ -106,7 +112,7 @@ def test_contradiction_is_ten_times_the_usual_gap_or_the_noise(times: float, fou
     ("first", "hum"),
     [([0.5], True), ([5.0], False), ([0.0], False), ([0.4] * 3, True), ([0.6] * 3, False)],
 )
-def test_first_stroke_below_a_thousandth_of_the_longest_is_a_hum(
+def test_first_stroke_is_an_oscillation_at_rest_if_below_a_thousandth_of_the_longest(
     first: list[float], hum: bool
 ) -> None:
     speed = np.array([*first, *([-1.0] * 1001)])

@@ -75,7 +75,7 @@ def changed(index: int, value: float, values: Any = TIME_S) -> Any:
         ({"extra": {"own": changed(0, np.inf)}}, "own", "sample 0: inf"),
     ],
 )
-def test_bad_column_is_reported_with_its_name_and_sample(
+def test_invalid_column_is_reported_with_its_name_and_sample(
     columns: dict[str, Any], column: str | None, fact: str
 ) -> None:
     given = {"time_s": TIME_S, "velocity_m_s": TIME_S + 1.0} | columns
@@ -89,7 +89,7 @@ def test_missing_speed_is_the_central_difference_of_the_position() -> None:
     assert not run.speed_recorded
     assert "velocity_m_s" not in run.columns()
     np.testing.assert_allclose(run.velocity_m_s[1:-1], 2.0 * TIME_S[1:-1])
-    # An angle alone says nothing about the speed before the radius is known.
+    # The speed that belongs to an angle is unknown until the radius is known.
     assert np.isnan(Run.from_arrays(TIME_S, angle_rad=TIME_S).velocity_m_s).all()
 
 
@@ -108,7 +108,7 @@ def test_temperature_gaps_are_interpolated_and_the_longest_is_reported() -> None
     assert Run.from_arrays(TIME_S, TIME_S, temperature_c=TIME_S).reading == ()
 
 
-def test_frame_columns_become_run_columns() -> None:
+def test_numeric_frame_columns_become_run_columns_and_missing_time_is_reported() -> None:
     frame: dict[str, Any] = {
         "time_s": TIME_S,
         "velocity_m_s": TIME_S,
@@ -147,8 +147,13 @@ def test_arrow_table_and_arrow_stream_are_read() -> None:
         np.testing.assert_array_equal(run.velocity_m_s, TIME_S + 1.0)
 
 
-def test_object_without_named_columns_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_object_without_named_columns_is_rejected_as_a_frame() -> None:
     assert input_error(columns_of, 3, "r").file == "r"
+
+
+def test_arrow_stream_is_rejected_if_pyarrow_is_not_installed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     assert "pyarrow" in input_error(columns_of, ExportedByArrow(None), "r").problem
 
@@ -177,7 +182,7 @@ def test_selection_other_than_forward_slice_or_full_mask_is_rejected(which: Any)
     assert input_error(RUN.select, which).file == "a"
 
 
-def test_run_at_other_instants_interpolates_all_columns_but_the_friction() -> None:
+def test_run_at_other_instants_has_interpolated_columns_and_the_given_friction() -> None:
     instants = np.array([0.05, 0.33, 1.9])
     run = replace(RUN, read={"own": np.arange(SAMPLES) > 5})
     moved = run.at(instants, np.array([7.0, 8.0, 9.0]))
@@ -220,7 +225,7 @@ def test_failed_write_leaves_no_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_missing_column_error_names_file_column_and_who_needs_it() -> None:
+def test_missing_column_error_names_file_column_and_the_law_or_effect_that_needs_it() -> None:
     require(RUN, "angle_rad", "the law")
     require(RUN, ["time_s", "own"], "the law")
     error = input_error(require, RUN, ["own", "load_n"], "the effect sensor_lag")
@@ -234,7 +239,7 @@ JOINT = Rig(drive=Drive("rotary", "torque"))
 SLIDE = Rig(drive=Drive("linear", "force"))
 
 
-def test_run_takes_the_quantities_of_its_rig() -> None:
+def test_run_on_a_rig_has_the_units_and_column_names_of_the_rig() -> None:
     assert run_on(Rig.thesis(), RUN) is RUN
     assert run_on(Rig(), RUN).quantities == LINEAR
     joint = run_on(JOINT, RUN)
@@ -247,7 +252,7 @@ def test_run_takes_the_quantities_of_its_rig() -> None:
     assert ROTARY.to_dict() == {"force": "N m", "velocity": "rad/s", "length": "rad"}
 
 
-def test_run_of_another_kind_of_machine_is_rejected() -> None:
+def test_run_of_another_kind_of_rig_is_rejected() -> None:
     joint, slide = run_on(JOINT, RUN), run_on(SLIDE, RUN)
     filed = replace(RUN, path=Path("f.csv"))
     assert input_error(run_on, SLIDE, joint).file == "a"
@@ -257,7 +262,7 @@ def test_run_of_another_kind_of_machine_is_rejected() -> None:
     assert run_on(SLIDE, filed).quantities == SLIDE.quantities
 
 
-def test_pressure_in_bar_is_the_load_where_there_is_no_bearing() -> None:
+def test_pressure_in_bar_is_the_load_only_without_a_bearing_and_a_load_column() -> None:
     pressure = {"pressure_pa": np.full(SAMPLES, 3e5)}
     pressed = Run.from_arrays(TIME_S, TIME_S, extra=pressure)
     loaded = Run.from_arrays(TIME_S, TIME_S, load_n=np.full(SAMPLES, 7.0), extra=pressure)

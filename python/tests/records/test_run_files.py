@@ -18,7 +18,7 @@ def write(path: Path, header: str = "time_s,velocity_m_s,friction_n") -> Path:
     return path
 
 
-def test_files_folders_and_patterns_are_read_in_order(tmp_path: Path) -> None:
+def test_runs_are_read_in_order_from_files_folders_and_patterns(tmp_path: Path) -> None:
     b, a = write(tmp_path / "x" / "b.csv"), write(tmp_path / "x" / "a.CSV")
     other = write(tmp_path / "y" / "a.csv")
     (tmp_path / "x" / "notes.txt").write_text("none")
@@ -32,7 +32,7 @@ def test_files_folders_and_patterns_are_read_in_order(tmp_path: Path) -> None:
     assert read_runs(bare, need_friction=False)[0].friction_n is None
 
 
-def test_equal_names_get_as_many_parent_folders_as_they_need(tmp_path: Path) -> None:
+def test_runs_of_equal_file_names_are_named_with_parent_folder_or_suffix(tmp_path: Path) -> None:
     paths = [tmp_path / "p" / "a" / "r.csv", tmp_path / "q" / "a" / "r.csv", tmp_path / "s.csv"]
     assert [run.name for run in read_runs(map(write, paths))] == ["p/a/r", "q/a/r", "s"]
     paths = [tmp_path / "p" / "r.csv", tmp_path / "q" / "r.csv"]
@@ -51,7 +51,7 @@ def test_missing_and_repeated_files_are_reported(tmp_path: Path) -> None:
     assert "path" in input_error(read_runs, 3).problem
 
 
-def test_campaign_is_a_folder_with_a_rig_and_runs(tmp_path: Path) -> None:
+def test_campaign_is_read_from_a_folder_only_if_it_has_a_rig_file(tmp_path: Path) -> None:
     folder = tmp_path / "one"
     write(folder / "a.csv")
     assert input_error(read_campaign, folder).file == str(folder)
@@ -61,7 +61,7 @@ def test_campaign_is_a_folder_with_a_rig_and_runs(tmp_path: Path) -> None:
     assert [run.name for run in runs] == ["a"]
 
 
-def test_campaigns_are_the_folders_with_a_rig_or_a_run(tmp_path: Path) -> None:
+def test_campaigns_of_a_folder_are_its_subfolders_with_a_rig_or_a_run(tmp_path: Path) -> None:
     write(tmp_path / "one" / "a.csv")
     (tmp_path / "empty").mkdir()
     (tmp_path / "two").mkdir()

@@ -23,7 +23,9 @@ def cubic(t: Any) -> tuple[Any, Any, Any]:
 @pytest.mark.parametrize("half", HALF_WIDTHS)
 @TIMES
 @pytest.mark.parametrize("local", [False, True], ids=["one error", "local errors"])
-def test_cubic_is_fitted_exactly_also_at_the_ends(half: int, time_s: Any, local: bool) -> None:
+def test_cubic_path_is_fitted_exactly_at_all_samples_including_the_ends(
+    half: int, time_s: Any, local: bool
+) -> None:
     path, speed, acceleration = cubic(time_s)
     sd: Any = np.full(SAMPLES, 1e-3) if local else 1e-3
     found = local_fit(time_s, path, speed, 1e-4, sd, half)
@@ -37,7 +39,7 @@ def least_squares(
 ) -> tuple[Any, Any]:
     """Coefficients at a sample and their covariance by weighted least squares.
 
-    A window shorter than four samples on each side carries a cubic, a longer one a quintic.
+    The polynomial is a cubic for windows of less than four samples on each side, else a quintic.
     """
     order = 3 if half < 4 else 5
     width = min(2 * half + 1, len(time_s))
@@ -54,7 +56,7 @@ def least_squares(
 
 @pytest.mark.parametrize("half", [1, 2, 4, 8])
 @TIMES
-def test_noisy_samples_are_fitted_by_weighted_least_squares(half: int, time_s: Any) -> None:
+def test_local_fit_of_noisy_samples_equals_weighted_least_squares(half: int, time_s: Any) -> None:
     path, speed, _ = cubic(time_s)
     path = path + white(SAMPLES, half, 2e-4)
     speed = speed + white(SAMPLES, half + 10, 1e-3)
@@ -68,7 +70,7 @@ def test_noisy_samples_are_fitted_by_weighted_least_squares(half: int, time_s: A
             assert (fit[3][i], fit[4][i]) == pytest.approx(errors, rel=1e-5)
 
 
-def test_record_shorter_than_a_window_is_one_window() -> None:
+def test_record_shorter_than_the_window_is_fitted_as_one_window() -> None:
     path, speed, acceleration = cubic(EVEN_S[:5])
     found = local_fit(EVEN_S[:5], path, speed, 1e-4, 1e-3, 8)
     np.testing.assert_allclose(found[1], speed, atol=1e-6)
@@ -79,7 +81,7 @@ def test_record_shorter_than_a_window_is_one_window() -> None:
         np.testing.assert_allclose(value, expected)
 
 
-def test_windows_of_a_smooth_motion_grow_to_the_widest() -> None:
+def test_smooth_motion_is_fitted_with_the_widest_window() -> None:
     path, speed, acceleration = cubic(EVEN_S)
     _, found, slope, error = smooth(EVEN_S, path, speed, 2e-4, 1e-3)
     np.testing.assert_allclose(found, speed, atol=1e-7)
@@ -87,7 +89,7 @@ def test_windows_of_a_smooth_motion_grow_to_the_widest() -> None:
     np.testing.assert_allclose(error, local_fit(EVEN_S, path, speed, 2e-4, 1e-3, 16)[3])
 
 
-def test_windows_stay_short_at_a_corner_of_the_speed() -> None:
+def test_smoothing_window_is_narrower_at_a_corner_of_the_speed() -> None:
     corner = 0.5 * np.abs(EVEN_S - 0.4)
     _, found, slope, error = smooth(EVEN_S, integrated(corner, 0.02), corner, 1e-6, 1e-5)
     assert abs(found[20]) < 0.01

@@ -1,4 +1,4 @@
-"""A recorded speed that is late, is a difference of the path, or has an offset at standstill."""
+"""A recorded speed that is delayed, is a difference of the path, or has a standstill offset."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ COUNTED_M = quantised(PATH_M, COUNT_M)
     ("delay_steps", "kind"),
     [(0.2, "late_speed"), (0.39, "late_speed"), (0.45, "filtered_speed"), (3.0, "filtered_speed")],
 )
-def test_delay_of_the_speed_is_recovered(delay_steps: float, kind: str) -> None:
+def test_delay_of_the_speed_is_recovered_and_classified_by_its_length(
+    delay_steps: float, kind: str
+) -> None:
     """Up to 0.4 samples the speed is shifted; beyond, the path alone is used."""
     delay_s = delay_steps * STEP_S
     finding = late_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
@@ -63,13 +65,13 @@ def test_delay_is_reported_from_six_jackknife_standard_errors_on() -> None:
     assert decisions == {True, False}
 
 
-def test_delay_of_a_decaying_speed_is_not_identifiable() -> None:
-    """A delayed exponential is a smaller exponential."""
+def test_delay_of_an_exponentially_decaying_speed_is_not_reported() -> None:
+    """A delayed exponential equals a scaled one, so that the delay is not identifiable."""
     decaying = np.exp(-0.5 * TIME_S)
     assert late_speed("a", TIME_S, -2.0 * decaying, 1.1 * decaying) is None
 
 
-def test_late_speed_is_shifted_forward_but_its_zeros_stay() -> None:
+def test_correction_of_a_delayed_speed_preserves_its_zeros() -> None:
     speed = np.array([0.0, 0.0, 1.0, 2.0, 0.0, 0.0])
     assert earlier(np.arange(6.0), speed, 0.25).tolist() == [0.0, 0.0, 1.25, 1.5, 0.0, 0.0]
 
@@ -104,7 +106,7 @@ def test_central_difference_is_recognised_without_a_delay(span: int) -> None:
     assert "late" not in finding.words
 
 
-def test_measured_speeds_and_longer_spans_are_no_differences() -> None:
+def test_independent_speeds_long_spans_short_records_and_rests_are_not_differences() -> None:
     assert derived_speed("a", TIME_S, COUNTED_M, SPEED_M_S) is None
     assert derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, 13)) is None
     coarse = backward_difference(COUNTED_M, 1)
@@ -118,7 +120,8 @@ ALTERNATING = np.where(np.arange(800) % 2, -1.0, 1.0)
 
 
 def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: float = 1e-5) -> Any:
-    """Corrected speed, hum and finding of a shaft that moves at 0.1 m/s, rests and moves on."""
+    """Corrected speed, speed limit of a rest and finding of a shaft that rests between two motions
+    at 0.1 m/s."""
     index = np.arange(400)
     speed = np.where((index >= 150) & (index < 150 + samples), 0.0, 0.1)
     path = quantised(np.cumsum(speed) * STEP_S, step)
@@ -127,7 +130,7 @@ def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: f
 
 
 @pytest.mark.parametrize("offset", [2e-3, -2e-3])
-def test_offset_at_standstill_is_removed_everywhere(offset: float) -> None:
+def test_speed_offset_at_standstill_is_subtracted_from_the_whole_record(offset: float) -> None:
     speed, hum, finding = at_standstill(offset)
     np.testing.assert_allclose(speed[160:240], 0.0, atol=1e-12)
     assert speed[0] == pytest.approx(0.1)
@@ -146,7 +149,7 @@ def test_offset_at_standstill_is_removed_everywhere(offset: float) -> None:
         (0, 100, False),
     ],
 )
-def test_offset_needs_sixty_samples_and_four_counts_of_travel(
+def test_speed_offset_is_reported_from_sixty_samples_and_four_counts_of_drift_on(
     offset: float, samples: int, found: bool
 ) -> None:
     speed, hum, finding = at_standstill(offset, samples=samples)
@@ -156,7 +159,7 @@ def test_offset_needs_sixty_samples_and_four_counts_of_travel(
 
 
 @pytest.mark.parametrize(("errors", "found"), [(4.9, False), (5.1, True)])
-def test_offset_exceeds_five_standard_errors_of_means_over_twenty_samples(
+def test_speed_offset_is_reported_beyond_five_standard_errors_of_means_over_twenty_samples(
     errors: float, found: bool
 ) -> None:
     # The last moving sample already shows the position of the rest.
@@ -166,8 +169,10 @@ def test_offset_exceeds_five_standard_errors_of_means_over_twenty_samples(
 
 
 @pytest.mark.parametrize("count_m_s", [0.0, 4e-3])
-def test_run_with_an_offset_rests_where_its_position_does(count_m_s: float) -> None:
-    """A tachometer with an offset; a counter whose counts are around zero and never on it."""
+def test_run_with_a_speed_offset_is_at_rest_where_its_position_is_constant(
+    count_m_s: float,
+) -> None:
+    """A tachometer with an offset, or a quantised speed whose levels are half a step off zero."""
     phase = np.mod(TIME_S, 4.0)
     true = 0.08 * np.clip(np.minimum(phase - 0.503, 3.007 - phase), 0.0, 0.5)
     offset = 0.5 * count_m_s if count_m_s else -2e-3

@@ -1,4 +1,4 @@
-"""Converter findings: the quantisation step of the force, the end of its range, written digits."""
+"""Converter findings: quantisation step, saturation, and decimal digits of the force."""
 
 from __future__ import annotations
 
@@ -39,11 +39,13 @@ def run_of(force: Any) -> Run:
         ([np.pi, 1.0], 1e-9 * np.pi),
     ],
 )
-def test_last_written_digit(values: list[float], digit: float) -> None:
+def test_last_digit_is_the_decimal_step_of_the_values_or_1e_minus_9_of_the_largest(
+    values: list[float], digit: float
+) -> None:
     assert last_digit(np.array(values)) == pytest.approx(digit)
 
 
-def test_step_is_found_also_where_levels_are_missing() -> None:
+def test_quantisation_step_is_found_if_levels_are_missing_or_uneven() -> None:
     levels = quantised(WAVE, 0.5)
     assert step_of(levels) == pytest.approx(0.5)
     assert step_of(levels[(levels != 2.0) & (levels != -3.0)]) == pytest.approx(0.5)
@@ -54,7 +56,7 @@ def test_step_is_found_also_where_levels_are_missing() -> None:
 @pytest.mark.parametrize(
     ("values", "step"),
     [
-        (np.tile([0.0, 1.0, 2.0], 100), 0.0),  # three levels: a law without noise
+        (np.tile([0.0, 1.0, 2.0], 100), 0.0),  # three levels may be those of a law without noise
         (np.tile([0.0, 1.0, 2.0, 3.0], 100), 1.0),
         (np.repeat(np.arange(20.0), 5), 1.0),  # levels are a fifth of the samples
         (np.repeat(np.arange(26.0), 4)[:100], 0.0),
@@ -64,26 +66,30 @@ def test_step_is_found_also_where_levels_are_missing() -> None:
         (np.repeat(np.cumsum(np.where(np.arange(100) < 12, 1.4, 1.0)), 10), 0.0),
     ],
 )
-def test_levels_must_be_few_and_whole_steps_apart(values: Array, step: float) -> None:
+def test_quantisation_step_requires_few_levels_that_are_whole_steps_apart(
+    values: Array, step: float
+) -> None:
     """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
     assert step_of(values) == pytest.approx(step)
 
 
-def test_corners_of_drawn_lines_come_in_steps_to_the_digits_of_the_file() -> None:
+def test_quantisation_step_of_interpolated_readings_tolerates_rounding_errors() -> None:
     corners = np.tile(np.arange(5.0), 20) + 1e-4 * NOISE[:100]
     assert step_of(corners, drawn=True) == pytest.approx(1.0, abs=1e-3)
     assert step_of(corners) == 0.0
 
 
 @pytest.mark.parametrize(("step", "found"), [(0.3, False), (0.7, True)])
-def test_step_below_half_of_the_noise_is_not_reported(step: float, found: bool) -> None:
+def test_quantisation_step_below_half_of_the_noise_is_not_reported(
+    step: float, found: bool
+) -> None:
     run = run_of(quantised(WAVE + NOISE, step))
     findings = find_steps(run, np.ones(SAMPLES, dtype=bool))
     assert [(f.kind, f.unit) for f in findings] == ([("steps", "N m")] if found else [])
     assert all(f.size == pytest.approx(step) for f in findings)
 
 
-def test_step_is_found_in_usable_readings_only() -> None:
+def test_quantisation_step_is_estimated_from_usable_readings_only() -> None:
     first = np.arange(SAMPLES) < 1000
     run = run_of(np.where(first, quantised(WAVE + NOISE, 0.7), WAVE))
     assert find_steps(run, np.ones(SAMPLES, dtype=bool)) == []
@@ -98,7 +104,7 @@ def clipped(low: float = -np.inf, high: float = np.inf, noise: float = 0.3) -> A
     return force
 
 
-def test_both_ends_of_the_range_are_found_with_seven_samples_on_each_side() -> None:
+def test_saturation_at_either_limit_is_found_with_seven_samples_on_each_side() -> None:
     force = clipped(-8.0, 9.0)
     mask, ends = saturated(force)
     assert ends == [9.0, -8.0]
@@ -113,23 +119,25 @@ def test_both_ends_of_the_range_are_found_with_seven_samples_on_each_side() -> N
 
 @pytest.mark.parametrize(("count", "found"), [(4, False), (5, True)])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_five_equal_extreme_readings_are_an_end(count: int, found: bool, sign: float) -> None:
+def test_five_equal_extreme_readings_are_saturation(count: int, found: bool, sign: float) -> None:
     values = clipped()
     values[100 : 100 + 60 * count : 60] = sign * 20.0
     assert (saturated(values)[1] == [sign * 20.0]) == found
 
 
 @pytest.mark.parametrize(("noise", "found"), [(0.3, False), (0.75, True)])
-def test_plateau_of_a_converter_coarser_than_its_noise_is_no_end(noise: float, found: bool) -> None:
+def test_plateau_of_a_force_quantised_more_coarsely_than_its_noise_is_not_saturation(
+    noise: float, found: bool
+) -> None:
     assert (saturated(np.round(clipped(-8.0, 8.0, noise)))[1] != []) == found
 
 
 @pytest.mark.parametrize("force", [WAVE, np.sign(WAVE), np.clip(WAVE, -8.0, 8.0)])
-def test_force_without_noise_has_no_end(force: Array) -> None:
+def test_noise_free_force_has_no_saturation(force: Array) -> None:
     assert saturated(force)[1] == []
 
 
-def test_saturation_finding_has_the_largest_end() -> None:
+def test_size_of_a_saturation_finding_is_the_largest_limit() -> None:
     (finding,), _ = find_saturation(run_of(clipped(-8.0, 9.0)))
     assert (finding.kind, finding.channel) == ("saturation", "friction_n")
     assert (finding.size, finding.unit, finding.done) == (9.0, "N m", "set aside")
@@ -160,7 +168,7 @@ def test_usable_readings_next_to_saturation_are_unbiased(of_peak: float, step_n:
     assert np.mean(found.usable) > 0.8 * np.mean(np.abs(whole) < limit - 1.2)
 
 
-def test_levels_of_dry_friction_are_no_saturation() -> None:
+def test_constant_levels_of_dry_friction_are_not_saturation() -> None:
     level = 20.0 * np.sign(WAVE)
     for force in (level, quantised(level + 0.3 * NOISE, 0.9), quantised(level + 0.3 * NOISE, 0.05)):
         assert "saturation" not in {f.kind for f in examine(run_of(force)).findings}

@@ -31,10 +31,13 @@ def test_windows_of_a_parabola_have_its_mean_speed_and_acceleration() -> None:
         assert window.count == pytest.approx((path[1] - path[0]) / (2 * half * 0.1))
 
 
-def test_windows_across_a_gap_are_left_out() -> None:
+def test_windows_that_contain_a_gap_are_omitted() -> None:
     time_s: Any = np.concatenate((0.1 * np.arange(100), 50.0 + 0.1 * np.arange(100)))
     windows = list(compared(time_s, time_s, np.ones(200)))
     assert [len(w.by_path) for w in windows] == [200 - 16, 200 - 32, 200 - 64]
+
+
+def test_number_of_window_widths_follows_from_the_length_of_the_record() -> None:
     for samples, widths in ((67, 0), (68, 1), (75, 1), (76, 2), (92, 3)):
         clock: Any = 0.1 * np.arange(samples)
         assert len(list(compared(clock, clock, np.ones(samples)))) == widths
@@ -52,20 +55,27 @@ def test_factor_between_path_and_speed_is_recovered(factor: float) -> None:
 @pytest.mark.parametrize(
     ("factor", "found"), [(1.0, False), (1.18, False), (1.22, True), (0.82, False), (0.78, True)]
 )
-def test_factors_within_a_fifth_of_one_agree(factor: float, found: bool) -> None:
+def test_factor_between_path_and_speed_is_reported_beyond_a_deviation_of_20_percent(
+    factor: float, found: bool
+) -> None:
     assert (factor_between(TIME_S, factor * PATH_M, SPEED_M_S) is not None) == found
 
 
-def test_unrelated_and_short_records_have_no_factor() -> None:
+def test_slope_near_a_wrong_factor_is_that_factor() -> None:
+    assert slope_near(TIME_S, PATH_M, SPEED_M_S, 7.0) == 7.0
+
+
+def test_unrelated_or_short_path_and_speed_have_no_factor() -> None:
     other = white(len(TIME_S), 1)
     assert factor_between(TIME_S, PATH_M, other) is None
     assert way_per_unit(TIME_S, PATH_M, other) is None
     assert factor_between(TIME_S[:60], 3.0 * PATH_M[:60], SPEED_M_S[:60]) is None
-    assert slope_near(TIME_S, PATH_M, SPEED_M_S, 7.0) == 7.0
 
 
 @pytest.mark.parametrize(("growth", "found"), [(8.0, False), (0.5, True)])
-def test_ratio_that_changes_in_time_is_no_factor(growth: float, found: bool) -> None:
+def test_ratio_of_path_and_speed_that_changes_in_time_is_not_reported(
+    growth: float, found: bool
+) -> None:
     speed = np.full(len(TIME_S), 0.1)
     path = 0.1 * (2.0 * TIME_S + 0.5 * growth * TIME_S**2 / TIME_S[-1])
     assert (factor_between(TIME_S, path, speed) is not None) == found
@@ -73,7 +83,9 @@ def test_ratio_that_changes_in_time_is_no_factor(growth: float, found: bool) -> 
 
 
 @pytest.mark.parametrize("gap_s", [0.5, 2.0])
-def test_gaps_of_a_fast_motion_make_no_factor(gap_s: float) -> None:
+def test_gaps_of_a_fast_motion_do_not_change_the_factor_between_path_and_speed(
+    gap_s: float,
+) -> None:
     time_s: Any = 0.02 * np.arange(900)
     for begin_s in (3.1, 8.4, 13.3):
         time_s = time_s[(time_s < begin_s) | (time_s > begin_s + gap_s)]
@@ -85,7 +97,7 @@ def test_gaps_of_a_fast_motion_make_no_factor(gap_s: float) -> None:
 
 
 @pytest.mark.parametrize("even", [True, False])
-def test_way_per_radian_of_a_slow_coarse_motion_is_recovered(even: bool) -> None:
+def test_distance_per_radian_of_a_slow_quantised_motion_is_recovered(even: bool) -> None:
     random = np.random.default_rng(9)
     steps = np.full(8000, 0.003) if even else random.choice([0.005, 0.05], 4000, p=[0.7, 0.3])
     time_s = np.cumsum(steps)
@@ -96,7 +108,7 @@ def test_way_per_radian_of_a_slow_coarse_motion_is_recovered(even: bool) -> None
 
 
 def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:
-    """The mismatch of a path that changes `factor` times as fast as the speed says."""
+    """The mismatch of a path whose derivative is `factor` times the speed."""
     unit = "rad" if column == "angle_rad" else "m"
     position = Position(factor * PATH_M, column, unit, arm_m)
     return wrong_unit("a", TIME_S, position, SPEED_M_S, kind)
@@ -133,10 +145,13 @@ def test_wrong_unit_is_recognised_by_its_factor(
     assert f" {hint}?" in found.finding.words
 
 
-def test_factor_of_no_unit_is_applied_to_the_path() -> None:
+def test_factor_that_matches_no_unit_is_applied_to_the_path() -> None:
     found = mismatch("angle_rad", 5.0, 0.3)
     assert found.finding.channel == "angle_rad"
     assert found.factor == pytest.approx(5.0, rel=2e-3)
+
+
+def test_factor_is_attributed_to_millimetres_at_five_but_not_ten_percent_off() -> None:
     for factor, is_unit in ((1.05e3, True), (1.1e3, False)):
         assert ("mm" in mismatch("position_m", factor).finding.words) == is_unit
 
@@ -144,7 +159,7 @@ def test_factor_of_no_unit_is_applied_to_the_path() -> None:
 @pytest.mark.parametrize(
     ("factor", "kind"), [(-1.0, "sign"), (-1.15, "sign"), (-1.3, "units"), (1.0, None)]
 )
-def test_factor_near_minus_one_is_a_wrong_sign(factor: float, kind: str | None) -> None:
+def test_factor_near_minus_one_is_reported_as_a_wrong_sign(factor: float, kind: str | None) -> None:
     found = mismatch("angle_rad", factor, 0.3)
     assert (found and found.finding.kind) == kind
     if kind == "sign":
@@ -166,7 +181,7 @@ def test_path_is_the_unwrapped_angle_times_the_radius_or_else_the_position() -> 
 
 
 @pytest.mark.parametrize("radius_m", [1.0, 0.31, 0.0127])
-def test_unknown_radius_follows_from_speed_and_angle(radius_m: float) -> None:
+def test_motion_is_recovered_from_speed_and_angle_if_the_radius_is_unknown(radius_m: float) -> None:
     angle = np.round(PATH_M / radius_m, 5)
     speed = SPEED_M_S + white(len(TIME_S), 0, 1e-4)
     motion = impose(Run.from_arrays(TIME_S, speed, angle_rad=angle), None)
@@ -175,7 +190,7 @@ def test_unknown_radius_follows_from_speed_and_angle(radius_m: float) -> None:
     assert np.max(np.abs(np.diff(motion.angle_rad - angle))) < 1e-4
 
 
-def test_angle_of_another_shaft_is_not_used_for_the_speed() -> None:
+def test_angle_unrelated_to_the_speed_is_unwrapped_but_does_not_change_the_speed() -> None:
     angle = np.mod(np.cumsum(np.random.default_rng(3).uniform(0.0, 1.0, len(TIME_S))), TURN)
     motion = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
     np.testing.assert_allclose(motion.angle_rad, np.unwrap(angle))

@@ -32,7 +32,7 @@ def effect_of(**changes: Any) -> Effect:
     return replace(OFFSET, **cast(Any, {**values, **changes}))
 
 
-def test_list_has_every_effect_once_under_its_stage() -> None:
+def test_effect_list_has_every_effect_once_under_its_stage() -> None:
     pages = effects()
     text = effects_page(pages.values())
     stage, headings, placed = "", [], {}
@@ -47,7 +47,7 @@ def test_list_has_every_effect_once_under_its_stage() -> None:
     assert max(map(len, text.splitlines())) <= 100
 
 
-def test_effects_that_a_law_excludes_follow_with_the_reason() -> None:
+def test_effects_that_a_law_excludes_are_listed_last_with_the_reason() -> None:
     pages = [effect_of(refused={"coulomb": "has no film"}), effect_of(name="sensor_lag")]
     lines = effects_page(pages, "coulomb").splitlines()
     excluded = lines.index("  sensor_offset  has no film")
@@ -69,7 +69,7 @@ def test_page_of_an_effect_has_its_equation_source_and_parameters(name: str) -> 
             assert value in " ".join(row)
 
 
-def test_effects_of_a_drive_mention_neither_load_cell_nor_journal() -> None:
+def test_descriptions_of_drive_effects_mention_neither_load_cell_nor_journal() -> None:
     for page in jbf.effects().values():
         for quantities in (LINEAR, ROTARY):
             if "coulomb" not in page.refused:
@@ -89,7 +89,7 @@ def model_of(rig: Rig, stderr: float | None = 0.25) -> Model:
     return Model(rig, "coulomb", ["inertia_leak", "sensor_offset"], values)
 
 
-def test_estimated_mass_is_compared_with_the_known_one() -> None:
+def test_estimated_mass_or_inertia_is_printed_with_the_known_one_of_the_drive() -> None:
     slide = known_mass(model_of(SLIDE), "inertia_leak")
     assert "11.00 +/- 0.25 kg" in slide
     assert "12.50" in slide
@@ -101,7 +101,7 @@ def test_estimated_mass_is_compared_with_the_known_one() -> None:
     assert known_mass(model_of(Rig(drive=Drive("linear", "force"))), "inertia_leak") == ""
 
 
-def test_effects_of_a_drive_are_described_below_its_parameters() -> None:
+def test_effects_are_described_below_the_parameters_only_if_the_rig_has_a_drive() -> None:
     model = model_of(SLIDE)
     text = " ".join(" ".join(effect_lines(model)).split())
     assert f"inertia_leak: {summary_of(find_effect('inertia_leak'), LINEAR)}" in text

@@ -44,13 +44,13 @@ def rows_of(text: str) -> list[list[str]]:
         ),
     ],
 )
-def test_status_has_the_share_of_the_samples_with_each_flag(
+def test_status_states_the_share_of_the_samples_with_each_flag(
     loop: Result, flags: list[int], expected: str
 ) -> None:
     assert status_words(replace(loop, status=np.array(flags, dtype=np.uint8))) == expected
 
 
-def test_runs_are_listed_with_errors_below_their_task(loop: Result) -> None:
+def test_loop_runs_are_listed_with_their_errors_below_their_task(loop: Result) -> None:
     other = replace(loop, scheme="none", status=np.zeros(4, dtype=np.uint8))
     head, _, columns, *rows = runs_text([loop, other]).splitlines()
     assert "velocity control, sine -1.04 to 1.04 rad/s at 0.25 rad/s, 2.5 s" in head
@@ -61,7 +61,7 @@ def test_runs_are_listed_with_errors_below_their_task(loop: Result) -> None:
     assert values == pytest.approx([loop.rms, loop.peak, loop.true_rms], rel=5e-3)
 
 
-def test_runs_are_drawn_side_by_side_and_named_once(loop: Result) -> None:
+def test_loop_runs_are_drawn_in_columns_with_axis_labels_on_the_first_only(loop: Result) -> None:
     results = [run(None, "none", SHORT), loop]
     axes = np.array(plot_runs(results).axes).reshape(5, 2)
     for column, result in zip(axes.T, results, strict=True):
@@ -86,7 +86,7 @@ OUTCOMES = [
 ]
 
 
-def test_robustness_lists_ratios_worst_and_verdict_and_counts_them() -> None:
+def test_robustness_text_and_json_have_ratios_worst_ratio_and_verdict_of_each_case() -> None:
     rows = rows_of(robustness_text(OUTCOMES))
     start = rows.index(["plant", "p sine", "v triangle", "worst"])
     assert rows[start + 1 : start + 5] == [
@@ -104,7 +104,7 @@ def test_robustness_lists_ratios_worst_and_verdict_and_counts_them() -> None:
     }
 
 
-def test_picture_of_robustness_marks_the_worst_ratio_of_each_case() -> None:
+def test_robustness_plot_marks_the_worst_ratio_of_each_case() -> None:
     (ax,) = plot_robustness(OUTCOMES).axes
     place = {t.get_text(): y for t, y in zip(ax.get_yticklabels(), ax.get_yticks(), strict=True)}
     # The first case is on top.
@@ -142,7 +142,7 @@ GAINS = dict(zip(TASKS, (1.0, 2.0, 0.5, 4.0, 8.0, 1.5, 3.0), strict=True))
 
 
 def tables_with_gains() -> Tables:
-    """The observed compensator is better than the better of two others by the factors `GAINS`."""
+    """The error of the better of two schemes is that of the observed one times `GAINS`."""
     cells = []
     for i, (row, gain) in enumerate(GAINS.items()):
         better, worse = (0.6, 0.9) if i % 2 else (0.9, 0.6)
@@ -153,7 +153,7 @@ def tables_with_gains() -> Tables:
     return tables_of(*cells)
 
 
-def test_tables_show_bench_thesis_and_ratio_of_each_cell() -> None:
+def test_tables_text_has_simulated_and_printed_errors_and_their_ratio() -> None:
     rows = rows_of(tables_text(SMALL))
     sine = ["0.440 / 0.400 = 1.10", "0.200 / 0.100 = 2.00", "0.300 / - = -", "0.0500"]
     fast = ["0.300 / 0.500 = 0.60", "0.0400 / 0.100 = 0.40", "0.630 / 0.300 = 2.10", "0.0800"]
@@ -162,7 +162,7 @@ def test_tables_show_bench_thesis_and_ratio_of_each_cell() -> None:
     assert next(row[1:] for row in rows if row[0] == "velocity sine") == fast
 
 
-def test_score_counts_near_cells_and_names_far_ones() -> None:
+def test_score_counts_cells_within_factors_and_lists_the_ratios_beyond_two() -> None:
     fitted, predicted, far = score_text(SMALL).splitlines()
     assert "40 %" in fitted
     assert re.findall(r"\d+(?= cells| within)", predicted) == ["3", "1", "0"]
@@ -177,7 +177,7 @@ def test_score_counts_near_cells_and_names_far_ones() -> None:
     assert re.findall(r"\d+(?= cells| within)", predicted) == ["2", "2", "1"]
 
 
-def test_fitted_friction_is_in_volts_under_the_load_of_the_rig() -> None:
+def test_fitted_friction_scale_is_printed_in_volts_at_the_load_of_the_rig() -> None:
     """28.26 mV/N times 104 N."""
     values = {
         row[0]: row[1] for row in rows_of(tables_report(tables_with_gains(), [])) if len(row) > 1
@@ -189,7 +189,7 @@ def test_fitted_friction_is_in_volts_under_the_load_of_the_rig() -> None:
     assert (numbers["K0"], numbers["gamma"]) == (1.5e6, 33.0)
 
 
-def test_tables_as_data_have_friction_ratios_gains_and_assumptions() -> None:
+def test_tables_json_has_friction_ratios_gains_and_assumptions() -> None:
     found = tables_with_gains()
     content: dict[str, Any] = tables_dict(found, [("as it is", SMALL)])
     assert content["friction"]["volts_per_n"] == THESIS_BENCH.volts_per_n
@@ -207,7 +207,7 @@ def test_tables_as_data_have_friction_ratios_gains_and_assumptions() -> None:
     }
 
 
-def test_picture_of_tables_has_a_bar_for_each_cell_and_a_diamond_for_each_printed_one() -> None:
+def test_tables_plot_has_a_bar_for_each_cell_and_a_diamond_for_each_printed_figure() -> None:
     (ax,) = plot_tables(SMALL).axes
     heights = np.array([[bar.get_height() for bar in group] for group in ax.containers])
     # The observed compensator is shown by its true error.

@@ -1,4 +1,4 @@
-"""Cards of failures and remainders: which effect makes a pattern, and what remains of it."""
+"""Cards of failures and residual structure: their causes, sizes and advice."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ def percentages(cause: str) -> dict[str, float]:
 
 
 def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Diagnosis:
-    """A record with zero error and drift; the final model has the drift and some of the offset.
+    """Diagnosis of a record with a sensor offset and a drift.
 
-    The parameters of the law are held, so that each effect makes all that it adds.
+    The final model has the drift and an offset of `found_offset_n`. The parameters of the law are
+    held, so that the part of an effect is all of the force that it adds.
     """
     runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + offset_n + drift_n_s * t)
     fixed: dict[str, ParameterValue | float] = {
@@ -42,8 +43,8 @@ def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Di
     )
 
 
-def test_shares_of_effects_are_projections_on_the_pattern() -> None:
-    """Along time both effects make the pattern: their shares follow from its bin means."""
+def test_shares_of_effects_are_projections_of_their_force_on_the_pattern() -> None:
+    """Both effects cause the pattern over time: their shares follow from its bin means."""
     diagnosis = diagnosis_of(2.0, 0.5, 2.0)
     i = next(i for i, f in enumerate(diagnosis.failures) if f.axis == "time")
     failure, card = diagnosis.failures[i], failure_cards(diagnosis)[i]
@@ -61,8 +62,8 @@ def test_shares_of_effects_are_projections_on_the_pattern() -> None:
     assert f"from {size:.2g} to" in card.to_do
 
 
-def test_effect_that_makes_part_of_a_pattern_is_named_with_the_usual_causes() -> None:
-    """An offset of 1 N makes half of a pattern of 2 N, and the pattern stays."""
+def test_effect_that_causes_part_of_a_pattern_is_named_with_the_usual_causes() -> None:
+    """An offset of 1 N causes half of a pattern of 2 N, and the pattern remains."""
     diagnosis = diagnosis_of(2.0, 0.0, 1.0)
     i = next(i for i, f in enumerate(diagnosis.failures) if f.axis == "direction")
     card = failure_cards(diagnosis)[i]
@@ -72,24 +73,28 @@ def test_effect_that_makes_part_of_a_pattern_is_named_with_the_usual_causes() ->
     assert "stays" in card.to_do
 
 
-def test_pattern_without_a_cause_has_the_usual_causes_and_advice() -> None:
-    cards = failure_cards(diagnosis_by_hand("unexplained"))
-    assert percentages(cards[0].cause) == {}
-    assert advice_on("direction").causes in cards[0].cause
+def test_adequate_diagnosis_has_no_failure_cards() -> None:
     assert failure_cards(diagnosis_by_hand("adequate")) == []
 
 
-def test_removed_pattern_of_a_simulated_campaign_is_made_by_the_hidden_effect() -> None:
+def test_card_of_a_pattern_that_no_effect_causes_lists_the_usual_causes() -> None:
+    cards = failure_cards(diagnosis_by_hand("unexplained"))
+    assert percentages(cards[0].cause) == {}
+    assert advice_on("direction").causes in cards[0].cause
+
+
+@pytest.mark.extended
+def test_removed_pattern_of_a_simulated_campaign_is_attributed_to_the_hidden_effect() -> None:
     diagnosis = golden("bearing_coulomb_drag")
     cards = failure_cards(diagnosis)
     assert [card.title for card in cards] == [f"Along {f.axis}" for f in diagnosis.failures]
     assert percentages(cards[0].cause)["coulomb_drag"] > 80.0
     first = diagnosis.failures[0]
     size = np.sqrt(np.average(first.means_n**2, weights=first.counts))
-    fall = re.search(r"from ([\d.]+) to ([\d.]+) N, and no pattern", cards[0].to_do)
-    assert fall is not None
-    assert float(fall[1]) == pytest.approx(size, rel=0.05)
-    assert float(fall[2]) < 0.3 * size
+    reduction = re.search(r"from ([\d.]+) to ([\d.]+) N, and no pattern", cards[0].to_do)
+    assert reduction is not None
+    assert float(reduction[1]) == pytest.approx(size, rel=0.05)
+    assert float(reduction[2]) < 0.3 * size
     assert cards[0].share == f"{100 * first.share:.0f} % of the mean square"
 
 
@@ -107,7 +112,7 @@ def test_removed_pattern_of_a_simulated_campaign_is_made_by_the_hidden_effect() 
         ("parameters", "disagree", "parameters", "Time (s)"),
     ],
 )
-def test_remainder_has_the_picture_and_the_advice_of_its_kind(
+def test_card_of_residual_structure_has_the_plot_share_and_advice_of_its_kind(
     axis: str, where: str, kind: str, label: str
 ) -> None:
     remains = (Remainder(axis, where, 0.126),)
@@ -119,7 +124,7 @@ def test_remainder_has_the_picture_and_the_advice_of_its_kind(
     assert card.to_do.lower() == f"{advice_on(kind).to_do}.".lower()
 
 
-def test_every_axis_and_kind_of_remainder_has_its_own_advice() -> None:
+def test_every_axis_and_kind_of_residual_structure_has_advice() -> None:
     kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects"}
     assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
     assert advice_on("nothing known") is NONE

@@ -25,7 +25,7 @@ FILE = Path(__file__).resolve().parents[3] / "docs" / "schema" / "results.json"
 SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 
 
-def test_nan_is_null_infinity_is_a_word_and_arrays_are_lists() -> None:
+def test_json_text_has_null_for_nan_a_string_for_infinity_and_lists_for_arrays() -> None:
     inf, nan = float("inf"), float("nan")
     value = {
         1: nan,
@@ -70,7 +70,7 @@ def as_written(content: Any) -> Any:
     return json.loads(json_text(content))
 
 
-def test_schema_is_valid() -> None:
+def test_published_schema_is_a_valid_json_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
 
 
@@ -99,7 +99,7 @@ def test_diagnosis_of_a_simulated_campaign_agrees_with_the_schema(name: str) -> 
     assert bool(content["laws"]) == (name == "slide_law_selection")
 
 
-def test_units_of_a_drive_agree_with_the_schema() -> None:
+def test_comparison_on_a_drive_has_its_units_and_agrees_with_the_schema() -> None:
     rig = jbf.Rig(drive=jbf.Drive("rotary", "current", torque_constant_n_m_a=0.5))
     comparison = comparison_by_hand(1.25, (1.0, 1.5))
     model = replace(comparison.model, rig=rig)
@@ -108,7 +108,7 @@ def test_units_of_a_drive_agree_with_the_schema() -> None:
     assert content["units"] == {"force": "N m", "velocity": "rad/s", "length": "rad"}
 
 
-def test_robustness_and_tables_agree_with_the_schema() -> None:
+def test_robustness_and_thesis_tables_agree_with_the_schema() -> None:
     outcomes = [Outcome("a case", {"velocity sine": 0.3})]
     assert violations("robustness", as_written(robustness_dict(outcomes))) == []
     short = {row: replace(task, seconds=3.0) for row, task in jbf.control.TASKS.items()}
@@ -119,7 +119,7 @@ def test_robustness_and_tables_agree_with_the_schema() -> None:
 
 
 @pytest.mark.extended
-def test_files_of_the_commands_agree_with_the_schema(
+def test_json_files_of_the_commands_agree_with_the_schema(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 
 @pytest.mark.parametrize("together", ["v < 0", "v >= 0.25 m/s", "0.25 N", "3 N m", "10 deg", "2 s"])
-def test_number_and_unit_stay_on_one_line(together: str) -> None:
+def test_wrapped_text_never_separates_a_number_from_its_unit(together: str) -> None:
     for filling in range(60, 95):
         lines = hanging("", f"{'x' * filling} {together} y", 0)
         assert any(together in line for line in lines)
@@ -27,7 +27,7 @@ def test_number_and_unit_stay_on_one_line(together: str) -> None:
 
 
 def drawing(colours: tuple[str, ...]) -> str:
-    """Lines of the given colours as a page contains them."""
+    """SVG text of a plot with a line of each colour."""
     ax = Figure(figsize=(2.0, 1.0)).subplots()
     for i, colour in enumerate(colours):
         ax.plot([0, 1], [i, i], color=colour)
@@ -35,7 +35,7 @@ def drawing(colours: tuple[str, ...]) -> str:
     return str(svg([ax], 'two & "more"'))
 
 
-def test_named_colours_of_a_picture_become_those_of_the_page() -> None:
+def test_style_colours_of_a_plot_become_css_variables_of_the_page() -> None:
     names = {
         MODEL: "model",
         BEFORE: "before",
@@ -53,8 +53,8 @@ def test_named_colours_of_a_picture_become_those_of_the_page() -> None:
     assert "A &lt;title&gt;</text>" in text
 
 
-def test_picture_has_the_size_of_its_place_and_is_reproducible() -> None:
-    """Neither width nor date; the box is that of the figure in points."""
+def test_embedded_plot_is_reproducible_and_has_neither_fixed_size_nor_date() -> None:
+    """The view box is that of the figure in points."""
     text = drawing((MODEL,))
     assert text == drawing((MODEL,))
     head = text.partition(">")[0]
@@ -65,7 +65,7 @@ def test_picture_has_the_size_of_its_place_and_is_reproducible() -> None:
     assert "<dc:date>" not in text
 
 
-def test_page_states_versions_date_and_command_and_escapes_them() -> None:
+def test_page_states_packages_date_and_command_and_escapes_html() -> None:
     text = page("text.html.j2", "A <title>", command="jbf <x>", words="1 < 2", picture="")
     assert "A &lt;title&gt;" in text
     assert "jbf &lt;x&gt;" in text
@@ -89,7 +89,7 @@ def test_fingerprint_is_the_hash_of_names_and_samples_in_their_order() -> None:
     assert len({fingerprint(case) for case in cases}) == len(cases)
 
 
-def test_files_are_listed_with_the_start_of_their_hash(tmp_path: Path) -> None:
+def test_file_of_a_run_is_listed_with_its_hash_or_as_missing(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text(run_of("a").to_csv())
     run = read_run(path)

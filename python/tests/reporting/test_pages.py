@@ -34,7 +34,7 @@ LEDGER = ("step", "fit (N)", "held out (N)", "noise (N)", "held out / noise")
 
 
 class Page(HTMLParser):
-    """Tables, text and pictures of a page; checks that every element is closed."""
+    """Tables, text and plots of a page; checks that every element is closed."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -73,7 +73,7 @@ class Page(HTMLParser):
         return " ".join(" ".join(self.words).split())
 
     def below(self, *head: str) -> Table:
-        """Rows of the table with a head."""
+        """Rows of the table with these column headings."""
         (found,) = [table for table in self.tables if table[0] == list(head)]
         return found[1:]
 
@@ -110,7 +110,7 @@ def page(verdict: str) -> Page:
         *(pytest.param(v, marks=pytest.mark.extended) for v in ("adequate", "ambiguous")),
     ],
 )
-def test_page_of_a_diagnosis_is_complete_and_fetches_nothing(verdict: str) -> None:
+def test_diagnosis_page_has_all_plots_and_no_external_links(verdict: str) -> None:
     text = html_of(verdict)
     found = Page(text)
     # Ledger, residual in two pictures, friction in two, and a card for each failure.
@@ -124,7 +124,7 @@ def test_page_of_a_diagnosis_is_complete_and_fetches_nothing(verdict: str) -> No
     assert ("record a rest" in text) == (verdict == "ambiguous")
 
 
-def test_page_begins_with_the_verdict_and_the_ledger() -> None:
+def test_diagnosis_page_begins_with_the_verdict_and_the_ledger() -> None:
     text = html_of("missing")
     assert re.findall(r"<h1>(.*?)</h1>", text) == ["Missing: sensor_offset."]
     assert text.index("<h1>") < text.index('id="ledger"') < text.index("<h2>")
@@ -133,7 +133,7 @@ def test_page_begins_with_the_verdict_and_the_ledger() -> None:
     assert "2 runs of 20 s in all, 1002 samples" in page("missing").text
 
 
-def test_page_has_each_step_of_the_ledger() -> None:
+def test_diagnosis_page_lists_the_errors_of_each_step_of_the_ledger() -> None:
     assert page("missing").below(*LEDGER) == [
         ["bare law", "2.50", "2.75", "0.500", "5.50"],
         ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
@@ -142,7 +142,7 @@ def test_page_has_each_step_of_the_ledger() -> None:
     assert page("unexplained").below(*torques) == [["bare law", "2.50", "2.75", "0.500", "5.50"]]
 
 
-def test_page_has_the_error_of_each_run_before_and_after() -> None:
+def test_diagnosis_page_has_the_rms_of_each_run_under_bare_law_and_final_model() -> None:
     both = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
     assert page("missing").below(*both) == [
         ["there", "501", "2.00", "0.450", "0.90"],
@@ -150,7 +150,7 @@ def test_page_has_the_error_of_each_run_before_and_after() -> None:
     ]
 
 
-def test_page_lists_candidates_with_a_gain_and_names_the_others() -> None:
+def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() -> None:
     head = ["effect", "RMS (N)", "evidence", "outcome", "why"]
     rows = next(table for table in page("missing").tables if table[0] == head)[1:]
     assert [row[:4] for row in rows] == [
@@ -161,7 +161,7 @@ def test_page_lists_candidates_with_a_gain_and_names_the_others() -> None:
     assert re.search(r"no more than chance would: sensor_lag\.", page("missing").text)
 
 
-def test_candidates_are_listed_under_each_step_that_tried_them() -> None:
+def test_diagnosis_page_lists_candidates_under_each_step_that_tried_them() -> None:
     assert re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing")) == [
         "bare law",
         "bare law + sensor_offset",
@@ -169,7 +169,7 @@ def test_candidates_are_listed_under_each_step_that_tried_them() -> None:
     assert len(re.findall("inertia_leak</td>", html_of("missing"))) == 2
 
 
-def test_page_has_parameters_correlations_and_the_added_effect() -> None:
+def test_diagnosis_page_has_parameters_correlations_and_the_added_effect() -> None:
     found = page("missing")
     assert found.below("parameter", "value", "standard error", "", "unit", "note") == [
         ["F_c_n", "4.988", "0.012", "0.25 %", "N", ""],
@@ -183,13 +183,13 @@ def test_page_has_parameters_correlations_and_the_added_effect() -> None:
     assert held == ["F_s_n"]
 
 
-def test_page_has_failures_with_share_and_appearance() -> None:
+def test_diagnosis_page_has_failures_with_their_share_and_description() -> None:
     assert "Along direction 60 % of the mean square" in page("missing").text
     assert "Record above the model." in page("missing").text
     assert "12 % of the mean square" in page("unexplained").text
 
 
-def test_page_has_power_hidden_effects_and_untried_effects() -> None:
+def test_diagnosis_page_has_detection_limits_undetectable_and_untried_effects() -> None:
     found = page("missing")
     head = ("effect", "found from", "of friction", "alone from", "else it could be")
     assert found.below(*head) == [["backlash", "gap 0.100 m", "2 %", "same", ""]]
@@ -198,7 +198,7 @@ def test_page_has_power_hidden_effects_and_untried_effects() -> None:
     assert "structure stands above it" in page("unexplained").text
 
 
-def test_page_of_a_rotary_drive_has_its_units() -> None:
+def test_diagnosis_page_of_a_rotary_drive_has_its_units() -> None:
     found = page("unexplained")
     assert found.below("run", "samples", "RMS (N m)", "RMS / noise") == [
         ["there", "501", "2.00", "4.00"],
@@ -212,7 +212,7 @@ def test_page_of_a_rotary_drive_has_its_units() -> None:
     ]
 
 
-def test_page_of_a_comparison_has_runs_and_failures_and_escapes_names(tmp_path: Path) -> None:
+def test_comparison_page_has_runs_and_failures_and_escapes_run_names(tmp_path: Path) -> None:
     runs = [
         replace(run, name=f"<script>$x^{{$</script>{i}")
         for i, run in enumerate(there_and_back(along(1.0)))
@@ -232,12 +232,12 @@ def test_page_of_a_comparison_has_runs_and_failures_and_escapes_names(tmp_path: 
     assert failures[0][1] == f"{100 * compared.failures[0].share:.0f} %"
 
 
-def test_page_in_a_missing_folder_is_refused(tmp_path: Path) -> None:
+def test_saving_a_page_in_a_missing_folder_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="folder does not exist"):
         fit_by_hand().save_html(tmp_path / "no" / "c.html")
 
 
-def test_pages_of_fits_and_loops_have_their_report_and_a_picture() -> None:
+def test_pages_of_fits_and_loops_have_their_summary_and_one_plot() -> None:
     fit = fit_by_hand()
     bootstrap = Bootstrap(fit, dict.fromkeys(fit.parameters, fit.residuals[0][:3]))
     trajectory = TrajectoryFit({"f_m": ParameterValue(0.25, 0.01)}, 1.0, 2, 3, True, "")

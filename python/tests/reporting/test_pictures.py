@@ -1,4 +1,4 @@
-"""Pictures: the numbers that they draw, their axes, and the files that they are written to."""
+"""Plots: the numbers that they draw, their axes, and the files that they are written to."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def title(ax: Axes) -> str:
 
 @pytest.fixture(scope="module")
 def comparison() -> Comparison:
-    """Record 1 N above the model in the direction of motion, without noise; noise floor 0.5 N."""
+    """Noise-free friction 1 N larger than that of the model, with a noise floor set to 0.5 N."""
     return comparison_by_hand(1.25, (1.0, 1.5))
 
 
@@ -64,7 +64,7 @@ def loop() -> control.Result:
     return control.run(None, "observed", replace(control.TASKS["velocity sine"], seconds=8.0))
 
 
-def test_every_picture_draws_on_given_axes_or_a_new_figure_and_is_documented(
+def test_every_plot_function_draws_on_given_or_new_axes_and_is_documented(
     diagnosis: Diagnosis, loop: control.Result, tmp_path: Path
 ) -> None:
     page = Path(__file__).resolve().parents[3] / "docs" / "pictures.md"
@@ -86,7 +86,7 @@ def test_every_picture_draws_on_given_axes_or_a_new_figure_and_is_documented(
         assert (page.parent / "images" / "plot" / f"{name}.svg").is_file()
 
 
-def test_matplotlib_is_imported_with_the_first_picture_and_pyplot_never() -> None:
+def test_import_of_jbf_does_not_load_matplotlib_and_that_of_plots_does_not_load_pyplot() -> None:
     for code in (
         "import jbf, sys; sys.exit(bool({'scipy', 'matplotlib', 'jinja2'} & set(sys.modules)))",
         "import jbf.plot, jbf.reporting.door, sys; sys.exit('matplotlib' in sys.modules)",
@@ -95,8 +95,8 @@ def test_matplotlib_is_imported_with_the_first_picture_and_pyplot_never() -> Non
         assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_colours_can_be_told_apart_with_red_green_deficiency() -> None:
-    """Distances after Vienot's projection of the colours for a deuteranope."""
+def test_plot_colours_are_distinguishable_with_red_green_colour_deficiency() -> None:
+    """Distances after the projection of Vienot et al. (1999) for deuteranopes."""
 
     def least_distance(*colours: str) -> float:
         seen = np.array([[0.293, 0.707, 0.0], [0.293, 0.707, 0.0], [-0.022, 0.022, 1.0]])
@@ -105,15 +105,15 @@ def test_colours_can_be_told_apart_with_red_green_deficiency() -> None:
         return min(float(np.linalg.norm(a - b)) for i, a in enumerate(places) for b in places[:i])
 
     assert least_distance(MEASURED, MODEL, BEFORE, NOISE, OTHER) > 0.08
-    assert least_distance("#8c6d00", "#5f8c00") < 0.08  # a pair that cannot be told apart
+    assert least_distance("#8c6d00", "#5f8c00") < 0.08  # an indistinguishable pair
 
 
-def test_wrong_number_of_axes_is_refused(diagnosis: Diagnosis) -> None:
+def test_wrong_number_of_axes_for_a_diagnosis_plot_is_rejected(diagnosis: Diagnosis) -> None:
     with pytest.raises(InputError, match="needs 4"):
         plot_diagnosis(diagnosis, list(Figure().subplots(1, 2)))
 
 
-def test_file_of_an_unknown_kind_or_in_a_missing_folder_is_refused(tmp_path: Path) -> None:
+def test_plot_file_of_unknown_format_or_in_a_missing_folder_is_rejected(tmp_path: Path) -> None:
     ax = one_axes(None)
     for path in (tmp_path / "a.nonsense", tmp_path / "none" / "a.svg"):
         with pytest.raises(InputError, match="cannot be written"):
@@ -131,14 +131,14 @@ def test_loops_draw_friction_of_record_and_model_over_speed(comparison: Comparis
     assert modelled[known] == pytest.approx(5.0 + 20.0 * v[known], rel=1e-3)
 
 
-def test_loops_of_friction_alone_omit_the_zero_error() -> None:
+def test_loops_of_friction_alone_exclude_the_sensor_offset() -> None:
     runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
     model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
     v, measured = line(jbf.plot.loops(compare(model, runs), 0, alone=True), "measured")
     assert measured == pytest.approx(5.0 + 20.0 * v, rel=1e-4)
 
 
-def test_record_and_model_are_drawn_in_time(comparison: Comparison) -> None:
+def test_record_and_model_are_drawn_over_time(comparison: Comparison) -> None:
     ax = jbf.plot.record_and_model(comparison, 1)
     p = comparison.campaign.prepared[1]
     for label, values in (("measured", p.friction_n), ("model", comparison.predictions[1])):
@@ -147,7 +147,7 @@ def test_record_and_model_are_drawn_in_time(comparison: Comparison) -> None:
         assert np.array_equal(drawn, values)
 
 
-def test_stribeck_draws_the_means_over_speed_and_the_steady_law(comparison: Comparison) -> None:
+def test_stribeck_plot_has_the_means_over_speed_and_the_steady_law(comparison: Comparison) -> None:
     ax = jbf.plot.stribeck(comparison)
     modelled = [one for one in ax.lines if one.get_linestyle() == "-" and len(one.get_xdata()) > 2]  # type: ignore[arg-type]
     for found, drawn in zip(friction_over_speed(comparison), modelled, strict=False):
@@ -159,7 +159,7 @@ def test_stribeck_draws_the_means_over_speed_and_the_steady_law(comparison: Comp
         assert force == pytest.approx(5.0 * np.sign(v) + 20.0 * v, rel=1e-3)
 
 
-def test_friction_map_counts_the_samples_and_draws_the_mean_of_the_model(
+def test_friction_map_has_the_sample_counts_and_the_mean_of_the_model(
     comparison: Comparison,
 ) -> None:
     ax = jbf.plot.friction_map(comparison)
@@ -190,7 +190,7 @@ def test_residual_map_shows_the_mean_in_units_of_the_noise(comparison: Compariso
         jbf.plot.residual_map(comparison, "nothing")  # type: ignore[arg-type]
 
 
-def test_residual_in_time_omits_samples_that_do_not_count(comparison: Comparison) -> None:
+def test_residual_over_time_omits_excluded_samples(comparison: Comparison) -> None:
     masks = [np.arange(501) >= 100, np.arange(501) >= 0]
     partial = replace(comparison, samples=comparison.samples.within(masks))
     ax = jbf.plot.residual_in_time(partial, 0)
@@ -199,7 +199,9 @@ def test_residual_in_time_omits_samples_that_do_not_count(comparison: Comparison
     assert residual[100:] == pytest.approx(np.ones(401), abs=1e-3)
 
 
-def test_residuals_in_a_row_are_those_of_the_fit(diagnosis: Diagnosis) -> None:
+def test_residuals_in_a_row_are_the_residuals_of_all_runs_of_the_fit_in_order(
+    diagnosis: Diagnosis,
+) -> None:
     ax = jbf.plot.residuals_in_a_row(diagnosis.fit)
     drawn = [one for one in ax.lines if one.get_marker() == "."]
     x = np.concatenate([np.asarray(one.get_xdata()) for one in drawn])
@@ -225,14 +227,16 @@ def test_spectrum_has_the_level_of_white_noise_and_a_peak_at_a_tone() -> None:
     assert frequency[np.argmax(density)] == pytest.approx(7.0, abs=0.5)
 
 
-def test_run_is_found_by_name_or_index_and_the_worst_by_default(comparison: Comparison) -> None:
+def test_run_is_selected_by_name_index_or_by_default_the_largest_rms(
+    comparison: Comparison,
+) -> None:
     assert [index_of(comparison, run) for run in ("there", "back", 0, -1, None)] == [0, 1, 0, 1, 1]
     assert index_of(comparison_by_hand(1.25, (1.5, 1.0)), None) == 0
     with pytest.raises(InputError, match="no run nope; known: there, back"):
         index_of(comparison, "nope")
 
 
-def test_run_in_which_two_models_differ_most_is_found() -> None:
+def test_most_telling_run_is_the_one_in_which_two_models_differ_most() -> None:
     """5 N + 20 N s/m and 1 N + 40 N s/m agree at 0.2 m/s and differ by 2 N at 0.1 m/s."""
     runs = [one_way("slow", coulomb), one_way("fast", coulomb, way=2.0)]
     first, second = (
@@ -243,7 +247,7 @@ def test_run_in_which_two_models_differ_most_is_found() -> None:
     assert most_telling(first, first) == most_telling(first)
 
 
-def test_intervals_are_standard_errors_in_percent_of_the_value() -> None:
+def test_parameter_intervals_are_standard_errors_in_percent_of_the_value() -> None:
     fit = fit_by_hand(["sensor_offset"])
     ax = jbf.plot.parameters(fit)
     widths = {
@@ -262,7 +266,7 @@ def test_intervals_are_standard_errors_in_percent_of_the_value() -> None:
     assert len(ax.containers) == 3
 
 
-def test_bootstrap_draws_the_answers_in_percent_of_the_value() -> None:
+def test_bootstrap_plot_has_the_deviation_of_each_fit_in_percent_of_the_value() -> None:
     fit = fit_by_hand()
     answers = {name: p.value * np.array([0.9, 1.2]) for name, p in fit.parameters.items()}
     (ax,) = plot_bootstrap(Bootstrap(fit, answers))
@@ -271,7 +275,7 @@ def test_bootstrap_draws_the_answers_in_percent_of_the_value() -> None:
     assert [x for x in off if len(x) == 2] == [pytest.approx([-10.0, 20.0])] * 2
 
 
-def test_ledger_draws_fit_and_held_out_error_and_their_fall(diagnosis: Diagnosis) -> None:
+def test_ledger_plot_has_fit_and_held_out_errors_and_their_reduction(diagnosis: Diagnosis) -> None:
     ax = jbf.plot.ledger(diagnosis)
     assert line(ax, "fit")[0].tolist() == [2.5, 0.525]
     assert line(ax, "held out")[0].tolist() == [2.75, 0.55]
@@ -284,7 +288,9 @@ def test_ledger_draws_fit_and_held_out_error_and_their_fall(diagnosis: Diagnosis
     assert [t.get_text() for t in ax.texts] == ["2.75 N", "0.550 N  (−80 %)"]
 
 
-def test_ranking_draws_gains_in_descending_order(diagnosis: Diagnosis) -> None:
+def test_ranking_plot_has_gains_in_descending_order_and_unknown_steps_are_rejected(
+    diagnosis: Diagnosis,
+) -> None:
     ax = jbf.plot.ranking(diagnosis)
     assert [cast(Any, bar).get_width() for bar in ax.patches] == [812.4, 55.0, 7.4]
     assert [t.get_text() for t in ax.get_yticklabels()] == [
@@ -299,7 +305,7 @@ def test_ranking_draws_gains_in_descending_order(diagnosis: Diagnosis) -> None:
 
 
 def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Diagnosis) -> None:
-    """An effect found from 0.1 rad in 80 %, from 0.13 rad in 95 %; 2 % of the friction at 0.1."""
+    """80 % of effects of 0.1 rad are found, which are 2 % of the friction, and 95 % of 0.13 rad."""
     shares = np.array([0.02, 0.02 * 1.3])
     assert ndtr(deviate(POWER, shares)) == pytest.approx([0.80, 0.95])
     x, y = line(jbf.plot.power(diagnosis), "backlash")
@@ -324,7 +330,7 @@ def inside(axes: Sequence[Axes]) -> bool:
 
 
 @pytest.mark.parametrize(("verdict", "added"), [("missing", True), ("unexplained", False)])
-def test_diagnosis_has_four_pictures(verdict: str, added: bool) -> None:
+def test_diagnosis_plot_has_four_titled_axes_within_the_figure(verdict: str, added: bool) -> None:
     axes = plot_diagnosis(diagnosis_by_hand(verdict))
     assert title(axes[0]) == "The error falling"
     assert title(axes[1]) == "Residual along direction"
@@ -354,7 +360,7 @@ def test_control_traces_draw_response_error_and_friction(loop: control.Result) -
         jbf.plot.control_trace(loop, "speed")  # type: ignore[arg-type]
 
 
-def test_learned_parameters_of_the_thesis_are_drawn_in_their_units() -> None:
+def test_learned_parameters_of_the_thesis_scheme_are_drawn_in_scaled_units() -> None:
     """K0 in 1e5, gamma in tens."""
     task = replace(control.TASKS["velocity sine"], seconds=4.0)
     r = control.run(None, "learning", task)

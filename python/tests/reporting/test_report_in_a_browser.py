@@ -1,4 +1,4 @@
-"""A report in a browser: it fetches nothing, fits the screen, and is readable dark and printed."""
+"""A report in a browser: network requests, layout, colour schemes and print."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ RUNS = 46
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     with sync_api.sync_playwright() as playwright:
-        # Where the tests run as root, Chromium has no sandbox.
+        # Chromium has no sandbox if the tests run as root.
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         yield browser
         browser.close()
@@ -51,7 +51,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_report_fits_the_screen_and_fetches_nothing(
+def test_report_fits_the_screen_follows_the_colour_scheme_and_loads_no_external_file(
     browser: Any, report: Path, scheme: str
 ) -> None:
     assert report.stat().st_size < MOST_BYTES
@@ -67,7 +67,7 @@ def test_report_fits_the_screen_and_fetches_nothing(
     assert page.evaluate("document.documentElement.scrollWidth") <= SCREEN["width"]
     over = "[...document.querySelectorAll('.wide')].filter(e => e.scrollWidth > e.clientWidth + 1)"
     assert page.evaluate(f"{over}.length") == 0
-    # The verdict, the ledger and the two models are on the first screen.
+    # The verdict, the ledger and the plot of the bare law are visible without scrolling.
     for selector in ("h1", "#ledger svg", "#before svg"):
         box = page.locator(selector).first.bounding_box()
         assert box["y"] >= 0
@@ -83,7 +83,9 @@ def test_report_fits_the_screen_and_fetches_nothing(
 
 
 @pytest.mark.extended
-def test_report_is_printed_dark_on_white_within_the_paper(browser: Any, report: Path) -> None:
+def test_printed_report_has_dark_headings_and_fits_the_page_width(
+    browser: Any, report: Path
+) -> None:
     page = browser.new_page(viewport={"width": 720, "height": 1000}, color_scheme="dark")
     page.goto(report.as_uri())
     page.emulate_media(media="print", color_scheme="dark")

@@ -1,4 +1,4 @@
-"""What every result offers: summary, picture, page, JSON, frame, repr, table."""
+"""Methods of all results: summary, plot, page, JSON, frame, repr and HTML table."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def results() -> dict[str, Result]:
 
 @pytest.fixture
 def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A pandas whose frames are the dictionaries that they are made from."""
+    """Replace `pandas` by a module whose data frame is the dictionary that it is made from."""
     pandas = ModuleType("pandas")
     pandas.DataFrame = dict  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "pandas", pandas)
@@ -56,7 +56,7 @@ def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     "kind", ["fit", "bootstrap", "trajectory fit", "comparison", "diagnosis", "loop"]
 )
-def test_every_result_has_every_method(
+def test_each_kind_of_result_has_summary_plot_json_page_repr_table_and_frame(
     kind: str, results: dict[str, Result], tmp_path: Path
 ) -> None:
     result = results[kind]
@@ -72,13 +72,13 @@ def test_every_result_has_every_method(
     assert len({len(values) for values in columns.values()}) == 1
 
 
-def test_frame_without_pandas_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_to_frame_is_rejected_if_pandas_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(InputError, match="pip install pandas"):
         fit_by_hand().to_frame()
 
 
-def test_object_that_is_no_result_is_refused() -> None:
+def test_reporting_functions_reject_an_object_that_is_not_a_result() -> None:
     for method in (door.summary, door.small_table, door.columns, door.plot, door.page):
         with pytest.raises(TypeError, match="int"):
             method(3)  # type: ignore[operator]
@@ -120,6 +120,7 @@ def test_frame_of_a_comparison_has_a_row_for_each_sample() -> None:
 
 
 def numbers(text: str) -> list[str]:
+    """Words of a text that begin with a digit."""
     return [word.strip(",;()") for word in text.split() if word[:1].isdigit()]
 
 
@@ -147,7 +148,7 @@ def test_repr_of_a_comparison_and_a_diagnosis_have_error_and_noise() -> None:
     assert repr(diagnosis_by_hand("adequate")).startswith("Diagnosis(adequate;")
 
 
-def test_long_lists_are_cut_at_an_item() -> None:
+def test_list_longer_than_120_characters_is_shortened_after_an_item() -> None:
     assert LONGEST == 120
     assert first_of(["a" * 59, "b" * 59]) == f"{'a' * 59}, {'b' * 59}"
     assert first_of(["a" * 59, "b" * 60]) == f"{'a' * 59}, ..."
@@ -165,14 +166,14 @@ def test_long_lists_are_cut_at_an_item() -> None:
         ("diagnosis", ("+ sensor_offset", "0.525", "0.550", "0.500", "1.10")),
     ],
 )
-def test_table_of_a_result_has_its_rows(
+def test_html_table_of_each_kind_of_result_has_the_expected_row(
     results: dict[str, Result], kind: str, row: tuple[str, ...]
 ) -> None:
     cells = "".join(f"<td>{cell}</td>" for cell in row)
     assert f"<tr>{cells}</tr>" in results[kind]._repr_html_()
 
 
-def test_table_of_an_import_has_the_reason_of_the_pieces_left_out() -> None:
+def test_html_table_of_an_import_states_why_a_piece_was_left_out() -> None:
     pieces = (Piece("r", "a.csv", 0, 0.0, 1.5), Piece("", "a.csv", 0, 1.5, 2.0, False, "at rest"))
     html = Import(Path("out"), Rig(), pieces, {})._repr_html_()
     assert "<td>r</td><td>a.csv</td><td>0.000</td><td>1.500</td>" in html

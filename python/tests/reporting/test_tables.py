@@ -65,11 +65,11 @@ def test_correlations_above_three_tenths_are_listed_strongest_first() -> None:
     assert correlation_pairs(weak) == [("F_v_n_s_m", "sensor_offset.b_n", -0.301)]
 
 
-def test_ratio_to_the_noise_is_empty_without_noise() -> None:
+def test_ratio_to_the_noise_is_an_empty_text_if_the_noise_is_zero() -> None:
     assert [ratio(1.0, noise) for noise in (0.3, 0.0)] == ["3.33", ""]
 
 
-def test_law_row_marks_the_first_law_and_those_that_predict_as_well() -> None:
+def test_law_rows_mark_the_chosen_law_and_those_that_predict_as_well_or_worse() -> None:
     laws = (LawTried("a", 2, 0.5, True), LawTried("b", 4, 0.51, True), LawTried("c", 6, 1, False))
     assert law_rows(replace(diagnosis_by_hand("missing"), laws=laws)) == [
         ("a", "2", "0.500", "taken"),
@@ -78,7 +78,7 @@ def test_law_row_marks_the_first_law_and_those_that_predict_as_well() -> None:
     ]
 
 
-def test_step_is_named_for_what_it_added_and_removed() -> None:
+def test_step_name_lists_the_effects_that_the_step_added_and_removed() -> None:
     effects = [(), ("a",), ("a", "b", "c"), ("b", "c"), ("b", "c"), ("b", "d")]
     steps = tuple(Step(names, 1.0, 1.0, 1.0) for names in effects)
     diagnosis = replace(diagnosis_by_hand("missing"), steps=steps)
@@ -94,7 +94,7 @@ def test_step_is_named_for_what_it_added_and_removed() -> None:
 
 
 def findings_of(*cases: tuple[str, str]) -> list[Finding]:
-    """Findings of one kind, each with its run and its words."""
+    """Findings of one kind, each with its run and its text."""
     return [Finding("slow_channel", "c", run, 1.0, "s", "left", words) for run, words in cases]
 
 
@@ -112,13 +112,13 @@ def findings_of(*cases: tuple[str, str]) -> list[Finding]:
         ),
     ],
 )
-def test_findings_with_the_same_words_name_at_most_three_runs(
+def test_finding_row_names_at_most_three_runs_of_equal_text_and_three_texts(
     cases: list[tuple[str, str]], expected: str
 ) -> None:
     assert finding_rows(findings_of(*cases)) == [("slow channel", expected)]
 
 
-def test_findings_have_one_row_for_each_kind_and_a_heading_where_there_are_any() -> None:
+def test_findings_have_one_row_for_each_kind_and_no_heading_if_there_are_none() -> None:
     other = Finding("glitches", "angle_rad", "a", 2.0, "rad", "weighed", "one jump")
     assert finding_rows([*findings_of(("a", "x")), other]) == [
         ("slow channel", "x, in a (left)"),
@@ -130,7 +130,7 @@ def test_findings_have_one_row_for_each_kind_and_a_heading_where_there_are_any()
 
 
 def power_of(**changes: Any) -> Power:
-    """An offset that is found from 2 N, and distinguished from 3 N."""
+    """An offset that is detectable from 2 N and distinguishable from 3 N on."""
     values: dict[str, Any] = {
         "effect": "sensor_offset",
         "parameter": "b_n",

@@ -73,12 +73,12 @@ def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:
     assert ["effects", "= none"] in section(failed.summary(), "[[Fit]]")
 
 
-def test_noise_is_white_or_has_a_share_and_a_memory() -> None:
+def test_noise_is_described_as_white_or_as_coloured_with_share_and_memory() -> None:
     assert noise_words(Noise()) == "white"
     assert noise_words(Noise(0.5, 0.3)) == "coloured, share 0.30, memory 0.50 s"
 
 
-def test_bootstrap_report_counts_the_fits_and_contains_the_fit() -> None:
+def test_bootstrap_report_has_the_number_of_fits_and_the_fit_report() -> None:
     fit = fit_by_hand()
     found = Bootstrap(fit, {n: np.arange(7.0) for n in fit.parameters})
     first, _, rest = found.summary().partition("\n")
@@ -146,7 +146,7 @@ def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> N
     ]
 
 
-def test_optional_sections_appear_only_with_content() -> None:
+def test_optional_sections_of_a_diagnosis_report_appear_only_with_content() -> None:
     power = (Power("sensor_lag", "tau_s", "s", 0.01, 0.02, False, 0.1, 0.02, ()),)
     laws = (LawTried("coulomb", 2, 0.55, True), LawTried("stribeck", 4, 0.551, True))
     plain = replace(diagnosis_by_hand("missing"), not_tried={})
@@ -166,7 +166,7 @@ def test_optional_sections_appear_only_with_content() -> None:
         assert not has_section(plain.summary(), heading)
 
 
-def test_remainders_next_experiment_and_hidden_effects_are_reported() -> None:
+def test_diagnosis_report_has_residual_structure_next_experiment_and_unseen_effects() -> None:
     unexplained = diagnosis_by_hand("unexplained").summary()
     assert section(unexplained, "What remains") == [
         ["frequency", "12 %", "a 3.00 Hz tone"],
@@ -178,7 +178,7 @@ def test_remainders_next_experiment_and_hidden_effects_are_reported() -> None:
     assert "no pattern along any axis" in adequate
 
 
-def test_report_of_a_simulated_campaign_fits_a_terminal_and_shows_its_steps() -> None:
+def test_report_of_a_simulated_campaign_has_lines_of_100_characters_and_all_steps() -> None:
     diagnosis = golden("bearing_coulomb_drag")
     report = diagnosis.summary()
     assert max(map(len, report.splitlines())) <= 100
@@ -225,7 +225,7 @@ def test_level_states_false_alarm_rate_candidates_and_threshold() -> None:
         ({"decoys": 2, "decoys_named": 2}, "below 100 %"),
     ],
 )
-def test_level_states_each_further_threshold_only_where_it_applies(
+def test_level_states_each_further_threshold_only_if_it_applies(
     changes: dict[str, Any], fragment: str
 ) -> None:
     assert fragment in level_words(replace(LEVEL, **changes))
@@ -241,7 +241,7 @@ def planned_power() -> PlannedPower:
     return PlannedPower(model, 0.1, power, {"backlash": "no path"}, ("a", "b"), LEVEL)
 
 
-def test_planned_power_report_lists_effects_noise_and_what_is_not_tried() -> None:
+def test_planned_power_report_lists_noise_detection_limits_and_untried_effects() -> None:
     planned = planned_power()
     report = planned.summary()
     assert report.startswith("2 runs beside coulomb + inertia_leak, noise of 0.100 N")

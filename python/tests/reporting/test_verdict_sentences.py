@@ -25,7 +25,8 @@ from jbf.reporting.words import (
 
 ADDED, TIED, REJECTED, NO_GAIN = TRIALS
 FALL = [2.75, 0.55, 1.1, 0.5]
-"""Held-out error of the bare law and of the final model (N), its ratio to the noise, the noise."""
+"""Held-out error of the bare law and of the final model (N), ratio of the latter to the noise, and
+noise (N)."""
 
 
 def numbers_in(text: str) -> list[float]:
@@ -41,7 +42,7 @@ def test_value_is_rounded_to_the_second_digit_of_its_error() -> None:
     assert measured(1.5, None) == measured(1.5, float("nan")) == ("1.5000", "")
 
 
-def test_numbers_have_three_digits_and_shares_two() -> None:
+def test_numbers_are_printed_with_three_digits_and_percentages_with_two() -> None:
     assert [number(x) for x in (0.0, 0.28571, 12345.6, 1e-9)] == ["0", "0.286", "12346", "1.00e-09"]
     assert percent(ParameterValue(-2.0, 0.01)) == "0.50 %"
     assert percent(ParameterValue(0.0, 0.01)) == percent(ParameterValue(1.0)) == ""
@@ -49,7 +50,7 @@ def test_numbers_have_three_digits_and_shares_two() -> None:
     assert times(1.0, 0.0) == "above"
 
 
-def test_list_has_commas_and_a_word_before_the_last_item() -> None:
+def test_listed_items_are_joined_by_commas_and_a_conjunction_before_the_last() -> None:
     assert [listed("abcd"[:n], "or") for n in range(5)] == [
         "",
         "a",
@@ -59,7 +60,7 @@ def test_list_has_commas_and_a_word_before_the_last_item() -> None:
     ]
 
 
-def test_only_a_law_with_a_film_names_its_clock() -> None:
+def test_clock_is_printed_only_for_a_law_with_a_film() -> None:
     coulomb = Model(Rig(), "coulomb", ["sensor_offset", "wear_in"])
     assert law_words(Model(Rig.thesis())) == "journal (clock journal)"
     assert law_words(Model(Rig.thesis()), ", ") == "journal, clock journal"
@@ -76,7 +77,7 @@ def test_only_a_law_with_a_film_names_its_clock() -> None:
         ("unexplained", "no effect in the catalogue explains", [3.0, 2.75, 5.5, 0.5]),
     ],
 )
-def test_verdict_sentence_has_its_effects_and_held_out_errors(
+def test_verdict_sentence_has_the_effects_and_held_out_errors_of_each_verdict(
     verdict: str, key: str, values: list[float]
 ) -> None:
     sentence = verdict_sentence(diagnosis_by_hand(verdict))
@@ -85,7 +86,9 @@ def test_verdict_sentence_has_its_effects_and_held_out_errors(
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_verdict_sentence_uses_the_first_and_the_last_step(count: int) -> None:
+def test_verdict_sentence_has_the_held_out_errors_of_the_first_and_the_last_step(
+    count: int,
+) -> None:
     steps = tuple(Step(("a",) * i, 1.0, 9.5 - i, 0.5 + 0.1 * i, ()) for i in range(count))
     diagnosis = replace(diagnosis_by_hand("missing"), steps=steps)
     last, noise = 10.5 - count, 0.4 + 0.1 * count
@@ -93,7 +96,7 @@ def test_verdict_sentence_uses_the_first_and_the_last_step(count: int) -> None:
     assert numbers_in(verdict_sentence(diagnosis)) == pytest.approx(expected, abs=6e-3)
 
 
-def test_headline_is_the_verdict_without_numbers() -> None:
+def test_headline_has_the_verdict_with_posterior_weights_but_without_errors() -> None:
     heads = {
         verdict: headline_and_rest(diagnosis_by_hand(verdict))[0]
         for verdict in ("adequate", "missing", "ambiguous", "unexplained")
@@ -108,7 +111,7 @@ def test_headline_is_the_verdict_without_numbers() -> None:
         assert numbers_in(rest) == numbers_in(verdict_sentence(diagnosis_by_hand(verdict)))
 
 
-def test_unexplained_verdict_with_effects_names_both() -> None:
+def test_unexplained_verdict_names_the_effects_found_and_the_residual_structure() -> None:
     remains = diagnosis_by_hand("unexplained").unexplained
     both = replace(diagnosis_by_hand("missing"), verdict="unexplained", unexplained=remains)
     sentence = verdict_sentence(both)
@@ -119,7 +122,7 @@ def test_unexplained_verdict_with_effects_names_both() -> None:
     assert "no effect in the catalogue" in headline
 
 
-def test_alternatives_are_listed_by_effect_and_weighted_where_weights_are_known() -> None:
+def test_alternatives_are_listed_by_effect_with_their_weights_if_known() -> None:
     diagnosis = replace(
         diagnosis_by_hand("ambiguous"),
         effects=("sensor_offset", "wear_in", "backlash"),
@@ -146,7 +149,7 @@ def test_alternatives_are_listed_by_effect_and_weighted_where_weights_are_known(
         ((0.3, 0.2, 0.1), ": place 0 (and 2 more, see there)"),
     ],
 )
-def test_largest_remainder_is_named_and_the_others_are_counted(
+def test_largest_residual_structure_is_named_and_the_others_are_counted(
     shares: tuple[float, ...], expected: str
 ) -> None:
     remains = tuple(Remainder("time", f"place {i}", share) for i, share in enumerate(shares))
@@ -178,12 +181,12 @@ def with_last_trials(verdict: str, *trials: Trial) -> Diagnosis:
 def test_rejected_candidate_with_a_gain_is_named_as_unconfirmed(
     verdict: str, trials: tuple[Trial, ...], named: bool
 ) -> None:
-    """Only in a last step that added nothing, of a verdict that it could change."""
+    """Only if the last step added nothing and the verdict is missing or adequate."""
     sentence = verdict_sentence(with_last_trials(verdict, *trials))
     assert sentence.endswith("not named: inertia_leak.") == named
 
 
-def test_confounders_are_named_as_not_confirmed_by_the_runs() -> None:
+def test_confounders_of_the_model_are_stated_not_to_be_part_of_the_verdict() -> None:
     for names in (("wear_in",), ("wear_in", "backlash")):
         diagnosis = replace(diagnosis_by_hand("unexplained"), confounders=names)
         addition = verdict_sentence(diagnosis).removeprefix(
@@ -193,7 +196,7 @@ def test_confounders_are_named_as_not_confirmed_by_the_runs() -> None:
         assert "not named" in addition
 
 
-def test_chosen_law_is_named_with_those_that_predict_as_well() -> None:
+def test_chosen_law_is_named_with_the_laws_that_predict_as_well() -> None:
     tied = {"coulomb": True, "stribeck": True, "lugre": False, "bristle": True}
     laws = tuple(LawTried(name, 2, 0.5, flag) for name, flag in tied.items())
     diagnosis = diagnosis_by_hand("missing")
@@ -201,11 +204,11 @@ def test_chosen_law_is_named_with_those_that_predict_as_well() -> None:
     assert "The data chose the law coulomb" in sentence
     assert "stribeck and bristle too" in sentence
     assert "lugre" not in sentence
-    alone = verdict_sentence(replace(diagnosis, laws=(laws[0], laws[2])))
-    assert alone.endswith("The data chose the law coulomb.")
+    without_ties = verdict_sentence(replace(diagnosis, laws=(laws[0], laws[2])))
+    assert without_ties.endswith("The data chose the law coulomb.")
 
 
-def test_simpler_law_is_named_with_both_held_out_errors_unless_the_law_was_chosen() -> None:
+def test_simpler_law_is_named_with_both_held_out_errors_unless_laws_were_compared() -> None:
     diagnosis = diagnosis_by_hand("missing")
     simpler = LawTried("stribeck", 4, 0.5432, False)
     sentence = verdict_sentence(replace(diagnosis, simpler_law=simpler))

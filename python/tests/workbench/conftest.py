@@ -20,7 +20,7 @@ from workbench_parts import client_of
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a rig and three runs with a Coulomb drag that the law lacks."""
+    """A folder with a rig and three runs whose Coulomb drag the base law lacks."""
     folder = tmp_path_factory.mktemp("bench")
     rig = files("jbf") / "data" / "demo" / "plain" / "rig.toml"
     (folder / "rig.toml").write_text(rig.read_text())
@@ -32,13 +32,13 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def session(campaign: Path) -> Iterator[Session]:
     """A session on the folder without a loaded campaign."""
-    made = Session(Folder.of(campaign))
-    yield made
-    made.close()
+    session = Session(Folder.of(campaign))
+    yield session
+    session.close()
 
 
 @pytest.fixture
-def on_bench(session: Session, campaign: Path) -> Session:
+def loaded_session(session: Session, campaign: Path) -> Session:
     """A session with the loaded campaign."""
     session.open("rig.toml", sorted(path.name for path in campaign.glob("*.csv")))
     return session
@@ -51,7 +51,7 @@ def client(session: Session) -> TestClient:
 
 
 @pytest.fixture
-def ended() -> Callable[[Session], None]:
+def wait_until_idle() -> Callable[[Session], None]:
     """A function that waits until no fit runs."""
 
     def wait(session: Session) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(why_not() is not None, reason=str(why_not()))
 
 
-def button(page: Page, key: str) -> None:
+def click(page: Page, key: str) -> None:
     page.click(f'[data-key="{key}"]')
 
 
@@ -29,7 +29,7 @@ def open_tab(page: Page, number: int) -> None:
     page.wait_for_selector(f"[role=tab][aria-selected=true]:nth-child({number})")
 
 
-def by_keyboard(page: Page, key: str) -> None:
+def press_by_keyboard(page: Page, key: str) -> None:
     """Move the focus to a button with the Tab key and press Enter."""
     for _ in range(80):
         page.keyboard.press("Tab")
@@ -57,37 +57,37 @@ def await_models(page: Page, count: int) -> None:
     )
 
 
-def no_wider_than_the_window(page: Page) -> None:
+def assert_page_fits_the_window(page: Page) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") <= 1280
 
 
 @pytest.mark.extended
-def test_demo_is_fitted_diagnosed_saved_and_resumed(tmp_path: Path) -> None:
+def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path: Path) -> None:
     with served(tmp_path) as address, looked_at(address) as (page, messages):
-        button(page, "demo")
+        click(page, "demo")
         page.wait_for_selector("#runs [data-key^=run-]")
         page.wait_for_selector("[data-drawn] canvas")
-        no_wider_than_the_window(page)
+        assert_page_fits_the_window(page)
 
         open_tab(page, 2)
         page.wait_for_selector("text=The records alone")
         open_tab(page, 3)
-        by_keyboard(page, "fit-law")
+        press_by_keyboard(page, "fit-law")
         await_models(page, 1)
 
         open_tab(page, 2)
         page.wait_for_selector('[data-key="fail-0"]')
-        by_keyboard(page, "fail-0")
+        press_by_keyboard(page, "fail-0")
         page.wait_for_selector("text=/^Marked: .*RMS/")
         # The same selection in the list of runs.
         assert page.locator("#runs >> text=/[0-9]+ selected/").count() > 1
-        no_wider_than_the_window(page)
+        assert_page_fits_the_window(page)
 
         open_tab(page, 3)
         # The first candidate of the ranking.
         leader = page.locator("[data-key^=add-]").first
         name = str(leader.get_attribute("data-key")).removeprefix("add-")
-        button(page, f"sketch-{name}")
+        click(page, f"sketch-{name}")
         page.wait_for_selector(f"text=/^{name} on .* times its usual strength/")
         leader.click()
         await_models(page, 2)
@@ -97,17 +97,17 @@ def test_demo_is_fitted_diagnosed_saved_and_resumed(tmp_path: Path) -> None:
         assert page.locator("svg[aria-label='error of each model'] rect.bar").count() == 4
         assert page.locator(f"svg text >> text='+ {name}'").count() == 1
 
-        button(page, "undo")
+        click(page, "undo")
         page.wait_for_selector("#models .item.now >> text=/^journal/")
-        button(page, "diagnose")
+        click(page, "diagnose")
         await_models(page, 3)
         verdict = page.inner_text("#room .verdict")
         assert verdict.startswith("Missing: sensor_lag and coulomb_drag.")
-        no_wider_than_the_window(page)
+        assert_page_fits_the_window(page)
 
         open_tab(page, 4)
         for what in ("session", "model", "report", "rust", "c"):
-            button(page, f"keep-{what}")
+            click(page, f"keep-{what}")
             page.wait_for_selector("text=/^Written: /")
             page.wait_for_timeout(300)
         assert messages.complaints == []
@@ -138,7 +138,9 @@ FOCUSED = """() => {
 
 
 @pytest.mark.extended
-def test_keyboard_reaches_every_control_with_a_visible_focus(tmp_path: Path) -> None:
+def test_keyboard_reaches_every_control_with_visible_focus_and_selects_samples(
+    tmp_path: Path,
+) -> None:
     with served(tmp_path, "--demo") as address, looked_at(address) as (page, messages):
         page.wait_for_selector("[data-drawn] canvas")
         for number in (1, 2, 3, 4):
@@ -156,7 +158,7 @@ def test_keyboard_reaches_every_control_with_a_visible_focus(tmp_path: Path) -> 
                 elif reached:
                     break  # the focus has left the page again
             assert wanted <= reached, (number, wanted - reached)
-        # Select a box of the plane by keys.
+        # Select a box in the plane of speed and force by keys.
         open_tab(page, 2)
         page.wait_for_timeout(1500)
         page.focus("[data-key=plane]")
@@ -183,7 +185,9 @@ SLOW_FILES = """() => {
 }"""
 
 
-def test_uploaded_recordings_are_imported_trimmed_and_fitted(tmp_path: Path) -> None:
+def test_uploaded_recordings_can_be_imported_trimmed_and_fitted_in_the_browser(
+    tmp_path: Path,
+) -> None:
     """Two records of a slide with 12 N of Coulomb friction and a mass, in ms and mm."""
     folder = tmp_path / "bench"
     folder.mkdir()
@@ -213,7 +217,7 @@ def test_uploaded_recordings_are_imported_trimmed_and_fitted(tmp_path: Path) -> 
                 arg=["tr:has([data-key='is-Force [N]']) td.n", right, unit == "N"],
             )
         page.evaluate(SLOW_FILES)
-        by_keyboard(page, "import")
+        press_by_keyboard(page, "import")
         page.wait_for_selector("text=log0/rig.toml is open, with 2 runs")
         # Move a handle by keys: a tenth of the run is trimmed.
         page.wait_for_selector("[data-drawn] [data-key=trim-0]")
@@ -232,21 +236,21 @@ def test_uploaded_recordings_are_imported_trimmed_and_fitted(tmp_path: Path) -> 
             timeout=10_000,
         )
         used.click()
-        button(page, "untrim")
+        click(page, "untrim")
         page.wait_for_selector("#runs >> text=trimmed", state="detached")
         open_tab(page, 3)
         page.select_option("[data-key=law]", "coulomb")
         page.wait_for_selector("[data-key=fit-law]:enabled")
-        button(page, "fit-law")
+        click(page, "fit-law")
         await_models(page, 1)
         assert (
             page.locator("[data-key^=add-]").first.get_attribute("data-key") == "add-inertia_leak"
         )
-        button(page, "add-inertia_leak")
+        click(page, "add-inertia_leak")
         await_models(page, 2)
         assert models(page)[1]["left_out"] < 0.33
         open_tab(page, 4)
-        button(page, "keep-model")
+        click(page, "keep-model")
         page.wait_for_selector("text=/^Written: model.toml/")
         assert messages.complaints == []
         assert messages.outside == []

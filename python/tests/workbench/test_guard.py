@@ -22,7 +22,7 @@ PATHS = ["/", "/api/state", "/api/files", "/static/main.js"]
     "host",
     ["evil.example", f"evil.example:{PORT}", "127.0.0.1", f"127.0.0.1:{PORT + 1}", "0.0.0.0"],
 )
-def test_foreign_host_is_refused(client: TestClient, path: str, host: str) -> None:
+def test_request_with_a_foreign_host_is_refused(client: TestClient, path: str, host: str) -> None:
     answer = client.get(path, headers={"host": host})
     assert answer.status_code == 400
     assert "token" not in answer.text.lower()
@@ -32,7 +32,7 @@ def test_foreign_host_is_refused(client: TestClient, path: str, host: str) -> No
     "origin", ["http://evil.example", "null", f"https://{OWN}", "http://127.0.0.1:1"]
 )
 @pytest.mark.parametrize("method", ["GET", "POST"])
-def test_foreign_origin_is_refused_even_with_the_token(
+def test_request_with_a_foreign_origin_is_refused_even_with_the_token(
     client: TestClient, origin: str, method: str
 ) -> None:
     path = "/api/state" if method == "GET" else "/api/undo"
@@ -44,14 +44,14 @@ def test_cross_site_image_or_script_is_refused(client: TestClient) -> None:
         assert client.get("/static/main.js", headers={"sec-fetch-site": site}).status_code == 403
 
 
-def test_own_page_is_served(client: TestClient) -> None:
+def test_same_origin_and_localhost_requests_are_served(client: TestClient) -> None:
     own = {"origin": f"http://{OWN}", "sec-fetch-site": "same-origin"}
     assert client.get("/api/state", headers=own).status_code == 200
     assert client.get("/api/state", headers={"host": f"localhost:{PORT}"}).status_code == 200
 
 
 @pytest.mark.parametrize("token", ["", "wrong", TOKEN[:-1], TOKEN + "x", "ä"])
-def test_wrong_token_is_refused(client: TestClient, token: str) -> None:
+def test_request_with_a_wrong_token_is_refused(client: TestClient, token: str) -> None:
     headers = {"x-jbf-token": token.encode("latin-1")}
     for method, path in (("GET", "/api/state"), ("POST", "/api/open"), ("GET", "/api/events")):
         answer = client.request(method, path, headers=headers)
@@ -74,7 +74,7 @@ def test_every_response_has_the_security_headers(client: TestClient, path: str) 
     assert not [name for name in answer.headers if name.startswith("access-control-")]
 
 
-def test_content_policy_allows_only_this_server() -> None:
+def test_content_security_policy_allows_only_this_server() -> None:
     parts = dict(part.split(" ", 1) for part in POLICY.split("; "))
     assert parts["default-src"] == "'none'"
     assert parts["script-src"] == "'self'"
@@ -83,14 +83,14 @@ def test_content_policy_allows_only_this_server() -> None:
     assert "http" not in POLICY
 
 
-def test_preflight_request_is_refused(client: TestClient) -> None:
+def test_preflight_request_of_a_foreign_origin_is_refused(client: TestClient) -> None:
     headers = {"origin": "http://evil.example", "access-control-request-method": "POST"}
     answer = client.options("/api/open", headers=headers)
     assert answer.status_code == 403
     assert "access-control-allow-origin" not in answer.headers
 
 
-def test_web_socket_is_refused(client: TestClient) -> None:
+def test_web_socket_connection_is_refused(client: TestClient) -> None:
     with pytest.raises(Exception), client.websocket_connect("/api/events"):  # noqa: B017, PT011
         pass
 
@@ -176,5 +176,5 @@ def test_map_that_names_a_file_outside_the_folder_is_refused(
     "path",
     ["/static/../app.py", "/static/%2e%2e/app.py", "/vendored/..%2fapp.py", "/vendored/guard.py"],
 )
-def test_source_files_are_not_served(client: TestClient, path: str) -> None:
+def test_source_files_are_not_served_through_static_paths(client: TestClient, path: str) -> None:
     assert client.get(path).status_code == 404

@@ -1,4 +1,4 @@
-"""Recordings in the workbench: looked at, tried with a map or a form, imported."""
+"""Recordings in the workbench: guessed map, preview with a map or a form, import."""
 
 from __future__ import annotations
 
@@ -48,9 +48,7 @@ def request_of(client: TestClient, **more: object) -> dict[str, object]:
     return {"files": files, "map": outcome["map"], "into": outcome["into"], **more}
 
 
-def test_tried_import_is_shown_in_si_units_and_not_written(
-    client: TestClient, folder: Path
-) -> None:
+def test_import_preview_shows_si_units_and_writes_no_file(client: TestClient, folder: Path) -> None:
     result = client.post("/api/try", json=request_of(client)).json()
     assert [run["name"] for run in result["runs"]] == ["log1", "log2"]
     columns = {c["name"]: c for c in result["runs"][0]["columns"]}
@@ -59,7 +57,9 @@ def test_tried_import_is_shown_in_si_units_and_not_written(
     assert sorted(path.name for path in folder.iterdir()) == ["log1.csv", "log2.csv"]
 
 
-def test_import_is_opened_and_does_not_replace_a_folder(client: TestClient, folder: Path) -> None:
+def test_import_opens_its_runs_and_an_existing_folder_is_refused(
+    client: TestClient, folder: Path
+) -> None:
     assert client.post("/api/import", json=request_of(client, into="slide")).status_code == 200
     state = client.get("/api/state").json()
     assert [run["name"] for run in state["runs"]] == ["log1", "log2"]
@@ -72,25 +72,29 @@ def test_import_is_opened_and_does_not_replace_a_folder(client: TestClient, fold
 
 
 @pytest.mark.parametrize("into", ["../slide", "/tmp/slide", "", ".."])
-def test_import_outside_the_folder_is_refused(client: TestClient, folder: Path, into: str) -> None:
+def test_import_into_a_path_outside_the_folder_is_refused(
+    client: TestClient, folder: Path, into: str
+) -> None:
     answer = client.post("/api/import", json=request_of(client, into=into))
     assert answer.status_code == 422
     assert "not a name in the folder" in answer.json()["error"]
     assert not (folder.parent / "slide").exists()
 
 
-def formed(client: TestClient, text: str, form: dict[str, object], **more: object) -> Any:
-    """The result of a form applied to a map."""
+def preview_with_form(
+    client: TestClient, text: str, form: dict[str, object], **more: object
+) -> Any:
+    """Return the preview of an import after a form has changed its map."""
     return client.post(
         "/api/try", json={"files": ["log1.csv"], "map": text, "form": form, **more}
     ).json()
 
 
-def test_unit_and_sign_of_the_form_change_numbers_and_map(client: TestClient) -> None:
+def test_unit_and_sign_in_the_form_change_the_numbers_and_the_map(client: TestClient) -> None:
     outcome = client.post("/api/look", json={"file": "log1.csv"}).json()
     rows = [{**row, "unit": "mN" if row["key"] == "friction_n" else row["unit"],
              "turned": row["key"] == "friction_n"} for row in outcome["form"]["rows"]]  # fmt: skip
-    result = formed(client, outcome["map"], {"rows": rows, "rig": {}})
+    result = preview_with_form(client, outcome["map"], {"rows": rows, "rig": {}})
     (run,) = result["runs"]
     force = next(c for c in run["columns"] if c["name"] == "friction_n")
     assert (force["least"], force["most"], force["unit"]) == (-0.01, 0.01, "N")
@@ -108,12 +112,12 @@ def test_friction_in_percent_requires_the_rated_force(
         {**row, "key": "force_percent", "unit": "%"} if row["key"] == "friction_n" else row
         for row in outcome["form"]["rows"]
     ]
-    result = formed(client, outcome["map"], {"rows": rows, "rig": {}})
+    result = preview_with_form(client, outcome["map"], {"rows": rows, "rig": {}})
     assert result["form"]["rig"]["drive"]["friction"] == "percent"
     assert "drive.rated_force_n: is open" in result["problem"]
     assert result["runs"] == []
     rig = {"drive.rated_force_n": "250"}
-    result = formed(client, result["map"], {"rows": result["form"]["rows"], "rig": rig})
+    result = preview_with_form(client, result["map"], {"rows": result["form"]["rows"], "rig": rig})
     assert result["problem"] is None
     force = next(c for c in result["runs"][0]["columns"] if c["name"] == "friction_n")
     assert force["most"] == pytest.approx(25.0)
@@ -138,7 +142,7 @@ def test_broken_map_is_refused_in_one_line(client: TestClient, text: str) -> Non
     assert "\n" not in answer.json()["error"]
 
 
-def test_shown_command_repeats_the_import(
+def test_shown_command_line_reproduces_the_imported_run(
     client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from jbf.cli import main

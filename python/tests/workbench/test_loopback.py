@@ -14,7 +14,7 @@ from jbf.workbench.serve import HOST, listening
 from starlette.testclient import TestClient
 
 
-def others() -> list[str]:
+def external_addresses() -> list[str]:
     """Addresses of this machine that other machines can reach."""
     result = {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
@@ -26,14 +26,14 @@ def others() -> list[str]:
     return sorted(a for a in result if not a.startswith("127.") and ":" not in a)
 
 
-def test_server_listens_on_loopback_only() -> None:
+def test_server_listens_on_the_loopback_address_only() -> None:
     listener = listening(0)
     listener.listen()
     try:
         address, port = listener.getsockname()
         assert (address, HOST) == ("127.0.0.1", "127.0.0.1")
         socket.create_connection(("127.0.0.1", port), 5.0).close()
-        for other in others():
+        for other in external_addresses():
             with pytest.raises(OSError):  # noqa: PT011 (refused, or unreachable)
                 socket.create_connection((other, port), 5.0).close()
     finally:

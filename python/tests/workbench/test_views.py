@@ -21,7 +21,9 @@ from jbf.workbench.thinning import Stretch, ranges_of, thinned
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.integers(1, 5000), st.integers(1, 800), st.integers(0, 10))
-def test_thinned_series_keeps_every_extreme(samples: int, pixels: int, seed: int) -> None:
+def test_thinned_series_keeps_the_minimum_and_the_maximum(
+    samples: int, pixels: int, seed: int
+) -> None:
     y = np.random.default_rng(seed).normal(size=samples)
     time = np.arange(samples) * 0.02
     stretch = Stretch.between(time, time[0], time[-1], pixels)
@@ -39,7 +41,7 @@ def test_thinned_series_keeps_every_extreme(samples: int, pixels: int, seed: int
 SIZE = (100, 80)
 
 
-def test_gap_of_a_series_is_kept() -> None:
+def test_thinned_series_has_null_values_in_a_gap() -> None:
     y = np.ones(1000)
     y[400:600] = np.nan
     result = thinned(np.arange(1000.0), {"y": y}, Stretch(0, 1000, 100))
@@ -47,7 +49,7 @@ def test_gap_of_a_series_is_kept() -> None:
     assert listed(result["y"])[90] is None
 
 
-def test_zoomed_stretch_includes_one_neighbour_on_each_side() -> None:
+def test_zoomed_interval_includes_one_sample_beyond_each_end() -> None:
     time = np.arange(100.0)
     assert Stretch.between(time, 10.5, 20.5, 500) == Stretch(10, 22, 500)
     assert Stretch.between(time, -5.0, 500.0, 500) == Stretch(0, 100, 500)
@@ -55,7 +57,9 @@ def test_zoomed_stretch_includes_one_neighbour_on_each_side() -> None:
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.lists(st.booleans(), max_size=300), st.integers(1, 12))
-def test_ranges_cover_every_selected_sample(mask: list[bool], most: int) -> None:
+def test_ranges_cover_every_selected_sample_within_their_maximum_number(
+    mask: list[bool], most: int
+) -> None:
     selected = np.array(mask, dtype=bool)
     exact = np.zeros(len(selected), dtype=bool)
     for a, b in ranges_of(selected, most=1000):
@@ -69,7 +73,7 @@ def test_ranges_cover_every_selected_sample(mask: list[bool], most: int) -> None
     assert len(joined) <= most
 
 
-def test_density_agrees_with_a_histogram() -> None:
+def test_density_agrees_with_a_histogram_of_numpy() -> None:
     random = np.random.default_rng(4)
     x, y = random.normal(size=3000), random.normal(size=3000)
     frame = Frame.around([x], [y], 50, 40)
@@ -86,7 +90,7 @@ def test_density_agrees_with_a_histogram() -> None:
     assert levels.max() == 255
 
 
-def test_constant_force_has_a_density() -> None:
+def test_every_sample_of_a_constant_force_is_counted_in_the_density() -> None:
     frame = Frame.around([np.zeros(5)], [np.full(5, 3.0)], 10, 10)
     assert frame.counts([frame.places(np.zeros(5), np.full(5, 3.0))]).sum() == 5
 
@@ -98,10 +102,10 @@ def test_samples_outside_the_frame_and_nan_are_not_counted() -> None:
     assert frame.counts([frame.places(x, y)]).sum() == 2
 
 
-def test_box_selects_samples_of_every_run(on_bench: Session) -> None:
-    runs = on_bench.on_bench().runs
+def test_box_selects_samples_of_every_run(loaded_session: Session) -> None:
+    runs = loaded_session.on_bench().runs
     box = (-0.02, 0.02, -20.0, 0.0)
-    result = views.brushed(on_bench, None, {"box": box}, [r.name for r in runs], SIZE)
+    result = views.brushed(loaded_session, None, {"box": box}, [r.name for r in runs], SIZE)
     inside = [within(r.velocity_m_s, r.friction_n, box) for r in runs if r.friction_n is not None]
     assert result["samples"] == sum(int(mask.sum()) for mask in inside)
     assert result["rms_n"] is None
@@ -111,12 +115,12 @@ def test_box_selects_samples_of_every_run(on_bench: Session) -> None:
             assert mask[np.searchsorted(run.time_s, last)]
 
 
-def test_selected_density_is_that_of_the_selected_samples(on_bench: Session) -> None:
+def test_density_of_a_selection_counts_only_the_selected_samples(loaded_session: Session) -> None:
     box = (-0.02, 0.02, -20.0, 0.0)
-    run = on_bench.on_bench().run("stopgo")
+    run = loaded_session.on_bench().run("stopgo")
     assert run.friction_n is not None
-    complete = views.plane(on_bench, None, ["stopgo"], SIZE)
-    result = views.brushed(on_bench, None, {"box": box}, ["stopgo"], SIZE)
+    complete = views.plane(loaded_session, None, ["stopgo"], SIZE)
+    result = views.brushed(loaded_session, None, {"box": box}, ["stopgo"], SIZE)
     mask = within(run.velocity_m_s, run.friction_n, box)
     frame = Frame(**complete["frame"])
     assert result["selected"] == frame.picture(
@@ -125,43 +129,47 @@ def test_selected_density_is_that_of_the_selected_samples(on_bench: Session) -> 
     assert result["selected"] != complete["measured"]
 
 
-def test_time_span_selects_samples_of_its_run_only(on_bench: Session) -> None:
+def test_time_span_selects_samples_of_its_run_only(loaded_session: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
-    result = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
+    result = views.brushed(loaded_session, None, selection, ["stopgo"], SIZE)
     assert list(result["by_run"]) == ["stopgo"]
     assert result["samples"] == 51
 
 
-def test_half_open_box_selects_a_range_of_speeds(on_bench: Session) -> None:
+def test_box_with_only_a_lower_speed_limit_selects_every_faster_sample(
+    loaded_session: Session,
+) -> None:
     selection = {"run": "stopgo", "box": [0.01, None, None, None]}
-    result = views.brushed(on_bench, None, selection, ["stopgo"], SIZE)
-    run = on_bench.on_bench().run("stopgo")
+    result = views.brushed(loaded_session, None, selection, ["stopgo"], SIZE)
+    run = loaded_session.on_bench().run("stopgo")
     assert list(result["by_run"]) == ["stopgo"]
     assert result["samples"] == int((run.velocity_m_s >= 0.01).sum())
     low, high = result["speeds_m_s"]
     assert low >= 0.01
     assert high == run.velocity_m_s.max()
     # Its cells lie in its row of the map, right of zero speed.
-    row = [r.name for r in on_bench.on_bench().runs].index("stopgo")
+    row = [r.name for r in loaded_session.on_bench().runs].index("stopgo")
     assert {cell[0] for cell in result["cells"]} == {row}
     assert min(cell[1] for cell in result["cells"]) >= views.MAP_SPEEDS // 2
 
 
-def test_selection_of_a_missing_model_is_refused(on_bench: Session) -> None:
+def test_selection_by_a_mark_is_refused_if_there_is_no_model(loaded_session: Session) -> None:
     with pytest.raises(InputError, match="no such model"):
-        views.brushed(on_bench, None, {"mark": 0}, ["stopgo"], SIZE)
+        views.brushed(loaded_session, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
-def test_records_are_shown_without_a_model(on_bench: Session) -> None:
-    result = views.series(on_bench, None, "stopgo", (None, None), 1000)
+def test_series_and_plane_contain_only_records_if_there_is_no_model(
+    loaded_session: Session,
+) -> None:
+    result = views.series(loaded_session, None, "stopgo", (None, None), 1000)
     assert "model_n" not in result
-    run = on_bench.on_bench().run("stopgo")
+    run = loaded_session.on_bench().run("stopgo")
     assert result["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
-    picture = views.plane(on_bench, None, ["stopgo"], SIZE)
+    picture = views.plane(loaded_session, None, ["stopgo"], SIZE)
     assert "model" not in picture
 
 
-def test_numbers_are_rounded_and_nan_becomes_null() -> None:
+def test_listed_numbers_are_rounded_and_nan_or_infinity_becomes_null() -> None:
     assert listed([1.23456789, -0.000123456]) == [1.23457, -0.00012]
     assert listed([float("nan"), float("inf"), 1.0]) == [None, None, 1.0]
     assert listed([]) == []

@@ -83,8 +83,8 @@ impl<T: Real> Effects<T> {
 
 /// Each stage asks the effects of its own line only.
 ///
-/// The code of all effects is inlined into the time loop of each law. With debug assertions each stage is
-/// a function of its own instead: tests are compiled in a fraction of the time.
+/// The code of all effects is inlined where a chain holds `Effects` itself. With debug assertions each
+/// stage is a function of its own instead: tests are compiled in a fraction of the time.
 impl<T: Real> EffectSet<T> for Effects<T> {
     type State = States<T>;
 

@@ -11,7 +11,7 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
     /// None of them is there.
     const EMPTY: Self;
 
-    /// True where none of them is there.
+    /// True if no effect of this stage is set.
     fn is_empty(&self) -> bool;
 
     /// Put the effect of that name here, or take it out where its parameters stand at an infinite

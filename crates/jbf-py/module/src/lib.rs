@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 
-/// The extension module `jbf._core`. Its classes do not change once they are made: it asks for no
-/// interpreter lock.
+/// The extension module `jbf._core`. Its classes are immutable, so that it does not need the interpreter
+/// lock.
 #[pymodule(gil_used = false)]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     jbf_py::register(m)

@@ -1,9 +1,8 @@
 //! The paths of the film along motions, where chains that differ behind the film can share them.
 //!
-//! Their derivatives by the film's two parameters are differences of paths that run side by side: a step
-//! of 2^-20 leaves a share of some 1e-6 of a derivative, which no search and no error of a parameter
-//! feels, and three lanes of one register cost a fifth of what derivatives carried through every step
-//! do.
+//! Their derivatives by the film's two parameters are finite differences of paths that run side by side.
+//! The relative error of a derivative is about 1e-6, negligible for searches and standard errors; three
+//! lanes of one register cost a fifth of dual numbers.
 
 use super::Chain;
 use crate::film_paths::{Film, FilmPath, Steps};
@@ -18,7 +17,7 @@ use jbf_core::{run, ParameterError};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Share of a film parameter between neighbours: a power of two, so that it is exact.
+/// Relative perturbation of a film parameter; a power of two is exact.
 const APART: f64 = 1.0 / 1_048_576.0;
 
 /// The film's parameters on the journal law's page.
@@ -27,8 +26,12 @@ const BY: Option<[usize; 2]> = <Journal<f64> as Law<f64>>::FILM_PARAMETERS;
 type Path = Option<Arc<FilmPath>>;
 
 impl Chain {
-    /// The path of this chain's film along each motion; none where the law keeps none, where what
-    /// stands before the film changes it, where the load changes, or where a step left the bearing.
+    /// The path of this chain's film along each motion. There is none where
+    ///
+    /// - the law has no film path,
+    /// - an effect before the film changes it,
+    /// - the load changes, or
+    /// - a step left the bearing.
     pub(super) fn film_paths(
         &self,
         p: &[f64],
@@ -46,7 +49,7 @@ impl Chain {
         let max_step_s = self.max_step_s;
         let inner_s = self.model().with_chain(
             p,
-            InnerSteps {
+            LongestInnerStep {
                 max_step_s,
                 motions,
             },
@@ -164,12 +167,12 @@ fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
 }
 
 /// The longest inner step along each motion, s.
-struct InnerSteps<'a> {
+struct LongestInnerStep<'a> {
     max_step_s: f64,
     motions: &'a [&'a Motion],
 }
 
-impl Using<f64> for InnerSteps<'_> {
+impl Using<f64> for LongestInnerStep<'_> {
     type Output = Vec<f64>;
 
     fn with<L: Named<f64>>(self, chain: jbf_core::Chain<f64, L>) -> Vec<f64> {

@@ -19,7 +19,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use runs::{FilmRate, InnerSteps};
 
-/// A friction law and effects round it; parameters come with each call.
+/// A friction law with its effects; the parameters come with each call.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct Chain {
     law: &'static law::Info,
@@ -48,7 +48,7 @@ impl Chain {
         }
     }
 
-    /// Readings alone, N, along each motion.
+    /// Readings without derivatives, N, along each motion.
     fn values(&self, p: &[f64], motions: &[&Motion]) -> Result<Vec<Vec<f64>>, ParameterError> {
         let paths = self.film_paths(p, false, motions)?;
         let jobs: Vec<_> = motions.iter().zip(&paths).collect();

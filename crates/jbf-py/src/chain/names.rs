@@ -1,4 +1,4 @@
-//! What Python names: a law, a clock, an effect that goes with the law.
+//! Laws, clocks and effects by the names that Python uses.
 
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::{law, Clock};

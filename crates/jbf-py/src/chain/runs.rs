@@ -1,4 +1,4 @@
-//! What a chain, of whatever law, says of motions before it is run along them.
+//! Film rate and number of inner steps of a chain along motions.
 
 use crate::motion::Motion;
 use jbf_core::law::Named;

@@ -6,7 +6,7 @@ use crate::film_paths::FilmPath;
 use crate::motion::Motion;
 use crate::share::longest_first;
 use jbf_core::ParameterError;
-use jbf_predict::groups;
+use jbf_predict::parameter_passes;
 
 /// Values of a run, and the derivatives of each with respect to some parameters, row by row.
 pub type Slice = (Vec<f64>, Vec<f64>);
@@ -19,7 +19,7 @@ impl Chain {
         which: &[usize],
         motions: &[&Motion],
     ) -> Result<Vec<Slice>, ParameterError> {
-        let groups = groups(which);
+        let groups = parameter_passes(which);
         let paths = self.film_paths(p, true, motions)?;
         let jobs: Vec<(usize, usize)> = (0..motions.len())
             .flat_map(|m| (0..groups.len()).map(move |g| (m, g)))
@@ -44,7 +44,7 @@ impl Chain {
     }
 }
 
-/// One matrix of `n` rows out of blocks of columns.
+/// Join blocks of columns into one matrix of `n` rows.
 fn side_by_side(parts: &[Slice], n: usize, columns: usize) -> Vec<f64> {
     if let [(_, only)] = parts {
         return only.clone();

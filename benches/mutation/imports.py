@@ -1,8 +1,7 @@
-"""Which tests may reach a module, where nobody has measured it: those that import it.
+"""Which test files may reach a module: those of its package, and those that import it.
 
-Files that name the module come first, then those that name one that imports it, and so on; of each
-those that are called after the module, and those that run no simulator and no process, which take
-seconds.
+Files of the package that share a word with the module's name come first, then the others of the
+package by the number of imports between them and the module, then all other files.
 """
 
 from __future__ import annotations
@@ -47,7 +46,9 @@ def by_imports(root: Path) -> Reach:
             file: min((steps[n] for n in names if n in steps), default=len(steps))
             for file, names in tests.items()
         }
-        reaching = [file for file in tests if far[file] < len(steps)] or _alike(path, list(tests))
+        own = path.relative_to(package).parts[0]
+        reaching = [f for f in tests if far[f] < len(steps) or Path(f).parent.name == own]
+        reaching = reaching or _alike(path, list(tests))
         reaching.sort(key=_order(path, far, seconds))
         lines[path.relative_to(root).as_posix()] = {ANY: reaching}
     return Reach(seconds, lines)
@@ -55,12 +56,21 @@ def by_imports(root: Path) -> Reach:
 
 def _order(
     module: Path, far: dict[str, int], seconds: dict[str, float]
-) -> Callable[[str], tuple[int, bool, float, str]]:
-    """Of a file of tests how soon it is asked about a module."""
+) -> Callable[[str], tuple[bool, bool, int, float, str]]:
+    """Sort key of test files for a module: those named after it, those of its package that import
+    it or a user of it, then all others by their distance."""
     words = {*module.stem.split("_")}
 
-    def order(file: str) -> tuple[int, bool, float, str]:
-        return far[file], not words <= {*Path(file).stem.split("_")}, seconds[file], file
+    def order(file: str) -> tuple[bool, bool, int, float, str]:
+        stem, folder = Path(file).stem, Path(file).parent.name
+        named = bool(words & {*stem.split("_")[1:]})
+        return (
+            not (named and folder in module.parts),
+            folder not in module.parts,
+            far[file],
+            (seconds[file]),
+            file,
+        )
 
     return order
 

@@ -98,3 +98,11 @@ def test_samples_after_a_gap_are_excluded_if_their_error_exceeds_a_fifth_of_the_
     (behind,) = behind_gaps(*journal_problem(run), REMEMBERED * noise_n)
     found, expected = gone[gone > 8.0], run.time_s[behind]
     assert (found[0], found[-1]) == pytest.approx((expected[0], expected[-1]), abs=0.15)
+
+
+def test_samples_excluded_after_a_gap_do_not_depend_on_the_zero_of_time() -> None:
+    run = with_gap(7.0, 8.11)
+    later = Run.from_arrays(run.time_s + 1000.0, run.velocity_m_s, run.friction_n, name="later")
+    masks = [behind_gaps(*journal_problem(r), LEAST_N)[0] for r in (run, later)]
+    assert masks[0].any()
+    np.testing.assert_array_equal(*masks)

@@ -58,7 +58,9 @@ ENVIRONMENTS = {
 @pytest.mark.parametrize(
     "name", ["invalid settings", *(pytest.param(n, marks=EXTENDED) for n in ("minimal settings",))]
 )
-def test_unusual_environment_does_not_change_the_result(name: str, folder: Path) -> None:
+def test_compare_returns_the_same_result_with_unusual_environment_variables(
+    name: str, folder: Path
+) -> None:
     file = "Lauf µ ∅.csv"
     (folder / file).write_text(csv_text())
     result = run(["compare", "model.toml", file, "--report", "new.html", "--json", "new.json"],

@@ -99,7 +99,7 @@ def residual_of_least_squares(
 
 
 @pytest.mark.parametrize("free", [("F_c_n", "F_v_n_s_m"), ("F_c_n",), ("F_v_n_s_m",)])
-def test_part_of_an_effect_is_its_least_squares_residual_on_the_free_parameters(
+def test_force_attributed_to_an_effect_excludes_what_the_free_parameters_can_fit(
     full: Comparison, runs: list[Run], free: tuple[str, ...]
 ) -> None:
     """The derivatives are sign(v) and v; held parameters and uncounted samples have no part."""

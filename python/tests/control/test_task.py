@@ -64,7 +64,9 @@ SINE = Task("position", "sine", -1.0, 2.0, 0.5, 10.0, 1.0)
         ({"control": "velocity", "wave": "square", "low": -3.0}, 3.0),
     ],
 )
-def test_top_speed_follows_from_wave_and_control(change: dict[str, Any], top: float) -> None:
+def test_top_speed_is_computed_from_the_wave_and_the_controlled_quantity(
+    change: dict[str, Any], top: float
+) -> None:
     assert replace(SINE, **change).top_speed_rad_s == pytest.approx(top)
 
 

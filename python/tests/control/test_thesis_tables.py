@@ -68,7 +68,7 @@ def test_median_error_of_the_better_thesis_scheme_is_twice_that_of_the_observed_
     assert gains[len(gains) // 2] > 2.0
 
 
-def test_ratio_of_the_deviating_cell_decreases_with_the_friction_scale_of_the_scheme() -> None:
+def test_error_ratio_of_learning_decreases_if_the_friction_scale_increases() -> None:
     row = {"position triangle": TASKS["position triangle"]}
     ratios = []
     for volts in (None, 3.5, LISTED_VOLTS):

@@ -39,7 +39,9 @@ def test_value_outside_its_range_is_rejected_by_name(name: str, value: float) ->
 
 
 @pytest.mark.parametrize("weight", [0.018, 0.1, 0.4])
-def test_evidence_of_a_tie_is_twice_the_log_odds_of_the_least_weight(weight: float) -> None:
+def test_evidence_margin_of_a_tie_is_twice_the_log_odds_against_the_least_weight(
+    weight: float,
+) -> None:
     assert Policy(least_weight=weight).tie == pytest.approx(2.0 * np.log((1.0 - weight) / weight))
 
 

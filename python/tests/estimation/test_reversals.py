@@ -86,7 +86,7 @@ def test_samples_of_unknown_sign_belong_to_the_reversal() -> None:
     np.testing.assert_allclose(found[2:], 10.0 * 5e-3 / (0.4 / 0.3))
 
 
-def test_error_of_a_reversal_applies_until_the_next_reversal() -> None:
+def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversal() -> None:
     error = np.where(np.arange(11) < 6, 1e-3, 1e-4)
     p = prepared([0.2] * 3 + [-0.2] * 4 + [0.2] * 4, error=error)
     first, second = 1e-3 / 4.0 * 20.0, 1e-4 / 4.0 * 20.0

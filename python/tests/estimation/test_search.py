@@ -161,7 +161,7 @@ def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
     assert coloured.promised > 3.0 * max(plain.promised, 1.0)
 
 
-def test_approach_ends_early_if_it_cannot_fall_below_the_given_sum_of_squares() -> None:
+def test_search_stops_before_convergence_if_it_cannot_reach_the_given_sum_of_squares() -> None:
     problem = Problem(with_mass(), "stribeck", "journal", ("inertia_leak",))
     best = Approach(problem, [{}]).follow(60)
     least = problem.square(best.values)

@@ -167,7 +167,7 @@ def test_dahl_prediction_starts_at_the_sliding_force_if_the_run_starts_in_motion
 
 
 @pytest.mark.extended
-def test_runs_cut_within_rests_are_adequate_with_findings_of_unsettled_starts() -> None:
+def test_verdict_is_adequate_and_unsettled_starts_are_reported_if_runs_start_deflected() -> None:
     """Each run starts with the presliding deflection in which the previous one ended."""
     p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
 

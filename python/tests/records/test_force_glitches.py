@@ -106,7 +106,7 @@ def test_end_sample_is_an_outlier_if_it_deviates_by_four_times_the_largest_chang
     assert loose_ends(TIME_S[:200], values, 1)[0] == found
 
 
-def test_outlier_at_the_end_of_a_parabolic_path_is_found_at_uneven_instants() -> None:
+def test_outlier_in_the_last_sample_of_a_parabola_is_found_if_sampling_is_uneven() -> None:
     time_s = np.cumsum(np.random.default_rng(3).uniform(0.5, 1.5, 200)) * 0.01
     path = 3.0 + 20.0 * time_s - 4.0 * time_s**2 + white(200, 4, 1e-4)
     assert not loose_ends(time_s, path, 3).any()

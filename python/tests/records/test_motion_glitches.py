@@ -110,7 +110,7 @@ def test_speed_peak_is_not_an_outlier_if_the_path_contains_a_third_of_it(
     ("count", "with_path", "found"),
     [(3, False, True), (4, False, False), (4, True, True), (20, True, True), (21, True, False)],
 )
-def test_speed_outliers_are_found_up_to_0_3_percent_without_and_2_percent_with_a_path(
+def test_speed_outliers_are_reported_up_to_0_3_percent_or_2_percent_with_a_recorded_path(
     count: int, with_path: bool, found: bool
 ) -> None:
     jumps = {40 + 40 * k: 0.1 for k in range(count)}
@@ -128,7 +128,7 @@ def test_speed_jump_is_an_outlier_if_it_exceeds_eight_standard_deviations(
     assert (mend_speed("a", TIME_S, speed, None)[1] is not None) == found
 
 
-def test_steps_corners_and_noise_free_speeds_have_no_outliers() -> None:
+def test_no_outlier_is_reported_if_the_speed_has_a_step_or_a_corner_or_no_noise() -> None:
     step = SPEED_M_S + white(SAMPLES, 3, 1e-4)
     step[500:] += 0.1
     corner = 0.2 * np.abs(TIME_S - 5.0) + white(SAMPLES, 2, 1e-4)

@@ -61,7 +61,7 @@ def test_factor_between_path_and_speed_is_reported_beyond_a_deviation_of_20_perc
     assert (factor_between(TIME_S, factor * PATH_M, SPEED_M_S) is not None) == found
 
 
-def test_slope_near_a_wrong_factor_is_that_factor() -> None:
+def test_slope_search_returns_its_initial_factor_if_that_factor_is_wrong() -> None:
     assert slope_near(TIME_S, PATH_M, SPEED_M_S, 7.0) == 7.0
 
 

@@ -162,7 +162,7 @@ def test_tables_text_has_simulated_and_printed_errors_and_their_ratio() -> None:
     assert next(row[1:] for row in rows if row[0] == "velocity sine") == fast
 
 
-def test_score_counts_cells_within_factors_and_lists_the_ratios_beyond_two() -> None:
+def test_score_counts_ratios_within_each_factor_and_lists_those_beyond_two() -> None:
     fitted, predicted, far = score_text(SMALL).splitlines()
     assert "40 %" in fitted
     assert re.findall(r"\d+(?= cells| within)", predicted) == ["3", "1", "0"]

@@ -84,7 +84,7 @@ def test_card_of_a_pattern_that_no_effect_causes_lists_the_usual_causes() -> Non
 
 
 @pytest.mark.extended
-def test_removed_pattern_of_a_simulated_campaign_is_attributed_to_the_hidden_effect() -> None:
+def test_simulated_pattern_is_attributed_to_the_hidden_effect_that_removes_it() -> None:
     diagnosis = golden("bearing_coulomb_drag")
     cards = failure_cards(diagnosis)
     assert [card.title for card in cards] == [f"Along {f.axis}" for f in diagnosis.failures]

@@ -199,7 +199,7 @@ def test_residual_over_time_omits_excluded_samples(comparison: Comparison) -> No
     assert residual[100:] == pytest.approx(np.ones(401), abs=1e-3)
 
 
-def test_residuals_in_a_row_are_the_residuals_of_all_runs_of_the_fit_in_order(
+def test_residual_plot_of_a_fit_shows_all_runs_one_after_another_in_order(
     diagnosis: Diagnosis,
 ) -> None:
     ax = jbf.plot.residuals_in_a_row(diagnosis.fit)

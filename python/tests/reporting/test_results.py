@@ -166,7 +166,7 @@ def test_list_longer_than_120_characters_is_shortened_after_an_item() -> None:
         ("diagnosis", ("+ sensor_offset", "0.525", "0.550", "0.500", "1.10")),
     ],
 )
-def test_html_table_of_each_kind_of_result_has_the_expected_row(
+def test_html_table_shows_parameters_of_a_fit_runs_of_a_comparison_and_diagnosis_steps(
     results: dict[str, Result], kind: str, row: tuple[str, ...]
 ) -> None:
     cells = "".join(f"<td>{cell}</td>" for cell in row)

@@ -156,7 +156,7 @@ def power_of(**changes: Any) -> Power:
         ({"like": ("a", "b", "c", "d")}, ("b_n 2.00 N", "1.2 %", "3.00", "a, b, c")),
     ],
 )
-def test_power_row_has_detectable_size_share_and_distinguishable_size(
+def test_power_row_has_the_detectable_size_its_share_and_the_distinguishable_size(
     changes: dict[str, Any], cells: tuple[str, ...]
 ) -> None:
     assert power_rows([power_of(**changes)], "coulomb", LINEAR) == [("sensor_offset", *cells)]

@@ -132,7 +132,7 @@ fn a_million_steps() {
 /// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; `JBF_STEPS` takes
 /// fewer.
 #[test]
-#[ignore = "ten minutes: make test-extended"]
+#[ignore = "forty minutes: make test-extended"]
 fn a_billion_steps() {
     let asked = std::env::var("JBF_STEPS").map(|n| n.parse().expect("a number"));
     let control = Control::Velocity;

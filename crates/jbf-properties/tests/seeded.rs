@@ -31,7 +31,7 @@ fn number(variable: &str) -> Option<u64> {
     Some(text.parse().expect("a number"))
 }
 
-/// Inputs of all properties together, unless all are asked for.
+/// Inputs of all properties together without `JBF_ALL=1`.
 const FAST_CASES: u64 = 200_000;
 
 /// Inputs of one property: all, or its share of the fast ones.

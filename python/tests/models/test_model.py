@@ -165,3 +165,27 @@ def test_prediction_with_each_effect_agrees_with_the_independent_simulator(
     error = np.sqrt(np.mean((model.predict(run) - friction) ** 2))
     assert error < 1e-5 + (0.1 if effect in EVENTS else 0.003) * change
     assert effect is None or change > 0.02
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        "gravity",
+        "cogging",
+        "position_ripple",
+        "stroke_dependence",
+        "dry_asymmetry",
+        "quadratic_drag",
+    ],
+)
+def test_reading_with_an_effect_without_memory_depends_on_its_own_sample_only(effect: str) -> None:
+    t = np.arange(0.0, 4.0, 0.01)
+    angle, speed = 0.4 * np.sin(2.0 * t), 0.8 * np.cos(2.0 * t)
+    own = {f"{effect}.{p.name}": p.starts[0] for p in jbf.effects()[effect].parameters}
+    model = Model(Rig(), "coulomb", [effect], {"F_c_n": 5.0, "F_v_n_s_m": 8.0} | own)
+    path = {"position_m": angle} if effect == "stroke_dependence" else {"angle_rad": angle}
+    # The smoothed speed at the ends of a run differs by some 1e-6.
+    whole = model.predict(Run.from_arrays(t, speed, **path))
+    for first in (1, 57, 200):
+        part = Run.from_arrays(t[first:], speed[first:], **{k: v[first:] for k, v in path.items()})
+        np.testing.assert_allclose(model.predict(part), whole[first:], rtol=1e-4)

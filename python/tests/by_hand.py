@@ -4,8 +4,6 @@ Coulomb friction on motions that never reverse is linear in its parameters, so t
 standard errors are those of linear least squares.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
@@ -84,6 +82,14 @@ def coulomb(t: Array, v: Array, a: Array) -> Array:
 def along(more_n: float) -> Friction:
     """`coulomb` with dry friction larger by `more_n`."""
     return lambda t, v, a: coulomb(t, v, a) + more_n * np.sign(v)
+
+
+def assert_recovered(
+    estimate: ParameterValue, true: float, *, errors: float = 4.0, share: float = 0.0
+) -> None:
+    """Check an estimate against its standard errors, and in addition a share of the true value."""
+    assert estimate.stderr is not None
+    assert abs(estimate.value - true) < errors * estimate.stderr + share * abs(true)
 
 
 @cache

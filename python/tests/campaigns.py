@@ -1,7 +1,5 @@
 """Campaigns from the independent simulator (`simulator/rigsim`), which shares no code with jbf."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

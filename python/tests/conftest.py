@@ -1,19 +1,16 @@
 """Fixtures: a short campaign simulated with a model of jbf, a known effect and seeded noise."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import jbf
 import numpy as np
 import pytest
-from jbf import Fit, Model, Rig, Run, compare, fit
-from jbf.diagnosis import Diagnosis, Remainder, Step, Trial
-from jbf.diagnosis.level import Level
-from jbf.diagnosis.policy import DEFAULT
+from jbf import Fit, Model, Rig, Run, fit
+from jbf.models.catalogue import built_in
 from shared import DIRECTORY
 
 SHARED = pytest.StashKey[str]()
@@ -95,55 +92,24 @@ def runs() -> list[Run]:
 
 
 @pytest.fixture(scope="session")
-def bare_fit(rig: Rig, runs: list[Run]) -> Fit:
-    """Fit of the base law without effects."""
-    return fit(rig, runs)
-
-
-@pytest.fixture(scope="session")
 def full_fit(rig: Rig, runs: list[Run]) -> Fit:
     """Fit of the base law with the hidden effect."""
     return fit(rig, runs, effects=["coulomb_drag"])
 
 
-@pytest.fixture(scope="session")
-def make_diagnosis(runs: list[Run], bare_fit: Fit, full_fit: Fit) -> Callable[[str], Diagnosis]:
-    """A function that builds a diagnosis with a given verdict from real fits."""
-    before, after = compare(bare_fit.model, runs), compare(full_fit.model, runs)
-    noise = before.noise_n
-    trials = (
-        Trial("coulomb_drag", after.rms_n, 812.4, "added", "best evidence, and it holds out"),
-        Trial("presliding", 0.93 * before.rms_n, 55.0, "rejected", "leaves a pattern in velocity"),
-        Trial("sensor_lag", before.rms_n, -6.1, "no gain", "no better than chance"),
-    )
-    bare = Step((), before.rms_n, 1.04 * before.rms_n, noise, trials)
-    full = Step(("coulomb_drag",), after.rms_n, 1.01 * after.rms_n, noise)
+@pytest.fixture
+def forget_own_effects() -> Iterator[None]:
+    """Remove the effects that a test registers in this process."""
+    yield
+    for name in jbf.effects().keys() - built_in().keys():
+        jbf.forget_effect(name)
 
-    def make(verdict: str) -> Diagnosis:
-        added = verdict in ("missing", "ambiguous")
-        ties = ("presliding",) if verdict == "ambiguous" else ()
-        last = after if added or verdict == "adequate" else before
-        first = after if verdict == "adequate" else before
-        steps = (bare, full) if added else (bare if verdict == "unexplained" else full,)
-        if verdict == "adequate":
-            steps = (Step((), after.rms_n, 1.01 * after.rms_n, noise, trials[2:]),)
-        remainders = tuple(Remainder(f.axis, f.where, f.share) for f in before.failures[:2])
-        return Diagnosis(
-            verdict=verdict,
-            effects=("coulomb_drag",) if added else (),
-            alternatives={"coulomb_drag": ties} if added else {},
-            steps=steps,
-            failures=first.failures,
-            unexplained=remainders if verdict == "unexplained" else (),
-            next_experiment="record a run at twice the load" if ties else None,
-            fit=full_fit if last is after else bare_fit,
-            before=first,
-            after=last,
-            elapsed_s=12.5,
-            level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
-        )
 
-    return make
+@pytest.fixture
+def working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder in which the test runs."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.fixture

@@ -3,8 +3,6 @@
 Coulomb's law on motions without reversals (`by_hand.four_runs`) is linear in its parameters.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -10,18 +10,15 @@ Reversing motions reverse about once a second. The friction `F_c + F_v v` of one
 linear in every parameter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-from by_hand import LAW, Array, coulomb
+from by_hand import Array, coulomb
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import settle
-from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from linear_campaigns import fit_from_truth
 
 STEP_S = 0.02
 DURATION_S = 20.0
@@ -60,17 +57,15 @@ def reversing_campaign(
     seed: int = 0,
     noise_n: float = NOISE_N,
     speed_noise_m_s: float = 0.0,
-    durations_s: Sequence[float] | None = None,
 ) -> Campaign:
-    """Reversing runs of 20 s by default; `delays_s` are those in the middle of each run.
+    """Reversing runs of 20 s; `delays_s` are those in the middle of each run.
 
     Without noise on the speed the sign of the motion is known at every sample.
     """
-    durations = (DURATION_S,) * len(delays_s) if durations_s is None else durations_s
     random, runs = np.random.default_rng(seed), []
-    for i, (delay_s, duration_s) in enumerate(zip(delays_s, durations, strict=True)):
-        t = np.arange(0.0, duration_s + 0.01, STEP_S)
-        v = reversing_speed(i, t - delay_s - drift * (t - 0.5 * duration_s))
+    t = np.arange(0.0, DURATION_S + 0.01, STEP_S)
+    for i, delay_s in enumerate(delays_s):
+        v = reversing_speed(i, t - delay_s - drift * (t - 0.5 * DURATION_S))
         force = coulomb(t, v, v) + noise_n * random.standard_normal(len(t))
         speed = reversing_speed(i, t) + speed_noise_m_s * random.standard_normal(len(t))
         runs.append(Run.from_arrays(t, speed, force, name=f"run {i}"))
@@ -102,15 +97,8 @@ def one_way_campaign(
 
 
 def fitted(campaign: Campaign, effects: Sequence[str] = ()) -> tuple[Problem, Solution]:
-    """Coulomb's law fitted to the runs as they are recorded.
-
-    The parameters of the law start at their true values, a delay or a sensor lag at 10 ms.
-    """
-    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
-    known = {"F_s_n": 6.0, **LAW, TAU: 0.01, "sensor_lag.tau_s": 0.01}
-    start = problem.starts({name: known[name] for name in problem.names})[0]
-    near = problem.solution(start, problem.samples_at(start), WHITE, False)
-    return problem, settle(problem, near)
+    """Coulomb's law fitted to the runs as they are recorded."""
+    return fit_from_truth(campaign, *effects)
 
 
 def value(problem: Problem, solution: Solution, name: str) -> float:

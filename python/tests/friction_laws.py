@@ -1,7 +1,5 @@
 """Friction laws implemented independently of jbf, with the integrators of SciPy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -5,8 +5,6 @@ The campaigns cover every verdict, bearings and drives, direct simulation and si
 any diagnosis, fit or report uses one of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

@@ -6,8 +6,6 @@ number. An input that is refused must end with exit code 2 and one line on stand
 leave every file as it was.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os
@@ -22,6 +20,7 @@ from jbf.cli import main
 from jbf.errors import InputError
 
 Capture = pytest.CaptureFixture[str]
+Text = str | bytes
 
 RMS_N = 0.5
 SAMPLES = 60
@@ -98,6 +97,11 @@ def with_column(column: str, change: Callable[[float], float]) -> str:
     """The run with a function applied to every value of a column."""
     index = HEADER.index(column)
     return csv_text([[*r[:index], repr(change(float(r[index]))), *r[index + 1 :]] for r in ROWS])
+
+
+def write(content: Text, name: str = "bad.toml") -> None:
+    """Write a text or bytes to a file in the working folder."""
+    Path(name).write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
 def campaign(folder: Path) -> Path:

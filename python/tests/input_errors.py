@@ -1,7 +1,5 @@
 """The `InputError` of a call, for tests that check which place of the input it names."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

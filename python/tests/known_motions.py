@@ -1,7 +1,5 @@
 """Motions and friction forces in closed form, with noise and quantisation as sensors add them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -24,15 +22,16 @@ def path_of(time_s: Any) -> Any:
     return -0.2 / 1.7 * np.cos(1.7 * time_s + 0.4) - 0.05 / 4.3 * np.cos(4.3 * time_s)
 
 
-def acceleration_of(time_s: Any) -> Any:
-    """The derivative of `speed_of`, m/s^2."""
-    return 0.34 * np.cos(1.7 * time_s + 0.4) + 0.215 * np.cos(4.3 * time_s)
-
-
 def reversing_force(time_s: Any, seed: int, noise_n: float = 0.3) -> Array:
     """A friction force of 20 N that reverses, with white noise independent at each instant, N."""
     force: Array = 20.0 * np.tanh(50.0 * np.sin(0.3 * time_s)) + white(len(time_s), seed, noise_n)
     return force
+
+
+def reading_instants(rate_hz: float, time_s: Any) -> Array:
+    """Instants of a clock with a given rate that covers a record, s."""
+    instants: Array = np.arange(-0.3 / rate_hz, time_s[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
+    return instants
 
 
 def white(samples: int, seed: int, size: float = 1.0) -> Array:

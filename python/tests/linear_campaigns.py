@@ -4,13 +4,14 @@ The records come from closed forms written out here and in `by_hand`. `Textbook`
 errors and likelihood gains by linear least squares, independently of jbf.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from by_hand import LAW, Array, Friction, coulomb, four_runs, wandering
 from jbf import Diagnosis, Rig, Run, diagnose, effects
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
@@ -98,10 +99,25 @@ def reversing_runs(
     return records
 
 
+def coulomb_run(t: Any, v: Any, seed: int, *, noise_n: float = 0.1, **columns: Any) -> Run:
+    """A run with Coulomb friction and white noise at these times and speeds, named by its seed."""
+    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    return Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=f"{seed}", **columns)
+
+
+def coulomb_candidates(runs: Sequence[Run], policy: Policy = DEFAULT) -> Candidates:
+    """The candidate effects for Coulomb's law in these runs of a slide."""
+    return Candidates(Campaign.prepare(Rig(), runs), "coulomb", "journal", policy)
+
+
 def fit_from_truth(campaign: Campaign, *effects: str) -> tuple[Problem, Solution]:
-    """Coulomb's law fitted with true starting values; these motions do not determine F_s."""
+    """Coulomb's law fitted from its true values and from a delay or sensor lag of 10 ms.
+
+    F_s, which these motions do not determine, is fixed.
+    """
     problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
     known = {"F_s_n": 6.0, **LAW, "sensor_offset.b_n": 0.0}
+    known |= {"time_delay.tau_s": 0.01, "sensor_lag.tau_s": 0.01}
     start = problem.starts({name: known[name] for name in problem.names})[0]
     near = problem.solution(start, problem.samples_at(start), WHITE, False)
     return problem, settle(problem, near)

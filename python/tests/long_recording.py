@@ -3,8 +3,6 @@
 Coulomb and viscous friction, a moved mass and white noise; independent of jbf.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

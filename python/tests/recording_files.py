@@ -3,8 +3,6 @@
 Each library is imported where it is used; without it the test is skipped.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -6,8 +6,6 @@ before the workers start and removes it after the session, so that no result out
 code from which it was computed.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import pickle

@@ -4,8 +4,7 @@ Tests of residual structure replace only the residuals of a solution, so that si
 significance are known in closed form.
 """
 
-from __future__ import annotations
-
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -26,6 +25,13 @@ STEP_S = 0.02
 SPEED_M_S = 0.1
 VALUES = {**LAW, "F_s_n": LAW["F_c_n"]}
 """Dry friction, breakaway friction (N) and viscous friction (N s/m) of every slide."""
+
+
+def numbers_in(pattern: str, text: str) -> tuple[float, ...]:
+    """The numbers that the groups of a pattern capture in a text."""
+    match = re.search(pattern, text)
+    assert match is not None, text
+    return tuple(map(float, match.groups()))
 
 
 def slide(velocity: Array, name: str, *, step_s: float = STEP_S, noise_n: float = 0.1) -> Run:
@@ -60,6 +66,12 @@ def solution_with(
     values = np.array([VALUES[name] for name in problem.names])
     solution = problem.solution(values, samples or campaign.samples, noise)
     return problem, replace(solution, residuals=list(residuals))
+
+
+def friction_of(campaign: Campaign) -> list[Array]:
+    """The friction (N) in each run by Coulomb's law at the true values."""
+    problem, solution = solution_with(campaign, [])
+    return problem.predict(solution.values)
 
 
 def white_noise(campaign: Campaign, seed: int, sigma_n: float = 1.0) -> list[Array]:

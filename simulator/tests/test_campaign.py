@@ -24,7 +24,7 @@ SHORT = Campaign("short", (sine("bi", 7.0, 0.127, 1.0), triangle("tri", 5.0, 0.1
 
 
 @pytest.mark.parametrize("name", ["full", "heldout", "slow", "steady"])
-def test_motion_is_continuous_and_its_speed_is_the_derivative_of_its_position(name):
+def test_simulated_motion_is_continuous_with_speed_as_derivative_of_position(name):
     for motion in standard(name).motions:
         edges = [motion.pieces[0].t0, *(p.t1 for p in motion.pieces)]
         assert edges[0] == 0.0
@@ -41,7 +41,7 @@ def test_motion_is_continuous_and_its_speed_is_the_derivative_of_its_position(na
             assert a.position(a.t1) == pytest.approx(b.position(b.t0), abs=1e-12)
 
 
-def test_record_is_repeated_by_the_same_seed_and_changed_by_another_seed():
+def test_simulated_record_is_repeated_by_the_same_seed_and_changed_by_another():
     one, truth = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     two, again = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     other, _ = simulate_campaign(4, ["coulomb_drag"], campaign=SHORT)
@@ -74,7 +74,7 @@ def test_coloured_noise_has_its_variance_and_lag_one_correlation():
     assert lag_one == pytest.approx(0.2 * np.exp(-0.1), abs=0.03)
 
 
-def test_speed_at_rest_is_exactly_zero_and_the_angle_is_in_encoder_counts():
+def test_recorded_speed_at_rest_is_zero_and_the_angle_is_in_encoder_counts():
     rng = np.random.default_rng(1)
     record = simulate_run(Base(), {}, SHORT.motions[0], noise=Noise(0.1), rng=rng)
     assert record.velocity_m_s[0] == 0.0
@@ -96,7 +96,7 @@ def test_foreign_effect_changes_the_record_and_repeats_with_its_seed(name):
     assert np.sqrt(np.mean(gap**2)) > 0.02
 
 
-def test_written_csv_has_the_documented_columns_and_digits(tmp_path):
+def test_csv_of_a_simulated_run_has_the_documented_columns_and_digits(tmp_path):
     truth = write_campaign(tmp_path, 2, ["sensor_offset"], campaign=SHORT)
     lines = (tmp_path / "bi.csv").read_text().splitlines()
     assert lines[0] == "time_s,angle_rad,velocity_m_s,friction_n,load_n"
@@ -107,7 +107,7 @@ def test_written_csv_has_the_documented_columns_and_digits(tmp_path):
     assert f"normal_n = {truth['base']['load_n']}" in rig
 
 
-def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path):
+def test_simulator_command_writes_campaign_held_out_runs_and_truth(tmp_path):
     truth_file = tmp_path / "truth.json"
     hidden = ["--effects", "coulomb_drag", "--foreign", "hum", "--seed", "3"]
     places = ["--heldout", str(tmp_path / "b"), "--truth", str(truth_file)]
@@ -119,6 +119,6 @@ def test_command_line_writes_campaign_held_out_runs_and_truth(tmp_path):
     assert (tmp_path / "b" / "multi.csv").exists()
 
 
-def test_command_line_refuses_an_unknown_effect(tmp_path, capsys):
+def test_simulator_command_refuses_an_unknown_effect(tmp_path, capsys):
     assert main([str(tmp_path / "c"), "--effects", "magic"]) == 2
     assert "magic" in capsys.readouterr().err

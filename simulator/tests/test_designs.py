@@ -10,7 +10,7 @@ from rigsim.film import Film
 SEEDS = range(40)
 
 
-def test_drawn_rigs_are_repeatable_and_within_their_documented_ranges():
+def test_randomly_drawn_rigs_are_repeatable_and_within_documented_ranges():
     designs = [draw_design(seed) for seed in SEEDS]
     assert draw_design(3) == draw_design(3)
     loads = np.array([d.base.load_n for d in designs])
@@ -23,7 +23,7 @@ def test_drawn_rigs_are_repeatable_and_within_their_documented_ranges():
         assert 0.01 <= d.noise_n / (d.base.f_m * d.base.load_n) <= 0.025
 
 
-def test_campaigns_have_three_to_seven_runs_that_start_mid_motion():
+def test_drawn_campaigns_have_three_to_seven_runs_that_start_during_a_motion():
     counts, moving = [], []
     for seed in SEEDS:
         plans = campaign(draw_design(seed), (), seed)
@@ -40,7 +40,7 @@ def test_campaigns_have_three_to_seven_runs_that_start_mid_motion():
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_effect_sizes_scale_with_the_friction_of_the_rig(name):
+def test_drawn_effect_sizes_scale_with_the_friction_of_the_rig(name):
     light, heavy = (
         min((draw_design(s) for s in SEEDS), key=lambda d: d.base.f_m * d.base.load_n),
         max((draw_design(s) for s in SEEDS), key=lambda d: d.base.f_m * d.base.load_n),
@@ -56,7 +56,7 @@ def test_effect_sizes_scale_with_the_friction_of_the_rig(name):
     assert set(small) == set(CATALOGUE[name])
 
 
-def test_initial_eccentricity_varies_in_motion_and_exceeds_the_transition_at_rest():
+def test_initial_eccentricity_varies_in_motion_and_exceeds_transition_at_rest():
     base = draw_design(4).base
     film = Film.of(base)
     rng = np.random.default_rng(1)

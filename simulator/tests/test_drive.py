@@ -46,7 +46,7 @@ def fixed_step(motion, step, every):
     return np.array(out)
 
 
-def test_event_integration_agrees_with_a_fine_fixed_step():
+def test_event_integration_of_a_drive_agrees_with_fine_fixed_steps():
     _, exact = force(STOP)
     coarse = np.abs(fixed_step(STOP, 2e-4, 100) - exact)
     fine = np.abs(fixed_step(STOP, 5e-5, 400) - exact)
@@ -63,14 +63,14 @@ def test_friction_behind_a_stiff_drive_agrees_with_that_of_a_rigid_drive():
     assert np.max(np.abs(stiff - rigid.friction_n)[moving]) < 0.02
 
 
-def test_friction_at_rest_is_constant_and_below_the_static_limit():
+def test_friction_of_a_drive_at_rest_is_constant_and_below_the_static_limit():
     t, f = force(STOP)
     held = f[(t > 3.5) & (t < 5.0)]
     assert np.ptp(held) < 1e-6
     assert 0.0 < held[0] < BASE.f_m * BASE.load_n
 
 
-def test_torque_before_breakaway_is_that_of_spring_and_damper():
+def test_friction_before_breakaway_equals_the_force_of_spring_and_damper():
     motion = polyline("creep", [(0.0, 0.0), (20.0, 0.0), (20.1, 1e-4), (22.0, 1e-4)])
     t, f = force(motion)
     i = int(np.argmin(np.abs(t - 21.0)))
@@ -79,7 +79,7 @@ def test_torque_before_breakaway_is_that_of_spring_and_damper():
     assert f[i] == pytest.approx((DRIVE["k"] * moved + DRIVE["c"] * rate) / ARM, rel=1e-9)
 
 
-def test_friction_work_behind_a_compliant_drive_is_close_to_that_of_a_rigid_drive():
+def test_friction_work_behind_a_compliant_drive_is_close_to_a_rigid_drive():
     """The two differ by at most the energy stored in the spring plus 20 %."""
     motion = sine("swing", 13.0, 0.127, 1.0)
     record = simulate_run(BASE, {"drive_compliance": DRIVE}, motion, rate_hz=500.0)

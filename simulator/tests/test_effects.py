@@ -26,7 +26,7 @@ def drawn(name):
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_null_parameters_reproduce_the_base_law_exactly(name):
+def test_effect_with_null_parameters_reproduces_the_base_law_exactly(name):
     np.testing.assert_array_equal(force({name: drawn(name) | NULLS[name]}), force({}))
 
 
@@ -62,7 +62,7 @@ def test_drags_and_inertia_add_the_forces_of_their_closed_forms():
     np.testing.assert_allclose(record.friction_n - force({}), expected, atol=1e-9)
 
 
-def test_sensor_lag_is_a_first_order_filter():
+def test_sensor_lag_acts_as_a_first_order_filter_of_the_force():
     lagged = force({"sensor_lag": {"tau": 0.1}}, rate_hz=2000.0)
     plain = simulate_run(BASE, {}, SWING, rate_hz=2000.0)
     rate = np.gradient(lagged, 1.0 / 2000.0)
@@ -76,7 +76,7 @@ def test_presliding_friction_settles_at_the_base_friction():
     assert bristled[-1] == pytest.approx(force({}, motion)[-1], rel=1e-6)
 
 
-def test_presliding_force_is_constant_at_rest():
+def test_presliding_force_is_constant_while_the_shaft_rests():
     motion = polyline("stop", [(0.0, 0.03), (3.0, 0.03), (4.0, 0.0), (9.0, 0.0)])
     record = simulate_run(BASE, {"presliding": {"sigma": 2000.0}}, motion)
     rest = record.friction_n[record.time_s >= 4.0]
@@ -104,7 +104,7 @@ def test_thermal_thinning_satisfies_the_steady_heat_balance():
     assert final == pytest.approx(thinner, rel=1e-6)
 
 
-def test_ripple_and_asymmetry_scale_the_bearing_friction_only():
+def test_ripple_and_asymmetry_scale_bearing_friction_but_not_drag():
     effects = {
         "position_ripple": {"a": 0.2, "theta_0": 1.0},
         "direction_asymmetry": {"a": 0.1},
@@ -168,7 +168,7 @@ def test_sensor_effects_act_in_the_order_hysteresis_nonlinearity_offset():
     np.testing.assert_allclose(force(play | bend | zero), held - 3e-4 * held**3 + 0.5, atol=1e-6)
 
 
-def test_lag_and_delay_agree_between_grid_and_state_implementation():
+def test_lag_and_delay_computed_on_a_grid_agree_with_those_computed_by_a_state():
     """A nonlinear sensor is computed on a grid instead of by a state."""
     straight = {"sensor_nonlinearity": {"c": 1e-12}}
     for other in ({"sensor_lag": {"tau": 0.1}}, {"time_delay": {"tau": 0.1}}):
@@ -176,7 +176,7 @@ def test_lag_and_delay_agree_between_grid_and_state_implementation():
         assert np.max(gap) < 5e-3
 
 
-def test_unknown_effect_and_parameter_names_are_refused():
+def test_simulator_refuses_unknown_effect_and_parameter_names():
     with pytest.raises(ValueError, match="no effect named"):
         force({"magic": {}})
     with pytest.raises(ValueError, match="takes F_d"):
@@ -194,7 +194,7 @@ def test_vogel_viscosity_at_a_steady_temperature_equals_a_thinner_oil():
     assert np.max(np.abs(warm - force({}))) > 0.5
 
 
-def test_vogel_viscosity_gives_the_friction_of_the_final_temperature_after_warming():
+def test_vogel_viscosity_reaches_the_friction_of_the_final_temperature():
     hidden = {"vogel_viscosity": {"B": 900.0}}
     speed = hold(0.03)
     cold, warm = (force(hidden, speed, warmth=Warmth(c)) for c in (15.0, 40.0))

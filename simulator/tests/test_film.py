@@ -38,7 +38,7 @@ def test_transition_eccentricity_agrees_with_the_published_table(load, u_tr, eps
     assert Base(load_n=load, U_tr=u_tr).transition_eccentricity() == pytest.approx(eps_tr, abs=6e-6)
 
 
-def test_transition_eccentricity_agrees_to_eight_digits():
+def test_transition_eccentricity_agrees_with_the_reference_to_eight_digits():
     assert BASE.transition_eccentricity() == pytest.approx(0.97235049, abs=5e-9)
 
 
@@ -57,7 +57,7 @@ def test_steady_friction_satisfies_the_force_balance(speed):
     assert record.friction_n[-1] / BASE.load_n == pytest.approx(balance(BASE, speed), rel=1e-7)
 
 
-def test_friction_is_odd_in_speed():
+def test_friction_changes_sign_with_the_direction_of_motion():
     forward = simulate_run(BASE, {}, sine("forward", 10.0, 0.127, 1.0))
     backward = simulate_run(BASE, {}, sine("backward", 10.0, -0.127, 1.0))
     np.testing.assert_allclose(forward.friction_n, -backward.friction_n, atol=1e-9)

@@ -84,7 +84,7 @@ def test_artefact_reports_finite_sizes_and_is_repeatable(name, strength):
         assert (np.diff(record.time_s) > 0.0).all()
 
 
-def test_second_artefact_does_not_change_the_first():
+def test_recording_artefact_is_not_changed_by_a_second_artefact():
     alone, one = recorded_with("spikes")
     both, two = recorded_with("spikes", "noisy_load")
     assert one == two
@@ -92,7 +92,7 @@ def test_second_artefact_does_not_change_the_first():
         np.testing.assert_array_equal(record.friction_n, both[name].friction_n)
 
 
-def test_slow_force_is_interpolated_or_held_as_reported():
+def test_slow_force_channel_is_interpolated_or_held_as_reported():
     seen = set()
     for seed in (0, 6, 13, 25, 68, 92):
         records, sizes = recorded_with("slow_force", strength="severe", seed=seed)
@@ -105,7 +105,7 @@ def test_slow_force_is_interpolated_or_held_as_reported():
     assert seen == {0.0, 1.0}
 
 
-def test_skew_delays_each_run_by_its_reported_time():
+def test_clock_skew_delays_the_force_of_each_run_by_its_reported_time():
     delays_s = []
     for clean, record, size in pairs("skew"):
         moved = np.interp(clean.time_s - size["late_s"], clean.time_s, clean.clean_friction_n)
@@ -131,12 +131,12 @@ def test_jitter_has_the_expected_rms_and_leaves_the_time_stamps_evenly_spaced():
         assert size["rms_s"] == pytest.approx(3e-3, rel=0.15)
 
 
-def test_offset_of_each_run_has_the_reported_size():
+def test_offset_artefact_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("retared"):
         np.testing.assert_allclose(record.friction_n - clean.friction_n, size["zero_n"])
 
 
-def test_gain_of_each_run_has_the_reported_size():
+def test_gain_artefact_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("gain_by_run"):
         gap = record.friction_n - clean.friction_n
         np.testing.assert_allclose(gap, (size["gain"] - 1.0) * clean.clean_friction_n, atol=1e-12)
@@ -157,7 +157,7 @@ def test_quantisation_rounds_the_force_to_the_reported_step():
         assert 1.5 <= size["step_n"] / NOISE_N <= 3.5
 
 
-def test_spikes_have_the_reported_count_and_size_above_9_9_noise_standard_deviations():
+def test_spikes_have_the_reported_count_and_exceed_9_9_standard_deviations():
     for clean, record, size in pairs("spikes"):
         gap = np.abs(record.friction_n - clean.friction_n)
         assert np.sum(gap > 0.0) == size["samples"]
@@ -165,7 +165,7 @@ def test_spikes_have_the_reported_count_and_size_above_9_9_noise_standard_deviat
         assert (gap[gap > 0.0] > 9.9 * NOISE_N).all()
 
 
-def test_dropouts_hold_the_last_value():
+def test_dropouts_of_the_force_repeat_the_last_value():
     for clean, record, size in pairs("dropout"):
         changed = np.flatnonzero(record.friction_n != clean.friction_n)
         assert 0 < len(changed) <= size["samples"]
@@ -179,7 +179,7 @@ def test_position_glitches_have_the_reported_count_and_size():
         assert np.max(gap) == pytest.approx(size["largest_rad"])
 
 
-def test_gaps_remove_the_reported_rows_and_nothing_else():
+def test_gaps_remove_the_reported_rows_and_keep_the_others_unchanged():
     for clean, record, size in pairs("gaps"):
         assert len(clean.time_s) - len(record.time_s) == size["rows"]
         assert np.max(np.diff(record.time_s)) >= size["stretch_s"]
@@ -187,7 +187,7 @@ def test_gaps_remove_the_reported_rows_and_nothing_else():
         np.testing.assert_array_equal(record.friction_n, clean.friction_n[kept])
 
 
-def test_heavy_tailed_noise_exceeds_four_standard_deviations_in_one_of_1000_samples():
+def test_heavy_tailed_noise_exceeds_4_standard_deviations_in_1_of_1000_samples():
     tails = []
     for _, record, _ in pairs("heavy_tails"):
         tails.append((record.friction_n - record.clean_friction_n) / NOISE_N)
@@ -239,7 +239,7 @@ def test_backward_velocity_is_the_difference_quotient_of_the_encoder_counts():
         np.testing.assert_allclose(record.velocity_m_s[1:], wanted, atol=1e-9)
 
 
-def test_coarse_velocity_is_averaged_over_five_samples_and_close_to_the_true_velocity():
+def test_coarse_velocity_is_averaged_over_5_samples_and_close_to_the_truth():
     for clean, record, size in pairs("coarse_velocity"):
         step = clean.time_s[1] - clean.time_s[0]
         assert size["over_s"] == pytest.approx(5.0 * step)
@@ -262,18 +262,18 @@ def test_noisy_load_has_the_reported_noise_around_the_true_load():
         assert abs(np.mean(share)) < 0.1 * size["sd"]
 
 
-def test_unknown_and_incompatible_artefacts_are_refused():
+def test_unknown_or_incompatible_recording_artefacts_are_refused():
     with pytest.raises(ValueError, match="no artefact named magic"):
         chosen(("magic",))
     with pytest.raises(ValueError, match="not more"):
         chosen(("coarse_velocity", "filtered_velocity"))
 
 
-def test_chosen_artefacts_are_returned_in_catalogue_order_without_the_off_grid_option():
+def test_chosen_artefacts_are_in_catalogue_order_without_the_off_grid_option():
     assert [a.name for a in chosen(("quantised", "jitter", OFF_GRID))] == ["jitter", "quantised"]
 
 
-def test_written_files_contain_runs_rig_and_truth(tmp_path):
+def test_files_of_recorded_campaigns_contain_runs_rig_and_truth(tmp_path):
     truth = write_recorded(tmp_path / "a", tmp_path / "b", SEED, ["sensor_offset"], ["gaps"])
     assert sorted(p.stem for p in (tmp_path / "a").glob("*.csv")) == sorted(CLEAN)
     assert len(list((tmp_path / "b").glob("*.csv"))) == 3

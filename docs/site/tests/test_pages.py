@@ -19,7 +19,7 @@ WITH_CODE = [
 
 
 @pytest.mark.parametrize("page", WITH_CODE, ids=name_of)
-def test_code_blocks_of_a_page_run_with_the_output_shown(page: Path) -> None:
+def test_code_blocks_of_a_page_print_the_output_shown_below_them(page: Path) -> None:
     lacking = missing(page)
     if lacking:
         pytest.skip(f"{name_of(page)} needs {', '.join(lacking)}")
@@ -36,7 +36,9 @@ def test_relative_links_of_a_page_lead_to_existing_files(page: Path) -> None:
             assert (page.parent / target).exists(), target
 
 
-def test_reader_refuses_wrong_output_failing_commands_and_untested_blocks(tmp_path: Path) -> None:
+def test_snippet_reader_refuses_wrong_output_failing_commands_and_untested_code(
+    tmp_path: Path,
+) -> None:
     reader = Reader(tmp_path)
     reader.follow(Block("python", "", "print('one')\nprint('two words')\n", 1))
     reader.follow(Block("output", "", "one\ntwo  words\n", 1))
@@ -52,7 +54,7 @@ def test_reader_refuses_wrong_output_failing_commands_and_untested_blocks(tmp_pa
         Reader(tmp_path).follow(Block("output", "", "one\n", 1))
 
 
-def test_reader_writes_files_changes_folders_and_skips_lines_with_a_reason(tmp_path: Path) -> None:
+def test_snippet_reader_writes_files_changes_folders_and_skips_marked_lines(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.follow(Block("toml", "a/b.toml", "x = 1\n", 1))
     reader.follow(Block("sh", "", "cd a\n", 1))
@@ -60,13 +62,13 @@ def test_reader_writes_files_changes_folders_and_skips_lines_with_a_reason(tmp_p
     reader.follow(Block("output", "", "x = ...\n", 1))
 
 
-def test_dots_in_shown_output_match_omitted_lines_and_words() -> None:
+def test_dots_in_the_shown_output_match_omitted_lines_and_words() -> None:
     compare("a\n...\nd 1 ... 3\n", "a\nb\nc\nd 1 2 3\n")
     with pytest.raises(Wrong):
         compare("d 1 ... 4\n", "d 1 2 3\n")
 
 
-def test_missing_programs_and_targets_of_a_page_are_listed(tmp_path: Path) -> None:
+def test_missing_programs_that_a_page_needs_are_listed(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text("<!-- needs: sh no-such-program thumb-no-target -->\n")
     assert missing(page) == ["no-such-program", "thumb-no-target"]

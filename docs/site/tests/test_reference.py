@@ -31,7 +31,7 @@ def test_python_reference_names_every_public_function_of_control_and_plot(module
         assert re.search(rf"\b{name}\b", PYTHON), name
 
 
-def test_every_picture_is_listed_with_its_script_or_as_not_regenerated() -> None:
+def test_every_picture_of_the_docs_is_listed_with_its_script_or_as_fixed() -> None:
     patterns = [p for written in figures.SCRIPTS.values() for p in written] + [*figures.NOT_ANEW]
     pictures = [p for kind in ("png", "svg") for p in DOCS.rglob(f"*.{kind}")]
     assert pictures
@@ -40,7 +40,7 @@ def test_every_picture_is_listed_with_its_script_or_as_not_regenerated() -> None
         assert any(name.match(pattern) for pattern in patterns), name
 
 
-def test_every_script_of_docs_is_listed_in_the_figure_scripts() -> None:
+def test_every_script_of_the_docs_folder_is_listed_as_a_figure_script() -> None:
     scripts = {f"docs/{p.name}" for p in DOCS.glob("*.py")}
     assert scripts - {"docs/control_figures.py"} <= set(figures.SCRIPTS)  # it prints, draws nothing
 

@@ -23,7 +23,7 @@ def _page(folder: Path, name: str, body: str) -> None:
     (folder / name).write_text(f"<html><body>{body}</body></html>", encoding="utf-8")
 
 
-def test_faults_lists_broken_links_missing_anchors_and_external_images(tmp_path: Path) -> None:
+def test_site_check_lists_broken_links_missing_anchors_and_external_images(tmp_path: Path) -> None:
     _page(tmp_path, "a.html", "<h1 id=one>A</h1><a href=b.html#two>b</a><a href=c.html>c</a>")
     _page(tmp_path, "b.html", "<a href=a.html#one>a</a><img src=https://x.org/a.png>")
     found = faults(tmp_path)
@@ -44,13 +44,15 @@ def test_faults_lists_broken_links_missing_anchors_and_external_images(tmp_path:
         "<img srcset='https://x.org/a.png 2x'>",
     ],
 )
-def test_faults_lists_external_scripts_styles_frames_and_images(tmp_path: Path, tag: str) -> None:
+def test_site_check_lists_external_scripts_styles_frames_and_images(
+    tmp_path: Path, tag: str
+) -> None:
     _page(tmp_path, "a.html", tag)
     assert len(faults(tmp_path)) == 1
 
 
 @needs_site
-def test_built_site_has_no_faults() -> None:
+def test_built_site_has_no_broken_links_and_no_external_resources() -> None:
     assert faults(HTML, skip=("rust",)) == []
 
 
@@ -80,7 +82,7 @@ def browser() -> Iterator[Any]:
 
 @needs_site
 @pytest.mark.parametrize("place", ["", "start/analyst/", "reference/python/", "why/failures/"])
-def test_page_makes_no_external_request_logs_no_error_and_fits_the_window(
+def test_site_page_makes_no_external_request_and_fits_the_window(
     browser: Any, address: str, place: str
 ) -> None:
     page = browser.new_page(viewport={"width": 1280, "height": 900})
@@ -98,9 +100,7 @@ def test_page_makes_no_external_request_logs_no_error_and_fits_the_window(
 
 
 @needs_site
-def test_search_loads_the_index_of_the_site_and_makes_no_external_request(
-    browser: Any, address: str
-) -> None:
+def test_site_search_loads_its_index_without_external_requests(browser: Any, address: str) -> None:
     page = browser.new_page()
     requested: list[str] = []
     page.on("request", lambda request: requested.append(request.url))

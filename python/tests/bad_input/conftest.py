@@ -1,7 +1,5 @@
 """Every test runs in a temporary folder with a minimal campaign."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

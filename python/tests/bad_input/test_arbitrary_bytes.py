@@ -1,7 +1,5 @@
 """Arbitrary bytes in a file: a reader returns a value or raises an `InputError`, within 20 s."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,17 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from input_checks import MAP, MODEL, RIG, csv_text, in_time
-from jbf import (
-    Import,
-    InputError,
-    Model,
-    Rig,
-    Run,
-    import_files,
-    read_map,
-    read_rig,
-    read_run,
-)
+from jbf import Import, InputError, Model, Rig, Run, import_files, read_map, read_rig, read_run
 
 TEXTS = {
     "csv": csv_text(),
@@ -37,11 +25,8 @@ PIECES = (
 )  # fmt: skip
 """Fragments that are inserted into files."""
 
-FILES = settings(
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+CHECKS = [HealthCheck.function_scoped_fixture]
+FILES = settings(deadline=None, derandomize=True, suppress_health_check=CHECKS)
 
 
 @st.composite
@@ -64,11 +49,8 @@ def broken(draw: st.DrawFn, kind: str) -> bytes:
 
 
 def content(kind: str) -> st.SearchStrategy[bytes]:
-    return st.one_of(broken(kind), broken(kind), st.binary(max_size=200), st.text().map(_utf_8))
-
-
-def _utf_8(text: str) -> bytes:
-    return text.encode("utf-8", errors="surrogatepass")
+    texts = st.text().map(lambda text: text.encode("utf-8", errors="surrogatepass"))
+    return st.one_of(broken(kind), broken(kind), st.binary(max_size=200), texts)
 
 
 def value_or_one_line(read: Callable[[], object]) -> object:
@@ -120,34 +102,26 @@ def check_recording(folder: Path, data: bytes) -> None:
     value_or_one_line(lambda: import_files(folder / "x.csv", folder / "map.toml"))
 
 
-READERS: list[tuple[str, Callable[[Path, bytes], None]]] = [
-    ("csv", check_run),
-    ("rig", check_rig),
-    ("model", check_model),
-    ("map", check_map),
-    ("csv", check_recording),
-]
-
-
-def check_examples(kind: str, check: Callable[[Path, bytes], None], folder: Path, n: int) -> None:
-    @settings(parent=FILES, max_examples=n)
-    @given(content(kind))
-    def one(data: bytes) -> None:
-        check(folder, data)
-
-    one()
+Check = Callable[[Path, bytes], None]
+READERS = [("csv", check_run), ("rig", check_rig), ("model", check_model), ("map", check_map),
+           ("csv", check_recording)]  # fmt: skip
 
 
 @pytest.mark.parametrize("examples", [15, pytest.param(150, marks=pytest.mark.extended)])
 @pytest.mark.parametrize(("kind", "check"), READERS)
-def test_file_with_random_changes_is_read_or_refused_in_one_line(
-    kind: str, check: Callable[[Path, bytes], None], examples: int, folder: Path
+def test_randomly_changed_file_is_read_or_refused(
+    kind: str, check: Check, examples: int, folder: Path
 ) -> None:
-    check_examples(kind, check, folder, examples)
+    @settings(parent=FILES, max_examples=examples)
+    @given(content(kind))
+    def check_examples(data: bytes) -> None:
+        check(folder, data)
+
+    check_examples()
 
 
 @pytest.mark.parametrize("kind", ["csv", "rig", "model"])
-def test_valid_file_is_read(kind: str, folder: Path) -> None:
+def test_valid_csv_rig_and_model_file_is_read_without_an_error(kind: str, folder: Path) -> None:
     """The test above would also pass if every file were refused."""
     (folder / "x").write_text(TEXTS[kind])
     read = {"csv": read_run, "rig": read_rig, "model": Model.load}[kind]

@@ -1,10 +1,7 @@
 """CSV files: invalid content is refused with its place; unusual notation is read correctly."""
 
-from __future__ import annotations
-
 import gzip
 import math
-from pathlib import Path
 
 import pytest
 from input_checks import (
@@ -17,13 +14,18 @@ from input_checks import (
     refused,
     with_cell,
     with_column,
+    write,
 )
 
+Text = str | bytes
 GOOD = csv_text()
 LINES = GOOD.splitlines()
-UNITS = "\n".join([LINES[0], "s,m/s,N", *LINES[1:]])
-EMPTY_COLUMN = csv_text([(*r, "") for r in ROWS], (*HEADER, "load_n"))
-T = [float(r[0]) for r in ROWS]
+COMMAS = csv_text([(t, v, f.replace(".", ",")) for t, v, f in ROWS], sep=";")
+
+
+def with_force(text: str) -> str:
+    """The run with another text for the force in row 9."""
+    return with_cell(9, "friction_n", text)
 
 
 def rms_of_scaled(factor: float) -> float:
@@ -32,56 +34,42 @@ def rms_of_scaled(factor: float) -> float:
     return math.sqrt(sum((factor * f - model) ** 2 for model, f in pairs) / len(pairs))
 
 
-def with_times(time_s: list[float]) -> str:
-    """The run with other time stamps."""
-    return csv_text([(repr(t), *r[1:]) for t, r in zip(time_s, ROWS, strict=True)])
-
-
-REFUSED: dict[str, tuple[str | bytes, str]] = {
+REFUSED: dict[str, tuple[Text, str]] = {
     # Encodings
     "utf-16 with mark": (GOOD.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
     "latin-1": (GOOD.replace("friction_n", "friction_n,µ").encode("latin-1"), "is not UTF-8"),
     # Not text
     "gzip": (gzip.compress(GOOD.encode(), mtime=0), "is compressed (gzip), not text; unpack it"),
-    "a NUL": (with_cell(9, "friction_n", "5\0"), "is binary, not text; name a text file"),
+    "a NUL": (with_force("5\0"), "is binary, not text; name a text file"),
     # Shapes
     "empty": ("", "is empty; start with a header"),
     "header without samples": (LINES[0], "has a header but no samples; add the samples"),
     "nine rows": ("\n".join(LINES[:10]), "has 9 samples; a run needs at least 10"),
     "no header": ("\n".join(LINES[1:]), "row 1: holds numbers where the header should be"),
     "a short row": (GOOD + "1.2,0.1\n", "row 62: has 2 cells where the header has 3"),
-    "a quote in a cell": (with_cell(9, "friction_n", '"5'), "row 9: a quote is not closed"),
+    "a quote in a cell": (with_force('"5'), "row 9: a quote is not closed"),
     # Headers
     "time missing": (GOOD.replace("time_s", "when"), "row 1, column time_s: is missing; add it"),
     "a unit in the name": (GOOD.replace("time_s", "time_ms"), 'did you mean "time_ms"?'),
-    "column twice": (
-        GOOD.replace("velocity_m_s", "time_s"),
-        "column time_s: stands twice in the header",
-    ),
+    "twice": (GOOD.replace("velocity_m", "time"), "column time_s: stands twice in the header"),
     # Cells
-    "text": (with_cell(9, "friction_n", "abc"), 'row 9, column friction_n: "abc" is not a number'),
-    "escapes": (with_cell(9, "friction_n", "\x1b[31m"), "\\x1b[31m"),
-    "empty cell": (
-        with_cell(9, "friction_n", ""),
-        "row 9, column friction_n: the cell is empty; fill",
-    ),
-    "nan": (with_cell(9, "friction_n", "NaN"), "row 9, column friction_n: nan is not a finite"),
-    "1e400": (with_cell(9, "friction_n", "1e400"), "row 9, column friction_n: inf is not"),
-    "decimal comma": (
-        csv_text([(r[0], r[1], r[2].replace(".", ",")) for r in ROWS], sep=";"),
-        'row 2, column friction_n: "7,500000" has a decimal comma',
-    ),
+    "text": (with_force("abc"), 'row 9, column friction_n: "abc" is not a number'),
+    "escapes": (with_force("\x1b[31m"), "\\x1b[31m"),
+    "empty cell": (with_force(""), "row 9, column friction_n: the cell is empty; fill"),
+    "nan": (with_force("NaN"), "row 9, column friction_n: nan is not a finite"),
+    "1e400": (with_force("1e400"), "row 9, column friction_n: inf is not"),
+    "decimal comma": (COMMAS, 'row 2, column friction_n: "7,500000" has a decimal comma'),
     # Times
     "unsorted": (csv_text([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
     "repeated": (csv_text([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
     # Sizes that no machine has
-    "1e160 N": (with_cell(9, "friction_n", "1e160"), "row 9, column friction_n: 1e+160"),
+    "1e160 N": (with_force("1e160"), "row 9, column friction_n: 1e+160"),
     "nanoseconds of an epoch": (with_column("time_s", lambda t: 1.7e18 + 1e9 * t), "column time_s"),
     # Loads
     "no load": (csv_text([(*r, "0") for r in ROWS], (*HEADER, "load_n")), "a load of 0.0 N"),
 }
 
-ACCEPTED: dict[str, tuple[str | bytes, float]] = {
+ACCEPTED: dict[str, tuple[Text, float]] = {
     "unchanged": (GOOD, RMS_N),
     "byte-order mark first": (b"\xef\xbb\xbf" + GOOD.encode(), RMS_N),
     "crlf": (GOOD.replace("\n", "\r\n"), RMS_N),
@@ -99,29 +87,19 @@ ACCEPTED: dict[str, tuple[str | bytes, float]] = {
     "ten rows": ("\n".join(LINES[:11]), RMS_N),
     "friction negated": (with_column("friction_n", lambda f: -f), rms_of_scaled(-1.0)),
     "friction of 1e-300": (with_column("friction_n", lambda f: 1e-300 * f), rms_of_scaled(0.0)),
-    "speed and friction negated": (
-        csv_text([(r[0], "-" + r[1], repr(-float(r[2]))) for r in ROWS]),
-        RMS_N,
-    ),
+    "both negated": (csv_text([(t, f"-{v}", repr(-float(f))) for t, v, f in ROWS]), RMS_N),
 }
 
 
-def write(content: str | bytes) -> None:
-    data = content if isinstance(content, bytes) else content.encode()
-    Path("bad.csv").write_bytes(data)
-
-
 @pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
-def test_invalid_csv_is_refused_with_the_file_and_the_cause(
-    content: str | bytes, fragment: str, capfd: Capture
+def test_invalid_csv_is_refused_with_file_and_cause(
+    content: Text, fragment: str, capfd: Capture
 ) -> None:
-    write(content)
+    write(content, "bad.csv")
     assert refused(["compare", "model.toml", "bad.csv"], fragment, capfd).startswith("jbf: bad.csv")
 
 
 @pytest.mark.parametrize(("content", "rms_n"), ACCEPTED.values(), ids=ACCEPTED)
-def test_csv_in_unusual_notation_gives_the_expected_rms(
-    content: str | bytes, rms_n: float, capfd: Capture
-) -> None:
-    write(content)
+def test_csv_in_unusual_notation_gives_its_rms(content: Text, rms_n: float, capfd: Capture) -> None:
+    write(content, "bad.csv")
     assert compared("bad.csv", capfd)["rms_n"] == pytest.approx(rms_n, rel=5e-3)

@@ -1,17 +1,16 @@
 """The environment of a command: streams, encodings, threads and signals, in separate processes."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
-from input_checks import SECONDS, csv_text
+from input_checks import SECONDS, cases, csv_text
 from jbf.cores import cap_threads, check_jobs, processes
 from jbf.errors import InputError
 
@@ -20,74 +19,44 @@ EXTENDED = pytest.mark.extended
 COMMAND = (sys.executable, "-m", "jbf")
 
 
-def run(
-    words: Sequence[str], environment: Mapping[str, str] | None = None, *, redirect: str = ""
-) -> subprocess.CompletedProcess[bytes]:
-    """Run a command in a shell."""
-    line = ' "$0" "$@" ' + redirect
-    return subprocess.run(
-        ["sh", "-c", line, *COMMAND, *words],
-        env={**os.environ, **(environment or {})},
-        capture_output=True,
-        timeout=3 * SECONDS,
-        check=False,
-    )
+def run(words: Sequence[str], redirect: str = "", **settings: str) -> Any:
+    """Run a command in a shell with additional environment variables."""
+    line = ["sh", "-c", f'"$0" "$@" {redirect}', *COMMAND, *words]
+    return subprocess.run(line, env=os.environ | settings, capture_output=True, timeout=3 * SECONDS)
 
 
-ENVIRONMENTS = {
-    "minimal settings": {
-        "RAYON_NUM_THREADS": "0",
-        "MPLBACKEND": "tkagg",
-        "DISPLAY": "nowhere:9",
-        "LC_ALL": "C",
-        "PYTHONUTF8": "0",
-        "PYTHONCOERCECLOCALE": "0",
-    },
-    "invalid settings": {
-        "RAYON_NUM_THREADS": "abc",
-        "PYTHONIOENCODING": "latin-1",
-        "COLUMNS": "wide",
-        "LINES": "-1",
-        "LC_ALL": "xx_YY",
-        "PYTHONWARNINGS": "error",
-    },
-}
-"""Each case sets several variables, because each starts a process."""
+# Each case sets several variables, because each starts a process.
+MINIMAL = {"RAYON_NUM_THREADS": "0", "MPLBACKEND": "tkagg", "DISPLAY": "nowhere:9", "LC_ALL": "C"}
+MINIMAL |= {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+INVALID = {"RAYON_NUM_THREADS": "abc", "PYTHONIOENCODING": "latin-1", "COLUMNS": "wide"}
+INVALID |= {"LINES": "-1", "LC_ALL": "xx_YY", "PYTHONWARNINGS": "error"}
 
 
-@pytest.mark.parametrize(
-    "name", ["invalid settings", *(pytest.param(n, marks=EXTENDED) for n in ("minimal settings",))]
-)
-def test_compare_returns_the_same_result_with_unusual_environment_variables(
-    name: str, folder: Path
+@pytest.mark.parametrize("settings", [INVALID, pytest.param(MINIMAL, marks=EXTENDED)])
+def test_compare_gives_the_same_result_in_an_unusual_environment(
+    settings: dict[str, str], folder: Path
 ) -> None:
     file = "Lauf µ ∅.csv"
     (folder / file).write_text(csv_text())
-    result = run(["compare", "model.toml", file, "--report", "new.html", "--json", "new.json"],
-                ENVIRONMENTS[name])  # fmt: skip
+    words = ["compare", "model.toml", file, "--report", "new.html", "--json", "new.json"]
+    result = run(words, **settings)
     assert (result.returncode, result.stderr) == (0, b"")
     assert b"RMS 0.500 N against" in result.stdout
     assert b"<svg" in (folder / "new.html").read_bytes()
     assert "Lauf µ ∅" in (folder / "new.json").read_text(encoding="utf-8")
 
 
-STREAMS = {
-    "both closed": (">&- 2>&-", 0, b""),
-    "full": (">/dev/full", 2, b"jbf: standard output: cannot be written (no space left on device)"),
-    "pipe without a reader": ("| true", 0, b""),
-}
+FULL = b"jbf: standard output: cannot be written (no space left on device)"
+STREAMS = {"full": (">/dev/full", 2, FULL), "both closed": (">&- 2>&-", 0, b"")}
+STREAMS["pipe without a reader"] = ("| true", 0, b"")
+WORDS = {"compare": (COMPARE,), "help": (("--help",),)}
 
 
-@pytest.mark.parametrize(
-    "name", ["full", *(pytest.param(n, marks=EXTENDED) for n in STREAMS if n != "full")]
-)
-@pytest.mark.parametrize(
-    "words", [COMPARE, pytest.param(("--help",), marks=EXTENDED)], ids=lambda w: w[0]
-)
-def test_full_standard_output_is_reported_in_one_line_and_a_closed_one_is_ignored(
-    words: tuple[str, ...], name: str
+@pytest.mark.parametrize(("redirect", "code", "message"), cases(STREAMS, ["full"]))
+@pytest.mark.parametrize("words", cases(WORDS, ["compare"]))
+def test_full_standard_output_is_reported_and_a_closed_one_is_ignored(
+    words: tuple[str, ...], redirect: str, code: int, message: bytes
 ) -> None:
-    redirect, code, message = STREAMS[name]
     done = run(words, redirect=redirect)
     assert done.returncode == code
     assert done.stderr.startswith(message)
@@ -108,34 +77,35 @@ def test_requested_threads_are_limited_to_the_cores(monkeypatch: pytest.MonkeyPa
         assert os.environ["RAYON_NUM_THREADS"] == expected
 
 
-def test_processes_are_limited_to_the_tasks_the_jobs_and_the_cores() -> None:
+def test_number_of_processes_is_limited_to_tasks_jobs_and_cores() -> None:
     assert processes(1_000_000, 3) == 3
     assert processes(2, 100) == 2
     assert processes(None, 1_000_000) == (os.cpu_count() or 1)
     assert processes(4, 0) == 1
 
 
-def test_zero_jobs_are_refused_and_an_unset_number_is_accepted() -> None:
+def test_zero_jobs_are_refused_and_an_unset_number_of_jobs_is_accepted() -> None:
     with pytest.raises(InputError, match="--jobs: 0 campaigns at a time"):
         check_jobs(0)
     check_jobs(None)
 
 
-def restore_interrupts() -> None:
-    """Restore the default action of SIGINT, which background processes of a shell ignore."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def started(command: Sequence[str], stderr: int) -> subprocess.Popen[bytes]:
+    """A process with the default action of SIGINT, which background processes of a shell ignore."""
+
+    def restore_interrupts() -> None:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    output = subprocess.PIPE
+    return subprocess.Popen(command, stdout=output, stderr=stderr, preexec_fn=restore_interrupts)
 
 
 def test_interrupted_command_prints_one_line_and_leaves_no_file(folder: Path) -> None:
     """The command waits for a pipe without a writer when the signal comes."""
     os.mkfifo("slow.csv")
     before = sorted(p.name for p in folder.iterdir())
-    process = subprocess.Popen(
-        [*COMMAND, "compare", "model.toml", "slow.csv", "--json", "new.json"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        preexec_fn=restore_interrupts,
-    )
+    words = ["compare", "model.toml", "slow.csv", "--json", "new.json"]
+    process = started([*COMMAND, *words], stderr=subprocess.PIPE)
     # The pipe can be opened for writing as soon as the command reads it.
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
@@ -165,15 +135,8 @@ while True:
 
 @pytest.mark.parametrize("kind", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=EXTENDED)])
 def test_killed_concurrent_writers_leave_complete_files(kind: signal.Signals, folder: Path) -> None:
-    writers = [
-        subprocess.Popen(
-            [sys.executable, "-c", WRITER, letter],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            preexec_fn=restore_interrupts,
-        )
-        for letter in "ab"
-    ]
+    commands = [[sys.executable, "-c", WRITER, letter] for letter in "ab"]
+    writers = [started(command, stderr=subprocess.DEVNULL) for command in commands]
     complete = {letter * 400_000 for letter in "ab"}
     try:
         for writer in writers:

@@ -1,7 +1,5 @@
 """Error messages, suggestions, and text files that are written completely or not at all."""
 
-from __future__ import annotations
-
 import os
 import pickle
 from pathlib import Path
@@ -12,23 +10,21 @@ from jbf.text_files import read_text, write_text, write_texts
 
 
 def test_error_message_names_place_problem_and_remedy() -> None:
-    error = InputError(
-        file="a.csv", row=17, column="friction_n", problem="is wrong", mend="correct it"
-    )
+    place = {"file": "a.csv", "row": 17, "column": "friction_n"}
+    error = InputError(**place, problem="is wrong", mend="correct it")  # type: ignore[arg-type]
     assert str(error) == "a.csv, row 17, column friction_n: is wrong; correct it"
     assert str(InputError(problem="is wrong")) == "is wrong"
     assert str(InputError(key="load", problem="is\n wrong")) == "key load: is wrong"
 
 
-def test_within_adds_a_file_and_a_key_prefix_but_does_not_replace_a_file() -> None:
-    error = InputError(key="radius_m", problem="is missing").within(
-        file="rig.toml", key_prefix="bearing."
-    )
+def test_input_error_gains_file_and_key_prefix_but_keeps_a_known_file() -> None:
+    missing = InputError(key="radius_m", problem="is missing")
+    error = missing.within(file="rig.toml", key_prefix="bearing.")
     assert (error.file, error.key) == ("rig.toml", "bearing.radius_m")
     assert error.within(file="other.toml").file == "rig.toml"
 
 
-def test_error_is_unchanged_by_pickling() -> None:
+def test_input_error_is_unchanged_by_pickling() -> None:
     error = InputError(file="a", row=3, column="c", key="k", problem="p", mend="m")
     copy = pickle.loads(pickle.dumps(error))
     assert (str(copy), copy.row, copy.mend) == (str(error), 3, "m")

@@ -1,7 +1,5 @@
 """Special files are refused without waiting; files with unusual names are read."""
 
-from __future__ import annotations
-
 import os
 import socket
 import threading
@@ -10,16 +8,9 @@ from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
+import input_checks
 import pytest
-from input_checks import (
-    RMS_N,
-    Capture,
-    accepted,
-    compared,
-    csv_text,
-    raises_one_line,
-    refused,
-)
+from input_checks import RMS_N, Capture, accepted, cases, compared, csv_text, refused
 from jbf import read_map, read_rig, read_run
 from jbf.cli import main, parser
 from jbf.models.model import Model
@@ -45,49 +36,33 @@ def unprivileged() -> Iterator[None]:
         os.seteuid(0)
 
 
-def link_to_itself(name: str) -> None:
-    Path(name).symlink_to(name)
-
-
 def socket_file(name: str) -> None:
     with socket.socket(socket.AF_UNIX) as one:
         one.bind(name)
 
 
-def unreadable_file(name: str) -> None:
-    Path(name).write_text(csv_text())
-    Path(name).chmod(0)
-
-
-def dangling_link(name: str) -> None:
-    Path(name).symlink_to("nowhere")
-
-
 SPECIAL_FILES: dict[str, tuple[Callable[[str], object], str]] = {
     "a folder": (os.mkdir, "is a folder"),
-    "a loop of links": (link_to_itself, "cannot be read (too many levels of symbolic links)"),
+    "a loop of links": (lambda n: Path(n).symlink_to(n), "(too many levels of symbolic links)"),
     "a pipe without a writer": (os.mkfifo, "nothing comes out of this pipe"),
     "a socket": (socket_file, "cannot be read"),
-    "a dead link": (dangling_link, "the file does not exist"),
+    "a dead link": (lambda n: Path(n).symlink_to("nowhere"), "the file does not exist"),
     "a link to zeros": (lambda n: Path(n).symlink_to("/dev/zero"), "is a device, not a file"),
 }
-PIPE = "a pipe without a writer"
-EXTENDED = pytest.mark.extended
+# The case with a pipe is extended: each command waits ten seconds for a writer.
+FAST = SPECIAL_FILES.keys() - {"a pipe without a writer"}
 DEVICES = ("/dev/zero", "/dev/urandom", "/dev/full", "/dev/null")
 
 
-SPECIAL = [pytest.param(n, marks=EXTENDED if n == PIPE else ()) for n in SPECIAL_FILES]
-"""The case with a pipe is extended: each command waits ten seconds for a writer."""
-
-
-@pytest.mark.parametrize("name", SPECIAL)
-def test_special_file_is_refused_by_commands_and_readers(name: str, capfd: Capture) -> None:
-    make, fragment = SPECIAL_FILES[name]
+@pytest.mark.parametrize(("make", "fragment"), cases(SPECIAL_FILES, FAST))
+def test_special_file_is_refused_by_commands_and_readers(
+    make: Callable[[str], object], fragment: str, capfd: Capture
+) -> None:
     make("odd")
     line = refused(["predict", "model.toml", "odd", "--out", "new.csv"], fragment, capfd)
     assert line.startswith("jbf: odd: ")
     for read in (read_rig, read_map, Model.load, read_run):
-        raises_one_line(lambda read=read: read("odd"), fragment)  # type: ignore[misc]
+        input_checks.raises_one_line(lambda read=read: read("odd"), fragment)  # type: ignore[misc]
 
 
 @pytest.mark.parametrize("device", DEVICES)
@@ -103,8 +78,9 @@ def test_device_is_refused_by_every_command(device: str, capfd: Capture) -> None
         refused(words, fragment, capfd)
 
 
-def test_unreadable_file_is_refused(capfd: Capture) -> None:
-    unreadable_file("locked.csv")
+def test_file_without_read_permission_is_refused(capfd: Capture) -> None:
+    Path("locked.csv").write_text(csv_text())
+    Path("locked.csv").chmod(0)
     words = ["compare", "model.toml", "locked.csv"]
     with unprivileged():
         refused(words, "locked.csv: cannot be read (permission denied)", capfd)
@@ -121,7 +97,7 @@ def test_unreadable_file_is_refused(capfd: Capture) -> None:
     ],
     ids=" ".join,
 )
-def test_unwritable_folder_is_refused(words: list[str], capfd: Capture) -> None:
+def test_output_to_folder_without_permission_is_refused(words: list[str], capfd: Capture) -> None:
     Path("shut").mkdir(mode=0o500)
     with unprivileged():
         refused(words, "(permission denied); check the path and its permissions", capfd)
@@ -133,11 +109,17 @@ def test_unwritable_folder_is_refused(words: list[str], capfd: Capture) -> None:
     "fit large a.csv --out new.toml",
     "import a.csv --map large --out new",
 ])  # fmt: skip
-def test_file_of_two_gigabytes_is_refused_without_reading_it(words: str, capfd: Capture) -> None:
-    code, line, read = with_two_gigabytes("large", words.split(), capfd)
-    assert code == 2
-    assert line.startswith("jbf: large: has 2.1 GB; what is read whole may have 0.54 GB; ")
-    assert read < FEW_BYTES
+def test_file_of_2_gigabytes_is_refused_without_reading_it(words: str, capfd: Capture) -> None:
+    with Path("large").open("wb") as sparse_file:
+        sparse_file.truncate(2 << 30)
+    before, begun = sorted(Path().iterdir()), bytes_read()
+    assert main(words.split()) == 2
+    assert bytes_read() - begun < FEW_BYTES
+    assert sorted(Path().iterdir()) == before
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1)
+    beginning = "jbf: large: has 2.1 GB; what is read whole may have 0.54 GB; "
+    assert printed.err.startswith(beginning)
 
 
 FEW_BYTES = 64 << 20
@@ -150,23 +132,7 @@ def bytes_read() -> int:
     return int(text.split("rchar: ")[1].split()[0])
 
 
-def with_two_gigabytes(name: str, words: list[str], capfd: Capture) -> tuple[int, str, int]:
-    """Run a command on a sparse file of 2 GiB; return exit code, its one line, and bytes read."""
-    with Path(name).open("wb") as file:
-        file.truncate(2 << 30)
-    before = sorted(p.name for p in Path().iterdir())
-    begun = bytes_read()
-    code = main(words)
-    read = bytes_read() - begun
-    assert sorted(p.name for p in Path().iterdir()) == before
-    Path(name).unlink()
-    printed = capfd.readouterr()
-    assert printed.out == ""
-    assert printed.err.count("\n") == 1
-    return code, printed.err, read
-
-
-def test_pipe_with_a_writer_is_read(capfd: Capture) -> None:
+def test_run_is_read_from_a_named_pipe_with_a_writer(capfd: Capture) -> None:
     os.mkfifo("pipe.csv")
     writer = threading.Thread(target=lambda: Path("pipe.csv").write_text(csv_text()))
     writer.start()
@@ -185,28 +151,23 @@ UNUSUAL_NAMES = {
 }
 
 
-@pytest.mark.parametrize("name", UNUSUAL_NAMES)
-def test_file_with_an_unusual_name_is_read_and_its_name_is_printed_without_escapes(
-    name: str, folder: Path, capfd: Capture
-) -> None:
-    file = UNUSUAL_NAMES[name]
-    (folder / file).write_text(csv_text())
+@pytest.mark.parametrize("file", UNUSUAL_NAMES.values(), ids=UNUSUAL_NAMES)
+def test_unusual_file_name_is_printed_without_escapes(file: str, capfd: Capture) -> None:
+    Path(file).write_text(csv_text())
     assert compared(file, capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
     text = accepted(["compare", "model.toml", file], capfd)
     assert "\x1b" not in text
-    (folder / file).write_text("time_s\n1\n")
+    Path(file).write_text("time_s\n1\n")
     line = refused(["compare", "model.toml", file], "row 1, column velocity_m_s: is missing", capfd)
     assert "\x1b" not in line
 
 
 def test_null_character_in_a_file_name_is_refused() -> None:
     for read in (read_rig, read_map, Model.load, read_run, read_campaign, campaigns_in):
-        raises_one_line(lambda read=read: read("a\0b"), "")  # type: ignore[misc]
+        input_checks.raises_one_line(lambda read=read: read("a\0b"), "")  # type: ignore[misc]
 
 
-def test_output_through_a_link_is_written_to_its_target_and_preserves_the_link(
-    folder: Path, capfd: Capture
-) -> None:
+def test_output_through_a_link_is_written_to_its_target(folder: Path, capfd: Capture) -> None:
     (folder / "link.csv").symlink_to("target.csv")
     accepted(["predict", "model.toml", "a.csv", "--out", "link.csv"], capfd)
     assert (folder / "link.csv").is_symlink()

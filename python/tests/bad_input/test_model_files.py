@@ -1,12 +1,10 @@
 """Model files on the command line: bad content is refused, unusual notation is read."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
 import pytest
-from input_checks import MODEL, RMS_N, Capture, compared, refused
+from input_checks import MODEL, RMS_N, Capture, Text, compared, refused, write
 from jbf.models.catalogue import parameters_of
 
 F_C = "F_c_n = {value = 5.0, stderr = 0.1}"
@@ -22,7 +20,7 @@ def value(text: str) -> str:
     return model(F_C, f"F_c_n = {text}")
 
 
-REFUSED: dict[str, tuple[str | bytes, str]] = {
+REFUSED: dict[str, tuple[Text, str]] = {
     "key twice": (model("format = 1", "format = 1\nformat = 1"), "is not TOML"),
     "no format": (model("format = 1\n", ""), "key format: is"),
     "effect of a bearing": (model("[]", '["film_memory"]'), "film_memory"),
@@ -32,14 +30,8 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "inf": (value("inf"), "key parameters.F_c_n"),
     "1e300": (value("1e300"), "key parameters.F_c_n"),
     "a long integer": (value("9" * 400), "key parameters.F_c_n.value: is too large"),
-    "held with error": (
-        value("{value = 5.0, stderr = 1, held = true}"),
-        "what is held has no error",
-    ),
-    "rig a text": (
-        model("[parameters]", 'rig = "rig.toml"\n[parameters]'),
-        "key rig: is not a table",
-    ),
+    "held error": (value("{value = 5.0, stderr = 1, held = true}"), "what is held has no error"),
+    "rig a text": (model("[par", 'rig = "rig.toml"\n[par'), "key rig: is not a table"),
     "a bearing's law": (model('"coulomb"', '"journal"'), "parameters."),
 }
 
@@ -56,13 +48,9 @@ ACCEPTED = {
 }
 
 
-def write(content: str | bytes) -> None:
-    Path("bad.toml").write_bytes(content if isinstance(content, bytes) else content.encode())
-
-
 @pytest.mark.parametrize(("content", "fragment"), REFUSED.values(), ids=REFUSED)
-def test_invalid_model_file_is_refused_with_the_file_and_the_cause(
-    content: str | bytes, fragment: str, capfd: Capture
+def test_invalid_model_is_refused_with_file_and_cause(
+    content: Text, fragment: str, capfd: Capture
 ) -> None:
     write(content)
     line = refused(["compare", "bad.toml", "a.csv"], fragment, capfd)
@@ -75,9 +63,7 @@ def test_model_file_in_unusual_notation_gives_the_same_rms(name: str, capfd: Cap
     assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
 
 
-def test_parameter_missing_in_a_model_file_has_the_starting_value_of_the_catalogue(
-    capfd: Capture,
-) -> None:
+def test_parameter_missing_in_a_model_file_has_its_starting_value(capfd: Capture) -> None:
     write(model(F_C + "\n", ""))
     start_n = parameters_of("coulomb", ())["F_c_n"].starts[0]
     expected_rms_n = math.hypot(start_n - 5.0, RMS_N)

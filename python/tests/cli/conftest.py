@@ -1,7 +1,5 @@
 """A small campaign of a linear slide on disk."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,17 +1,18 @@
 """`jbf fit`, `compare`, `predict` and `effects`: results, files, standard output and exit codes."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import jbf
 import numpy as np
 import pytest
 from conftest import DRAG_N, NOISE_N
+from input_checks import Capture
 from jbf.cli import COMMANDS, main
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs pipes and terminals of POSIX")
@@ -24,31 +25,27 @@ def model(campaign: Path, full_fit: jbf.Fit) -> Path:
     return campaign / "model.toml"
 
 
-def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_option_lists_every_command(capsys: Capture) -> None:
     assert main(["--help"]) == 0
-    shown = capsys.readouterr().out
-    assert all(f"\n    {name}" in shown for name in COMMANDS)
+    printed = capsys.readouterr()
+    assert all(f"\n    {name}" in printed.out for name in COMMANDS)
+    assert printed.err == ""
 
 
-def test_version_option_prints_the_version_of_the_package(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_version_option_prints_the_version_of_the_package(capsys: Capture) -> None:
     assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"jbf {jbf.__version__}\n"
+    printed = capsys.readouterr()
+    assert (printed.out, printed.err) == (f"jbf {jbf.__version__}\n", "")
 
 
-def test_effects_command_prints_the_catalogue_and_the_parameters_of_one_effect(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_effects_command_prints_catalogue_or_parameters_of_one_effect(capsys: Capture) -> None:
     assert main(["effects"]) == 0
     assert "coulomb_drag" in capsys.readouterr().out
     assert main(["effects", "coulomb_drag"]) == 0
     assert "F_d_n" in capsys.readouterr().out
 
 
-def test_effects_command_lists_effects_that_do_not_apply_to_a_law_separately(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_effects_command_lists_effects_that_a_law_excludes_separately(capsys: Capture) -> None:
     assert main(["effects", "--law", "lugre"]) == 0
     applicable, refused = capsys.readouterr().out.split("[not with lugre")
     assert "sensor_lag" in applicable
@@ -57,9 +54,7 @@ def test_effects_command_lists_effects_that_do_not_apply_to_a_law_separately(
     assert "presliding" in refused
 
 
-def test_effects_json_contains_every_effect_and_neither_nan_nor_infinity(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_effects_json_has_every_effect_and_neither_nan_nor_infinity(capsys: Capture) -> None:
     assert main(["effects", "--json", "-"]) == 0
 
     def refuse(constant: str) -> None:
@@ -69,9 +64,7 @@ def test_effects_json_contains_every_effect_and_neither_nan_nor_infinity(
     assert [page["name"] for page in data["effects"]] == list(jbf.effects())
 
 
-def test_fit_command_writes_a_model_that_recovers_the_hidden_effect(
-    campaign: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_fit_command_writes_model_with_the_hidden_effect(campaign: Path, capsys: Capture) -> None:
     out = campaign / "fitted.toml"
     command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs")]
     assert main([*command, "--effects", "coulomb_drag", "--out", str(out)]) == 0
@@ -93,9 +86,7 @@ def test_parameters_given_with_the_fix_option_keep_their_values(campaign: Path) 
     assert parameters["coulomb_drag.F_d_n"].value == 1.0
 
 
-def test_compare_command_writes_json_and_an_html_report(
-    model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_compare_command_writes_json_and_page(model: Path, campaign: Path, capsys: Capture) -> None:
     runs = [str(path) for path in sorted((campaign / "runs").iterdir())]
     result, page = campaign / "c.json", campaign / "c.html"
     assert main(["compare", str(model), *runs, "--json", str(result), "--report", str(page)]) == 0
@@ -109,25 +100,20 @@ def test_compare_command_writes_json_and_an_html_report(
     assert page.read_text().startswith("<!doctype html>")
 
 
-def test_json_to_standard_output_is_the_only_output(
-    model: Path, campaign: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_json_on_stdout_replaces_the_report(model: Path, campaign: Path, capsys: Capture) -> None:
     assert main(["compare", str(model), str(campaign / "runs"), "--json", "-"]) == 0
     assert "rms_n" in json.loads(capsys.readouterr().out)
 
 
-def test_predict_command_writes_the_friction_for_a_motion_without_recorded_friction(
-    model: Path, campaign: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
+def test_predict_command_accepts_motion_without_friction(
+    model: Path, campaign: Path, runs: Any, capsys: Capture
 ) -> None:
     source = runs[0]
     motion, out = campaign / "motion.csv", campaign / "p.csv"
-    jbf.Run.from_arrays(
-        source.time_s, source.velocity_m_s, angle_rad=source.angle_rad, load_n=source.load_n
-    ).write_csv(motion)
+    replace(source, friction_n=None).write_csv(motion)
     assert main(["predict", str(model), str(motion), "--out", str(out)]) == 0
-    header, *rows = out.read_text().splitlines()
-    assert header == "time_s,friction_n"
-    table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    assert out.read_text().startswith("time_s,friction_n\n")
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
     assert np.array_equal(table[:, 0], source.time_s)
     assert np.array_equal(table[:, 1], jbf.Model.load(model).predict(source))
     capsys.readouterr()
@@ -135,9 +121,7 @@ def test_predict_command_writes_the_friction_for_a_motion_without_recorded_frict
     assert capsys.readouterr().out == out.read_text()
 
 
-def test_predict_command_warns_in_one_line_if_the_film_responds_too_fast(
-    tmp_path: Path, runs: list[jbf.Run], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_predict_warns_of_a_too_fast_film(tmp_path: Path, runs: Any, capsys: Capture) -> None:
     rig = jbf.Rig.thesis("4.2")
     jbf.Model(rig, parameters={"U_tr": 100.0}).save(tmp_path / "fast.toml")
     runs[0].write_csv(tmp_path / "run.csv")
@@ -148,39 +132,25 @@ def test_predict_command_warns_in_one_line_if_the_film_responds_too_fast(
     assert message.count("\n") == 1
 
 
-def test_python_dash_m_jbf_runs_a_command() -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "jbf", "effects"], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "coulomb_drag" in done.stdout
-
-
 @posix
 def test_command_ends_without_a_message_if_its_output_pipe_is_closed() -> None:
     read, write = os.pipe()
     os.close(read)
-    done = subprocess.run(
-        [sys.executable, "-m", "jbf", "effects"], stdout=write, stderr=subprocess.PIPE, check=False
-    )
+    command = [sys.executable, "-m", "jbf", "effects"]
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE)
     os.close(write)
-    assert done.stderr == b""
-    assert done.returncode == 141
+    assert (done.returncode, done.stderr) == (141, b"")
 
 
 @posix
-def test_progress_of_a_fit_is_shown_on_the_terminal_and_not_on_standard_output(
-    campaign: Path,
-) -> None:
+def test_progress_is_shown_on_the_terminal_but_not_on_standard_output(campaign: Path) -> None:
     import pty
 
     ours, theirs = pty.openpty()
     command = [sys.executable, "-m", "jbf", "fit", str(campaign / "rig.toml")]
     command += [str(campaign / "runs"), "--out", str(campaign / "m.toml")]
-    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "80"}
-    done = subprocess.run(
-        command, stdout=subprocess.PIPE, stderr=theirs, env=environment, check=False
-    )
+    terminal = {**os.environ, "TERM": "xterm", "COLUMNS": "80"}
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=theirs, env=terminal)
     os.close(theirs)
     assert done.returncode == 0
     assert b"fitting" in os.read(ours, 65536)

@@ -1,7 +1,5 @@
 """`jbf demo`: a diagnosis of the shipped data, and the commands that it suggests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -25,7 +23,7 @@ def test_demo_identifies_the_hidden_effects_and_writes_report_and_model(tmp_path
     assert Model.load(tmp_path / "demo" / "model.toml") == d.model
 
 
-def test_suggested_command_contains_the_path_of_jbf_unless_it_is_on_the_search_path(
+def test_suggested_command_has_path_of_jbf_unless_on_search_path(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     program = tmp_path / "my venv" / "bin" / "jbf"

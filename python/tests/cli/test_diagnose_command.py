@@ -1,7 +1,5 @@
 """`jbf diagnose` and `jbf power`: files, false-alarm rate, minimum effect size, held-out runs."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -9,22 +7,20 @@ from typing import Any
 import jbf
 import numpy as np
 import pytest
+from input_checks import Capture
 from jbf.cli import main
 
 LAW = ["--law", "coulomb"]
 NOISE_N = 0.1
 
 
-def diagnosed(slide: Path, out: Path, *options: str) -> dict[str, Any]:
+def diagnosed(slide: Path, out: Path, *options: str) -> Any:
     """The JSON result of a diagnosis of the slide."""
     assert main(["diagnose", str(slide), *LAW, "--json", str(out), *options]) == 0
-    result: dict[str, Any] = json.loads(out.read_text())
-    return result
+    return json.loads(out.read_text())
 
 
-def test_diagnose_command_writes_model_json_and_report(
-    slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys: Capture) -> None:
     model, page = tmp_path / "m.toml", tmp_path / "d.html"
     options = ["--out", str(model), "--report", str(page)]
     result = diagnosed(slide, tmp_path / "d.json", *options)
@@ -44,9 +40,7 @@ def test_diagnose_command_writes_model_json_and_report(
 
 
 @pytest.mark.extended
-def test_smaller_false_alarm_rate_raises_the_threshold_and_rejects_the_effect(
-    slide: Path, tmp_path: Path
-) -> None:
+def test_smaller_false_alarm_rate_raises_the_threshold(slide: Path, tmp_path: Path) -> None:
     strict = diagnosed(slide, tmp_path / "d.json", "--false-alarms", "1e-15")
     assert strict["effects"] == []
     assert strict["level"]["critical"] > 60.0
@@ -75,9 +69,7 @@ def detectable_kg(slide: Path, out: Path, noise_n: float, *options: str) -> floa
     return float(rows["inertia_leak"]["found_80"])
 
 
-def test_detectable_size_is_proportional_to_the_noise_and_grows_with_the_threshold(
-    slide: Path, tmp_path: Path
-) -> None:
+def test_detectable_size_grows_with_noise_and_threshold(slide: Path, tmp_path: Path) -> None:
     out = tmp_path / "power.json"
     usual = detectable_kg(slide, out, 0.1)
     assert detectable_kg(slide, out, 0.05) == pytest.approx(0.5 * usual, rel=0.15)
@@ -85,29 +77,19 @@ def test_detectable_size_is_proportional_to_the_noise_and_grows_with_the_thresho
 
 
 @pytest.mark.extended
-def test_power_of_a_fitted_model_uses_its_noise_unless_another_is_given(
-    slide: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_power_uses_the_noise_of_a_fitted_model_by_default(slide: Path, tmp_path: Path) -> None:
     model, out = tmp_path / "model.toml", tmp_path / "power.json"
     fit = ["fit", str(slide), *LAW, "--effects", "inertia_leak", "--out", str(model)]
     assert main(fit) == 0
 
-    def result(*options: str) -> dict[str, Any]:
+    def result(*options: str) -> Any:
         assert main(["power", str(model), str(slide), "--json", str(out), *options]) == 0
-        data: dict[str, Any] = json.loads(out.read_text())
-        return data
+        return json.loads(out.read_text())
 
     fitted = result()
     assert fitted["noise_n"] == pytest.approx(NOISE_N, rel=0.05)
     assert "inertia_leak" not in [row["effect"] for row in fitted["power"]]
     assert result("--noise-n", "0.5")["noise_n"] == 0.5
-
-
-def test_power_of_a_rig_is_refused_if_the_noise_is_not_given(
-    slide: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["power", str(slide / "rig.toml"), str(slide), *LAW]) == 2
-    assert "--noise-n is missing" in capsys.readouterr().err
 
 
 @pytest.fixture(scope="module")
@@ -125,9 +107,7 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_fit_excludes_held_out_runs_and_prints_their_rms(
-    odd_run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_fit_prints_rms_of_held_out_runs(odd_run: Path, tmp_path: Path, capsys: Capture) -> None:
     out, rig = tmp_path / "m.toml", str(odd_run / "rig.toml")
     assert main(["fit", rig, str(odd_run), *LAW, "--hold-out", "r3", "--out", str(out)]) == 0
     model = jbf.Model.load(out)
@@ -146,21 +126,3 @@ def test_diagnosis_reports_the_rms_of_held_out_runs(odd_run: Path, tmp_path: Pat
     assert set(rms_n) == {"r1", "r3"}
     assert rms_n["r1"] == pytest.approx(NOISE_N, rel=0.1)
     assert rms_n["r3"] > 20.0 * NOISE_N
-
-
-@pytest.mark.parametrize(
-    ("pattern", "fragment"),
-    [("x*", "--hold-out x*: fits no run; there are r0, r1, r2, r3"), ("r*", "fits every run")],
-)
-def test_hold_out_pattern_that_matches_no_run_or_every_run_is_refused(
-    odd_run: Path,
-    tmp_path: Path,
-    pattern: str,
-    fragment: str,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    out = tmp_path / "m.toml"
-    command = ["fit", str(odd_run / "rig.toml"), str(odd_run), *LAW, "--hold-out", pattern]
-    assert main([*command, "--out", str(out)]) == 2
-    assert fragment in capsys.readouterr().err
-    assert not out.exists()

@@ -1,7 +1,5 @@
 """Concurrent calls from several threads give the same bits as sequential calls."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
@@ -15,6 +13,7 @@ from jbf.threads import one_blas_thread
 from threadpoolctl import threadpool_info, threadpool_limits  # type: ignore[import-untyped]
 
 THREADS = 4
+Campaigns = list[list[jbf.Run]]
 
 
 def as_text(diagnosis: jbf.Diagnosis) -> str:
@@ -22,12 +21,12 @@ def as_text(diagnosis: jbf.Diagnosis) -> str:
 
 
 @pytest.fixture(scope="module")
-def campaigns() -> list[list[jbf.Run]]:
+def campaigns() -> Campaigns:
     return [four_runs(coulomb, noise_n=0.1, seed=seed) for seed in range(THREADS)]
 
 
 @pytest.mark.extended
-def test_concurrent_diagnoses_equal_sequential_diagnoses(campaigns: list[list[jbf.Run]]) -> None:
+def test_concurrent_diagnoses_equal_sequential_diagnoses(campaigns: Campaigns) -> None:
     def work(runs: list[jbf.Run]) -> str:
         return as_text(jbf.diagnose(jbf.Rig(), runs, law="stribeck"))
 
@@ -38,9 +37,7 @@ def test_concurrent_diagnoses_equal_sequential_diagnoses(campaigns: list[list[jb
 
 
 @pytest.mark.extended
-def test_concurrent_fits_and_predictions_equal_sequential_fits_and_predictions(
-    campaigns: list[list[jbf.Run]],
-) -> None:
+def test_concurrent_fits_and_predictions_equal_sequential_ones(campaigns: Campaigns) -> None:
     def fitted(runs: list[jbf.Run]) -> jbf.Model:
         return jbf.fit(jbf.Rig(), runs, law="coulomb").model
 
@@ -54,10 +51,8 @@ def test_concurrent_fits_and_predictions_equal_sequential_fits_and_predictions(
     assert [f.tobytes() for f in result] == [model.predict(run).tobytes() for run in runs]
 
 
-@pytest.mark.skipif(
-    not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="this interpreter has a lock"
-)
-def test_extension_does_not_enable_the_lock_of_a_free_threaded_interpreter() -> None:
+@pytest.mark.skipif(not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="the GIL exists")
+def test_extension_does_not_enable_the_gil_of_a_free_threaded_interpreter() -> None:
     # In a separate process, because another library of the tests may enable the lock.
     code = "import sys, jbf; jbf.effects(); print(sys._is_gil_enabled())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -66,11 +61,10 @@ def test_extension_does_not_enable_the_lock_of_a_free_threaded_interpreter() -> 
 
 
 def blas_threads() -> set[int]:
-    """Numbers of threads of the loaded BLAS libraries."""
     return {lib["num_threads"] for lib in threadpool_info() if lib["user_api"] == "blas"}
 
 
-def test_blas_has_one_thread_in_decorated_calls_and_its_previous_number_after_an_error() -> None:
+def test_blas_threads_are_one_in_decorated_calls_and_restored_after_an_error() -> None:
     @one_blas_thread
     def work(depth: int) -> set[int]:
         if depth:

@@ -1,7 +1,5 @@
 """Axes of a residual: every sample falls into the bin that its motion determines."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 
@@ -14,6 +12,8 @@ from jbf.comparison.bins import Binned
 from jbf.estimation.campaign import Campaign
 
 Array = npt.NDArray[np.float64]
+
+Axes = dict[str, Binned]
 
 U_TR_M_S = 0.05
 
@@ -37,12 +37,11 @@ def campaign() -> Campaign:
 
 
 @pytest.fixture(scope="module")
-def axes(campaign: Campaign) -> dict[str, Binned]:
+def axes(campaign: Campaign) -> Axes:
     return {axis.axis: axis for axis in all_axes(campaign, U_TR_M_S)}
 
 
 def axis_of(campaign: Campaign, name: str, u_tr: float | None = U_TR_M_S) -> Binned:
-    """One axis by name."""
     return next(axis for axis in all_axes(campaign, u_tr) if axis.axis == name)
 
 
@@ -56,9 +55,7 @@ def places(axis: Binned) -> Array:
     return np.concatenate(axis.places)
 
 
-def test_bins_of_one_direction_contain_no_sample_of_the_other_direction(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_bins_of_one_direction_exclude_the_other_direction(campaign: Campaign, axes: Axes) -> None:
     velocity = velocities(campaign)
     for name, axis in axes.items():
         directions = [b.direction for b in axis.bins]
@@ -72,70 +69,55 @@ def test_bins_of_one_direction_contain_no_sample_of_the_other_direction(
             assert b.with_rest == (name == "time" and b.direction < 0)
 
 
-def test_bins_have_the_units_of_the_rig(axes: dict[str, Binned]) -> None:
-    units = {name: {b.unit for b in axis.bins} for name, axis in axes.items()}
-    assert units == {
-        "direction": {""},
-        "velocity": {"m/s"},
-        "regime": {""},
-        "acceleration": {""},
-        "time": {"s"},
-        "run": {""},
-        "angle": {"deg"},
-        "time since a rest": {"s"},
-        "distance since a reversal": {"m"},
-    }
+def test_bins_of_every_axis_have_the_units_of_the_rig(axes: Axes) -> None:
+    expected = {name: {""} for name in ("direction", "regime", "acceleration", "run")}
+    expected |= {"velocity": {"m/s"}, "time": {"s"}, "angle": {"deg"}}
+    expected |= {"time since a rest": {"s"}, "distance since a reversal": {"m"}}
+    assert {name: {b.unit for b in axis.bins} for name, axis in axes.items()} == expected
     assert {axis.force_unit for axis in axes.values()} == {"N"}
 
 
-def test_direction_axis_separates_the_signs_of_the_velocity(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_direction_axis_separates_the_signs_of_the_velocity(campaign: Campaign, axes: Axes) -> None:
     at, sign = places(axes["direction"]), np.sign(velocities(campaign))
     assert np.array_equal(at, np.where(sign > 0, 1, np.where(sign < 0, 0, -1)))
 
 
-def test_run_axis_has_one_bin_for_each_run(axes: dict[str, Binned]) -> None:
+def test_run_axis_has_one_bin_for_each_run(axes: Axes) -> None:
     assert [b.name for b in axes["run"].bins] == ["1", "2"]
     assert [set(at.tolist()) for at in axes["run"].places] == [{0}, {1}]
 
 
-def test_regimes_change_at_0_2_and_1_0_times_the_transition_speed(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
-    axis = axes["regime"]
-    assert [b.name for b in axis.bins] == ["at rest", "boundary", "mixed", "full film"]
+def assert_changes_at(axis: Binned, campaign: Campaign, slow: float, fast: float) -> None:
+    """Check that bin 0 has the rests, and bins 1 to 3 the speeds below, between and above."""
     for p, at in zip(campaign.prepared, axis.places, strict=True):
         speed = np.abs(p.motion.velocity_m_s)
-        regime = 1 + (speed >= 0.2 * U_TR_M_S).astype(int) + (speed >= U_TR_M_S)
-        assert np.array_equal(at, np.where(p.motion.resting, 0, regime))
+        ranges = 1 + (speed >= slow).astype(int) + (speed >= fast)
+        assert np.array_equal(at, np.where(p.motion.resting, 0, ranges))
 
 
-def test_speed_ranges_of_a_law_without_a_film_are_thirds_of_the_recorded_speeds(
-    campaign: Campaign,
-) -> None:
+def test_regime_changes_at_0_2_and_1_0_transition_speeds(campaign: Campaign, axes: Axes) -> None:
+    axis = axes["regime"]
+    assert [b.name for b in axis.bins] == ["at rest", "boundary", "mixed", "full film"]
+    assert_changes_at(axis, campaign, 0.2 * U_TR_M_S, U_TR_M_S)
+
+
+def test_speed_ranges_without_a_film_are_thirds_of_recorded_speeds(campaign: Campaign) -> None:
     axis = axis_of(campaign, "speed range", u_tr=None)
     speeds = np.abs(velocities(campaign))
     slow, fast = np.quantile(speeds[speeds > 0.0], [1 / 3, 2 / 3])
     assert len(axis.bins) == 4
-    for p, at in zip(campaign.prepared, axis.places, strict=True):
-        speed = np.abs(p.motion.velocity_m_s)
-        expected = np.where(p.motion.resting, 0, 1 + (speed >= slow).astype(int) + (speed >= fast))
-        assert np.array_equal(at, expected)
+    assert_changes_at(axis, campaign, slow, fast)
 
 
-def test_velocity_axis_has_twelve_bins_of_equal_count_in_each_direction(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_velocity_axis_has_12_bins_of_equal_count_each_way(campaign: Campaign, axes: Axes) -> None:
     axis, velocity = axes["velocity"], velocities(campaign)
     at = places(axis)
     assert len(axis.bins) == 24
     assert np.all((at < 0) == (velocity == 0.0))
     for i in range(12):
-        backward, forward = velocity[at == i], velocity[at == i + 12]
-        assert np.all(backward < 0.0)
-        assert np.all(forward > 0.0)
-        speeds = np.abs(np.concatenate((backward, forward)))
+        backward, forward = -velocity[at == i], velocity[at == i + 12]
+        speeds = np.concatenate((backward, forward))
+        assert np.all(speeds > 0.0)
         assert len(speeds) == pytest.approx(np.count_nonzero(velocity) / 12, abs=2)
         assert axis.bins[i + 12].centre == pytest.approx(np.median(speeds))
         assert axis.bins[i].centre == pytest.approx(-np.median(speeds))
@@ -150,9 +132,7 @@ def test_constant_speed_gives_one_velocity_bin_in_each_direction(speed: float) -
     assert [b.centre for b in axis.bins] == pytest.approx([-speed, speed])
 
 
-def test_acceleration_axis_separates_speeding_up_from_slowing(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_acceleration_axis_parts_speeding_up_from_slowing(campaign: Campaign, axes: Axes) -> None:
     """An acceleration below 2 % of the largest of the run counts as steady motion."""
     axis = axes["acceleration"]
     for p, at in zip(campaign.prepared, axis.places, strict=True):
@@ -164,9 +144,7 @@ def test_acceleration_axis_separates_speeding_up_from_slowing(
             assert axis.bins[at[i]].direction == np.sign(v[i])
 
 
-def test_angle_lies_within_half_a_bin_of_the_centre_of_its_bin(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_angle_is_within_half_a_width_of_its_bin_centre(campaign: Campaign, axes: Axes) -> None:
     axis = axes["angle"]
     assert len(axis.bins) == 48
     centres = np.array([b.centre for b in axis.bins], dtype=float)
@@ -177,15 +155,12 @@ def test_angle_lies_within_half_a_bin_of_the_centre_of_its_bin(
         assert np.max(np.abs((distance + 180.0) % 360.0 - 180.0)) <= 7.5 + 1e-9
 
 
-def test_time_axis_has_twelve_spans_from_the_first_sample_of_each_run(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_time_axis_has_12_spans_from_the_start_of_each_run(campaign: Campaign, axes: Axes) -> None:
     axis = axes["time"]
     # The longest run takes 59.98 s.
     edges = np.linspace(0.0, 59.98, 13)
     for i, span in enumerate(pairwise(edges.tolist())):
-        assert axis.bins[i].span == pytest.approx(span)
-        assert axis.bins[i + 12].span == pytest.approx(span)
+        assert axis.bins[i].span == axis.bins[i + 12].span == pytest.approx(span)
     for p, at in zip(campaign.prepared, axis.places, strict=True):
         span = np.minimum(((p.run.time_s - p.run.time_s[0]) / 59.98 * 12).astype(int), 11)
         expected = np.where(p.motion.velocity_m_s > 0, span + 12, span)
@@ -202,9 +177,7 @@ def since_last(event: npt.NDArray[np.bool_], measure: Array) -> Array:
     return since
 
 
-def test_time_since_a_rest_and_distance_since_a_reversal_lie_in_the_span_of_their_bin(
-    campaign: Campaign, axes: dict[str, Binned]
-) -> None:
+def test_time_since_rest_and_path_since_reversal_match_bins(campaign: Campaign, axes: Axes) -> None:
     seen: dict[str, list[Array]] = {"time since a rest": [], "distance since a reversal": []}
     for number, p in enumerate(campaign.prepared):
         v, time = p.motion.velocity_m_s, p.run.time_s
@@ -247,9 +220,7 @@ def test_samples_before_the_first_reversal_have_no_distance_since_a_reversal() -
 
 
 @pytest.mark.parametrize(("count", "exists"), [(99, False), (100, True)])
-def test_axis_of_time_since_a_rest_exists_from_one_hundred_samples_after_a_rest_on(
-    count: int, exists: bool
-) -> None:
+def test_axis_of_time_since_a_rest_needs_100_samples_after_it(count: int, exists: bool) -> None:
     speed = np.concatenate((np.zeros(40), np.full(count, 0.1)))
     time = 0.02 * np.arange(len(speed))
     run = Run.from_arrays(time, speed, 2.0 + 0.01 * np.cos(time))

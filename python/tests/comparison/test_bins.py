@@ -1,7 +1,5 @@
 """Bins of an axis as data: labels, and positions in a picture."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,6 +10,11 @@ from jbf.comparison.axes import all_axes
 from jbf.comparison.bins import Axis, Bin, Binned, label
 from jbf.comparison.patterns import Failure
 from jbf.plot.bin_axes import bin_axis
+
+INF = math.inf
+REST: Axis = "time since a rest"
+AFTER = " after a reversal, v < 0"
+PATH: Axis = "distance since a reversal"
 
 
 @pytest.mark.parametrize(
@@ -24,21 +27,9 @@ from jbf.plot.bin_axes import bin_axis
         ("acceleration", Bin("slowing", direction=1), "slowing, v > 0"),
         ("angle", Bin(centre=7.5, unit="deg", direction=-1), "angle 8 deg, v < 0"),
         ("time", Bin(span=(2.0, 4.0), unit="s", direction=-1, with_rest=True), "2 to 4 s, v <= 0"),
-        (
-            "time since a rest",
-            Bin(span=(-math.inf, 0.1), unit="s", direction=1),
-            "up to 0.1 s after a rest, v > 0",
-        ),
-        (
-            "distance since a reversal",
-            Bin(span=(0.01, 0.025), unit="m", direction=-1),
-            "0.01 to 0.025 m after a reversal, v < 0",
-        ),
-        (
-            "time since a rest",
-            Bin(span=(2.0, math.inf), unit="s", direction=1),
-            "over 2 s after a rest, v > 0",
-        ),
+        (REST, Bin(span=(-INF, 0.1), unit="s", direction=1), "up to 0.1 s after a rest, v > 0"),
+        (PATH, Bin(span=(0.01, 0.02), unit="m", direction=-1), "0.01 to 0.02 m" + AFTER),
+        (REST, Bin(span=(2.0, INF), unit="s", direction=1), "over 2 s after a rest, v > 0"),
         ("run", Bin("2_stops"), "run 2_stops"),
         ("force", Bin(centre=3.14, unit="N"), "f = +3.14 N"),
     ],
@@ -64,12 +55,12 @@ def test_bins_with_a_span_are_drawn_at_its_middle() -> None:
 def test_half_open_spans_of_both_directions_share_a_tick_label() -> None:
     ends = [(-math.inf, 0.1), (0.1, math.inf)]
     bins = [Bin(span=end, unit="s", direction=d) for d in (-1, 1) for end in ends]
-    place = bin_axis(failure_of("time since a rest", *bins))
+    place = bin_axis(failure_of(REST, *bins))
     assert place.x.tolist() == [0.0, 1.0, 0.0, 1.0]
     assert place.ticks == ("up to\n0.1 s", "over\n0.1 s")
 
 
-def test_no_two_bins_of_one_series_are_drawn_at_the_same_place() -> None:
+def test_bins_of_one_plot_series_are_drawn_at_different_places() -> None:
     comparison = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
     for axis in all_axes(comparison.campaign, 0.1):
         place = bin_axis(failure_of(axis.axis, *axis.bins))

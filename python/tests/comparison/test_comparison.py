@@ -1,7 +1,5 @@
 """Model against runs: residuals, RMS errors, friction over speed, against closed forms."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -17,16 +15,15 @@ MODEL = Model(Rig(), "coulomb", parameters=LAW)
 
 
 @pytest.fixture(scope="module")
-def off_by_one_newton() -> Comparison:
+def off_by_1_n() -> Comparison:
     """Two runs whose friction is 1 N larger than that of the model, without noise."""
     return compare(MODEL, there_and_back(along(1.0)))
 
 
-def test_residual_is_record_minus_model(off_by_one_newton: Comparison) -> None:
-    found = off_by_one_newton
-    for residual, prediction, p in zip(
-        found.residuals, found.predictions, found.campaign.prepared, strict=True
-    ):
+def test_residual_is_record_minus_model(off_by_1_n: Comparison) -> None:
+    found = off_by_1_n
+    runs = found.campaign.prepared
+    for residual, prediction, p in zip(found.residuals, found.predictions, runs, strict=True):
         v = p.motion.velocity_m_s
         assert prediction == pytest.approx(5.0 * np.sign(v) + 20.0 * v, rel=1e-4)
         assert residual == pytest.approx(np.sign(v), abs=1e-4)
@@ -42,15 +39,12 @@ def test_rms_of_all_runs_weighs_each_run_by_its_samples() -> None:
     assert found.rms_n == pytest.approx(np.sqrt((501 + 909) / 602), abs=1e-5)
 
 
-def test_json_of_a_comparison_has_errors_noise_runs_and_failures(
-    off_by_one_newton: Comparison,
-) -> None:
-    found = off_by_one_newton
+def test_comparison_json_has_errors_noise_runs_and_failures(off_by_1_n: Comparison) -> None:
+    found = off_by_1_n
     content = found.to_dict()
     assert (content["rms_n"], content["noise_n"]) == (found.rms_n, found.noise_n)
-    assert content["runs"] == [
-        {"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in found.runs
-    ]
+    runs = [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in found.runs]
+    assert content["runs"] == runs
     assert [f["axis"] for f in content["failures"]] == [f.axis for f in found.failures]
 
 
@@ -61,15 +55,13 @@ def test_noise_floor_of_white_noise_is_its_standard_deviation() -> None:
     assert found.failures == ()
 
 
-def test_excess_friction_is_reported_along_the_direction_of_motion(
-    off_by_one_newton: Comparison,
-) -> None:
-    failure = next(f for f in off_by_one_newton.failures if f.axis == "direction")
+def test_excess_friction_is_reported_along_the_direction(off_by_1_n: Comparison) -> None:
+    failure = next(f for f in off_by_1_n.failures if f.axis == "direction")
     assert failure.means_n == pytest.approx([-1.0, 1.0], abs=1e-4)
     assert "above the model by 1 N" in failure.where
 
 
-def test_run_without_counted_samples_has_an_error_of_zero() -> None:
+def test_run_without_counted_samples_has_an_rms_of_zero() -> None:
     campaign = Campaign.prepare(Rig(), there_and_back(along(1.0)))
     first, second = (np.ones(len(p.run), dtype=bool) for p in campaign.prepared)
     found = compare_prepared(MODEL, campaign.without([first, ~second]))
@@ -92,7 +84,7 @@ def test_model_with_a_delay_excludes_samples_next_to_jumps_of_the_force() -> Non
     assert compare(delayed, runs).samples.count < plain.samples.count
 
 
-def test_delayed_prediction_lags_by_the_delay() -> None:
+def test_prediction_with_a_time_delay_lags_by_the_delay() -> None:
     """On a ramp of the speed the viscous force lags by slope times delay times viscosity."""
     t = np.arange(0.0, 4.0, 0.02)
     v = 0.05 + 0.02 * t
@@ -103,11 +95,9 @@ def test_delayed_prediction_lags_by_the_delay() -> None:
     assert difference[10:-10] == pytest.approx(20.0 * 0.02 * 0.1, rel=0.02)
 
 
-def test_means_over_speed_lie_on_the_lines_of_record_and_model(
-    off_by_one_newton: Comparison,
-) -> None:
+def test_means_over_speed_lie_on_lines_of_record_and_model(off_by_1_n: Comparison) -> None:
     """Friction is linear in the speed, so that the means lie on the line."""
-    found = friction_over_speed(off_by_one_newton)
+    found = friction_over_speed(off_by_1_n)
     assert [one.way for one in found] == [1.0, -1.0]
     for one in found:
         assert len(one.speed_m_s) == BINS
@@ -115,18 +105,16 @@ def test_means_over_speed_lie_on_the_lines_of_record_and_model(
         assert one.measured_n == pytest.approx(6.0 * one.way + 20.0 * one.speed_m_s, rel=1e-4)
         assert one.modelled_n == pytest.approx(5.0 * one.way + 20.0 * one.speed_m_s, rel=1e-4)
     # 501 samples in 24 bins: 21 in each of the first and 20 in each of the last.
-    v = np.sort(off_by_one_newton.campaign.prepared[0].motion.velocity_m_s)
+    v = np.sort(off_by_1_n.campaign.prepared[0].motion.velocity_m_s)
     assert found[0].speed_m_s[0] == pytest.approx(v[:21].mean())
     assert found[0].scatter_n[0] == pytest.approx(20.0 * v[:21].std(), rel=1e-4)
     assert found[0].speed_m_s[-1] == pytest.approx(v[-20:].mean())
 
 
 @pytest.mark.parametrize(("count", "bins"), [(4, 0), (5, 1), (9, 1), (10, 2), (119, 23), (125, 24)])
-def test_bin_of_the_means_over_speed_has_at_least_five_samples(
-    off_by_one_newton: Comparison, count: int, bins: int
-) -> None:
+def test_speed_bin_has_at_least_5_samples(off_by_1_n: Comparison, count: int, bins: int) -> None:
     masks: list[npt.NDArray[np.bool_]] = [np.arange(501) < count, np.arange(501) < 50]
-    few = replace(off_by_one_newton, samples=off_by_one_newton.samples.within(masks))
+    few = replace(off_by_1_n, samples=off_by_1_n.samples.within(masks))
     found = {one.way: len(one.speed_m_s) for one in friction_over_speed(few)}
     assert found.get(1.0, 0) == bins
     assert found[-1.0] == 10

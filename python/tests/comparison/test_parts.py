@@ -1,7 +1,5 @@
 """Parts of a model's force: the contribution of effects that other parameters cannot replace."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -46,13 +44,10 @@ def test_removal_of_an_effect_preserves_law_parameters_and_held_flags() -> None:
     assert tuple(without(model, model.effects).effects) == ()
 
 
-def test_force_added_by_an_offset_is_constant_and_that_of_a_drift_grows_at_its_rate(
-    full: Comparison,
-) -> None:
+def test_force_of_an_offset_is_constant_and_force_of_a_drift_is_linear(full: Comparison) -> None:
     """The rate of 0.5 N/s does not depend on the instant to which the drift is relative."""
-    drift = added_by(full, ["sensor_drift"])
-    offset = added_by(full, ["sensor_offset"])
-    both = added_by(full, full.model.effects)
+    names = (["sensor_drift"], ["sensor_offset"], full.model.effects)
+    drift, offset, both = (added_by(full, effects) for effects in names)
     for i, p in enumerate(full.campaign.prepared):
         assert np.gradient(drift[i], p.run.time_s) == pytest.approx(np.full(501, 0.5))
         assert offset[i] == pytest.approx(np.full(501, 2.0))
@@ -61,16 +56,14 @@ def test_force_added_by_an_offset_is_constant_and_that_of_a_drift_grows_at_its_r
 
 def test_effect_that_the_model_lacks_adds_no_force(full: Comparison) -> None:
     assert [a.tolist() for a in added_by(full, ["sensor_lag"])] == [[0.0] * 501] * 2
-    mixed = added_by(full, ["sensor_offset", "sensor_lag"])
-    assert mixed[0] == pytest.approx(np.full(501, 2.0))
+    assert added_by(full, ["sensor_offset", "sensor_lag"])[0] == pytest.approx(np.full(501, 2.0))
 
 
 def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
     heavy = compare(model_of(["inertia_leak"], **{"inertia_leak.m_e_kg": 3.0}), runs)
     for added, p in zip(added_by(heavy, ["inertia_leak"]), heavy.campaign.prepared, strict=True):
-        inside = slice(5, -5)
-        mass = 3.0 * p.motion.acceleration_m_s2
-        assert added[inside] == pytest.approx(mass[inside], abs=1e-3)
+        mass_force = 3.0 * p.motion.acceleration_m_s2
+        assert added[5:-5] == pytest.approx(mass_force[5:-5], abs=1e-3)
 
 
 def test_friction_alone_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
@@ -82,7 +75,7 @@ def test_friction_alone_is_the_record_minus_sensor_offset_and_drift(full: Compar
         assert found == pytest.approx(5.0 * np.sign(v) + 20.0 * v, abs=2e-3)
 
 
-def test_offset_inertia_and_drift_but_not_lag_are_excluded_from_the_friction() -> None:
+def test_friction_alone_excludes_offset_inertia_and_drift_but_not_lag() -> None:
     effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
     found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
     assert set(beside_friction(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
@@ -99,7 +92,7 @@ def residual_of_least_squares(
 
 
 @pytest.mark.parametrize("free", [("F_c_n", "F_v_n_s_m"), ("F_c_n",), ("F_v_n_s_m",)])
-def test_force_attributed_to_an_effect_excludes_what_the_free_parameters_can_fit(
+def test_effect_force_excludes_the_fit_of_free_parameters(
     full: Comparison, runs: list[Run], free: tuple[str, ...]
 ) -> None:
     """The derivatives are sign(v) and v; held parameters and uncounted samples have no part."""
@@ -118,21 +111,18 @@ def test_force_attributed_to_an_effect_excludes_what_the_free_parameters_can_fit
             assert part == pytest.approx(reference, abs=5e-3)
 
 
-def test_part_is_computed_only_for_effects_that_the_first_model_lacks(
-    full: Comparison, runs: list[Run]
-) -> None:
-    assert made_of(full, compare(model_of([]), runs)) == {}
-    assert made_of(full, full) == {}
+def test_no_force_is_attributed_to_effects_that_the_first_model_has(full: Comparison) -> None:
+    without_effects = compare(model_of([]), [p.run for p in full.campaign.prepared])
+    assert made_of(full, without_effects) == made_of(full, full) == {}
 
 
-def test_parameter_without_influence_does_not_change_the_part_of_an_effect() -> None:
+def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -> None:
     """The time constant of a warm-up of size zero has a derivative of zero."""
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
     idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
     before = Model(Rig(), "coulomb", ["warm_up"], idle)
-    after = Model(
-        Rig(), "coulomb", ["warm_up", "sensor_offset"], {**idle, "sensor_offset.b_n": 0.5}
-    )
+    with_offset = {**idle, "sensor_offset.b_n": 0.5}
+    after = Model(Rig(), "coulomb", ["warm_up", "sensor_offset"], with_offset)
     (parts,) = made_of(compare(before, runs), compare(after, runs)).values()
     for part in parts:
         assert np.mean(part) == pytest.approx(0.5, rel=0.05)

@@ -1,6 +1,6 @@
 """Patterns of a residual: bin means, the share that they explain, and the description."""
 
-from __future__ import annotations
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
+Bins = tuple[Bin, ...]
 DIRECTIONS = (Bin(direction=-1), Bin(direction=1))
 RUNS = tuple(Bin(name) for name in "abcde")
 
@@ -23,23 +24,18 @@ def samples_of(*counted: Array) -> Samples:
     return Samples(names, (0.01,) * len(masks), masks, tuple(m.astype(float) for m in masks))
 
 
-def binned(bins: tuple[Bin, ...], *places: list[int]) -> Binned:
+def binned(bins: Bins, *places: list[int]) -> Binned:
     return Binned("run", bins, [np.array(p, dtype=np.intp) for p in places])
 
 
-def description(
-    bins: tuple[Bin, ...],
-    means: list[float],
-    counts: list[int] | None = None,
-    found: list[float] | None = None,
-) -> str:
-    """Description of a pattern of bin means, by default of 100 samples in each bin."""
+def description(bins: Bins, means: list[float], counts: Any = 100, found: Any = None) -> str:
+    """Description of a pattern of bin means with a number of samples in each bin."""
     axis = Binned("run" if bins[0].name else "direction", bins, [], "N m")
-    count = np.array([100] * len(bins) if counts is None else counts, dtype=np.intp)
+    count = np.broadcast_to(np.array(counts, dtype=np.intp), len(bins))
     return pattern_words(axis, np.array(means), count, None if found is None else np.array(found))
 
 
-def test_bin_means_use_counted_samples_that_have_a_bin() -> None:
+def test_bin_means_use_only_counted_samples_that_have_a_bin() -> None:
     axis = binned(RUNS[:3], [0, 0, 2, -1, 0], [2, 2, -1, 0])
     residuals = [np.array([1.0, 3.0, -4.0, 50.0, 100.0]), np.array([-5.0, 9.0, 50.0, 5.0])]
     samples = samples_of(np.array([1, 1, 1, 1, 0]), np.array([1, 0, 1, 1]))
@@ -48,7 +44,7 @@ def test_bin_means_use_counted_samples_that_have_a_bin() -> None:
     assert means.tolist() == [3.0, 0.0, -4.5]
 
 
-def test_share_of_a_pattern_is_the_explained_square_less_one_noise_variance_per_bin() -> None:
+def test_pattern_share_is_the_explained_square_less_one_variance_per_bin() -> None:
     """Of a sum of squares of 95 N^2, three bins of ten samples explain 50 N^2."""
     axis = binned(RUNS[:4], [0] * 10 + [1] * 10 + [2] * 10 + [-1] * 5)
     residuals = np.repeat([2.0, -1.0, 0.0, 3.0], [10, 10, 10, 5])
@@ -66,9 +62,7 @@ def test_share_of_a_pattern_is_the_explained_square_less_one_noise_variance_per_
 
 
 @pytest.mark.parametrize(("share", "reported"), [(0.0097, False), (0.0103, True)])
-def test_pattern_below_one_percent_of_the_mean_square_is_not_reported_by_default(
-    share: float, reported: bool
-) -> None:
+def test_pattern_below_1_percent_is_not_reported_by_default(share: float, reported: bool) -> None:
     """A mean m with unit swings around it explains m^2 of 1 + m^2."""
     mean = np.sqrt(share / (1.0 - share))
     residual = mean + np.tile([1.0, -1.0], 100)
@@ -78,7 +72,7 @@ def test_pattern_below_one_percent_of_the_mean_square_is_not_reported_by_default
 
 @pytest.mark.parametrize(("excess", "reported"), [(-0.01, False), (0.01, True)])
 @pytest.mark.parametrize("significance", [6.0, 9.0])
-def test_pattern_is_reported_if_its_explained_square_exceeds_the_chi_square_threshold(
+def test_pattern_is_reported_if_its_square_exceeds_the_chi_square_threshold(
     significance: float, excess: float, reported: bool
 ) -> None:
     """A chi-square variable of three degrees of freedom has mean 3 and deviation sqrt(6)."""
@@ -87,12 +81,12 @@ def test_pattern_is_reported_if_its_explained_square_exceeds_the_chi_square_thre
     residual = np.full(30, np.sqrt(explained / 30.0))
     axis = binned(RUNS[:4], [0] * 10 + [1] * 10 + [3] * 10)
     samples = samples_of(np.ones(30))
-    options = {} if significance == 6.0 else {"significance": significance}
+    options = {} if significance == 6.0 else {"significance": significance}  # the default is 6
     found = pattern_along(axis, samples, [residual], noise, 0.0, **options)
     assert (found is not None) == reported
 
 
-def test_sizes_of_a_pattern_are_those_of_the_second_residual_if_it_is_given() -> None:
+def test_pattern_sizes_are_those_of_the_second_residual_if_given() -> None:
     axis, samples = binned(RUNS[:2], [0] * 50 + [1] * 50), samples_of(np.ones(100))
     tested, reported = np.repeat([1.0, 0.0], 50), np.repeat([7.0, -9.0], 50)
     found = pattern_along(axis, samples, [tested], 0.01, told_of=[reported])
@@ -105,37 +99,30 @@ def test_sizes_of_a_pattern_are_those_of_the_second_residual_if_it_is_given() ->
     assert pattern_along(axis, samples, [0.0 * tested], 0.01, told_of=[reported]) is None
 
 
-@pytest.mark.parametrize(
-    ("means", "relation"),
-    [
+def test_pattern_description_has_the_sign_and_the_mean_size_over_all_samples() -> None:
+    """300 samples at 1 N m and 100 samples at 3 N m have the mean size 1.5 N m."""
+    for means, relation in (
         ([-1.0, 3.0], "record above the model by 1.5 N m"),
         ([1.0, -3.0], "record below the model by 1.5 N m"),
         ([1.0, 3.0], "record minus model +1.5 N m"),
         ([-1.0, -3.0], "record minus model -1.5 N m"),
-    ],
-)
-def test_description_states_sign_and_mean_size_over_all_samples(
-    means: list[float], relation: str
-) -> None:
-    """300 samples at 1 N m and 100 samples at 3 N m have the mean size 1.5 N m."""
-    assert relation in description(DIRECTIONS, means, [300, 100])
+    ):
+        assert relation in description(DIRECTIONS, means, [300, 100])
 
 
-def test_description_omits_the_direction_if_only_one_deviates_or_a_bin_is_at_rest() -> None:
+def test_pattern_description_omits_direction_if_one_deviates_or_a_bin_rests() -> None:
     assert "record minus model +3 N m" in description(DIRECTIONS, [0.001, 3.0])
     with_rest = (*DIRECTIONS, Bin("at rest"))
     assert "direction of motion" not in description(with_rest, [-1.0, 1.0, 1.0])
 
 
 @pytest.mark.parametrize(("other", "named"), [(-0.142, False), (-0.144, True)])
-def test_bins_below_two_percent_of_the_explained_square_are_not_named(
-    other: float, named: bool
-) -> None:
+def test_bins_below_2_percent_of_square_are_not_named(other: float, named: bool) -> None:
     """x^2 / (1 + x^2) is 0.02 at x = 1/7."""
     assert ("run b" in description(RUNS[:2], [1.0, other])) == named
 
 
-def test_description_names_the_bins_that_explain_most() -> None:
+def test_pattern_description_names_the_bins_with_the_largest_explained_square() -> None:
     """10 samples at 2 N m explain 40 (N m)^2; 100 samples at 1 and -0.9 N m explain 100 and 81."""
     words = description(RUNS[:3], [2.0, 1.0, -0.9], [10, 100, 100])
     assert words == "most +1 N m at run b; -0.9 N m at run c"
@@ -144,15 +131,12 @@ def test_description_names_the_bins_that_explain_most() -> None:
 
 
 @pytest.mark.parametrize(("counts", "throughout"), [([100] * 5, False), ([100] * 4 + [0], True)])
-def test_pattern_in_more_than_four_fifths_of_the_filled_bins_is_described_as_all(
-    counts: list[int], throughout: bool
-) -> None:
+def test_pattern_in_over_4_of_5_bins_is_called_all(counts: list[int], throughout: bool) -> None:
     words = description(RUNS, [1.0, 1.0, 1.0, 1.0, 0.01], counts)
     assert words.startswith("all of run") == throughout
 
 
 def two_runs() -> Campaign:
-    """Two runs with many speeds in both directions."""
     runs = []
     for seed, duration_s in ((1, 60.0), (2, 41.0)):
         time = np.arange(0.0, duration_s, 0.02)
@@ -162,12 +146,11 @@ def two_runs() -> Campaign:
 
 
 def noise_of(campaign: Campaign) -> list[Array]:
-    """White noise of unit size for each run."""
     random = np.random.default_rng(5)
     return [random.normal(0.0, 1.0, len(p.run)) for p in campaign.prepared]
 
 
-def test_white_noise_has_no_failures() -> None:
+def test_residual_of_white_noise_has_no_failures() -> None:
     campaign = two_runs()
     assert find_failures(campaign, campaign.samples, noise_of(campaign), 0.05, 1.0) == ()
 

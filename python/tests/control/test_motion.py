@@ -1,7 +1,5 @@
 """Recorded motions as references of a loop."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
@@ -22,10 +20,8 @@ def recorded(**columns: Any) -> Run:
     return Run.from_arrays(TIME, **{"velocity_m_s": RADIUS_M * TIME, **columns})
 
 
-def test_reference_of_a_bearing_is_the_recorded_speed_in_radians_per_second() -> None:
+def test_velocity_reference_of_a_bearing_is_the_recorded_speed_in_rad_per_second() -> None:
     task, reference, load = follow(recorded(load_n=100.0 + TIME), Rig.thesis())
-    assert reference is not None
-    assert load is not None
     assert np.allclose(reference[0], STEPS)
     assert np.allclose(reference[1], 1.0)
     assert np.allclose(load, 100.0 + STEPS)
@@ -34,30 +30,25 @@ def test_reference_of_a_bearing_is_the_recorded_speed_in_radians_per_second() ->
     assert task.frequency_rad_s * task.seconds == pytest.approx(2.0 * math.pi)
 
 
-def test_reference_of_a_linear_axis_is_the_recorded_speed_in_metres_per_second() -> None:
+def test_velocity_reference_of_a_linear_axis_is_the_recorded_speed_in_m_per_second() -> None:
     _, reference, load = follow(recorded(), Rig())
-    assert reference is not None
     assert np.allclose(reference[0], RADIUS_M * STEPS)
     assert load is None
 
 
-def test_reference_starts_at_the_first_sample_and_has_the_time_step_of_the_bench() -> None:
-    later = Run.from_arrays(TIME + 50.0, RADIUS_M * TIME)
-    task, reference, _ = follow(later, Rig.thesis(), bench=replace(THESIS_BENCH, dt_s=0.01))
-    assert reference is not None
+def test_reference_from_a_record_starts_at_its_first_sample_with_the_bench_step() -> None:
+    motion = Run.from_arrays(TIME + 50.0, RADIUS_M * TIME)
+    task, reference, _ = follow(motion, Rig.thesis(), bench=replace(THESIS_BENCH, dt_s=0.01))
     assert len(reference[0]) == 990
     assert (reference[0][0], task.high) == pytest.approx((0.0, 9.89))
 
 
-def test_speed_is_derived_from_a_wrapped_angle_only_if_it_was_not_recorded() -> None:
+def test_reference_uses_a_wrapped_angle_only_if_no_speed_is_recorded() -> None:
     wrapped = Run.from_arrays(TIME, angle_rad=np.mod(TIME**2, 2.0 * np.pi))
     reference = follow(wrapped, Rig.thesis()).reference
-    assert reference is not None
     inside = (STEPS > 0.1) & (STEPS < 9.8)
     assert np.allclose(reference[0][inside], 2.0 * STEPS[inside])
-    both = follow(recorded(angle_rad=5.0 * TIME), Rig.thesis()).reference
-    assert both is not None
-    assert np.allclose(both[0], STEPS)
+    assert np.allclose(follow(recorded(angle_rad=5.0 * TIME), Rig.thesis()).reference[0], STEPS)
 
 
 @pytest.mark.parametrize(("rig", "rate"), [(Rig.thesis(), 1.0), (Rig(), 2.0)])
@@ -66,7 +57,6 @@ def test_position_reference_is_the_recorded_position_relative_to_its_start(
 ) -> None:
     motion = recorded(angle_rad=3.0 + TIME, position_m=7.0 + 2.0 * TIME)
     task, reference, _ = follow(motion, rig, "position")
-    assert reference is not None
     assert task.is_position
     assert np.allclose(reference[0], rate * STEPS)
     assert np.allclose(reference[1], rate)
@@ -81,15 +71,11 @@ def test_record_without_motion_or_without_the_required_position_is_rejected() ->
 
 
 @pytest.mark.parametrize("control", ["velocity", "position"])
-def test_observed_compensator_follows_a_record_within_a_tenth_of_its_standard_deviation(
-    control: Any,
-) -> None:
+def test_observed_compensator_follows_a_record_to_a_tenth_of_its_spread(control: Any) -> None:
     time_s = np.arange(0.0, 20.0, 0.02)
     angle = 3.0 + 0.02 * (1.0 - np.cos(time_s)) / RADIUS_M
     load = np.where(time_s < 10.0, 104.0, 150.0)
     motion = Run.from_arrays(time_s, 0.02 * np.sin(time_s), angle_rad=angle, load_n=load)
     task, reference, load_n = follow(motion, Rig.thesis(), control)
-    assert reference is not None
-    assert load_n is not None
     r = run(None, "observed", task, reference=reference, load_n=load_n)
     assert r.true_rms < 0.1 * float(np.std(reference[0]))

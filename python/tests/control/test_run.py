@@ -1,7 +1,5 @@
 """One run of the loop: errors, references, loads, faults, and the model of the compensator."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
@@ -11,17 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import InputError, control
-from jbf.control import TASKS, THESIS_BENCH, Coulomb, Observed, Result, Task, run, thesis_model
+from jbf.control import TASKS, THESIS_BENCH, Coulomb, Observed, Result, run, thesis_model
 from jbf.control.constants import FALLBACK, FROZEN, JUMPED, SATURATED
 from jbf.control.task import RECORDED
 
 SHORT = replace(TASKS["velocity sine"], seconds=14.0)
-
-
-def constant(value: float, task: Task) -> tuple[np.ndarray, np.ndarray]:
-    """A constant reference as long as the task."""
-    steps = round(task.seconds / THESIS_BENCH.dt_s)
-    return np.full(steps, value), np.zeros(steps)
 
 
 def same(a: Result, b: Result) -> bool:
@@ -30,7 +22,7 @@ def same(a: Result, b: Result) -> bool:
 
 
 @pytest.mark.parametrize("row", ["position sine", "velocity sine"])
-def test_rms_and_peak_errors_are_computed_after_the_skipped_seconds(row: str) -> None:
+def test_rms_and_peak_errors_of_a_run_exclude_the_skipped_seconds(row: str) -> None:
     task = replace(TASKS[row], seconds=6.0, skip_s=1.5)
     r = run(None, "coulomb", task)
     counted = np.arange(len(r.time_s)) >= 750
@@ -43,23 +35,22 @@ def test_rms_and_peak_errors_are_computed_after_the_skipped_seconds(row: str) ->
     assert r.true_rms == pytest.approx(math.sqrt(np.mean(true[counted] ** 2)))
 
 
-def test_output_is_control_law_plus_compensation_within_the_limit() -> None:
-    r = run(None, "observed", SHORT)
-    limit = THESIS_BENCH.limit_v
+def test_output_voltage_is_control_law_plus_compensation_within_the_limit() -> None:
+    r, limit = run(None, "observed", SHORT), THESIS_BENCH.limit_v
     expected = np.clip(r.base_v + r.compensation_v, -limit, limit)
     assert r.output_v == pytest.approx(expected, abs=1e-9)
 
 
-def test_output_saturates_at_the_limit_of_the_amplifier() -> None:
+def test_output_voltage_saturates_at_the_amplifier_limit_with_a_status_flag() -> None:
     task = replace(TASKS["position square"], seconds=2.0)
-    bench = replace(THESIS_BENCH, limit_v=2.0)
-    r = run(None, "none", task, bench=bench, reference=constant(40.0, task))
+    bench, reference = replace(THESIS_BENCH, limit_v=2.0), (np.full(1000, 40.0), np.zeros(1000))
+    r = run(None, "none", task, bench=bench, reference=reference)
     assert np.max(np.abs(r.output_v)) == 2.0
     assert np.any(r.status & SATURATED)
     assert np.all(np.abs(r.output_v[(r.status & SATURATED) > 0]) == 2.0)
 
 
-def test_result_has_its_errors_in_json_and_all_samples_in_csv() -> None:
+def test_result_of_a_run_has_errors_in_json_and_all_samples_in_csv() -> None:
     r = run(None, "none", replace(SHORT, seconds=2.1))
     content = r.to_dict()
     assert (content["scheme"], content["task"]["wave"]) == ("none", "sine")
@@ -82,12 +73,11 @@ VALUE = 0.3 * np.sin(0.002 * np.arange(700.0))
 RATE = 0.3 * np.cos(0.002 * np.arange(700.0))
 
 
-def test_given_reference_replaces_the_wave_and_sets_the_length() -> None:
-    r = run(None, "observed", GIVEN, reference=(VALUE, RATE))
-    assert np.array_equal(r.reference, VALUE)
+def test_given_reference_replaces_the_wave_of_a_task_and_sets_its_length() -> None:
+    assert np.array_equal(run(None, "none", GIVEN, reference=(VALUE, RATE)).reference, VALUE)
 
 
-def test_observed_compensator_has_less_error_if_the_rate_of_the_reference_is_given() -> None:
+def test_observed_compensator_has_less_error_if_the_reference_rate_is_given() -> None:
     with_rate, without_rate = (
         run(None, "observed", GIVEN, reference=(VALUE, rate)) for rate in (RATE, 0.0 * RATE)
     )
@@ -95,43 +85,32 @@ def test_observed_compensator_has_less_error_if_the_rate_of_the_reference_is_giv
 
 
 def test_default_load_equals_an_explicit_constant_load_of_the_rig() -> None:
-    steps = round(SHORT.seconds / THESIS_BENCH.dt_s)
-    usual = run(None, "none", SHORT)
-    assert same(usual, run(None, "none", SHORT, load_n=104.0))
-    assert same(usual, run(None, "none", SHORT, load_n=np.full(steps, 104.0)))
+    default = run(None, "none", SHORT)
+    for load_n in (104.0, np.full(7000, 104.0)):
+        assert same(default, run(None, "none", SHORT, load_n=load_n))
 
 
 def test_breakaway_friction_is_proportional_to_the_load() -> None:
     """The shaft breaks away where the output reaches f_m times the load in volts."""
     task = replace(TASKS["position sine"], seconds=4.0)
-    ramp = np.linspace(0.0, 2.0, 2000)
-    model = thesis_model(elastic="nothing")
-    bench = replace(THESIS_BENCH, input_noise_v=0.0)
-    largest = [
-        np.max(
-            run(model, "none", task, bench=bench, reference=(ramp, 0.0 * ramp), load_n=n).friction_v
-        )
-        for n in (50.0, 100.0)
-    ]
-    expected = [0.26 * n * THESIS_BENCH.volts_per_n for n in (50.0, 100.0)]
-    assert largest == pytest.approx(expected, rel=0.02)
+    ramp = (np.linspace(0.0, 2.0, 2000), np.zeros(2000))
+    model, bench = thesis_model(elastic="nothing"), replace(THESIS_BENCH, input_noise_v=0.0)
+    for load_n in (50.0, 100.0):
+        r = run(model, "none", task, bench=bench, reference=ramp, load_n=load_n)
+        breakaway_v = 0.26 * load_n * THESIS_BENCH.volts_per_n
+        assert np.max(r.friction_v) == pytest.approx(breakaway_v, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    "scheme",
-    [
-        "observed",
-        "none",
-        *(
-            pytest.param(s, marks=pytest.mark.extended)
-            for s in ("learning", "coulomb", "table", "repetitive")
-        ),
-    ],
+OTHER_SCHEMES = (
+    pytest.param(name, marks=pytest.mark.extended)
+    for name in ("learning", "coulomb", "table", "repetitive")
 )
+
+
+@pytest.mark.parametrize("scheme", ["observed", "none", *OTHER_SCHEMES])
 @pytest.mark.parametrize("row", ["position sine", "velocity sine"])
 def test_compensation_is_switched_off_while_the_encoder_is_frozen(scheme: str, row: str) -> None:
-    task = replace(TASKS[row], seconds=16.0)
-    guard = control.tune(thesis_model())
+    task, guard = replace(TASKS[row], seconds=16.0), control.tune(thesis_model())
     r = run(None, scheme, task, guard=guard, frozen_s=(8.0, 12.0))
     assert np.max(np.abs(r.output_v)) <= THESIS_BENCH.limit_v
     stopped = (r.time_s >= 8.0 - 1e-9) & (r.time_s < 12.0 - 1e-9)
@@ -152,19 +131,18 @@ def test_jump_of_the_counter_is_flagged_at_its_step_and_hardly_moves_the_shaft()
     assert np.max(np.abs(r.true_error[r.time_s > 1.0])) < 0.5
 
 
-def test_model_and_settings_as_arguments_are_equivalent_to_a_scheme_object() -> None:
+def test_run_with_model_or_settings_arguments_equals_run_with_a_scheme_object() -> None:
     weak = thesis_model(f_m=0.13)
     settings = replace(control.tune(thesis_model()), bandwidth_rad_s=40.0)
-    assert same(run(None, "observed", SHORT, carried=weak), run(None, Observed(weak), SHORT))
-    assert same(
-        run(None, "observed", SHORT, settings=settings),
-        run(None, Observed(thesis_model(), settings), SHORT),
-    )
-    assert not same(run(None, "observed", SHORT, carried=weak), run(None, "observed", SHORT))
+    with_weak = run(None, "observed", SHORT, carried=weak)
+    assert same(with_weak, run(None, Observed(weak), SHORT))
+    assert not same(with_weak, run(None, "observed", SHORT))
+    with_settings = run(None, "observed", SHORT, settings=settings)
+    assert same(with_settings, run(None, Observed(thesis_model(), settings), SHORT))
     assert same(run(None, "coulomb", SHORT), run(None, Coulomb(), SHORT))
 
 
-def test_single_precision_output_is_float32_with_an_error_within_10_percent() -> None:
+def test_single_precision_run_has_float32_output_and_an_error_within_10_percent() -> None:
     double, single = (run(None, "observed", SHORT, precision=p) for p in ("f64", "f32"))
     assert single.true_rms == pytest.approx(double.true_rms, rel=0.1)
     assert np.array_equal(single.output_v, single.output_v.astype(np.float32))

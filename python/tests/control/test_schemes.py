@@ -1,42 +1,32 @@
 """Compensators: their constants, and the error of the shaft under each of them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from jbf import InputError, Model, Rig
-from jbf.control import (
-    SCHEMES,
-    TASKS,
-    THESIS_BENCH,
-    Coulomb,
-    Learning,
-    NoCompensation,
-    Observed,
-    Repetitive,
-    Table,
-    Task,
-    run,
-    scheme,
-    thesis_model,
-)
+from jbf.control import SCHEMES, TASKS, THESIS_BENCH, Table, Task, run, scheme, thesis_model
 from jbf.control.bench import FITTED
 from jbf.control.constants import OBSERVER_1_S
-from jbf.control.schemes import gains
+from jbf.control.schemes import Coulomb, Learning, NoCompensation, Observed, Repetitive, gains
 
 POSITION, VELOCITY = TASKS["position sine"], TASKS["velocity sine"]
 SHORT = replace(VELOCITY, seconds=27.0)
 NEWTONS = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_v_n_s_m": 20.0})
 
 
-def test_scheme_is_found_by_name_with_the_given_model_and_unknown_names_are_rejected() -> None:
-    kinds = (NoCompensation, Learning, Coulomb, Table, Repetitive, Observed)
-    made = [scheme(name) for name in SCHEMES]
-    assert [type(s) for s in made] == list(kinds)
-    assert tuple(s.name for s in made) == SCHEMES
+def extended(*values: object) -> list[Any]:
+    """Parameters of a test that are left to the extended suite."""
+    return [pytest.param(value, marks=pytest.mark.extended) for value in values]
+
+
+def test_scheme_is_created_by_name_with_its_model_and_unknown_names_are_rejected() -> None:
+    schemes = [scheme(name) for name in SCHEMES]
+    kinds = [NoCompensation, Learning, Coulomb, Table, Repetitive, Observed]
+    assert [type(s) for s in schemes] == kinds
+    assert tuple(s.name for s in schemes) == SCHEMES
     assert scheme("table", NEWTONS) == Table(NEWTONS)
     assert scheme("observed", NEWTONS) == Observed(NEWTONS)
     assert scheme("table") == Table(thesis_model())
@@ -61,8 +51,8 @@ def test_feedback_gains_of_another_drive_give_the_same_closed_loop_poles() -> No
 
 
 def test_observed_compensator_reduces_the_error_tenfold_on_another_drive() -> None:
-    errors = [run(None, s, SHORT, bench=OTHER_DRIVE).true_rms for s in ("none", "observed")]
-    assert errors[1] < 0.1 * errors[0]
+    none, ours = (run(None, s, SHORT, bench=OTHER_DRIVE).true_rms for s in ("none", "observed"))
+    assert ours < 0.1 * none
 
 
 CONSTANT = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 1e-6})
@@ -71,7 +61,6 @@ TENTH_VOLT = replace(THESIS_BENCH, volts_per_n=0.1)
 
 
 def test_coulomb_observer_learns_the_friction_level_in_volts_within_15_percent() -> None:
-    """Equation (6.1) of the thesis."""
     r = run(CONSTANT, Coulomb(), SHORT, bench=TENTH_VOLT)
     assert r.learned_0[0] == pytest.approx(0.0, abs=0.05)
     assert r.learned_0[-1] == pytest.approx(0.5, rel=0.15)
@@ -89,16 +78,14 @@ def test_repetitive_gain_is_half_of_the_loop_stiffness_at_a_blocked_shaft(task: 
     """The stiffness is the output voltage per error of a shaft that cannot move."""
     task = replace(task, seconds=6.0, skip_s=0.0)
     bench = replace(THESIS_BENCH, input_noise_v=0.0)
-    steps = round(task.seconds / bench.dt_s)
-    held = (np.full(steps, 0.01), np.zeros(steps))
+    held = (np.full(3000, 0.01), np.zeros(3000))
     stuck = replace(bench, volts_per_n=100.0 * bench.volts_per_n)
     r = run(thesis_model(elastic="nothing"), "none", task, bench=stuck, reference=held)
     assert np.all(r.velocity_rad_s == 0.0)
     core = Repetitive().core(task, bench)
     assert core["lap_gain"] == pytest.approx(0.5 * float(r.output_v[-1]) / 0.01, rel=1e-3)
     g, c = gains(task, bench)
-    held_gain = 1.0 + c * 457.0 / (135.0 + OBSERVER_1_S)
-    stiffness = g / held_gain if task.is_position else g + c
+    stiffness = g / (1.0 + c * 457.0 / (135.0 + OBSERVER_1_S)) if task.is_position else g + c
     assert core["lap_gain"] == pytest.approx(0.5 * stiffness)
     assert core["steps_per_lap"] == round(2.0 * math.pi / 0.25 / 0.002)
     assert core["lead_s"] == (0.1 if task.is_position else 0.02)
@@ -130,37 +117,18 @@ def test_friction_table_has_the_steady_friction_up_to_the_top_speed(task: Task, 
     assert levels[-1] == pytest.approx(float(steady))
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        "velocity sine",
-        *(
-            pytest.param(row, marks=pytest.mark.extended)
-            for row in ("position sine", "velocity triangle")
-        ),
-    ],
-)
+@pytest.mark.parametrize("row", ["velocity sine", *extended("position sine", "velocity triangle")])
 def test_friction_table_halves_the_error_of_sine_and_triangle_tasks(row: str) -> None:
     model = Model(Rig.thesis("4.2"))
     none, table = (run(model, s, TASKS[row]).true_rms for s in ("none", "table"))
     assert table < 0.5 * none
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        "position triangle",
-        "velocity square",
-        *(
-            pytest.param(row, marks=pytest.mark.extended)
-            for row in TASKS
-            if row not in ("position triangle", "velocity square")
-        ),
-    ],
-)
-def test_observed_compensator_has_at_most_half_the_thesis_error_except_in_position_square(
-    row: str,
-) -> None:
+FAST_ROWS = ["position triangle", "velocity square"]
+
+
+@pytest.mark.parametrize("row", [*FAST_ROWS, *extended(*(r for r in TASKS if r not in FAST_ROWS))])
+def test_observed_compensator_halves_the_thesis_error_except_in_position_square(row: str) -> None:
     learning, coulomb, observed = (
         run(None, s, TASKS[row]).true_rms for s in ("learning", "coulomb", "observed")
     )
@@ -168,9 +136,7 @@ def test_observed_compensator_has_at_most_half_the_thesis_error_except_in_positi
     assert min(learning, coulomb) / observed > factor
 
 
-@pytest.mark.parametrize(
-    "counts_per_rad", [100.0, *(pytest.param(c, marks=pytest.mark.extended) for c in (652.0, 30.0))]
-)
+@pytest.mark.parametrize("counts_per_rad", [100.0, *extended(652.0, 30.0)])
 def test_observed_compensator_with_a_coarse_encoder_reduces_the_error(
     counts_per_rad: float,
 ) -> None:
@@ -212,8 +178,8 @@ def test_learning_scheme_has_initial_values_and_bounds_of_the_given_model() -> N
 
 def test_learning_scheme_reduces_the_error_on_the_model_that_it_starts_from() -> None:
     model = Model(Rig.thesis("4.2"))
-    errors = [run(model, s, SHORT).true_rms for s in ("none", "learning")]
-    assert errors[1] < 0.6 * errors[0]
+    none, learning = (run(model, s, SHORT).true_rms for s in ("none", "learning"))
+    assert learning < 0.6 * none
 
 
 def test_learning_scheme_of_a_law_without_a_film_is_rejected() -> None:

@@ -1,9 +1,8 @@
 """Tables 6.1 and 6.2 of the thesis: the printed figures are the reference."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,11 +36,11 @@ def simulated_tables() -> Tables:
 def test_table_cells_have_the_figures_printed_in_the_thesis(row: str) -> None:
     assert PRINTED_PEAK[row] == PRINTED[row][::2]
     assert PRINTED_RMS[row] == PRINTED[row][1::2]
-    for i, column in enumerate(("none", "learning", "coulomb")):
+    columns = {"none": 0, "learning": 2, "coulomb": 4}
+    expected = {name: PRINTED[row][i : i + 2] for name, i in columns.items()}
+    for column, printed in (expected | {"observed": (None, None)}).items():
         cell = simulated_tables()[row, column]
-        assert (cell.printed_rms, cell.printed_peak) == (PRINTED_RMS[row][i], PRINTED_PEAK[row][i])
-    ours = simulated_tables()[row, "observed"]
-    assert (ours.printed_rms, ours.printed_peak) == (None, None)
+        assert (cell.printed_peak, cell.printed_rms) == printed
 
 
 def test_uncompensated_cells_agree_with_the_thesis_within_20_percent() -> None:
@@ -56,47 +55,38 @@ def test_twelve_of_thirteen_predicted_cells_agree_within_a_factor_of_two() -> No
 
 
 def test_every_scheme_reduces_the_error_of_every_task() -> None:
+    cells = simulated_tables()
     for row in TASKS:
         for column in ("learning", "coulomb", "observed"):
-            cells = simulated_tables()
             assert cells[row, column].rms < cells[row, "none"].rms, (row, column)
 
 
-def test_median_error_of_the_better_thesis_scheme_is_twice_that_of_the_observed_one() -> None:
+def test_median_error_of_the_better_thesis_scheme_is_twice_the_observed_one() -> None:
     gains = sorted(simulated_tables().gains().values())
     assert gains[0] > 1.3
     assert gains[len(gains) // 2] > 2.0
 
 
 def test_error_ratio_of_learning_decreases_if_the_friction_scale_increases() -> None:
-    row = {"position triangle": TASKS["position triangle"]}
+    tasks = {"position triangle": TASKS["position triangle"]}
     ratios = []
     for volts in (None, 3.5, LISTED_VOLTS):
         schemes = {"learning": Learning(volts=volts)}
-        found = tables(thesis_model(), THESIS_BENCH, schemes=schemes, tasks=row, seeds=1)
-        ratio = found["position triangle", "learning"].ratio
-        assert ratio is not None
-        ratios.append(ratio)
+        found = tables(thesis_model(), THESIS_BENCH, schemes=schemes, tasks=tasks, seeds=1)
+        ratios.append(found["position triangle", "learning"].ratio)
     assert ratios[0] > 2.0 > ratios[1] > 0.5 > ratios[2]
 
 
-def test_table_cell_shows_rms_over_seeds_and_mean_peak_error() -> None:
+def test_table_cell_has_the_rms_error_over_seeds_and_the_mean_peak_error() -> None:
     """The seeds are 1, 2, ..., independent of the seed of the bench."""
-    task = {"velocity sine": replace(TASKS["velocity sine"], seconds=8.0)}
+    task = replace(TASKS["velocity sine"], seconds=8.0)
     # The noise is large enough for the seeds to differ.
     bench = replace(THESIS_BENCH, seed=9, input_noise_v=1.0)
     reports: list[tuple[str, int, int]] = []
-    found = tables(
-        thesis_model(),
-        bench,
-        schemes={"none": NoCompensation()},
-        tasks=task,
-        seeds=3,
-        report=lambda *progress: reports.append(progress),
-    )
-    runs = [
-        run(None, "none", task["velocity sine"], bench=replace(bench, seed=s)) for s in (1, 2, 3)
-    ]
+    tasks, schemes = {"velocity sine": task}, {"none": NoCompensation()}
+    arguments: dict[str, Any] = {"schemes": schemes, "tasks": tasks, "seeds": 3}
+    found = tables(thesis_model(), bench, **arguments, report=lambda *r: reports.append(r))
+    runs = [run(None, "none", task, bench=replace(bench, seed=s)) for s in (1, 2, 3)]
     cell = found["velocity sine", "none"]
     assert cell.rms == pytest.approx(math.sqrt(np.mean([r.rms**2 for r in runs])))
     assert cell.true_rms == pytest.approx(math.sqrt(np.mean([r.true_rms**2 for r in runs])))
@@ -113,7 +103,7 @@ def tables_of(*cells: Cell) -> Tables:
     return Tables({(c.row, c.column): c for c in cells}, thesis_model(), THESIS_BENCH)
 
 
-def test_number_of_cells_within_a_factor_counts_only_predicted_cells_and_both_limits() -> None:
+def test_number_of_cells_within_a_factor_counts_predicted_cells_and_both_limits() -> None:
     ratios = (0.5, 0.499, 1.0, 2.0, 2.001)
     found = tables_of(
         cell_of("a", "none", 9.0, 1.0),
@@ -128,16 +118,15 @@ def test_number_of_cells_within_a_factor_counts_only_predicted_cells_and_both_li
     assert [c.row for c in found.column("none")] == ["a"]
 
 
-def test_replacing_recomputed_cells_preserves_the_others_and_takes_the_new_model() -> None:
+def test_replacing_table_cells_preserves_the_others_and_takes_the_new_model() -> None:
     base = tables_of(cell_of("a", "none", 9.0, 1.0), cell_of("b", "none", 8.0, 1.0))
     dry = Model(Rig(), "coulomb")
-    other = replace(tables_of(cell_of("a", "none", 5.0, 1.0)), model=dry)
-    both = base.replaced(other)
-    assert [c.rms for c in both.column("none")] == [5.0, 8.0]
-    assert both.model == dry
+    merged = base.replaced(replace(tables_of(cell_of("a", "none", 5.0, 1.0)), model=dry))
+    assert [c.rms for c in merged.column("none")] == [5.0, 8.0]
+    assert merged.model == dry
 
 
-def test_gain_is_relative_to_the_better_of_the_two_thesis_schemes() -> None:
+def test_gain_of_a_task_is_relative_to_the_better_of_the_two_thesis_schemes() -> None:
     cells = []
     for i, row in enumerate(PRINTED_RMS):
         learning, coulomb = (0.6, 0.8) if i % 2 else (0.9, 0.6)
@@ -164,14 +153,12 @@ def test_fit_of_the_uncompensated_cells_recovers_the_friction_of_the_bench() -> 
 @pytest.mark.extended
 def test_journal_clock_fits_the_uncompensated_cells_slightly_worse() -> None:
     """The documentation states 19 % for the worst cell on the journal clock."""
-    on_the_thesis_clock = max(
-        abs(c.ratio - 1.0) for c in simulated_tables().column("none") if c.ratio is not None
-    )
+    on_the_thesis_clock = max(abs(c.ratio - 1.0) for c in simulated_tables().column("none"))
     assert on_the_thesis_clock < on_the_journal_clock() == pytest.approx(0.19, abs=0.01)
 
 
 @pytest.mark.extended
-def test_each_assumption_changes_only_the_columns_that_it_concerns() -> None:
+def test_each_changed_assumption_alters_only_the_table_columns_that_it_concerns() -> None:
     base = simulated_tables()
     found = dict(assumptions(base))
     assert len(found) == 9

@@ -1,7 +1,5 @@
 """Settings of the observed compensator: their formulas, their limits, and their file."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -19,7 +17,6 @@ VOLT = replace(THESIS_BENCH, volts_per_n=1.0 / 5.1)
 
 
 def test_friction_level_is_the_friction_at_five_millimetres_per_second() -> None:
-    """5 N + 20 N s/m at 5 mm/s."""
     assert friction_level_v(DRY, VOLT) == pytest.approx(1.0, rel=1e-3)
     assert friction_level_v(DRY, replace(VOLT, volts_per_n=1.0)) == pytest.approx(5.1, rel=1e-3)
     stronger = Model(Rig(), "coulomb", parameters={"F_c_n": 8.0, "F_s_n": 8.0, "F_v_n_s_m": 20.0})
@@ -40,9 +37,8 @@ def test_friction_level_of_a_bearing_lies_just_below_its_breakaway_friction() ->
     assert (1.0 - 0.005 / FITTED["U_tr_m_s"]) * breakaway < level <= breakaway
 
 
-def test_settings_are_computed_from_time_step_encoder_resolution_and_friction_level() -> None:
-    level = friction_level_v(DRY, VOLT)
-    settings = tune(DRY, VOLT)
+def test_settings_follow_from_time_step_encoder_resolution_and_friction_level() -> None:
+    level, settings = friction_level_v(DRY, VOLT), tune(DRY, VOLT)
     count_rad = 1.0 / VOLT.counts_per_rad
     speed_noise = count_rad / math.sqrt(12.0) * 60.0 * math.sqrt(60.0 * 0.002)
     assert settings.bandwidth_rad_s == pytest.approx(0.12 / 0.002)
@@ -71,13 +67,13 @@ def test_bandwidth_limits_encoder_noise_to_one_percent_of_the_friction_level() -
     assert settings.loop_rad_s == pytest.approx(math.hypot(10.0, 10.0))
 
 
-def test_moving_voltage_does_not_exceed_the_voltage_limit_of_the_drive() -> None:
+def test_voltages_of_the_settings_do_not_exceed_the_voltage_limit_of_the_drive() -> None:
     level = friction_level_v(DRY, VOLT)
     assert tune(DRY, replace(VOLT, limit_v=2.0 * level)).moving_v == 2.0 * level
     assert tune(DRY, replace(VOLT, limit_v=level * (1.0 + 1e-9))).level_limit_v == level
 
 
-def test_friction_above_the_voltage_of_the_drive_is_rejected() -> None:
+def test_settings_for_a_friction_above_the_voltage_of_the_drive_are_rejected() -> None:
     with pytest.raises(InputError, match="--volts-per-n"):
         tune(DRY, replace(VOLT, limit_v=friction_level_v(DRY, VOLT)))
 
@@ -93,7 +89,7 @@ def test_slow_speed_limit_is_5_to_30_times_the_error_of_the_speed_estimate(bench
 SETTINGS = Settings(60.0, 2.0, 0.7, 1.7, 0.1, 30.0, 1.0, 1.9, 0.1)
 
 
-def test_settings_are_read_back_from_their_file_to_six_digits(tmp_path: Path) -> None:
+def test_settings_are_saved_to_a_file_with_six_digits_and_loaded(tmp_path: Path) -> None:
     path = tmp_path / "s.toml"
     replace(SETTINGS, level_limit_v=0.123456789).save(path)
     assert Settings.load(path) == replace(SETTINGS, level_limit_v=0.123457)
@@ -111,8 +107,7 @@ def test_settings_are_read_back_from_their_file_to_six_digits(tmp_path: Path) ->
 def test_invalid_settings_file_is_reported_by_file_and_key(
     tmp_path: Path, old: str, new: str, named: str
 ) -> None:
-    path = tmp_path / "s.toml"
-    text = SETTINGS.to_toml()
+    path, text = tmp_path / "s.toml", SETTINGS.to_toml()
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(InputError, match=rf"s\.toml.*{named}"):

@@ -1,8 +1,5 @@
 """Records without a speed, and records with nothing to fit."""
 
-from __future__ import annotations
-
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -43,15 +40,12 @@ def test_angle_without_speed_and_radius_is_rejected() -> None:
         Campaign.prepare(Rig(), [run])
 
 
-def test_record_without_motion_is_rejected(tmp_path: Path) -> None:
+def test_record_without_speed_angle_and_position_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="velocity_m_s"):
         Run.from_arrays(TIME_S, None, FORCE_N)
     (tmp_path / "a.csv").write_text("time_s,friction_n\n" + "".join(f"{i},1\n" for i in range(20)))
     with pytest.raises(InputError, match="column velocity_m_s: is missing"):
         read_run(tmp_path / "a.csv")
-
-
-# ---- nothing to fit -----------------------------------------------------------------------------
 
 
 def _run(speed_m_s: Array, force_n: Array, name: str) -> Run:
@@ -70,19 +64,16 @@ def test_force_that_is_zero_in_every_run_is_rejected() -> None:
 @pytest.mark.parametrize(
     ("speed_m_s", "named"),
     [
-        pytest.param(np.zeros(300), "rest", id="at rest"),
-        pytest.param(
+        (np.zeros(300), "run_a"),
+        (
             np.random.default_rng(1).choice([-5.0, -1.5, 0.0, 1.5, 5.0], 900),
-            "rest, column velocity_m_s: of no sample",
-            id="random sign",
+            "run_a, column velocity_m_s: of no sample",
         ),
     ],
+    ids=["at rest", "random sign"],
 )
-def test_run_without_a_known_sign_of_motion_is_rejected_without_a_warning(
-    speed_m_s: Array, named: str
-) -> None:
-    run = _run(speed_m_s, np.sign(speed_m_s) + 0.2 * speed_m_s + 1.0, "rest")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        with pytest.raises(InputError, match=named):
-            fit(Rig(), [run], law="stribeck")
+@pytest.mark.filterwarnings("error")
+def test_run_without_a_known_sign_of_motion_is_rejected(speed_m_s: Array, named: str) -> None:
+    run = _run(speed_m_s, np.sign(speed_m_s) + 0.2 * speed_m_s + 1.0, "run_a")
+    with pytest.raises(InputError, match=named):
+        fit(Rig(), [run], law="stribeck")

@@ -1,17 +1,14 @@
 """Selection of the base law by held-out error, and simpler laws in place of effects."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from by_hand import Array
 from golden import golden, golden_campaign
-from jbf import Diagnosis, Rig, Run, diagnose
+from jbf import Diagnosis, Rig, diagnose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.which_law import LawTried, allowed, compared
-from shared import shared
 
 SAMPLES, STRETCHES = 4000, 40
 
@@ -31,14 +28,11 @@ def compare_errors(**errors: list[Array]) -> dict[str, LawTried]:
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_laws_are_sorted_by_held_out_error(unit: float) -> None:
-    found = compare_errors(
-        ab=alternating(2.0 * unit), c=alternating(unit), def_=alternating(3.0 * unit)
-    )
+def test_laws_are_sorted_by_held_out_error_in_any_unit(unit: float) -> None:
+    sizes = {"ab": 2.0 * unit, "c": unit, "def_": 3.0 * unit}
+    found = compare_errors(**{name: alternating(size) for name, size in sizes.items()})
     assert list(found) == ["c", "ab", "def_"]
-    assert [law.left_out_rms_n for law in found.values()] == pytest.approx(
-        [unit, 2.0 * unit, 3.0 * unit]
-    )
+    assert {law.law: law.left_out_rms_n for law in found.values()} == pytest.approx(sizes)
     assert [law.parameters for law in found.values()] == [1, 2, 4]
     assert [law.tied for law in found.values()] == [True, False, False]
 
@@ -52,9 +46,7 @@ def test_laws_within_half_a_percent_of_error_are_tied(share: float, tied: bool) 
 
 
 @pytest.mark.parametrize(("share", "tied"), [(0.98, True), (1.02, False)])
-def test_laws_within_two_standard_errors_of_the_stretches_are_tied(
-    share: float, tied: bool
-) -> None:
+def test_laws_within_two_standard_errors_are_tied(share: float, tied: bool) -> None:
     """The standard error of a mean of 40 stretches with standard deviation s is s / sqrt(40)."""
     variation = 0.5
     mean = 1.0 + share * DEFAULT.law_tie * variation / np.sqrt(STRETCHES)
@@ -62,7 +54,7 @@ def test_laws_within_two_standard_errors_of_the_stretches_are_tied(
     assert compare_errors(a=alternating(1.0), b=other)["b"].tied == tied
 
 
-def test_only_samples_that_count_for_every_law_are_compared() -> None:
+def test_laws_are_compared_only_at_samples_that_every_law_predicts() -> None:
     a, b = alternating(1.0), alternating(2.0)
     a[0][:500] = np.nan
     b[0][:500] = 1e6
@@ -71,27 +63,20 @@ def test_only_samples_that_count_for_every_law_are_compared() -> None:
     assert [law.left_out_rms_n for law in found.values()] == pytest.approx([1.0, 2.0])
 
 
-def test_laws_of_a_bearing_require_a_bearing() -> None:
+def test_laws_of_a_bearing_require_a_rig_with_a_bearing() -> None:
     assert "journal" not in allowed(Rig())
     assert {"coulomb", "stribeck"} <= set(allowed(Rig()))
     assert {"coulomb", "journal"} <= set(allowed(Rig.thesis()))
 
 
-# ---- diagnoses ----------------------------------------------------------------------------------
-
-
-def _with_offset(offset_n: float) -> list[Run]:
-    """The runs of the slide with a Stribeck curve, with an offset of the force sensor."""
+def diagnosis_with_offset(law: str, offset_n: float) -> Diagnosis:
+    """The diagnosis of the slide with a Stribeck curve, with an offset of the force sensor."""
     _, runs, _ = golden_campaign("slide_law_selection")
-    return [replace(run, friction_n=np.asarray(run.friction_n) + offset_n) for run in runs]
+    offset = [replace(run, friction_n=np.asarray(run.friction_n) + offset_n) for run in runs]
+    return diagnose(Rig(), offset, law=law)
 
 
-@shared
-def _diagnosis(law: str, offset_n: float) -> Diagnosis:
-    return diagnose(Rig(), _with_offset(offset_n), law=law)
-
-
-def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_error() -> None:
+def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_rms() -> None:
     found = golden("slide_law_selection")
     noise_n = golden_campaign("slide_law_selection")[2]
     assert found.model.law == found.laws[0].law == "stribeck"
@@ -106,15 +91,15 @@ def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_error() ->
 
 @pytest.mark.extended
 def test_offset_of_the_sensor_does_not_change_the_selected_law() -> None:
-    found = _diagnosis("auto", 20.0)
+    found = diagnosis_with_offset("auto", 20.0)
     assert (found.model.law, found.effects) == ("stribeck", ("sensor_offset",))
     assert found.laws[0].left_out_rms_n == pytest.approx(0.2, rel=0.05)
 
 
 @pytest.mark.extended
-def test_simpler_law_is_reported_in_place_of_two_effects() -> None:
+def test_simpler_law_is_reported_if_it_replaces_two_effects() -> None:
     """The offset remains an effect: no law has one."""
-    found = _diagnosis("coulomb", 20.0)
+    found = diagnosis_with_offset("coulomb", 20.0)
     assert set(found.effects) == {"sensor_offset", "stribeck_excess"}
     assert found.laws == ()
     assert found.simpler_law is not None
@@ -123,6 +108,6 @@ def test_simpler_law_is_reported_in_place_of_two_effects() -> None:
 
 
 @pytest.mark.extended
-def test_no_simpler_law_is_reported_in_place_of_one_effect() -> None:
-    found = _diagnosis("coulomb", 0.0)
+def test_no_simpler_law_is_reported_if_it_replaces_one_effect() -> None:
+    found = diagnosis_with_offset("coulomb", 0.0)
     assert (found.effects, found.simpler_law) == (("stribeck_excess",), None)

@@ -1,22 +1,23 @@
-"""The threshold of a gain: its formula, its calibration on the residual, and decoys."""
-
-from __future__ import annotations
+"""The threshold of a gain: its formula, its calibration, decoys, and the policy behind it."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array
+from jbf import Diagnosis, InputError, Rig, diagnose
+from jbf.diagnosis import Policy
 from jbf.diagnosis.decoys import DRAWS, decoy_gains, rate_below
 from jbf.diagnosis.level import Directions, Level, calibrated, with_decoys
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.samples import Samples
-from linear_campaigns import linear_diagnosis
+from linear_campaigns import CANDIDATES, Textbook, linear_diagnosis, linear_runs
 from scipy import signal, stats
 
-N, STEP_S, RUNS, CANDIDATES = 2000, 0.02, 4, 8
+N, STEP_S, RUNS, TESTED = 2000, 0.02, 4, 8
 SAMPLES = Samples(
     tuple(f"run {i}" for i in range(RUNS)),
     (STEP_S,) * RUNS,
@@ -26,12 +27,10 @@ SAMPLES = Samples(
 TIME: Array = np.linspace(0.0, RUNS * N * STEP_S, RUNS * N, endpoint=False)
 LAW = np.stack([np.ones_like(TIME), np.cos(0.2 * TIME)], axis=1)
 NO_ENDS = np.array([], dtype=np.intp)
+Draw = Callable[[np.random.Generator], Array]
 
 
-# ---- formula ------------------------------------------------------------------------------------
-
-
-def test_false_alarm_rate_is_shared_among_candidates_and_minimum_size_grows_with_samples() -> None:
+def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> None:
     policy = replace(DEFAULT, false_alarms=0.02, indifference=0.05, imperfection=7.0)
     level = Level.shared(policy, 8, 1000.0, 4.0)
     assert level.chance == 0.02 / 8
@@ -44,7 +43,7 @@ def test_false_alarm_rate_is_shared_among_candidates_and_minimum_size_grows_with
     assert Level.shared(policy, 0, 1000.0, 4.0).chance == 0.02
 
 
-def test_threshold_is_the_largest_of_chance_artefact_margin_and_minimum_effect_size() -> None:
+def test_threshold_is_the_largest_of_chance_level_margin_and_minimum_size() -> None:
     level = Level(0.02, 8, 1e-4, imperfection=5.0, worth=3.0)
     assert level.critical == pytest.approx(stats.chi2.isf(1e-4, 1))
     assert level.white == pytest.approx(stats.chi2.isf(0.0025, 1))
@@ -59,7 +58,7 @@ def test_each_further_parameter_raises_the_threshold_by_the_log_of_the_samples()
     assert level.price(0, 100) == level.price(1, 100)
 
 
-def test_minimum_effect_size_dominates_in_a_long_recording() -> None:
+def test_threshold_in_a_long_recording_is_the_minimum_effect_size() -> None:
     assert Level.shared(DEFAULT, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(90.0)
     in_newtons = replace(DEFAULT, indifference=0.0, indifference_n=0.02)
     assert Level.shared(in_newtons, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(160.0)
@@ -67,12 +66,9 @@ def test_minimum_effect_size_dominates_in_a_long_recording() -> None:
     assert short == pytest.approx(stats.chi2.isf(0.01 / 20, 1) + 22.0)
 
 
-# ---- directions in which an effect shows --------------------------------------------------------
-
-
 def _shapes() -> list[Array]:
     """Derivatives of the force with respect to eight candidates: waves, a square, bumps."""
-    waves = [np.sin((0.3 + 0.1 * k) * TIME + k) for k in range(CANDIDATES - 2)]
+    waves = [np.sin((0.3 + 0.1 * k) * TIME + k) for k in range(TESTED - 2)]
     bumps: Array = np.exp(-(((TIME % 40.0) - 20.0) ** 2))
     return [*waves, np.sign(np.sin(0.4 * TIME)), bumps]
 
@@ -87,24 +83,20 @@ def _white(random: np.random.Generator) -> Array:
     return random.standard_normal(RUNS * N)
 
 
-def _heavy(random: np.random.Generator) -> Array:
-    return random.standard_t(3.0, RUNS * N)
-
-
 def _slow(random: np.random.Generator) -> Array:
     """First-order noise with a memory of half a second."""
-    kicks = random.standard_normal(RUNS * N)
-    noise: Array = signal.lfilter([1.0], [1.0, -float(np.exp(-STEP_S / 0.5))], kicks)
-    return noise
+    return np.asarray(signal.lfilter([1.0], [1.0, -float(np.exp(-STEP_S / 0.5))], _white(random)))
 
 
-def _uneven(random: np.random.Generator) -> Array:
-    """Larger where the second and third candidates show."""
-    noise: Array = _white(random) * (0.2 + np.sin(0.4 * TIME) ** 4)
-    return noise
+NOISES: dict[str, Draw] = {
+    "white": _white,
+    "heavy tails": lambda random: random.standard_t(3.0, RUNS * N),
+    "slow": _slow,
+    "larger where candidates show": lambda random: _white(random) * (0.2 + np.sin(0.4 * TIME) ** 4),
+}
 
 
-def test_direction_of_an_effect_is_orthogonal_to_the_law() -> None:
+def test_direction_of_an_effect_is_of_unit_length_and_orthogonal_to_the_law() -> None:
     noise = _white(np.random.default_rng(3))
     own = (LAW @ [2.0, 3.0] + _shapes()[2])[:, None]
     for unit in (1e-6, 1.0, 1e6):
@@ -116,7 +108,7 @@ def test_direction_of_an_effect_is_orthogonal_to_the_law() -> None:
     assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
 
 
-def test_score_counts_less_if_the_noise_is_larger_in_the_samples_of_the_effect() -> None:
+def test_score_counts_less_if_the_noise_is_larger_where_the_effect_acts() -> None:
     """The effect shows only in a tenth of the samples, where the noise is five times as large."""
     here = np.arange(RUNS * N) % 400 < 40
     noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
@@ -127,45 +119,35 @@ def test_score_counts_less_if_the_noise_is_larger_in_the_samples_of_the_effect()
     assert even.counted[0] == pytest.approx(0.25, rel=0.1)
 
 
-# ---- calibration on the residual ----------------------------------------------------------------
-
-
 def _level(false_alarms: float = 0.01) -> Level:
     policy = replace(DEFAULT, indifference=0.0, false_alarms=false_alarms)
-    return Level.shared(policy, CANDIDATES, RUNS * N, 1.0)
-
-
-def _false_names(noise: Callable[[np.random.Generator], Array], campaigns: int) -> int:
-    """In how many campaigns of noise the largest gain exceeds a calibrated level of 5 %."""
-    false = 0
-    for seed in range(campaigns):
-        directions = _directions(noise(np.random.default_rng(seed)))
-        gains = [float(np.sum((d.ways.T @ d.innovations) ** 2 * d.counted)) for d in directions]
-        false += bool(max(gains) > calibrated(_level(0.05), directions).critical)
-    return false
+    return Level.shared(policy, TESTED, RUNS * N, 1.0)
 
 
 @pytest.mark.extended
-@pytest.mark.parametrize("noise", [_white, _heavy, _slow, _uneven])
-def test_false_alarm_rate_is_at_most_nominal_in_four_kinds_of_noise(
-    noise: Callable[[np.random.Generator], Array],
-) -> None:
-    assert _false_names(noise, 120) <= stats.binom.ppf(0.999, 120, 0.05)
+@pytest.mark.parametrize("noise", NOISES)
+def test_false_alarm_rate_is_at_most_nominal_in_four_kinds_of_noise(noise: str) -> None:
+    campaigns, false = 120, 0
+    for seed in range(campaigns):
+        directions = _directions(NOISES[noise](np.random.default_rng(seed)))
+        gains = [float(np.sum((d.ways.T @ d.innovations) ** 2 * d.counted)) for d in directions]
+        false += bool(max(gains) > calibrated(_level(0.05), directions).critical)
+    assert false <= stats.binom.ppf(0.999, campaigns, 0.05)
 
 
 def test_calibrated_level_of_white_noise_is_that_of_a_shared_chi_square() -> None:
     found = calibrated(_level(), _directions(_white(np.random.default_rng(0))))
-    assert 0.8 * 0.01 / CANDIDATES < found.chance <= 0.01 / CANDIDATES
+    assert 0.8 * 0.01 / TESTED < found.chance <= 0.01 / TESTED
     assert found.blocks == RUNS * N * STEP_S
 
 
-def test_level_rises_if_the_noise_is_larger_in_the_samples_of_an_effect() -> None:
+def test_calibrated_level_rises_if_the_noise_is_larger_where_an_effect_acts() -> None:
     noise = _white(np.random.default_rng(0)) * (0.1 + 3.0 * _shapes()[-1])
     directions = [replace(d, counted=np.ones(1)) for d in _directions(noise)]
     assert 3.0 < calibrated(_level(), directions).critical / _level().critical < 30.0
 
 
-def test_part_of_the_residual_that_a_candidate_explains_does_not_raise_the_level() -> None:
+def test_residual_that_a_candidate_explains_does_not_raise_the_level() -> None:
     noise = _white(np.random.default_rng(1))
     explained = noise + 5.0 * _shapes()[-1] + 3.0 * _shapes()[2]
     assert calibrated(_level(), _directions(explained)).critical == pytest.approx(
@@ -177,25 +159,20 @@ def _one_direction(way: Array, noise: Array, blocks: list[int]) -> Directions:
     return Directions(way[:, None], noise, np.ones(1), np.array(blocks), NO_ENDS)
 
 
-@pytest.mark.parametrize(
-    ("false_alarms", "gain"), [(0.10, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)]
-)
-def test_calibrated_level_is_the_quantile_of_gains_under_random_signs(
-    false_alarms: float, gain: float
-) -> None:
+@pytest.mark.parametrize(("rate", "gain"), [(0.1, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)])
+def test_calibrated_level_is_a_quantile_of_random_signs(rate: float, gain: float) -> None:
     """Four block scores of one: their sum is 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
     noise = np.repeat([1.0, 1.0, -1.0, -1.0], 4)
-    level = Level(false_alarms=false_alarms, candidates=1, chance=1.0)
-    found = calibrated(level, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
+    level = Level(false_alarms=rate, candidates=1, chance=1.0)
+    directions = [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])]
+    found = calibrated(level, directions)
     assert found.chance == pytest.approx(stats.chi2.sf(gain, 1), rel=1e-3)
     assert found.blocks == 4
     # A level that is already stricter is not changed.
-    strict = replace(level, chance=1e-80)
-    again = calibrated(strict, [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])])
-    assert again.chance == 1e-80
+    assert calibrated(replace(level, chance=1e-80), directions).chance == 1e-80
 
 
-def test_candidate_with_two_parameters_is_compared_with_chi_square_of_two_degrees() -> None:
+def test_candidate_with_two_parameters_has_chi_square_of_two_degrees() -> None:
     ways = np.zeros((8, 2))
     ways[:4, 0] = ways[4:, 1] = 0.5
     noise = np.tile([1.0, 1.0, -1.0, -1.0], 2)
@@ -205,44 +182,34 @@ def test_candidate_with_two_parameters_is_compared_with_chi_square_of_two_degree
 
 
 def test_candidate_without_a_direction_keeps_its_share_of_the_level() -> None:
-    noise = np.array([1.0, 1.0, -1.0, -1.0])
-    one = _one_direction(np.full(4, 0.5), noise, [0, 2])
+    one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
     level = Level(false_alarms=0.01, candidates=2, chance=1.0)
     chance = stats.chi2.sf(4.0, 1)
-    assert calibrated(level, [one]).chance == pytest.approx(0.5 * chance, rel=1e-3)
-    wide = replace(level, false_alarms=0.06)
-    assert calibrated(wide, [one]).chance == pytest.approx(chance, rel=1e-3)
+    for rate, share in ((0.01, 0.5), (0.06, 1.0)):
+        found = calibrated(replace(level, false_alarms=rate), [one])
+        assert found.chance == pytest.approx(share * chance, rel=1e-3)
     assert calibrated(level, []) == level
 
 
-# ---- decoys -------------------------------------------------------------------------------------
-
-
 def _decoy(ways: Array, noise: Array, ends: list[int], counted: float = 1.0) -> Directions:
-    ways = np.linalg.qr(ways)[0]
-    share = np.full(ways.shape[1], counted)
-    return Directions(ways, noise, share, np.arange(0, len(noise), 50), np.array(ends, np.intp))
+    share, blocks = np.full(ways.shape[1], counted), np.arange(0, len(noise), 50)
+    return Directions(np.linalg.qr(ways)[0], noise, share, blocks, np.array(ends, np.intp))
 
 
 @pytest.mark.parametrize("k", [1, 3])
 def test_gains_of_decoys_in_white_noise_follow_chi_square(k: int) -> None:
     random = np.random.default_rng(k)
-    gains = np.concatenate(
-        [
-            decoy_gains(
-                [_decoy(random.standard_normal((4000, k)), random.standard_normal(4000), [1500])]
-            )[0]
-            for _ in range(20)
-        ]
-    )
+    decoys = [
+        _decoy(random.standard_normal((4000, k)), random.standard_normal(4000), [1500])
+        for _ in range(20)
+    ]
+    gains = np.concatenate([decoy_gains([decoy])[0] for decoy in decoys])
     assert np.mean(gains) == pytest.approx(k, rel=0.1)
     assert np.mean(gains > stats.chi2.isf(0.05, k)) == pytest.approx(0.05, abs=0.015)
 
 
 @pytest.mark.parametrize("ends", [[300], [0, 300], [300, 300]])
-def test_decoy_is_the_shape_of_a_candidate_shifted_cyclically_within_each_run(
-    ends: list[int],
-) -> None:
+def test_decoy_is_a_candidate_shifted_cyclically_within_each_run(ends: list[int]) -> None:
     """Also if a run has no samples."""
     random = np.random.default_rng(4)
     noise = random.standard_normal(700)
@@ -263,22 +230,83 @@ def test_decoys_are_named_only_if_their_gain_exceeds_the_threshold() -> None:
         level = Level(0.01, 1, 1.0, worth=threshold)
         found = with_decoys(level, [one], 100)
         assert (found.decoys, found.decoys_named) == (DRAWS, named)
-    level = Level(0.01, 1, 1.0)
-    assert with_decoys(level, [], 100) == level
+    assert with_decoys(Level(0.01, 1, 1.0), [], 100) == Level(0.01, 1, 1.0)
 
 
-def test_upper_limit_of_a_rate_is_that_of_clopper_and_pearson() -> None:
+def test_upper_limit_of_a_false_alarm_rate_is_that_of_clopper_and_pearson() -> None:
     assert rate_below(0, 200) == pytest.approx(1.0 - 0.05 ** (1.0 / 200.0))
     assert stats.binom.cdf(3, 200, rate_below(3, 200)) == pytest.approx(0.05)
     assert rate_below(200, 200) == 1.0
 
 
-def test_diagnosis_reports_the_level_of_its_tests() -> None:
-    found = linear_diagnosis("nothing")
-    level = found.level
-    assert level.candidates == len(found.steps[0].trials)
-    assert level.false_alarms == 0.01
+def test_diagnosis_reports_level_and_decoys_of_its_significance_tests() -> None:
+    found, level = linear_diagnosis("nothing"), linear_diagnosis("nothing").level
+    assert (level.candidates, level.false_alarms) == (len(found.steps[0].trials), 0.01)
     assert level.chance <= 0.01 / level.candidates
     assert level.blocks > 0
     assert (level.decoys, level.decoys_named) == (DRAWS, 0)
     assert found.to_dict()["level"]["critical"] == level.critical
+
+
+def diagnosis_with(hidden: str, **changes: Any) -> Diagnosis:
+    """The diagnosis of a linear campaign under a changed policy."""
+    return diagnose(Rig(), linear_runs(hidden), law="coulomb", policy=replace(DEFAULT, **changes))
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("weak", [np.nan]), ("false_alarms", [np.nan, 0.0, 1.0]), ("least_weight", [0.0, 0.5])],
+)
+def test_policy_value_outside_its_range_is_rejected(name: str, values: list[float]) -> None:
+    for value in values:
+        with pytest.raises(InputError, match=name):
+            Policy(**{name: value})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("weight", [0.018, 0.1, 0.4])
+def test_evidence_margin_of_a_tie_is_twice_the_log_odds_of_the_weight(weight: float) -> None:
+    assert Policy(least_weight=weight).tie == pytest.approx(2.0 * np.log((1.0 - weight) / weight))
+
+
+def _margins() -> list[Any]:
+    """Values of the constants at which the gain of the weak mass equals its threshold."""
+    book = Textbook(linear_runs("weak mass"))
+    gain, rms_n = book.gain(), book.rms(2)
+    at_chance = stats.chi2.isf(0.01 / CANDIDATES, 1)
+    rate = CANDIDATES * stats.chi2.sf(gain - 22.0, 1)
+    share = np.sqrt(gain / book.samples)
+    extended = pytest.mark.extended
+    return [
+        pytest.param("imperfection", gain - at_chance, id="artefact margin"),
+        pytest.param("false_alarms", rate, id="false-alarm rate", marks=extended),
+        pytest.param("indifference", share, id="minimum effect size", marks=extended),
+        pytest.param("indifference_n", rms_n * share, id="minimum effect in N", marks=extended),
+    ]
+
+
+@pytest.mark.parametrize(("name", "at_gain"), _margins())
+def test_effect_is_named_only_if_its_gain_exceeds_the_threshold(name: str, at_gain: float) -> None:
+    factor = {"false_alarms": 0.1, "imperfection": 1.15}.get(name, 1.1)
+    lenient = diagnosis_with("weak mass", **{name: at_gain / factor})
+    strict = diagnosis_with("weak mass", **{name: at_gain * factor})
+    assert (lenient.verdict, lenient.effects) == ("missing", ("inertia_leak",))
+    assert (strict.verdict, strict.effects) == ("adequate", ())
+    assert getattr(strict.policy, name) == strict.to_dict()["policy"][name]
+
+
+def test_search_reports_a_further_effect_beyond_the_largest_number() -> None:
+    found = diagnosis_with("offset and drag", most_effects=1)
+    assert (found.verdict, len(found.model.effects)) == ("unexplained", 1)
+    assert "effects" in [remainder.axis for remainder in found.unexplained]
+
+
+@pytest.mark.extended
+def test_alternative_below_the_least_weight_of_the_policy_is_not_reported() -> None:
+    tied = linear_diagnosis("lag")
+    (effect,) = tied.effects
+    (other,) = tied.alternatives[effect]
+    weight = min(tied.weights[effect][other], tied.weights[effect][effect])
+    assert DEFAULT.least_weight < weight < 0.49
+    dropped = diagnosis_with("lag", least_weight=1.02 * weight)
+    assert (dropped.verdict, len(dropped.effects)) == ("missing", 1)
+    assert dropped.alternatives == {dropped.effects[0]: ()}

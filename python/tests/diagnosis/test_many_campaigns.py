@@ -1,7 +1,5 @@
 """Many campaigns at once: here, in threads, in other processes, from the command line."""
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import pickle
@@ -19,17 +17,21 @@ from linear_campaigns import linear_diagnosis, linear_runs
 SLIDE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
 
 
-def test_folder_is_diagnosed_like_its_runs_even_if_another_folder_is_invalid(
-    tmp_path: Path,
-) -> None:
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder of the campaigns `mass` and `without_rig`, of which the second is invalid."""
     for name in ("mass", "without_rig"):
-        (tmp_path / name).mkdir()
+        (tmp_path / "all" / name).mkdir(parents=True)
         for run in linear_runs("mass"):
-            run.write_csv(tmp_path / name / f"{run.name}.csv")
-    (tmp_path / "mass" / "rig.toml").write_text(SLIDE)
+            run.write_csv(tmp_path / "all" / name / f"{run.name}.csv")
+    (tmp_path / "all" / "mass" / "rig.toml").write_text(SLIDE)
+    return tmp_path / "all"
+
+
+def test_folder_is_diagnosed_like_its_runs_even_if_another_is_invalid(folder: Path) -> None:
     progress: list[tuple[str, int, int]] = []
     found = diagnose_many(
-        {"lost": tmp_path / "without_rig", "mass": tmp_path / "mass"},
+        {"lost": folder / "without_rig", "mass": folder / "mass"},
         progress=lambda *message: progress.append(message),
         law="coulomb",
     )
@@ -45,8 +47,7 @@ def test_folder_is_diagnosed_like_its_runs_even_if_another_folder_is_invalid(
     assert [(done, total) for _, done, total in progress] == [(1, 2), (2, 2)]
 
 
-def test_results_of_threads_are_those_of_a_single_diagnosis() -> None:
-    expected = linear_diagnosis("mass")
+def test_diagnosis_in_a_thread_is_that_of_a_single_call() -> None:
     with ThreadPoolExecutor(2) as executor:
         found = diagnose_many(
             {"b": (Rig(), linear_runs("mass")), "a": (Rig(), [])}, executor=executor, law="coulomb"
@@ -54,18 +55,17 @@ def test_results_of_threads_are_those_of_a_single_diagnosis() -> None:
     assert list(found) == ["b", "a"]
     assert isinstance(found["a"], InputError)
     assert isinstance(found["b"], Diagnosis)
-    assert found["b"].model.values.tolist() == expected.model.values.tolist()
+    assert found["b"].model.values.tolist() == linear_diagnosis("mass").model.values.tolist()
 
 
 @pytest.mark.parametrize("start", ["fork", pytest.param("spawn", marks=pytest.mark.extended)])
-def test_results_of_other_processes_are_those_of_this_one(start: str) -> None:
+def test_diagnosis_in_another_process_is_that_of_a_single_call(start: str) -> None:
     """Also if a process whose threads have worked is forked."""
     if start not in multiprocessing.get_all_start_methods():
         pytest.skip(f"this system does not {start} processes")
     expected = linear_diagnosis("mass")
-    context = multiprocessing.get_context(start)
-    with ProcessPoolExecutor(1, mp_context=context) as executor:
-        campaigns = {"a": (Rig(), linear_runs("mass"))}
+    campaigns = {"a": (Rig(), linear_runs("mass"))}
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context(start)) as executor:
         found = diagnose_many(campaigns, executor=executor, law="coulomb")["a"]
     assert isinstance(found, Diagnosis)
     assert found.effects == expected.effects
@@ -79,7 +79,7 @@ class UnreadableCampaign(tuple[Any, ...]):
         raise RuntimeError("out of memory")
 
 
-def test_failing_worker_affects_only_its_own_campaign() -> None:
+def test_failing_diagnosis_in_a_thread_does_not_affect_other_campaigns() -> None:
     campaigns: dict[str, Any] = {"a": UnreadableCampaign((Rig(), [])), "b": (Rig(), [])}
     with ThreadPoolExecutor(1) as executor:
         found = diagnose_many(campaigns, executor=executor, law="coulomb")
@@ -98,21 +98,20 @@ def test_failing_worker_affects_only_its_own_campaign() -> None:
         ({}, {"progress": 3}, "progress"),
     ],
 )
-def test_wrong_argument_for_all_campaigns_is_rejected(
+def test_argument_of_diagnose_many_is_rejected_by_name_if_invalid(
     campaigns: Any, options: dict[str, Any], named: str
 ) -> None:
     with pytest.raises(InputError, match=named):
         diagnose_many(campaigns, **options)
 
 
-def test_campaign_that_is_not_a_pair_of_rig_and_runs_is_reported_as_an_error() -> None:
+def test_campaign_that_is_not_a_pair_of_rig_and_runs_is_an_error() -> None:
     wrong: Any = {"a": (Rig(), [], [])}
-    found = diagnose_many(wrong, law="coulomb")
-    assert isinstance(found["a"], InputError)
+    assert isinstance(diagnose_many(wrong, law="coulomb")["a"], InputError)
     assert diagnose_many({}, law="auto") == {}
 
 
-def test_pickled_diagnosis_predicts_the_same_and_has_the_same_summary() -> None:
+def test_pickled_diagnosis_has_the_same_predictions_and_summary() -> None:
     found = linear_diagnosis("mass")
     again = pickle.loads(pickle.dumps(found))
     run = linear_runs("mass")[0]
@@ -120,18 +119,10 @@ def test_pickled_diagnosis_predicts_the_same_and_has_the_same_summary() -> None:
     assert again.model.predict(run).tolist() == found.model.predict(run).tolist()
 
 
-# ---- command line -------------------------------------------------------------------------------
-
-
-def test_command_diagnoses_each_folder_and_writes_json_and_models(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_diagnose_command_writes_json_and_models_of_many_folders(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder, answers, models = tmp_path / "all", tmp_path / "all.json", tmp_path / "models"
-    for name in ("mass", "without_rig"):
-        (folder / name).mkdir(parents=True)
-        for run in linear_runs("mass"):
-            run.write_csv(folder / name / f"{run.name}.csv")
-    (folder / "mass" / "rig.toml").write_text(SLIDE)
+    answers, models = tmp_path / "all.json", tmp_path / "models"
     words = ["diagnose", "--many", str(folder), "--jobs", "1", "--law", "coulomb"]
     assert main([*words, "--json", str(answers), "--out", str(models)]) == 0
     text = capsys.readouterr().out
@@ -153,7 +144,7 @@ def test_command_diagnoses_each_folder_and_writes_json_and_models(
         (["diagnose", "--many", ".", "--jobs", "0"], "1 or more"),
     ],
 )
-def test_wrong_arguments_of_the_command_end_with_code_two(
+def test_invalid_arguments_of_the_diagnose_command_end_with_code_two(
     words: list[str], problem: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(words) == 2

@@ -1,31 +1,26 @@
 """Errors that recur with each period of the motion: lack of fit with replicates."""
 
-from __future__ import annotations
-
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.replicates import find_replicates
 from jbf.estimation.campaign import Campaign
 from scipy import signal
-from slides import Mask, slides, solution_with, white_noise
+from slides import Array, Mask, slides, solution_with, white_noise
 
-Array = npt.NDArray[np.float64]
 PERIOD = 100
+N = 9 * PERIOD
 
 
 def two_harmonics(n: int, period: int = PERIOD) -> Array:
     """A periodic motion whose half periods differ."""
     angle = 2.0 * np.pi * np.arange(n) / period
-    motion: Array = np.sin(angle) + 0.3 * np.sin(2.0 * angle + 0.5)
-    return motion
+    return np.asarray(np.sin(angle) + 0.3 * np.sin(2.0 * angle + 0.5))
 
 
 @cache
@@ -36,15 +31,13 @@ def periodic(*counts: int, step_s: float = 0.05) -> Campaign:
 
 def wave(n: int, harmonic: int = 7) -> Array:
     """A recurring error of mean square one; of opposite sign half a period later."""
-    error: Array = np.sqrt(2.0) * np.sin(2.0 * np.pi * harmonic * np.arange(n) / PERIOD + 0.3)
-    return error
+    return np.asarray(np.sqrt(2.0) * np.sin(2.0 * np.pi * harmonic * np.arange(n) / PERIOD + 0.3))
 
 
 def not_recurring(n: int) -> Array:
     """A wave of mean square one whose product with itself one period later averages to zero."""
     signs = np.resize([1.0, 1.0, -1.0, -1.0], n // PERIOD + 1)
-    error: Array = wave(n, 9) * np.repeat(signs, PERIOD)[:n]
-    return error
+    return np.asarray(wave(n, 9) * np.repeat(signs, PERIOD)[:n])
 
 
 def recurring_in(
@@ -64,51 +57,43 @@ def runs_named(found: Remainder) -> list[str]:
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_recurring_error_is_found_with_its_share(unit: float) -> None:
+def test_error_that_recurs_with_the_motion_is_found_with_its_share(unit: float) -> None:
     """1.44 of a mean square of 2.44 recurs: 77 % of the RMS."""
-    n = 9 * PERIOD
-    (found,) = recurring_in(unit * (1.2 * wave(n) + not_recurring(n)))
+    residual = unit * (1.2 * wave(N) + not_recurring(N))
+    (found,) = recurring_in(residual)
     assert found.axis == "period"
     assert found.share == pytest.approx(1.44 / 2.44, rel=1e-6)
-    percent = re.search(r"(\d+) % of the residual's RMS", found.where)
-    assert percent is not None
-    assert int(percent[1]) == 77
-    assert recurring_in(unit * not_recurring(n)) == []
+    assert "77 % of the residual's RMS" in found.where
+    assert recurring_in(unit * not_recurring(N)) == []
     for part, there in ((0.99, True), (1.01, False)):
-        residual = unit * (1.2 * wave(n) + not_recurring(n))
         assert bool(recurring_in(residual, replicate_share=part * 1.44 / 2.44)) == there
 
 
-@pytest.mark.parametrize(("part", "found"), [(0.99, True), (1.01, False)])
-def test_significance_of_a_recurring_error_is_the_root_of_the_number_of_pairs(
-    part: float, found: bool
-) -> None:
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_significance_of_a_recurring_error_is_the_root_of_the_pairs(unit: float) -> None:
     """Products of white noise have a standard deviation of the mean square."""
-    n = 9 * PERIOD
-    sigma = part * float(np.sqrt(n - PERIOD))
-    for unit in (1e-3, 1e3):
-        assert bool(recurring_in(unit * wave(n), replicate_sigma=sigma)) == found
+    for part, found in ((0.99, True), (1.01, False)):
+        sigma = part * float(np.sqrt(N - PERIOD))
+        assert bool(recurring_in(unit * wave(N), replicate_sigma=sigma)) == found
 
 
 def test_recurring_error_in_part_of_the_record_is_less_significant() -> None:
     """The products then have a long-run variance above that of white noise."""
-    n = 9 * PERIOD
-    residual = wave(n) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
+    residual = wave(9 * PERIOD) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
     (found,) = recurring_in(residual, replicate_sigma=1.0)
-    white = found.share * float(np.sqrt(n - PERIOD))
+    white = found.share * float(np.sqrt(8 * PERIOD))
     assert recurring_in(residual, replicate_sigma=0.9 * white) == []
 
 
-def test_constant_level_is_not_a_recurring_error() -> None:
+def test_constant_residual_is_not_reported_as_a_recurring_error() -> None:
     """A level correlates also half a period later, where the wave has the opposite sign."""
-    n = 9 * PERIOD
-    assert recurring_in(np.full(n, 1.5)) == []
-    (found,) = recurring_in(1.5 + wave(n))
+    assert recurring_in(np.full(N, 1.5)) == []
+    (found,) = recurring_in(1.5 + wave(N))
     assert found.share == pytest.approx(2.0 / 3.25, rel=1e-6)
 
 
 @pytest.mark.parametrize("lag", [0.5, 0.6, 0.7, 0.8, 0.9])
-def test_correlation_of_the_noise_is_the_least_between_half_a_period_and_one(lag: float) -> None:
+def test_share_of_a_recurring_error_excludes_the_correlation_of_the_noise(lag: float) -> None:
     """The mean product of 1 + cos is 1 - 1/2 at its least, 1 + cos(pi / lag) / 2 a period later."""
     residual = 1.0 + np.cos(np.pi * np.arange(20_000) / (lag * PERIOD))
     (found,) = recurring_in(residual, replicate_share=1e-3, replicate_sigma=1e-6)
@@ -117,7 +102,7 @@ def test_correlation_of_the_noise_is_the_least_between_half_a_period_and_one(lag
 
 
 @pytest.mark.parametrize("memory_s", [0.2, 4.0, 20.0])
-def test_coloured_noise_is_not_a_recurring_error(memory_s: float) -> None:
+def test_coloured_noise_is_not_reported_as_a_recurring_error(memory_s: float) -> None:
     """Also if its memory is longer than a period of five seconds."""
     keep = float(np.exp(-0.05 / memory_s))
     campaign = periodic(3000, 3000)
@@ -127,33 +112,32 @@ def test_coloured_noise_is_not_a_recurring_error(memory_s: float) -> None:
         assert recurring_in(*(a + b for a, b in zip(white, slow, strict=True))) == []
 
 
-def test_only_runs_with_the_error_are_named() -> None:
+def test_only_runs_with_a_recurring_error_are_named() -> None:
     noise = white_noise(periodic(4000, 4000, 4000), 3)
     (found,) = recurring_in(noise[0] + wave(4000), noise[1], noise[2] + wave(4000))
     assert runs_named(found) == ["a", "c"]
     assert found.share == pytest.approx(2.0 / 5.0, abs=0.04)
 
 
-def test_run_without_a_period_is_skipped() -> None:
-    n = 9 * PERIOD
-    ramp = np.linspace(0.1, 0.2, n)
-    residual = 1.2 * wave(n) + not_recurring(n)
+def test_run_without_a_period_is_excluded_from_recurring_errors() -> None:
+    ramp = np.linspace(0.1, 0.2, N)
+    residual = 1.2 * wave(N) + not_recurring(N)
     assert recurring_in(residual, campaign=slides([ramp], step_s=0.05)) == []
-    motions = [ramp, 0.1 + 0.02 * two_harmonics(n)]
+    motions = [ramp, 0.1 + 0.02 * two_harmonics(N)]
     (found,) = recurring_in(100.0 * residual, residual, campaign=slides(motions, step_s=0.05))
     assert runs_named(found) == ["b"]
     assert found.share == pytest.approx(1.44 / 2.44, rel=1e-6)
 
 
 @pytest.mark.parametrize(("pairs", "found"), [(99, False), (100, True)])
-def test_run_with_fewer_than_100_pairs_is_skipped(pairs: int, found: bool) -> None:
+def test_recurring_error_requires_100_pairs_of_samples_in_a_run(pairs: int, found: bool) -> None:
     n = PERIOD + pairs
     assert bool(recurring_in(5.0 * wave(n))) == found
     (both,) = recurring_in(5.0 * wave(n), wave(3000))
     assert runs_named(both) == (["a", "b"] if found else ["b"])
 
 
-def test_only_pairs_of_samples_that_both_count_are_compared() -> None:
+def test_recurring_error_is_estimated_without_pairs_of_excluded_samples() -> None:
     n = 4000
     bad = np.arange(n) % (2 * PERIOD) < 30
     noise = white_noise(periodic(n), 5)[0]

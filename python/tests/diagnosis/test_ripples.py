@@ -1,14 +1,10 @@
 """Waves along the path that have another phase in each run: pitch, size, share and significance."""
 
-from __future__ import annotations
-
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from jbf import Rig
 from jbf.diagnosis import Remainder
@@ -17,9 +13,8 @@ from jbf.diagnosis.ripples import IN_MOST_CHANCE, find_ripples
 from jbf.estimation.campaign import Campaign
 from jbf.records.drive import Drive
 from scipy import stats
-from slides import STEP_S, slides
+from slides import STEP_S, Array, numbers_in, slides
 
-Array = npt.NDArray[np.float64]
 N = 1500
 PITCH_M = 0.05
 SPEEDS_M_S = (0.1, 0.137, 0.171, 0.229, 0.083)
@@ -70,13 +65,12 @@ def ripples_in(campaign: Campaign, signals: list[Array], share: float = 1e-6) ->
 
 def pitch_and_size(found: Remainder) -> tuple[float, float]:
     """Pitch (m) and amplitude (N) in a description."""
-    numbers = re.search(r"every ([\d.e+-]+) m.*?, ([\d.e+-]+) N,", found.where)
-    assert numbers is not None
-    return float(numbers[1]), float(numbers[2])
+    pitch_m, size_n = numbers_in(r"every ([\d.e+-]+) m.*?, ([\d.e+-]+) N,", found.where)
+    return pitch_m, size_n
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_ripple_is_found_with_pitch_median_size_and_share(unit: float) -> None:
+def test_ripple_is_found_with_its_pitch_median_size_and_share(unit: float) -> None:
     campaign, sizes = reversing(), [0.8, 0.9, 1.0, 1.1, 1.2]
     signals = [unit * x for x in waves(campaign, sizes)]
     (found,) = ripples_in(campaign, signals)
@@ -106,7 +100,7 @@ def test_only_the_larger_of_two_ripples_is_reported(friction_n: float) -> None:
     assert found.where.startswith("friction" if friction_n > 1.0 else "a force")
 
 
-def test_white_noise_has_no_ripple() -> None:
+def test_no_ripple_is_found_in_white_noise() -> None:
     campaign = reversing()
     for seed in range(10):
         assert ripples_in(campaign, waves(campaign, [0.0] * 5, seed=seed)) == []
@@ -129,50 +123,41 @@ def test_ripple_requires_three_runs(runs: int, found: int) -> None:
     assert len(ripples_in(campaign, waves(campaign, [1.0] * runs))) == found
 
 
-def without_wave(signal: Array, path: Array, pitch: float) -> Array:
-    """A signal of mean square one that has no component at this pitch."""
-    angle = 2.0 * np.pi * path / pitch
-    design = np.stack([np.cos(angle), np.sin(angle), np.ones(len(path))], axis=1)
-    rest: Array = signal - design @ np.linalg.lstsq(design, signal, rcond=None)[0]
-    return rest / float(np.sqrt(np.mean(rest**2)))
+def exact_waves(campaign: Campaign, amplitudes: Sequence[float], seed: int) -> list[Array]:
+    """Waves in noise of mean square one that has no component at their pitch."""
+    signals, noise = [], waves(campaign, [0.0] * len(amplitudes), seed=seed)
+    for i, (e, path) in enumerate(zip(noise, paths(campaign), strict=True)):
+        angle = 2.0 * np.pi * path / PITCH_M
+        design = np.stack([np.cos(angle), np.sin(angle), np.ones(len(path))], axis=1)
+        rest = e - design @ np.linalg.lstsq(design, e, rcond=None)[0]
+        wave = amplitudes[i] * np.cos(angle + 2.4 * i)
+        signals.append(rest / np.sqrt(np.mean(rest**2)) + wave)
+    return signals
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.75, 0), (1.6, 1)])
-def test_significance_of_a_ripple_is_that_of_a_chi_square_with_two_degrees_per_run(
-    part: float, found: int
-) -> None:
+def test_significance_of_a_ripple_is_chi_square_over_its_runs(part: float, found: int) -> None:
     """A wave of amplitude A in noise of variance 1 adds A^2 n / 2 to the ordinate of its run."""
     campaign = one_way()
     longest, step = 0.229 * STEP_S * N, 0.137 * STEP_S
     lines = 4.0 * longest / step / 4.0
     least = stats.chi2.isf(DEFAULT.tone_chance / lines, 2 * len(SPEEDS_M_S))
     amplitude = float(np.sqrt(2.0 * part * least / (len(SPEEDS_M_S) * N)))
-    noise = waves(campaign, [0.0] * 5, seed=11)
-    signals = [
-        without_wave(e, path, PITCH_M) + amplitude * np.cos(2.0 * np.pi * path / PITCH_M + 2.4 * i)
-        for i, (e, path) in enumerate(zip(noise, paths(campaign), strict=True))
-    ]
+    signals = exact_waves(campaign, [amplitude] * 5, seed=11)
     for unit in (0.01, 10.0):
         assert len(ripples_in(campaign, [unit * x for x in signals])) == found
 
 
 @pytest.mark.parametrize(("part", "found"), [(0.8, 0), (1.25, 1)])
-def test_ripple_requires_a_significant_wave_in_the_weakest_two_thirds_of_the_runs(
-    part: float, found: int
-) -> None:
+def test_ripple_requires_significance_in_two_thirds_of_the_runs(part: float, found: int) -> None:
     """Of three runs the two weakest: twice their ordinates is chi-square with four degrees."""
     campaign = one_way(SPEEDS_M_S[:3])
     least = stats.chi2.isf(IN_MOST_CHANCE, 4)
     # In a run of mean square m the ordinate of a wave of amplitude A is A^2 n / (2 m).
     ordinate = 0.5 * part * least
     square = 2.0 * ordinate / N / (1.0 - ordinate / N)
-    amplitudes = [float(np.sqrt(square))] * 2 + [3.0]
-    noise = waves(campaign, [0.0] * 3, seed=12)
-    signals = [
-        without_wave(e, path, PITCH_M) + a * np.cos(2.0 * np.pi * path / PITCH_M + 2.4 * i)
-        for i, (a, e, path) in enumerate(zip(amplitudes, noise, paths(campaign), strict=True))
-    ]
-    assert len(ripples_in(campaign, signals)) == found
+    weak = float(np.sqrt(square))
+    assert len(ripples_in(campaign, exact_waves(campaign, [weak, weak, 3.0], seed=12))) == found
 
 
 @pytest.mark.parametrize(("third_m_s", "found"), [(0.05, 0), (0.09, 1)])
@@ -183,25 +168,21 @@ def test_ripple_requires_eight_periods_in_each_of_three_runs(third_m_s: float, f
 
 
 @pytest.mark.parametrize(("steps", "found"), [(3.6, 0), (4.4, 1)])
-def test_ripple_requires_a_pitch_of_at_least_four_steps_of_the_path(
-    steps: float, found: int
-) -> None:
+def test_ripple_requires_a_pitch_of_four_steps_of_the_path(steps: float, found: int) -> None:
     """The step of the path is the median of all runs: that at 0.1 m/s, 2 mm."""
     campaign = one_way((0.1, 0.099, 0.101))
-    signals = waves(campaign, [2.0] * 3, pitch=steps * 0.1 * STEP_S)
-    seen = ripples_in(campaign, signals)
+    seen = ripples_in(campaign, waves(campaign, [2.0] * 3, pitch=steps * 0.1 * STEP_S))
     assert [pitch_and_size(x)[0] for x in seen] == pytest.approx([steps * 0.002] * found, rel=0.01)
 
 
-def test_ripple_is_estimated_without_samples_that_do_not_count() -> None:
+def test_ripple_is_estimated_without_samples_excluded_from_the_fit() -> None:
     campaign = reversing()
     counted = [np.arange(N) % 3 > 0] * 5
     signals = [
         np.where(c, x, 50.0) for c, x in zip(counted, waves(campaign, [1.0] * 5), strict=True)
     ]
-    policy = replace(DEFAULT, tone_share=1e-6)
     samples = campaign.samples.within(counted)
-    (found,) = find_ripples(campaign, samples, signals, signals, policy)
+    (found,) = find_ripples(campaign, samples, signals, signals, replace(DEFAULT, tone_share=1e-6))
     assert pitch_and_size(found) == pytest.approx((PITCH_M, 1.0), rel=0.1)
     assert found.share == pytest.approx(1.0 / 3.0, rel=0.1)
 
@@ -213,13 +194,10 @@ def test_ripple_is_estimated_without_samples_that_do_not_count() -> None:
         (Rig(drive=Drive("rotary", "torque")), 2.0 * np.pi / 100.0, "torque", 100.0),
     ],
 )
-def test_description_has_periods_per_turn_if_the_drive_turns(
+def test_ripple_is_described_by_periods_per_turn_if_the_drive_turns(
     rig: Rig, pitch: float, noun: str, per_turn: float
 ) -> None:
-    velocities = [np.where(np.arange(N) < N // 2, v, -v) for v in SPEEDS_M_S]
-    campaign = slides(velocities, rig=rig)
+    campaign = slides([np.where(np.arange(N) < N // 2, v, -v) for v in SPEEDS_M_S], rig=rig)
     (found,) = ripples_in(campaign, waves(campaign, [1.0] * 5, pitch=pitch))
     assert found.where.startswith(f"a {noun}")
-    number = re.search(r"([\d.]+) times a turn", found.where)
-    assert number is not None
-    assert float(number[1]) == pytest.approx(per_turn, rel=0.01)
+    assert numbers_in(r"([\d.]+) times a turn", found.where) == pytest.approx([per_turn], rel=0.01)

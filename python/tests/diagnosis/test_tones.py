@@ -1,24 +1,18 @@
 """Spectral lines in innovations: significance, frequency, amplitude and share in closed form."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.tones import find_tones
-from slides import STEP_S, Mask, steady_slides, white_noise
+from slides import STEP_S, Array, Mask, steady_slides, white_noise
 
-Array = npt.NDArray[np.float64]
 SMALLEST_SHARE = 1e-12
-TONE = re.compile(r"([\d.]+) Hz.*?([\d.]+) N")
-"""Frequency and amplitude of one tone in a description."""
 
 campaign_of = cache(steady_slides)
 
@@ -36,6 +30,11 @@ def tones_in(
     return find_tones(campaign.prepared, samples, signals, residuals or signals, policy)
 
 
+def pairs_in(tone: Remainder) -> list[tuple[float, float]]:
+    """Frequency (Hz) and amplitude (N) of each tone in a description."""
+    return [(float(f), float(a)) for f, a in re.findall(r"([\d.]+) Hz.*?([\d.]+) N", tone.where)]
+
+
 def flat_spectrum(n: int, lines: dict[int, float], seed: int = 0) -> Array:
     """A signal whose spectral power is 1 at every line except these (line to power)."""
     phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, n // 2 + 1)
@@ -51,21 +50,18 @@ def sine(n: int, frequency_hz: float, amplitude: float = 1.0, phase: float = 0.0
     return signal
 
 
-def test_white_noise_has_no_tone() -> None:
+def test_no_tone_is_found_in_white_noise() -> None:
     campaign = campaign_of(1500, 1500, 1500)
     assert all(tones_in(*white_noise(campaign, seed)) == [] for seed in range(20))
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-@pytest.mark.parametrize(("part", "significant"), [(0.98, False), (1.02, True)])
-def test_line_is_significant_above_the_quantile_of_exponential_power(
-    unit: float, part: float, significant: bool
-) -> None:
+def test_tone_is_significant_above_a_quantile_of_exponential_power(unit: float) -> None:
     """The power of a line of white noise is exponential with median log 2 (Fisher 1929)."""
-    n = 1024
-    lines = n // 2 - 8
+    lines = 1024 // 2 - 8
     height = np.log(lines / DEFAULT.tone_chance) / np.log(2.0)
-    assert bool(tones_in(unit * flat_spectrum(n, {100: part * height}))) == significant
+    for part, significant in ((0.98, False), (1.02, True)):
+        assert bool(tones_in(unit * flat_spectrum(1024, {100: part * height}))) == significant
 
 
 @pytest.mark.parametrize(("periods", "found"), [(7, False), (8, False), (9, True), (512, True)])
@@ -74,36 +70,33 @@ def test_tone_requires_more_than_eight_periods_in_a_run(periods: int, found: boo
 
 
 @pytest.mark.parametrize(("samples", "found"), [(63, False), (64, True)])
-def test_tone_requires_64_samples_and_a_shorter_run_does_not_hide_the_next(
-    samples: int, found: bool
-) -> None:
+def test_tone_requires_64_samples_in_its_own_run(samples: int, found: bool) -> None:
     short, other = flat_spectrum(samples, {20: 1e3}), flat_spectrum(1024, {100: 1e4})
     assert bool(tones_in(short)) == found
     (tone,) = tones_in(short, other)
-    assert len(TONE.findall(tone.where)) == 1 + found
+    assert len(pairs_in(tone)) == 1 + found
 
 
-def test_constant_and_quiet_runs_do_not_hide_the_next() -> None:
+def test_tone_is_found_in_runs_next_to_constant_and_quiet_runs() -> None:
     loud = flat_spectrum(1024, {100: 1e4})
     (tone,) = tones_in(np.zeros(1024), loud, np.ones(512), flat_spectrum(1024, {}), loud)
     assert tone.where.endswith(" in b, e")
 
 
 @pytest.mark.parametrize("off", [-0.4, 0.0, 0.2])
-def test_frequency_and_amplitude_are_exact_between_spectral_lines(off: float) -> None:
+def test_frequency_and_amplitude_of_a_tone_are_exact_between_lines(off: float) -> None:
     n = 1000
     frequency = (100.0 + off) / (n * STEP_S)
     noise = 0.01 * np.random.default_rng(1).standard_normal(n)
     (tone,) = tones_in(sine(n, frequency, 2.5, 0.7) + noise)
     assert tone.axis == "frequency"
-    found = TONE.search(tone.where)
-    assert found is not None
-    assert float(found[1]) == pytest.approx(frequency, abs=0.006)
-    assert float(found[2]) == pytest.approx(2.5, rel=0.02)
+    ((found_hz, amplitude_n),) = pairs_in(tone)
+    assert found_hz == pytest.approx(frequency, abs=0.006)
+    assert amplitude_n == pytest.approx(2.5, rel=0.02)
     assert tone.share == pytest.approx(1.0, abs=0.01)
 
 
-def test_share_of_a_tone_is_half_its_squared_amplitudes_over_the_mean_square_of_all_runs() -> None:
+def test_share_of_tones_is_that_of_their_power_in_all_runs() -> None:
     n = 1000
     noise = white_noise(campaign_of(n, n, n), 2, 1.5)
     tones = [sine(n, 5.0, 2.0), sine(n, 9.0, 1.0, 0.5 * np.pi), np.zeros(n)]
@@ -111,35 +104,28 @@ def test_share_of_a_tone_is_half_its_squared_amplitudes_over_the_mean_square_of_
     (tone,) = tones_in(*signals)
     total = sum(float(x @ x) for x in signals)
     assert tone.share == pytest.approx(0.5 * (2.0**2 + 1.0**2) * n / total, rel=0.15)
-    amplitudes = [float(a) for _, a in TONE.findall(tone.where)]
     # Standard error of an amplitude: sigma sqrt(2 / n) = 0.067 N; two digits are printed.
-    assert amplitudes == pytest.approx([2.0, 1.0], abs=0.25)
+    assert [a for _, a in pairs_in(tone)] == pytest.approx([2.0, 1.0], abs=0.25)
     assert tones_in(*signals, share=tone.share) != []
     assert tones_in(*signals, share=1.01 * tone.share) == []
 
 
-def test_amplitude_of_a_tone_is_that_of_the_residual_at_samples_that_count() -> None:
+def test_amplitude_of_a_tone_is_that_of_the_residual_at_fitted_samples() -> None:
     n = 1000
     innovations = sine(n, 5.0, 2.0)
     residual = np.where(np.arange(n) < 500, 3.0, 1.0) * innovations
-    counted = [np.arange(n) >= 500]
-    (tone,) = tones_in(innovations + 1e-3, residuals=[residual], counted=counted)
-    found = TONE.search(tone.where)
-    assert found is not None
-    assert (float(found[1]), float(found[2])) == pytest.approx((5.0, 2.0), abs=0.01)
+    (tone,) = tones_in(innovations + 1e-3, residuals=[residual], counted=[np.arange(n) >= 500])
+    assert pairs_in(tone)[0] == pytest.approx((5.0, 2.0), abs=0.01)
     assert tone.share == 1.0
 
 
 @pytest.mark.parametrize(("apart_hz", "tones"), [(0.1, 1), (0.3, 2)])
-def test_tones_with_frequencies_within_two_percent_are_reported_as_one(
-    apart_hz: float, tones: int
-) -> None:
+def test_tones_within_two_percent_are_reported_as_one(apart_hz: float, tones: int) -> None:
     n = 2000
     signals = [
         sine(n, f, amplitude) + 1e-3 * flat_spectrum(n, {}, seed)
         for seed, (f, amplitude) in enumerate(((5.0, 1.0), (5.0 + apart_hz, 2.0)))
     ]
     (found,) = tones_in(*signals)
-    pairs = [(float(f), float(a)) for f, a in TONE.findall(found.where)]
     expected = [(5.0 + 0.5 * apart_hz, 1.5)] if tones == 1 else [(5.0, 1.0), (5.0 + apart_hz, 2.0)]
-    assert np.array(pairs) == pytest.approx(np.array(expected), abs=0.006)
+    assert np.array(pairs_in(found)) == pytest.approx(np.array(expected), abs=0.006)

@@ -1,21 +1,17 @@
 """Verdict, confounders, confirmation by held-out runs, and outcomes in the ledger."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf import Rig
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.confirmation import Confirmation, left_out_confirms
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.verdict import name_stands, verdict
-from jbf.estimation.campaign import Campaign
-from linear_campaigns import linear_diagnosis, reversing_runs
+from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 
 OFFSET, DRIFT = "sensor_offset", "sensor_drift"
 STRONG = DEFAULT.weak + 1.0
@@ -40,60 +36,44 @@ def test_verdict_follows_from_effects_alternatives_and_residual_structure(
     assert verdict(effects=effects, alternatives=alternatives, remains=remains) == expected
 
 
-@pytest.mark.parametrize(
-    ("disagreement", "stands"), [(None, True), (49.0, True), (50.0, False), (51.0, False)]
-)
-def test_effect_keeps_its_name_if_its_gain_exceeds_twenty_times_the_disagreement_of_runs(
-    disagreement: float | None, stands: bool
-) -> None:
-    assert name_stands(1000.0, disagreement, DEFAULT) == stands
-
-
-# ---- confirmation by held-out runs --------------------------------------------------------------
+def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None:
+    for disagreement, named in ((None, True), (49.0, True), (50.0, False), (51.0, False)):
+        assert name_stands(1000.0, disagreement, DEFAULT) == named
 
 
 @pytest.mark.parametrize(
-    ("evidence", "density", "gained_share", "better", "rms_ratio", "confirmed"),
+    ("evidence", "gains", "rms_ratio", "confirmed"),
     [
         # Weak evidence: more than half of the gain must appear in the predictive density.
-        (DEFAULT.weak, 0.5, 1.0, 1.0, 1.0, False),
-        (DEFAULT.weak, 0.51, -1.0, 0.0, 1.0, True),
-        (DEFAULT.weak + 0.1, 0.51, -1.0, 0.0, 1.0, False),
+        (DEFAULT.weak, (0.5, 1.0, 1.0), 1.0, False),
+        (DEFAULT.weak, (0.51, -1.0, 0.0), 1.0, True),
+        (DEFAULT.weak + 0.1, (0.51, -1.0, 0.0), 1.0, False),
         # Strong evidence: any gain in mean square, or a gain in two runs of three.
-        (STRONG, 0.0, 1e-9, 0.0, 1.0, True),
-        (STRONG, 0.0, 0.0, 0.65, 1.0, False),
-        (STRONG, 0.0, 0.0, DEFAULT.least_better_runs, 1.0, True),
+        (STRONG, (0.0, 1e-9, 0.0), 1.0, True),
+        (STRONG, (0.0, 0.0, 0.65), 1.0, False),
+        (STRONG, (0.0, 0.0, DEFAULT.least_better_runs), 1.0, True),
         # Held-out RMS may grow by a quarter at most.
-        (STRONG, 0.0, 1.0, 1.0, DEFAULT.left_out_worse, True),
-        (STRONG, 0.0, 1.0, 1.0, DEFAULT.left_out_worse + 0.01, False),
-        (DEFAULT.weak, 0.9, 1.0, 1.0, DEFAULT.left_out_worse + 0.01, False),
+        (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse, True),
+        (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
+        (DEFAULT.weak, (0.9, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
     ],
 )
-def test_gain_is_confirmed_by_held_out_runs_according_to_its_evidence(
-    evidence: float,
-    density: float,
-    gained_share: float,
-    better: float,
-    rms_ratio: float,
-    confirmed: bool,
+def test_weak_evidence_requires_a_larger_held_out_gain_than_strong_evidence(
+    evidence: float, gains: tuple[float, float, float], rms_ratio: float, confirmed: bool
 ) -> None:
-    found = left_out_confirms(evidence, density, gained_share, better, DEFAULT, rms_ratio)
-    assert found == confirmed
+    """Gains in predictive density and in mean square, and the share of runs that are better."""
+    assert left_out_confirms(evidence, *gains, DEFAULT, rms_ratio) == confirmed
 
 
-@pytest.mark.parametrize(
-    ("before_n", "after_n", "confirmed"),
-    [(0.6, 0.5, True), (1.5, 1.6, False), (1.0, 1.0, False), (0.0, 1e-9, False)],
-)
-def test_strong_evidence_is_confirmed_by_any_reduction_of_the_held_out_error(
-    before_n: float, after_n: float, confirmed: bool
-) -> None:
-    held_out = Confirmation(before_n, after_n, better=0.5, density=0.0)
-    for gained_in_fit in (0.0, 1e-6, 1.0, 100.0):
+@pytest.mark.parametrize("gained_in_fit", [0.0, 1e-6, 1.0, 100.0])
+def test_strong_evidence_is_confirmed_by_any_held_out_gain(gained_in_fit: float) -> None:
+    errors_n = ((0.6, 0.5, True), (1.5, 1.6, False), (1.0, 1.0, False), (0.0, 1e-9, False))
+    for before_n, after_n, confirmed in errors_n:
+        held_out = Confirmation(before_n, after_n, better=0.5, density=0.0)
         assert held_out.confirms(STRONG, gained_in_fit, DEFAULT) == confirmed
 
 
-def test_confirmation_compares_errors_of_held_out_runs_with_and_without_the_effect() -> None:
+def test_confirmation_has_held_out_errors_with_and_without_the_effect() -> None:
     """Offset of 0.5 N in all runs but the third: four of five are better."""
     offsets_n = (0.5, 0.5, 0.0, 0.5, 0.5)
     candidates = _candidates(lambda i, t: offsets_n[i], runs=5)
@@ -108,9 +88,6 @@ def test_confirmation_compares_errors_of_held_out_runs_with_and_without_the_effe
     assert 0.5 < found.density < 1.0
 
 
-# ---- confounders -------------------------------------------------------------------------------
-
-
 def _candidates(extra: Callable[[int, Array], Array | float], runs: int = 4) -> Candidates:
     """Coulomb friction under reversing motions, 0.1 N of noise, and an extra force."""
     records = reversing_runs(
@@ -118,21 +95,16 @@ def _candidates(extra: Callable[[int, Array], Array | float], runs: int = 4) -> 
         runs=runs,
         duration_s=20.0,
     )
-    return Candidates(Campaign.prepare(Rig(), records), "coulomb", "journal")
+    return coulomb_candidates(records)
 
 
-def _tone(t: Array) -> Array:
-    tone: Array = 0.3 * np.sin(2.0 * np.pi * 6.3 * t)
-    return tone
-
-
-def test_effect_with_one_parameter_value_in_all_runs_is_no_confounder_next_to_a_tone() -> None:
-    candidates = _candidates(lambda i, t: 0.5 + _tone(t))
+def test_effect_that_agrees_in_all_runs_is_no_confounder_next_to_a_tone() -> None:
+    candidates = _candidates(lambda i, t: 0.5 + 0.3 * np.sin(2.0 * np.pi * 6.3 * t))
     assert candidates.converge((OFFSET,)).rms_n > 0.2
     assert confounders(candidates, (OFFSET,)) == ()
 
 
-def test_only_the_effect_whose_parameter_differs_between_runs_is_a_confounder() -> None:
+def test_effect_whose_parameter_differs_between_runs_is_a_confounder() -> None:
     drifts_n_s = (0.12, -0.03, 0.1, -0.02)
     candidates = _candidates(lambda i, t: 1.0 + drifts_n_s[i] * t)
     assert confounders(candidates, (OFFSET, DRIFT)) == (DRIFT,)
@@ -146,25 +118,20 @@ def test_weak_effect_is_a_confounder_if_more_structure_remains_than_it_explains(
     assert confounders(candidates, (OFFSET,), remains[:1]) == ()
     assert confounders(candidates, (OFFSET,)) == ()
     # A strong effect is not a confounder, whatever structure remains.
-    strong = _candidates(lambda i, t: 0.08)
-    assert confounders(strong, (OFFSET,), remains) == ()
+    assert confounders(_candidates(lambda i, t: 0.08), (OFFSET,), remains) == ()
 
 
 @pytest.mark.parametrize(
     ("offsets_n", "kept"), [((1.5, -1.5, 1.5, -1.5), ()), ((1.5, 0.5, 1.5, 0.5), (OFFSET,))]
 )
-def test_confounder_stays_in_the_model_only_if_it_lowers_the_held_out_error(
+def test_confounder_stays_in_the_model_if_held_out_error_falls(
     offsets_n: tuple[float, ...], kept: tuple[str, ...]
 ) -> None:
     """The mean of three alternating offsets predicts the fourth with the wrong sign."""
-    candidates = _candidates(lambda i, t: offsets_n[i])
-    assert best_predicting(candidates, (OFFSET,), ()) == kept
+    assert best_predicting(_candidates(lambda i, t: offsets_n[i]), (OFFSET,), ()) == kept
 
 
-# ---- ledger ------------------------------------------------------------------------------------
-
-
-def test_ledger_reports_confounders_and_replaced_effects() -> None:
+def test_ledger_reports_effects_that_became_confounders_or_were_replaced() -> None:
     added = [Trial(name, 1.0, 9.0, "added", "leads") for name in ("a", "b", "c")]
     steps = [Step((), 2.0, 2.0, 1.0, (added[0],)), Step(("a",), 1.0, 1.0, 1.0, tuple(added[1:]))]
     ended = as_it_ended(steps, ("a", "b"), ("b",))
@@ -187,8 +154,7 @@ def test_json_of_a_diagnosis_has_the_documented_keys_and_values() -> None:
     assert (bare["effects"], last["effects"]) == ([], ["inertia_leak"])
     assert bare["rms_n"] == found.steps[0].rms_n
     assert last["holdout_rms_n"] == found.steps[1].holdout_rms_n
-    trial = next(t for t in bare["tried"] if t["effect"] == "inertia_leak")
-    assert trial["outcome"] == "added"
+    assert {t["effect"]: t["outcome"] for t in bare["tried"]}["inertia_leak"] == "added"
     estimate = document["parameters"]["inertia_leak.m_e_kg"]
     assert abs(estimate["value"] - 0.2) < 4.0 * estimate["stderr"]
     assert {"axis", "where", "share"} <= set(document["failures"][0])

@@ -1,9 +1,8 @@
 """Errors from repeated fits of simulated records: parametric bootstrap (Efron 1979) and wild
 bootstrap (Wu 1986)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +33,7 @@ MIDDLE = 0.84134 - 0.15866
 
 
 @pytest.mark.parametrize("shift", [-3.0, 100.0])
-def test_error_is_half_the_width_of_the_central_68_percent_of_the_estimates(shift: float) -> None:
+def test_bootstrap_error_is_half_the_central_68_percent_width_of_estimates(shift: float) -> None:
     """Fifty of 100,051 estimates on a distant peak of the likelihood do not change it."""
     estimates = 5.0 + shift + np.append(np.linspace(0.0, 1.0, 100_001), np.full(50, 1e6))
     found = with_error(ParameterValue(5.0, 1e-3), estimates, PAGE)
@@ -42,15 +41,14 @@ def test_error_is_half_the_width_of_the_central_68_percent_of_the_estimates(shif
     assert (found.value, found.held, found.note) == (5.0, False, None)
 
 
-def test_error_is_not_reduced_below_the_error_from_the_curvature() -> None:
-    estimates = np.linspace(4.9, 5.1, 1001)
-    assert with_error(ParameterValue(5.0, 0.5), estimates, PAGE).stderr == 0.5
+def test_bootstrap_error_is_never_below_the_error_from_the_curvature() -> None:
+    found = with_error(ParameterValue(5.0, 0.5), np.linspace(4.9, 5.1, 1001), PAGE)
+    assert found.stderr == 0.5
 
 
-def test_held_parameter_is_returned_unchanged() -> None:
-    estimates = np.linspace(4.9, 5.1, 1001)
+def test_bootstrap_returns_a_held_parameter_unchanged() -> None:
     held = ParameterValue(5.0, None, "held fixed", held=True)
-    assert with_error(held, estimates, PAGE) is held
+    assert with_error(held, np.linspace(4.9, 5.1, 1001), PAGE) is held
 
 
 def test_scale_parameter_is_held_if_its_bootstrap_error_exceeds_its_value() -> None:
@@ -59,7 +57,7 @@ def test_scale_parameter_is_held_if_its_bootstrap_error_exceeds_its_value() -> N
     assert found.note == undetermined(SCALE, 5.0, 20.0 * MIDDLE)
 
 
-def test_estimates_of_an_angle_are_compared_modulo_its_period() -> None:
+def test_bootstrap_estimates_of_an_angle_are_compared_modulo_its_period() -> None:
     estimates = np.linspace(3.0, 3.2, 1001)
     turned = np.where(np.arange(1001) % 2, estimates, estimates - 2.0 * np.pi)
     found = with_error(ParameterValue(3.1, 1e-3), turned, ANGLE)
@@ -68,7 +66,7 @@ def test_estimates_of_an_angle_are_compared_modulo_its_period() -> None:
     assert plain.stderr == pytest.approx(np.pi, rel=0.1)
 
 
-def test_number_of_repeats_outside_its_limits_is_rejected() -> None:
+def test_bootstrap_rejects_a_number_of_repeats_outside_its_limits() -> None:
     for repeats in (LEAST_REPEATS, MOST_REPEATS):
         check_repeats(repeats)
     for repeats in (LEAST_REPEATS - 1, MOST_REPEATS + 1):
@@ -86,30 +84,16 @@ def fitted(runs: list[Run]) -> Fit:
     return fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0})
 
 
-def with_errors(fitted: Fit, times: float) -> Fit:
-    """The fit with its standard errors multiplied."""
-    parameters = {
-        n: p if p.stderr is None else replace(p, stderr=times * p.stderr)
-        for n, p in fitted.parameters.items()
-    }
-    return replace(fitted, parameters=parameters)
-
-
-def test_bootstrap_errors_of_a_linear_fit_are_those_of_linear_regression(
-    fitted: Fit, runs: list[Run]
-) -> None:
-    """The errors of the fit are divided by 1000, so that the estimates determine the result."""
+def test_bootstrap_of_a_linear_fit_gives_regression_errors(fitted: Fit, runs: list[Run]) -> None:
     v = np.concatenate([r.velocity_m_s for r in runs])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))
-    steps: list[tuple[int, int]] = []
-    found = bootstrap(
-        with_errors(fitted, 1e-3),
-        runs,
-        repeats=19,
-        seed=7,
-        progress=lambda text, done, of: steps.append((done, of)),
-    )
+    # The errors of the fit are divided by 1000, so that the estimates determine the result.
+    values = fitted.parameters.items()
+    precise = {name: replace(p, stderr=p.stderr and p.stderr / 1e3) for name, p in values}
+    steps: list[Any] = []
+    options: dict[str, Any] = {"seed": 7, "progress": lambda *step: steps.append(step[1:])}
+    found = bootstrap(replace(fitted, parameters=precise), runs, repeats=19, **options)
     assert steps == [(k, 19) for k in range(19)]
     for name, error in zip(("F_c_n", "F_v_n_s_m", "sensor_offset.b_n"), errors, strict=True):
         # The half width of the middle 68 % of 19 estimates is known to 22 %, their spread to 16 %.
@@ -117,7 +101,6 @@ def test_bootstrap_errors_of_a_linear_fit_are_those_of_linear_regression(
         assert np.std(found.values[name]) == pytest.approx(error, rel=0.45), name
         assert abs(np.mean(found.values[name]) - fitted.parameters[name].value) < 0.8 * error
     assert found.fit.model.parameters == found.fit.parameters
-    # Fixed parameters stay fixed.
     assert set(found.values["F_s_n"]) == {6.0}
     assert found.fit.parameters["F_s_n"].stderr is None
 
@@ -142,13 +125,9 @@ def prepared(request: pytest.FixtureRequest) -> Prepared:
     x = np.concatenate(([0.0], np.cumsum(0.005 * (v[1:] + v[:-1]))))
     random = np.random.default_rng(3)
     speed = np.where(v == 0.0, 0.0, v + 1e-4 * random.standard_normal(len(t)))
-    run = Run.from_arrays(
-        t,
-        speed,
-        coulomb(t, v, v) + 0.1 * random.standard_normal(len(t)),
-        position_m=x + 2e-6 * random.standard_normal(len(t)),
-        name="a",
-    )
+    force = coulomb(t, v, v) + 0.1 * random.standard_normal(len(t))
+    position = x + 2e-6 * random.standard_normal(len(t))
+    run = Run.from_arrays(t, speed, force, position_m=position, name="a")
     rig = Rig.thesis() if request.param == "bearing" else Rig()
     return Campaign.prepare(rig, [run]).prepared[0]
 
@@ -158,36 +137,25 @@ def test_resampled_motion_has_the_recorded_errors_with_random_signs(prepared: Pr
     again = read_again(prepared, np.full(len(run), 3.0), np.random.default_rng(1))
     moving = ~motion.resting
     assert 0.1 < np.mean(motion.resting) < 0.4
-    position, recorded = again.position_m, run.position_m
     bearing = prepared.rig.bearing
     arm_m = 1.0 if bearing is None else bearing.radius_m
-    assert position is not None
-    assert recorded is not None
     for new, old, true in (
         (again.velocity_m_s, run.velocity_m_s, motion.velocity_m_s),
-        (position, recorded, arm_m * motion.angle_rad),
+        (again.position_m, run.position_m, arm_m * motion.angle_rad),
     ):
-        np.testing.assert_allclose(
-            np.abs(new - true)[moving], np.abs(old - true)[moving], atol=1e-12
-        )
-        turned = np.sign(new - true) != np.sign(old - true)
-        assert 0.4 < turned[moving].mean() < 0.6
-        # Speeds and positions at rest are not changed.
+        error, recorded_error = (new - true)[moving], (old - true)[moving]
+        np.testing.assert_allclose(np.abs(error), np.abs(recorded_error), atol=1e-12)
+        assert 0.4 < np.mean(np.sign(error) != np.sign(recorded_error)) < 0.6
         np.testing.assert_array_equal(new[~moving], old[~moving])
 
 
-def test_resampling_does_not_change_friction_that_is_missing_or_of_unknown_sign(
-    prepared: Prepared,
-) -> None:
+def test_resampling_keeps_friction_that_is_missing_or_of_unknown_sign(prepared: Prepared) -> None:
     known = prepared.motion.sign_known
     friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction_n)
-    again = read_again(
-        replace(prepared, friction_n=friction), np.full(len(known), 99.0), np.random.default_rng(1)
-    )
-    assert again.friction_n is not None
-    unknown = ~known
-    assert 0 < np.count_nonzero(unknown) < len(known) // 2
-    np.testing.assert_array_equal(again.friction_n[unknown], friction[unknown])
+    some, random = replace(prepared, friction_n=friction), np.random.default_rng(1)
+    again = read_again(some, np.full(len(known), 99.0), random)
+    assert 0 < np.count_nonzero(~known) < len(known) // 2
+    np.testing.assert_array_equal(again.friction_n[~known], friction[~known])
     kept = known & (np.arange(len(known)) != 57)
     assert set(again.friction_n[kept]) == {99.0}
     assert np.isnan(again.friction_n[57])
@@ -198,7 +166,6 @@ def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: 
     n, known = len(prepared.run), prepared.motion.sign_known
     again = recorded_again(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
     kicks = np.random.default_rng(7).normal(0.0, 0.5, n)
-    assert again.friction_n is not None
     wanted = 3.0 + noise.coloured(kicks, prepared.step_s)
     np.testing.assert_allclose(again.friction_n[known], wanted[known])
 
@@ -207,11 +174,8 @@ def test_resampled_encoder_position_has_the_recorded_step_at_another_phase() -> 
     rig, some, _ = campaign(5)
     (p,) = Campaign.prepare(rig, some[:1]).prepared
     again = read_again(p, np.zeros(len(p.run)), np.random.default_rng(2)).angle_rad
-    assert p.run.angle_rad is not None
-    assert again is not None
     recorded, moving = np.unwrap(p.run.angle_rad), ~p.motion.resting
-    changes = np.abs(np.diff(recorded))
-    size = np.min(changes[changes > 1e-12])
+    size = min(change for change in np.abs(np.diff(recorded)) if change > 1e-12)
     steps = np.diff(again[moving]) / size
     assert np.quantile(np.abs(steps - np.round(steps)), 0.95) < 1e-6
     assert np.max(np.abs(again - p.motion.angle_rad)[moving]) < 0.51 * size

@@ -1,7 +1,5 @@
 """A rig and its prepared runs: quantities available to effects, time columns, quantisation."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,13 +7,14 @@ from typing import Any
 import jbf
 import numpy as np
 import pytest
-from by_hand import Array
+from by_hand import Array, coulomb
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import curve_rms_n, noise_before
 from jbf.estimation.prepared import Prepared
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
+from known_motions import integrated, reversing_force
 
 N = 800
 TIME = 0.02 * np.arange(N)
@@ -24,12 +23,11 @@ PATH = 0.1 * (1.0 - np.cos(TIME))
 
 
 def run(name: str = "a", force: Array | None = None, **columns: Any) -> Run:
-    friction = 5.0 * np.sign(SPEED) + 20.0 * SPEED if force is None else force
+    friction = coulomb(TIME, SPEED, SPEED) if force is None else force
     return Run.from_arrays(TIME, SPEED, friction, name=name, **columns)
 
 
 def other(name: str = "b", **columns: Any) -> Run:
-    """A run with another force, so that it is not a copy."""
     return run(name, 6.0 * np.sign(SPEED), **columns)
 
 
@@ -40,11 +38,9 @@ def prepared(*runs: Run) -> Campaign:
 def test_campaign_is_rejected_if_it_has_no_run_or_every_force_is_zero() -> None:
     with pytest.raises(InputError, match="no run"):
         prepared()
-    nothing = [run(name, np.zeros(N)) for name in "ab"]
-    nothing[1] = replace(nothing[1], path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
+    last = replace(run("b", np.zeros(N)), path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
     with pytest.raises(InputError) as refused:
-        prepared(*nothing)
-    # The first run is named.
+        prepared(run("a", np.zeros(N)), last)
     assert (refused.value.file, refused.value.column) == ("a", "friction_n")
     assert len(prepared(run(), run("b", np.zeros(N))).prepared) == 2
 
@@ -55,7 +51,7 @@ def test_run_that_is_given_twice_is_used_once_and_reported() -> None:
     assert [f.kind for f in campaign.findings].count("repeated_run") == 1
 
 
-def test_only_selects_runs_and_without_excludes_samples() -> None:
+def test_campaign_only_selects_runs_and_campaign_without_excludes_samples() -> None:
     campaign = prepared(run("a"), other("b"), run("c", 7.0 * SPEED))
     some = campaign.only([2, 0])
     assert [p.run.name for p in some.prepared] == ["c", "a"]
@@ -67,7 +63,7 @@ def test_only_selects_runs_and_without_excludes_samples() -> None:
         np.testing.assert_array_equal(after[100:], before[100:])
 
 
-def test_added_findings_follow_those_of_the_runs() -> None:
+def test_findings_added_to_a_campaign_follow_those_of_its_runs() -> None:
     campaign = prepared(run())
     found = Finding("other", "friction_n", "a", 1.0, "1", "none", "text")
     more = campaign.with_findings([found]).with_findings([found])
@@ -75,11 +71,9 @@ def test_added_findings_follow_those_of_the_runs() -> None:
 
 
 @pytest.mark.parametrize(("share", "differ"), [(0.049, False), (0.055, True)])
-def test_campaign_has_loads_if_those_of_two_runs_differ_by_more_than_five_percent(
-    share: float, differ: bool
-) -> None:
-    loads = (np.full(N, 100.0), np.full(N, 100.0 * (1.0 - share)))
-    assert prepared(run(load_n=loads[0]), other(load_n=loads[1])).has_loads == differ
+def test_campaign_has_loads_if_runs_differ_by_five_percent(share: float, differ: bool) -> None:
+    first, second = run(load_n=np.full(N, 100.0)), other(load_n=np.full(N, 100.0 - 100.0 * share))
+    assert prepared(first, second).has_loads == differ
 
 
 @pytest.mark.parametrize(
@@ -101,8 +95,7 @@ def test_temperature_range_covers_all_runs_and_is_missing_if_one_has_no_temperat
     assert campaign.temperature_range_c == pytest.approx((20.0, 25.0), abs=0.1)
     assert campaign.temperatures_k == pytest.approx(5.0, abs=0.2)
     some = prepared(run("a", temperature_c=cold), other())
-    assert some.temperature_range_c is None
-    assert some.temperatures_k is None
+    assert (some.temperature_range_c, some.temperatures_k) == (None, None)
 
 
 def lacking(effect: str, *runs: Run) -> str | None:
@@ -128,9 +121,7 @@ def test_temperature_effect_requires_a_range_of_two_kelvin(span_k: float, enough
 
 
 def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
-    """Readings in steps of twice the noise."""
-    noise = 0.1 * np.random.default_rng(5).standard_normal(N)
-    step = 0.2
+    noise, step = 0.1 * np.random.default_rng(5).standard_normal(N), 0.2
     campaign = prepared(run(force=step * np.round((5.0 * np.sign(SPEED) + noise) / step)))
     assert campaign.step_n == pytest.approx(step, rel=1e-6)
     (p,), (counted,) = campaign.prepared, campaign.samples.counted
@@ -151,23 +142,13 @@ INSTANTS = 5.0 + STEP_S * np.arange(400)
 
 
 def speed(time: Array) -> Array:
-    found: Array = 0.1 * np.sin(1.7 * time) + 0.02 * np.cos(4.1 * time)
-    return found
-
-
-def position(time: Array) -> Array:
-    found: Array = -0.1 / 1.7 * np.cos(1.7 * time) + 0.02 / 4.1 * np.sin(4.1 * time)
-    return found
-
-
-def swinging(**more: Any) -> Run:
-    v = speed(INSTANTS)
-    return Run.from_arrays(INSTANTS, v, 5.0 * np.sign(v) + 20.0 * v, name="slide", **more)
+    return 0.1 * np.sin(1.7 * time) + 0.02 * np.cos(4.1 * time)
 
 
 @pytest.fixture(scope="module")
 def ready() -> Prepared:
-    return Prepared.of(Rig(), swinging())
+    v = speed(INSTANTS)
+    return Prepared.of(Rig(), Run.from_arrays(INSTANTS, v, coulomb(v, v, v), name="slide"))
 
 
 def test_run_without_motion_or_force_is_rejected() -> None:
@@ -179,15 +160,11 @@ def test_run_without_motion_or_force_is_rejected() -> None:
         Prepared.of(Rig(), Run.from_arrays(INSTANTS, speed(INSTANTS), name="no force"))
 
 
-def test_prepared_run_takes_the_largest_step_and_interpolation_rate_of_its_findings(
-    ready: Prepared,
-) -> None:
+def test_prepared_run_uses_the_largest_step_and_rate_of_its_findings(ready: Prepared) -> None:
     """Findings of another kind and interpolation reported as a duration are ignored."""
     assert (ready.converter_step_n, ready.drawn_at_hz) == (0.0, 0.0)
     found = [("steps", 0.25, "N"), ("steps", 0.5, "N"), ("late", 70.0, "Hz")]
-    found += [
-        ("interpolated", size, unit) for size, unit in ((50.0, "Hz"), (20.0, "Hz"), (9e2, "s"))
-    ]
+    found += [("interpolated", *size) for size in ((50.0, "Hz"), (20.0, "Hz"), (9e2, "s"))]
     some = ready.finding([Finding(k, "friction_n", "a", x, u, "none", k) for k, x, u in found])
     assert (some.converter_step_n, some.drawn_at_hz) == (0.5, 50.0)
 
@@ -197,14 +174,13 @@ def test_force_with_its_own_time_column_is_compared_at_its_own_instants() -> Non
     instants, force = INSTANTS[10:301], INSTANTS[::5]
     channels = {
         "velocity_m_s": (instants, speed(instants)),
-        "position_m": (instants, position(instants)),
+        "position_m": (instants, integrated(speed(instants), STEP_S)),
         "friction_n": (force, 5.0 * np.sign(speed(force))),
     }
     found = Prepared.of(Rig(), Run.from_channels(channels, name="slide"))
     np.testing.assert_array_equal(found.run.time_s, INSTANTS[10:301:5])
     assert found.step_s == pytest.approx(5.0 * STEP_S)
     np.testing.assert_allclose(found.motion.velocity_m_s, speed(found.run.time_s), atol=2e-3)
-    assert found.recorded is not None
     np.testing.assert_array_equal(found.recorded[0], instants)
 
 
@@ -212,10 +188,8 @@ def interpolated(rate_hz: float, seed: int, length: int = 3000) -> Run:
     """A force that was sampled at this rate and interpolated to 50 Hz."""
     t = 0.02 * np.arange(length)
     ticks = np.arange(-0.3 / rate_hz, t[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
-    noise = 0.3 * np.random.default_rng(seed).standard_normal(len(ticks))
-    force = 20.0 * np.tanh(50.0 * np.sin(0.3 * ticks)) + noise
-    v = 0.1 * np.sin(0.3 * t)
-    return Run.from_arrays(t, v, np.interp(t, ticks, force), name=f"{seed}")
+    force = np.interp(t, ticks, reversing_force(ticks, seed))
+    return Run.from_arrays(t, 0.1 * np.sin(0.3 * t), force, name=f"{seed}")
 
 
 def test_interpolated_force_is_compared_at_the_rate_of_its_original_readings() -> None:
@@ -223,11 +197,8 @@ def test_interpolated_force_is_compared_at_the_rate_of_its_original_readings() -
     assert found.drawn_at_hz == pytest.approx(20.0, rel=1e-3)
     assert found.step_s == pytest.approx(0.05, rel=1e-3)
     assert len(found.run) == len(found.motion.velocity_m_s) == pytest.approx(1200, abs=3)
-    np.testing.assert_allclose(
-        found.motion.velocity_m_s, 0.1 * np.sin(0.3 * found.run.time_s), atol=1e-4
-    )
-    # The motion has all its samples.
-    assert found.recorded is not None
+    v = 0.1 * np.sin(0.3 * found.run.time_s)
+    np.testing.assert_allclose(found.motion.velocity_m_s, v, atol=1e-4)
     assert len(found.recorded[0]) == 3000
 
 

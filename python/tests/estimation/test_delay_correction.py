@@ -4,13 +4,11 @@
 which it acted, or None.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from by_hand import Array, coulomb
+from by_hand import coulomb
 from delayed_runs import (
     DELAY,
     DURATION_S,
@@ -25,17 +23,9 @@ from delayed_runs import (
     value,
 )
 from jbf import Rig, Run
+from jbf.diagnosis import shifted
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.shifted import (
-    SETTLED,
-    Shifted,
-    beside_its_motion,
-    by_one_clock,
-    jointly,
-    moved,
-    without_delay,
-)
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, drift_step
@@ -45,30 +35,26 @@ from jbf.records.findings.finding import Finding
 
 DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
 LARGE_DELAYS_S = (24e-3, -6e-3, 31e-3, 9e-3)
+EXTENDED = pytest.mark.extended
 
 
-def unshifted(problem: Problem, solution: Solution) -> Shifted:
-    """The runs as they are recorded."""
-    return Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+def unshifted(problem: Problem, solution: Solution) -> shifted.Shifted:
+    return shifted.Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
 
 
 def sizes(campaign: Campaign | None, kind: str) -> list[float]:
     """Sizes of the findings of a corrected campaign, all of one kind."""
-    assert campaign is not None
     assert {f.kind for f in campaign.more_findings} == {kind}
     assert [f.run for f in campaign.more_findings] == [p.run.name for p in campaign.prepared]
     assert {f.done for f in campaign.more_findings} == {"shifted"}
     return [f.size for f in campaign.more_findings]
 
 
-# ---- shifting runs -------------------------------------------------------------------------------
-
-
 def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
     drift = 4e-4
     middles = np.array(DELAYS_S) + 0.5 * drift * DURATION_S
     problem = fitted(reversing_campaign(middles.tolist(), drift))[0]
-    again = moved(problem, middles, drift)
+    again = shifted.moved(problem, middles, drift)
     for p, q, middle in zip(problem.campaign.prepared, again.prepared, middles, strict=True):
         t = p.run.time_s
         acted = t - middle - drift * (t - 10.0)
@@ -93,31 +79,25 @@ def test_shift_is_possible_only_if_half_of_each_run_overlaps_its_motion(
 ) -> None:
     """Runs of 10 s and 20 s; at its ends a drift adds half the duration times the drift."""
     problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
-    assert beside_its_motion(problem, np.array(late_s), drift) == possible
-
-
-# ---- delays and law jointly ----------------------------------------------------------------------
+    assert shifted.beside_its_motion(problem, np.array(late_s), drift) == possible
 
 
 @pytest.mark.parametrize(
-    "start_s",
-    [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=pytest.mark.extended)],
+    "start_s", [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=EXTENDED)]
 )
-def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
-    start_s: tuple[float, ...],
-) -> None:
-    problem = fitted(one_way_campaign(LARGE_DELAYS_S))[0]
-    start = np.array(start_s)
-    there = fitted(moved(problem, start, 0.0))
-    found = jointly(problem, Shifted(*there, start, 0.0))
+def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[float, ...]) -> None:
+    problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
+    found = shifted.jointly(
+        problem, shifted.Shifted(*fitted(shifted.moved(problem, start, 0.0)), start, 0.0)
+    )
     assert max(LARGE_DELAYS_S) > 3.0 * LINEAR_S
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
     assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
-def test_delay_effect_is_replaced_by_a_delay_of_each_run() -> None:
-    problem, solution = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
-    found = jointly(problem, unshifted(problem, solution))
+def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() -> None:
+    fit = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
+    found = shifted.jointly(fit[0], unshifted(*fit))
     assert found.problem.effects == ()
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
 
@@ -133,7 +113,7 @@ def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
         runs.append(Run.from_arrays(t, v, force, name=f"run {i}"))
     problem, solution = fitted(Campaign.prepare(Rig(), runs))
     before = unshifted(problem, solution)
-    assert jointly(problem, before) is before
+    assert shifted.jointly(problem, before) is before
     assert on_time(problem, solution, DEFAULT) is None
 
 
@@ -142,15 +122,12 @@ def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     """At the end of the longer run the error is 2.4 ms or 60 ms, of at most 8 ms a step."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
-    found = by_one_clock(problem, unshifted(problem, solution))
+    found = shifted.by_one_clock(problem, unshifted(problem, solution))
     step = drift_step(found.problem, found.solution)
     assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
     np.testing.assert_allclose(found.late_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
-    assert step.square <= SETTLED**2
+    assert step.square <= shifted.SETTLED**2
     assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
-
-
-# ---- correction of a campaign --------------------------------------------------------------------
 
 
 def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
@@ -158,26 +135,21 @@ def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
     again = on_time(problem, solution, DEFAULT)
     # One standard error is 0.2 ms.
     np.testing.assert_allclose(sizes(again, "late_channel"), DELAYS_S, atol=0.6e-3)
-    assert again is not None
     there = fitted(again)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
     assert fitted(problem.campaign)[1].rms_n > 5.0 * there[1].rms_n
     assert on_time(*there, DEFAULT) is None
 
 
-def test_drifting_clock_is_corrected_and_reported() -> None:
+def test_clock_drift_common_to_all_runs_is_corrected_and_reported() -> None:
     drift = 1e-3
-    again = on_time(
-        *fitted(reversing_campaign((0.5 * drift * DURATION_S,) * 4, drift), DELAY), DEFAULT
-    )
+    delays = (0.5 * drift * DURATION_S,) * 4
+    again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
     found = sizes(again, "drifting_clock")
     np.testing.assert_allclose(found, drift, rtol=0.03)
-    # One number for all runs.
     assert np.ptp(found) == 0.0
-    assert again is not None
     there = fitted(again)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
-    # A second call corrects nothing.
     assert on_time(*there, DEFAULT) is None
 
 
@@ -186,22 +158,17 @@ def test_common_delay_is_estimated_by_the_model_after_clock_drift_is_corrected()
     delays = [0.5 * drift * DURATION_S + delay_s] * 4
     again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
     np.testing.assert_allclose(sizes(again, "drifting_clock"), drift, rtol=0.05)
-    assert again is not None
     there = fitted(again, DELAY)
     assert value(*there, TAU) == pytest.approx(delay_s, rel=0.03)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
 
 
 @pytest.mark.parametrize(("delay_s", "effects"), [(0.0, ()), (25e-3, DELAY)])
-def test_delay_common_to_all_runs_is_not_corrected(
-    delay_s: float, effects: tuple[str, ...]
-) -> None:
+def test_delay_equal_in_all_runs_is_not_corrected(delay_s: float, effects: tuple[str, ...]) -> None:
     assert on_time(*fitted(reversing_campaign((delay_s,) * 4), effects), DEFAULT) is None
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(s, marks=pytest.mark.extended) for s in (1, 2))]
-)
+@pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=EXTENDED) for s in (1, 2))])
 def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> None:
     """Intermediate estimates on the way to 30 ms differ between the runs."""
     assert on_time(*fitted(one_way_campaign((30e-3,) * 4, seed=seed)), DEFAULT) is None
@@ -216,13 +183,13 @@ def test_noise_that_grows_with_the_force_is_not_corrected_as_a_delay() -> None:
     random, runs = np.random.default_rng(0), []
     for p in reversing_campaign((0.0,) * 4).prepared:
         sd = 0.3 * np.maximum(np.abs(p.friction_n) - 5.0, 0.0)
-        force = p.friction_n + sd * random.standard_normal(len(sd))
-        runs.append(replace(p.run, friction_n=force))
+        noise = sd * random.standard_normal(len(sd))
+        runs.append(replace(p.run, friction_n=p.friction_n + noise))
     assert on_time(*fitted(Campaign.prepare(Rig(), runs)), DEFAULT) is None
 
 
 @pytest.mark.extended
-def test_correct_clocks_are_not_corrected_in_forty_campaigns() -> None:
+def test_accurate_clocks_are_never_corrected_in_forty_simulated_campaigns() -> None:
     squares = []
     for seed in range(40):
         there = fitted(one_way_campaign((0.0, 0.0), seed=seed, durations_s=(20.0, 10.0)))
@@ -233,56 +200,45 @@ def test_correct_clocks_are_not_corrected_in_forty_campaigns() -> None:
     assert 0.2 < np.median(squares) < 0.9
 
 
-def test_remaining_delays_are_added_to_those_already_reported() -> None:
+def test_delays_of_a_second_correction_are_added_to_those_already_reported() -> None:
     """The first correction was estimated with a wrong model and is off by up to 3 ms."""
     campaign = one_way_campaign(LARGE_DELAYS_S)
     problem = fitted(campaign)[0]
     wrong = np.array(LARGE_DELAYS_S) - np.array((3e-3, -2e-3, 1e-3, 0.0))
-    findings = [
-        Finding("late_channel", "friction_n", p.run.name, size, "s", "shifted", "")
-        for p, size in zip(campaign.prepared, wrong.tolist(), strict=True)
-    ]
-    before = moved(problem, wrong, 0.0).with_findings(findings)
+    late = zip((p.run.name for p in campaign.prepared), wrong.tolist(), strict=True)
+    findings = [Finding("late_channel", "friction_n", *x, "s", "shifted", "") for x in late]
+    before = shifted.moved(problem, wrong, 0.0).with_findings(findings)
     again = on_time(*fitted(before), DEFAULT)
     np.testing.assert_allclose(sizes(again, "late_channel"), LARGE_DELAYS_S, atol=4e-4)
-    assert again is not None
     assert fitted(again)[1].rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
-
-
-# ---- comparison with other explanations ----------------------------------------------------------
 
 
 def test_runs_are_shifted_instead_of_a_delay_effect_only_if_their_delays_differ() -> None:
     for delays, corrected in (((12e-3,) * 4, False), (DELAYS_S, True)):
         campaign = reversing_campaign(delays)
-        bare, delayed = fitted(campaign), fitted(campaign, DELAY)[1]
-        again = on_time(*bare, DEFAULT, richer=delayed)
+        again = on_time(*fitted(campaign), DEFAULT, richer=fitted(campaign, DELAY)[1])
         assert (again is not None) == corrected
 
 
-@pytest.mark.parametrize(("share", "corrected"), [(0.7, False), (1.5, True)])
-def test_delays_explained_by_an_effect_are_corrected_only_above_a_least_difference(
-    share: float, corrected: bool
-) -> None:
+@pytest.mark.parametrize(("share", "shifts"), [(0.7, False), (1.5, True)])
+def test_small_delays_explained_by_an_effect_are_not_corrected(share: float, shifts: bool) -> None:
     """Half of the runs differ from the median delay by at least that share of a step."""
     apart_s = share * DEFAULT.late_apart * 0.02
     delays = 5e-3 + apart_s * np.array([1.0, -1.0, 1.0, -1.0])
     campaign = one_way_campaign(delays.tolist(), noise_n=5e-4)
-    bare = fitted(campaign)
     lagging = fitted(campaign, ("sensor_lag",))[1]
-    again = on_time(*bare, DEFAULT, richer=lagging, more=10.0)
-    assert (again is not None) == corrected
+    again = on_time(*fitted(campaign), DEFAULT, richer=lagging, more=10.0)
+    assert (again is not None) == shifts
 
 
 @pytest.mark.parametrize("explained", [True, False])
 def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explained: bool) -> None:
     """The random effects have the shape of a delay, or are offsets, which explain no delay."""
     problem, solution = fitted(one_way_campaign((3e-3, -2e-3, 4e-3, -1e-3)))
-    directions: list[Array] = []
-    for i, p in enumerate(problem.campaign.prepared):
-        shape = one_way_acceleration(i, p.run.time_s) if explained else np.ones(len(p.run))
-        directions.append(shape[:, None])
-    between = BetweenRuns(("deviation",), tuple(directions), ONE_WAY_NOISE_N)
+    times = [p.run.time_s for p in problem.campaign.prepared]
+    offsets = [np.ones_like(t) for t in times]
+    shapes = [one_way_acceleration(i, t) for i, t in enumerate(times)] if explained else offsets
+    between = BetweenRuns(("deviation",), tuple(s[:, None] for s in shapes), ONE_WAY_NOISE_N)
     samples = replace(solution.samples, between=between)
     campaign = replace(problem.campaign, samples=samples)
     there = Problem(campaign, "coulomb", "journal", (), problem.fixed)
@@ -290,9 +246,11 @@ def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explain
     assert (on_time(there, given, DEFAULT) is None) == explained
 
 
-def test_effects_that_a_delay_can_imitate_are_listed() -> None:
-    """Effects of the instrument, and effects that move the instants of jumps."""
+def test_instrument_and_jump_effects_are_listed_as_confounded_with_a_delay() -> None:
     found = set(bought_by_lateness(("sensor_offset", "time_delay", "sensor_lag", "backlash")))
     assert {"time_delay", "sensor_lag", "sensor_offset", "backlash"} <= found
     assert bought_by_lateness(("quadratic_drag", "inertia_leak")) == ()
-    assert without_delay(("sensor_lag", "time_delay", "backlash")) == ("sensor_lag", "backlash")
+    assert shifted.without_delay(("sensor_lag", "time_delay", "backlash")) == (
+        "sensor_lag",
+        "backlash",
+    )

@@ -1,15 +1,17 @@
-"""Delay estimated from the jumps at reversals, with an error far below a sampling step."""
+"""The effect of a time delay: its predictions, and its estimate from the jumps at reversals.
 
-from __future__ import annotations
+Predictions are compared with Coulomb's law shifted in time; the error of an estimate is far below a
+sampling step.
+"""
 
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
-from by_hand import LAW, Array
+from by_hand import LAW, Array, coulomb
 from delayed_runs import DELAY, fitted, value
-from jbf import Rig, Run, compare, fit
+from jbf import Model, ParameterValue, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.exact_delay import LEAST_STEPS, exact_delay
 from jbf.estimation.likelihood import independent_share
@@ -19,7 +21,8 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.estimation.spread import Spread, spread
 from jbf.models.driven_motion import reversals
-from jbf.models.late_reading import TAU
+from jbf.models.late_reading import TAU, LateChain
+from jbf.records.motion.imposed import ImposedMotion
 from scipy.stats import norm
 
 STEP_S, TAU_S, NOISE_N = 0.02, 0.0471, 0.2
@@ -36,16 +39,18 @@ def delayed_runs(
     for i in range(count):
         rate, phase = 1.1 + 0.37 * i, random.uniform(0.0, 6.0)
 
-        def speed(t: Array, rate: float = rate, phase: float = phase) -> Array:
-            v: Array = 0.12 * np.sin(rate * t + phase) + 0.05 * np.sin(1.618 * rate * t)
-            return v
-
-        v = speed(time - TAU_S)
-        force = LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
-        force = force + NOISE_N * random.standard_normal(len(time))
-        noisy = speed(time) + speed_noise_m_s * random.standard_normal(len(time))
+        v, delayed_v = (
+            0.12 * np.sin(rate * t + phase) + 0.05 * np.sin(1.618 * rate * t)
+            for t in (time, time - TAU_S)
+        )
+        force = coulomb(time, delayed_v, v) + NOISE_N * random.standard_normal(len(time))
+        noisy = v + speed_noise_m_s * random.standard_normal(len(time))
         runs.append(Run.from_arrays(time, noisy, force, name=f"run {i}"))
     return runs
+
+
+def rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 @cache
@@ -63,16 +68,13 @@ def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, 
 def test_delay_error_from_jumps_is_below_six_percent_of_a_sampling_step() -> None:
     problem, solution, errors = solved()
     found = exact_delay(problem, solution, errors, solution.values)
-    assert found is not None
     assert abs(found.values[problem.names.index(TAU)] - TAU_S) < 4.0 * found.sd_s
-    assert found.sd_s < min(
-        0.06 * STEP_S, errors.error(problem.open.index(problem.names.index(TAU)))
-    )
-    residual = np.concatenate(found.residuals)
-    assert np.sqrt(np.mean(residual**2)) == pytest.approx(NOISE_N, rel=0.1)
+    which = problem.open.index(problem.names.index(TAU))
+    assert found.sd_s < min(0.06 * STEP_S, errors.error(which))
+    assert rms(np.concatenate(found.residuals)) == pytest.approx(NOISE_N, rel=0.1)
 
 
-def test_other_parameters_are_refitted_as_the_delay_changes() -> None:
+def test_law_parameters_follow_a_change_of_delay_as_in_a_regression() -> None:
     """At nearly constant acceleration a delay has the effect of slightly lower dry friction.
 
     At a given delay Coulomb's parameters are a linear regression, solved here. Without a jump the
@@ -81,15 +83,13 @@ def test_other_parameters_are_refitted_as_the_delay_changes() -> None:
     t, tau_s, runs = np.arange(0.0, 20.01, STEP_S), 0.03, []
 
     def speed(i: int, delay_s: float) -> Array:
-        at = t - delay_s
-        v: Array = 0.05 + 0.02 * at + 0.02 * np.sin((0.5 + 0.1 * i) * at)
-        return v
+        return 0.05 + 0.02 * (t - delay_s) + 0.02 * np.sin((0.5 + 0.1 * i) * (t - delay_s))
 
     random = np.random.default_rng(3)
     for i in range(2):
-        force = LAW["F_c_n"] + LAW["F_v_n_s_m"] * speed(i, tau_s)
-        noise = 0.005 * random.standard_normal(len(t))
-        runs.append(Run.from_arrays(t, speed(i, 0.0), force + noise, name=f"{i}"))
+        v = speed(i, tau_s)
+        force = coulomb(t, v, v) + 0.005 * random.standard_normal(len(t))
+        runs.append(Run.from_arrays(t, speed(i, 0.0), force, name=f"{i}"))
     problem, solution = fitted(Campaign.prepare(Rig(), runs), DELAY)
 
     def regression(delay_s: float) -> Array:
@@ -97,15 +97,13 @@ def test_other_parameters_are_refitted_as_the_delay_changes() -> None:
         v = np.concatenate([speed(i, delay_s)[5:] for i in (0, 1)])
         x = np.column_stack([np.ones(len(v)), v])
         y = np.concatenate([p.friction_n[5:] for p in problem.campaign.prepared])
-        found: Array = np.linalg.lstsq(x, y, rcond=None)[0]
-        return found
+        return np.linalg.lstsq(x, y, rcond=None)[0]
 
     slope = (regression(tau_s + 1e-3) - regression(tau_s - 1e-3)) / 2e-3
     errors, which = spread(problem, solution), problem.names.index(TAU)
     start = solution.values.copy()
     start[which] += 2e-3
     found = exact_delay(problem, solution, errors, start)
-    assert found is not None
     change = found.values - start
     assert change[which] == pytest.approx(-2e-3, rel=0.05)
     for name, expected in zip(("F_c_n", "F_v_n_s_m"), slope, strict=True):
@@ -114,7 +112,7 @@ def test_other_parameters_are_refitted_as_the_delay_changes() -> None:
     assert found.sd_s == pytest.approx(errors.error(problem.open.index(which)), rel=0.05)
 
 
-def test_delay_and_its_error_are_moments_of_a_mixture_likelihood() -> None:
+def test_delay_from_jumps_and_its_error_are_moments_of_a_mixture_likelihood() -> None:
     """Each sample near a jump was read on one side of it or the other; brute force on a fine grid.
 
     Minus twice the log likelihood: squares clipped at 5 standard deviations away from the jumps,
@@ -139,10 +137,8 @@ def test_delay_and_its_error_are_moments_of_a_mixture_likelihood() -> None:
             far = np.abs(gone) > 0.1
             after = np.where(far, np.sign(v), after)
             before = np.where(far, after, -after)
-            squares = [
-                np.minimum(((p.friction_n - dry * s - viscous * v) / noise_n) ** 2, 25.0)
-                for s in (before, after)
-            ]
+            errors = (p.friction_n - dry * sign - viscous * v for sign in (before, after))
+            squares = [np.minimum((error / noise_n) ** 2, 25.0) for error in errors]
             over = np.where(far, 1.0, norm.cdf(gone / turns.sd_s[nearest]))
             doubt = np.minimum(over, 1.0 - over) > 0.5 * np.exp(-0.5 * 3.5**2)
             with np.errstate(divide="ignore"):
@@ -159,12 +155,11 @@ def test_delay_and_its_error_are_moments_of_a_mixture_likelihood() -> None:
     mean = float(np.sum(likelihood * delays))
     sd = float(np.sqrt(np.sum(likelihood * (delays - mean) ** 2)))
     found = exact_delay(problem, solution, errors, solution.values)
-    assert found is not None
     assert found.values[problem.names.index(TAU)] == pytest.approx(mean, abs=0.1 * sd)
     assert found.sd_s == pytest.approx(sd, rel=0.05)
 
 
-def test_no_delay_from_jumps_if_the_parameter_is_fixed_undetermined_or_too_small() -> None:
+def test_jumps_give_no_delay_if_it_is_fixed_undetermined_or_too_small() -> None:
     problem, solution, errors = solved()
     which = problem.names.index(TAU)
     k = problem.open.index(which)
@@ -181,21 +176,106 @@ def test_no_delay_from_jumps_if_the_parameter_is_fixed_undetermined_or_too_small
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=EXTENDED) for s in (1, 2, 3))])
-def test_fit_recovers_the_delay_within_its_error_and_leaves_an_rms_equal_to_the_noise(
-    seed: int,
-) -> None:
+def test_fitted_delay_is_within_its_error_and_the_rms_equals_the_noise(seed: int) -> None:
     runs = delayed_runs(seed)
     found = fit(Rig(), runs, ["time_delay"], law="coulomb")
     tau = found.parameters[TAU]
-    assert tau.stderr is not None
     assert tau.stderr < 0.05 * STEP_S
     assert abs(tau.value - TAU_S) < 4.0 * tau.stderr
     assert found.rms_n == pytest.approx(NOISE_N, rel=0.05)
     # One sample on the wrong side of a reversal among 4,000 would make the RMS 1.3 times as large.
     fresh = delayed_runs(seed + 100)
     errors = [(r.friction_n - found.model.predict(r))[r.time_s > TAU_S] for r in fresh]
-    assert np.sqrt(np.mean(np.concatenate(errors) ** 2)) < 1.15 * NOISE_N
+    assert rms(np.concatenate(errors)) < 1.15 * NOISE_N
     again = np.concatenate([r.friction_n - found.model.predict(r) for r in runs])
     np.testing.assert_allclose(np.concatenate(found.residuals), again, atol=1e-9)
-    compared = compare(found.model, runs)
-    assert compared.rms_n == pytest.approx(NOISE_N, rel=0.05)
+    assert compare(found.model, runs).rms_n == pytest.approx(NOISE_N, rel=0.05)
+
+
+TIME = np.arange(0.0, 12.0, STEP_S)
+RATE = 1.7
+VALUES = {**LAW, "F_s_n": LAW["F_c_n"]}
+
+
+def delayed_model(tau_s: float, stderr: float | None = None) -> Model:
+    tau = ParameterValue(tau_s, stderr)
+    return Model(Rig(), law="coulomb", effects=["time_delay"], parameters={**VALUES, TAU: tau})
+
+
+def friction(v: Array) -> Array:
+    return LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+
+
+def known_motion(time: Array, velocity: Array, acceleration: Array, error: float) -> ImposedMotion:
+    rest = velocity == 0.0
+    path = np.concatenate(([0.0], np.cumsum(velocity[1:] * np.diff(time))))
+    return ImposedMotion(velocity, acceleration, path, np.full(len(time), error), rest, ~rest)
+
+
+@pytest.mark.parametrize("tau_s", [0.033, 0.151])
+def test_delayed_force_jumps_within_one_sample_at_reversals(tau_s: float) -> None:
+    late = friction(0.1 * np.sin(RATE * (TIME - tau_s) + 0.3))
+    jumps = (np.pi * np.arange(1, 8) - 0.3) / RATE + tau_s
+    near = np.min(np.abs(TIME[:, None] - jumps[None, :]), axis=1) < 1e-3
+    settled = (3.0 * tau_s < TIME) & ~near
+    run = Run.from_arrays(TIME, 0.1 * np.sin(RATE * TIME + 0.3))
+    error = np.abs(delayed_model(tau_s).predict(run) - late)[settled]
+    assert np.count_nonzero(np.diff(np.sign(late))) >= 6
+    assert np.max(error) < 0.02 * LAW["F_c_n"]
+
+
+@pytest.mark.parametrize("begins_s", [2.004, 2.0101, 2.0163])
+def test_delayed_start_between_samples_follows_from_the_acceleration(begins_s: float) -> None:
+    tau_s = 0.033
+    run = Run.from_arrays(TIME, 0.02 * np.maximum(TIME - begins_s, 0.0))
+    late = friction(0.02 * np.maximum(TIME - tau_s - begins_s, 0.0))
+    error = np.abs(delayed_model(tau_s).predict(run) - late)
+    assert np.max(error) < 0.02 * LAW["F_c_n"]
+
+
+def test_sensor_drift_is_not_delayed_in_a_model_with_a_time_delay() -> None:
+    run = Run.from_arrays(TIME, np.full(len(TIME), 0.1))
+    values = {**VALUES, TAU: 0.3, "sensor_drift.d_n_s": 2.0}
+    model = Model(Rig(), "coulomb", ["time_delay", "sensor_drift"], values)
+    late = TIME > 0.3 + STEP_S
+    expected = friction(np.full(len(TIME), 0.1)) + 2.0 * TIME
+    np.testing.assert_allclose(model.predict(run)[late], expected[late], rtol=1e-9)
+
+
+def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_delay() -> None:
+    """`F_c (2 Phi(t / sd) - 1)`, sd the root of both variances."""
+    time = np.arange(0.0, 2.0, STEP_S)
+    tau_s, turn_s, slope, error, delay_sd_s = 0.0471, 1.0071, 0.1, 2e-4, 3e-3
+    v = slope * (time - turn_s)
+    motion = known_motion(time, v, np.full(len(time), slope), error)
+    run = Run.from_arrays(time, v, np.zeros(len(time)))
+    model = delayed_model(tau_s)
+    chain = LateChain(Rig(), "coulomb", "journal", model.effects, list(model.parameters))
+    reading = chain.read(model.values, run, time, motion, delay_sd_s)
+    gone_s = time - tau_s - turn_s
+    sd_s = np.hypot(error / slope, delay_sd_s)
+    expected = LAW["F_c_n"] * (2.0 * norm.cdf(gone_s / sd_s) - 1.0)
+    expected += LAW["F_v_n_s_m"] * slope * gone_s
+    settled = time > tau_s + STEP_S
+    np.testing.assert_allclose(reading.mean_n[settled], expected[settled], atol=0.02)
+    jump = reading.after_n - reading.before_n
+    np.testing.assert_allclose(jump[settled], 2.0 * LAW["F_c_n"], rtol=0.01)
+
+
+@pytest.mark.parametrize("begins_s", [0.5002, 0.5191])
+@pytest.mark.parametrize("way", [1.0, -1.0], ids=["start", "stop"])
+def test_start_or_stop_between_samples_follows_acceleration(begins_s: float, way: float) -> None:
+    time = np.arange(0.0, 1.0, STEP_S)
+    there = np.arange(0.4, 0.6, 1e-3)
+
+    def speed(t: Array) -> Array:
+        return 0.3 * np.maximum(way * (t - begins_s), 0.0)
+
+    v = speed(time)
+    motion = known_motion(time, v, np.where(v > 0.0, 0.3 * way, 0.0), 1e-4)
+    interpolated = motion.at(time, there)
+    np.testing.assert_allclose(interpolated.velocity_m_s, speed(there), atol=1e-12)
+    np.testing.assert_array_equal(interpolated.resting, speed(there) == 0.0)
+    # The instant does not depend on the samples around it.
+    (turn_s,) = reversals(there + 0.4e-3, motion.at(time, there + 0.4e-3)).at_s
+    assert turn_s == pytest.approx(begins_s, abs=1e-9)

@@ -1,7 +1,5 @@
 """Fits to simulated records, residuals, and campaigns of `benches/torture` that once failed."""
 
-from __future__ import annotations
-
 import re
 import sys
 from dataclasses import replace
@@ -110,24 +108,22 @@ def test_prediction_does_not_change_if_an_effect_is_at_its_null() -> None:
         np.testing.assert_array_equal(bare[law], found, err_msg=name)
 
 
-def test_unknown_names_values_out_of_range_and_unusable_runs_are_rejected() -> None:
+def test_fit_rejects_unknown_names_values_out_of_range_and_unusable_runs() -> None:
     rig, runs, _ = campaign(7)
-    with pytest.raises(InputError, match="presliding"):
-        fit(rig, runs, ["presliding_"])
-    with pytest.raises(InputError, match="gama"):
-        fit(rig, runs, fixed={"gama": 3.0})
-    with pytest.raises(InputError, match="out of range"):
-        fit(rig, runs, start={"gamma": -3.0})
-    with pytest.raises(InputError, match="no run"):
-        fit(rig, [])
-    with pytest.raises(InputError, match="one load"):
-        fit(Rig(), there_and_back(along(0.0)), ["zero_load_dependence"], law="coulomb")
+    loads: dict[str, Any] = {"effects": ["zero_load_dependence"], "law": "coulomb"}
+    for reason, arguments, options in (
+        ("presliding", (rig, runs, ["presliding_"]), {}),
+        ("gama", (rig, runs), {"fixed": {"gama": 3.0}}),
+        ("out of range", (rig, runs), {"start": {"gamma": -3.0}}),
+        ("no run", (rig, []), {}),
+        ("one load", (Rig(), there_and_back(along(0.0))), loads),
+    ):
+        with pytest.raises(InputError, match=reason):
+            fit(*arguments, **options)
 
 
 @pytest.mark.parametrize("more_n", [1.0, -1.0])
-def test_residuals_are_record_minus_model_and_their_mean_is_reported_by_direction(
-    more_n: float,
-) -> None:
+def test_residuals_are_record_minus_model_with_means_reported_by_direction(more_n: float) -> None:
     runs = there_and_back(along(more_n), noise_n=0.05)
     fixed = {"F_c": LAW["F_c_n"], "F_v": LAW["F_v_n_s_m"]}
     fitted = fit(Rig(), runs, law="coulomb", fixed=fixed)
@@ -168,12 +164,9 @@ def torture() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    "seed",
-    [s if s in FAST else pytest.param(s, marks=pytest.mark.extended) for s in FAILURES],
+    "seed", [s if s in FAST else pytest.param(s, marks=pytest.mark.extended) for s in FAILURES]
 )
-def test_campaign_that_once_failed_ends_in_an_answer_without_contradictions(
-    seed: int, torture: dict[str, Any]
-) -> None:
+def test_campaign_that_once_failed_ends_in_a_consistent_answer(seed: int, torture: Any) -> None:
     row = torture["tried"](seed, 120.0)
     assert row["said"], FAILURES[seed]
     assert row["wrong"] == [], FAILURES[seed]

@@ -1,9 +1,8 @@
 """Parameters that are not identifiable: the criterion, and the value at which they are held."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
+from typing import Any
 
 import jbf
 import numpy as np
@@ -31,13 +30,6 @@ RUNS = there_and_back(coulomb, noise_n=0.1)
 """Two runs at 0.05 to 0.15 m/s without rests or reversals."""
 
 
-def ended_at(law: str, values: dict[str, float], effects: Sequence[str] = ()) -> Fit:
-    """A fit whose search ended at these values."""
-    problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", effects)
-    here = np.array([values[name] for name in problem.names])
-    return finish(problem, problem.solution(here, problem.samples_at(here), WHITE))
-
-
 def notes_of(found: Fit) -> dict[str, str]:
     """Notes of the held parameters; asserts that the fit is consistent with them."""
     notes = {n: str(p.note) for n, p in found.parameters.items() if p.held}
@@ -48,7 +40,6 @@ def notes_of(found: Fit) -> dict[str, str]:
     assert found.correlations.shape == (free, free)
     np.testing.assert_allclose(np.diag(found.correlations), 1.0)
     for run, residual in zip(RUNS, found.residuals, strict=True):
-        assert run.friction_n is not None
         np.testing.assert_allclose(run.friction_n - found.model.predict(run), residual, atol=1e-9)
     return notes
 
@@ -62,23 +53,21 @@ def test_parameter_without_influence_is_held_at_its_start() -> None:
     assert given.parameters["F_s_n"] == ParameterValue(8.0, None, NEVER_MOVED, held=True)
 
 
-def test_fixed_parameter_is_held_at_its_value() -> None:
-    found = fit(
-        Rig(), RUNS, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0, "sensor_offset.b": 0.25}
-    )
+def test_fixed_parameter_is_held_at_the_value_given_by_the_user() -> None:
+    fixed = {"F_s": 6.0, "sensor_offset.b": 0.25}
+    found = fit(Rig(), RUNS, ["sensor_offset"], law="coulomb", fixed=fixed)
     assert notes_of(found) == {"F_s_n": HELD, "sensor_offset.b_n": HELD}
     assert found.fixed == ("F_s_n", "sensor_offset.b_n")
     assert found.parameters["sensor_offset.b_n"].value == 0.25
 
 
-def test_confounded_parameters_and_those_without_influence_are_held_and_the_others_not() -> None:
+def test_only_confounded_parameters_and_those_without_influence_are_held() -> None:
     found = fit(Rig(), RUNS, law="seven_parameter")
     notes = notes_of(found)
     # The end of the search in its flat valley decides between the two notes.
     assert notes["v_s_m_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s_m_s"]
     assert notes["gamma_s"] == notes["k_t_n_m"] == NEVER_MOVED
     friction = found.parameters["F_c_n"]
-    assert friction.stderr is not None
     assert abs(friction.value - LAW["F_c_n"]) < 3.0 * friction.stderr < 0.3
 
 
@@ -88,8 +77,8 @@ def test_viscous_coefficient_is_held_at_zero_if_friction_falls_with_speed() -> N
     assert (found["F_v_n_s_m"].value, found["F_v_n_s_m"].held) == (0.0, True)
     assert "lower bound" in str(found["F_v_n_s_m"].note)
     # The other parameter is the mean friction in the direction of motion.
-    along = [np.mean(r.friction_n * np.sign(r.velocity_m_s)) for r in runs]
-    assert found["F_c_n"].value == pytest.approx(np.mean(along), abs=8e-4)
+    mean = np.mean([r.friction_n * np.sign(r.velocity_m_s) for r in runs])
+    assert found["F_c_n"].value == pytest.approx(mean, abs=8e-4)
     assert not found["F_c_n"].held
 
 
@@ -114,11 +103,11 @@ def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None
         ),
     ],
 )
-def test_parameters_of_an_effect_at_its_null_are_held_and_noted_as_without_effect(
-    effect: str, values: dict[str, float], put: dict[str, float]
-) -> None:
-    law = {**LAW, "F_s_n": 6.0}
-    found = ended_at("coulomb", law | {f"{effect}.{n}": v for n, v in values.items()}, [effect])
+def test_parameters_of_an_effect_at_its_null_are_held(effect: str, values: Any, put: Any) -> None:
+    ended_at = {**LAW, "F_s_n": 6.0} | {f"{effect}.{n}": v for n, v in values.items()}
+    problem = Problem(Campaign.prepare(Rig(), RUNS), "coulomb", "journal", [effect])
+    here = np.array([ended_at[name] for name in problem.names])
+    found = finish(problem, problem.solution(here, problem.samples_at(here), WHITE))
     wanted = {"F_s_n": NEVER_MOVED} | {f"{effect}.{n}": NO_EFFECT for n in values}
     assert notes_of(found) == wanted
     assert {n: found.parameters[f"{effect}.{n}"].value for n in values} == put
@@ -133,21 +122,18 @@ WALL = [
 
 
 @pytest.fixture
-def walled() -> Iterator[Walled]:
+def walled(request: pytest.FixtureRequest) -> Walled:
     """A law that changes by a jump (N) where p or q is below a wall, and is flat elsewhere."""
-    names: list[str] = []
 
     def law(jump_n: float, wall_p: float, wall_q: float) -> str:
         def walled_law(velocity_m_s, F_c_n, p, q):  # type: ignore[no-untyped-def]
             below = (np.real(p) < wall_p) | (np.real(q) < wall_q)
             return F_c_n * np.sign(velocity_m_s) + jump_n * below
 
-        names.append(jbf.register_law(walled_law, parameters=WALL).name)
-        return names[-1]
+        request.addfinalizer(lambda: jbf.forget_law("walled_law"))
+        return jbf.register_law(walled_law, parameters=WALL).name
 
-    yield law
-    for name in names:
-        jbf.forget_law(name)
+    return law
 
 
 def moved_back(
@@ -245,15 +231,12 @@ def test_parameter_at_a_bound_is_not_determined_whatever_its_error(
     note = undetermined(page, value, error)
     assert bound in str(note)
     # The bound is reported even if the parameter is also confounded with another.
-    assert (
-        undetermined(page, value, error, separate=False) == bound_note(page, value, error) == note
-    )
+    assert undetermined(page, value, error, separate=False) == note
+    assert bound_note(page, value, error) == note
 
 
 @pytest.mark.parametrize(("share", "at_bound"), [(1.0, True), (1.1, False)])
-def test_parameter_is_at_its_bound_if_within_a_millionth_of_its_error(
-    share: float, at_bound: bool
-) -> None:
+def test_parameter_bound_is_reached_within_1e_6_of_the_error(share: float, at_bound: bool) -> None:
     error = 2.0**20
     assert (bound_note(PLAIN, share * 1e-6 * error, error) is not None) == at_bound
 
@@ -274,10 +257,8 @@ def test_scale_below_its_error_is_reported_with_an_upper_limit_of_two_errors(
 ) -> None:
     note = str(undetermined(page, value, error))
     assert "larger than itself" in note
-    if largest is None:
-        assert "below" not in note
-    else:
-        assert float(note.rpartition("below ")[2]) == pytest.approx(largest, rel=0.05)
+    assert ("below" in note) == (largest is not None)
+    assert largest is None or float(note.split()[-1]) == pytest.approx(largest, rel=0.05)
 
 
 def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
@@ -299,7 +280,7 @@ def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
         (PLAIN, (), (0.0,)),
     ],
 )
-def test_fitted_parameter_is_at_its_null_only_if_the_null_is_a_bound_that_it_reached(
+def test_fitted_parameter_is_at_its_null_only_if_the_null_is_a_reached_bound(
     page: Parameter, there: tuple[float, ...], elsewhere: tuple[float, ...]
 ) -> None:
     assert all(at_null(page, value, 0.1) for value in there)

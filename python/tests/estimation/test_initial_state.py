@@ -1,9 +1,8 @@
-"""Initial-state transients of films, contacts and play: which samples are excluded.
+"""Samples excluded because the state of a film, a contact or play is not known.
 
-Predictions that begin in different states differ until the initial state has no influence.
+Predictions that begin in different states differ until the initial state has no influence. After
+missing rows samples are excluded until the film does not depend on the motion in the gap.
 """
-
-from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
@@ -13,6 +12,7 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.film_gaps import behind_gaps
 from jbf.estimation.initial_state import REMEMBERED, Memory, memories, remembering
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
@@ -41,7 +41,6 @@ def journal_run(name: str, rest_s: float | None) -> Run:
 
 
 def journal_problem(*runs: Run) -> tuple[Problem, Array]:
-    """The bearing's law along some motions, and its parameters."""
     prepared = [Prepared.of(Rig.thesis(), run) for run in runs]
     campaign = Campaign(Rig.thesis(), tuple(prepared), Samples.of(prepared))
     problem = Problem(campaign, "journal", "journal", ())
@@ -59,7 +58,6 @@ def after(run: Run, before: tuple[float, float] | None, seed: int = 0) -> Run:
 
 
 def masks(*runs: Run, noise_n: float = NOISE_N) -> list[Array]:
-    """Excluded samples of each run, for motions of the bearing."""
     problem, values = journal_problem(*runs)
     return [np.asarray(m) for m in unsettled(problem, values, noise_n)]
 
@@ -69,9 +67,6 @@ def two_starts() -> Campaign:
     """A run after slow and one after fast motion, without the transient of the law's film."""
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     return settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
-
-
-# ---- memory --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -95,10 +90,7 @@ def test_models_with_a_film_contact_or_play_have_a_memory_of_the_initial_state(
 
 
 @pytest.mark.parametrize("longer", [1.0, 1.5])
-def test_interval_in_which_initial_states_matter_is_excluded_and_extended_by_a_factor(
-    longer: float,
-) -> None:
-    """From the first sample that differs by a fifth of the noise, times a factor in duration."""
+def test_interval_in_which_initial_states_matter_is_excluded_and_extended(longer: float) -> None:
     problem, values = journal_problem(journal_run("a", 2.0))
     (p,) = problem.campaign.prepared
     memory = Memory((1e-3, 0.1, 1.0), longer, 0.5)
@@ -111,10 +103,7 @@ def test_interval_in_which_initial_states_matter_is_excluded_and_extended_by_a_f
     np.testing.assert_array_equal(found, (t >= t[apart[0]]) & (t <= until))
 
 
-# ---- films ---------------------------------------------------------------------------------------
-
-
-def test_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() -> None:
+def test_run_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() -> None:
     run = journal_run("moving", None)
     (mask,) = masks(run)
     assert mask[0]
@@ -131,7 +120,7 @@ def test_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() -> N
     assert counts[0] > counts[1] > counts[2] > 0
 
 
-def test_rest_is_not_excluded_and_a_longer_rest_shortens_the_transient() -> None:
+def test_rest_before_motion_is_not_excluded_and_shortens_the_film_transient() -> None:
     short, longer, longest = (journal_run(f"after {s} s", s) for s in (2.0, 30.0, 120.0))
     found = masks(short, longer, longest)
     assert short.time_s[found[0]][0] == pytest.approx(2.0, abs=0.05)
@@ -149,15 +138,12 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     assert (found.kind, found.done, found.unit) == ("unsettled_start", "set aside", "s")
     gone = campaign.samples.counted[0] & ~settled.samples.counted[0]
     assert found.size == pytest.approx(np.ptp(runs[0].time_s[gone]), abs=0.03)
-    errors = []
-    for each in (settled, campaign):
-        problem = Problem(each, "journal", "journal", ())
-        solution = minimum(problem, [{}])
-        relative = solution.values / problem.starts({})[0] - 1.0
-        # K0 is hardly determined.
-        errors.append(float(np.abs(np.delete(relative, problem.names.index("K0"))).max()))
-        if each is settled:
-            assert solution.rms_n == pytest.approx(NOISE_N, rel=0.1)
+    problems = [Problem(each, "journal", "journal", ()) for each in (settled, campaign)]
+    fits = [minimum(problem, [{}]) for problem in problems]
+    # K0 is hardly determined.
+    known, truth = np.array(problems[0].names) != "K0", problems[0].starts({})[0]
+    errors = [float(np.abs(solution.values / truth - 1.0)[known].max()) for solution in fits]
+    assert fits[0].rms_n == pytest.approx(NOISE_N, rel=0.1)
     assert errors[0] < 0.02
     assert errors[1] > 3.0 * errors[0]
 
@@ -180,7 +166,6 @@ def with_memory(campaign: Campaign, factor: float) -> tuple[Problem, Solution]:
 def test_slower_film_excludes_further_samples_that_follow_those_already_excluded() -> None:
     campaign = two_starts()
     again = settled_again(*with_memory(campaign, 0.3))
-    assert again is not None
     for before, now in zip(campaign.samples.counted, again.samples.counted, strict=True):
         gone = np.flatnonzero(before & ~now)
         assert len(gone) > 20
@@ -199,14 +184,13 @@ def test_no_further_samples_are_excluded_for_a_film_as_fast_as_that_of_the_law()
         assert settled_again(problem, solution) is None
 
 
-def test_no_samples_are_excluded_for_a_law_without_a_state() -> None:
+def test_no_samples_are_excluded_at_starts_or_gaps_for_a_law_without_a_state() -> None:
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     assert settled_campaign(campaign, "coulomb", "journal") is campaign
     problem = Problem(campaign, "coulomb", "journal", ())
     assert not any(m.any() for m in unsettled(problem, problem.starts({})[0], 0.1))
-
-
-# ---- play of a load cell -------------------------------------------------------------------------
+    problem = Problem(Campaign.prepare(Rig(), [with_gap(7.0, 8.11)]), "coulomb", "journal", ())
+    assert not behind_gaps(problem, problem.starts({})[0], LEAST_N)[0].any()
 
 
 def reading_with_play(force_n: Array, start_n: float) -> Array:
@@ -230,25 +214,18 @@ def play_run(name: str, rate: float, way: float, branch: float, seed: int) -> Ru
 
 
 def play_runs(branch: float) -> list[Run]:
-    """Two runs in each direction."""
     plan = enumerate(((0.4, 1.0), (0.5, -1.0), (0.45, 1.0), (0.55, -1.0)))
     return [play_run(f"run {k}", rate, way, branch * way, k) for k, (rate, way) in plan]
 
 
 def play_problem(runs: list[Run]) -> tuple[Problem, Array]:
-    """A model with play, and the true parameters."""
     problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", PLAY)
-    truth = {
-        "F_c_n": DRY_N,
-        "F_s_n": DRY_N,
-        "F_v_n_s_m": VISCOUS_N_S_M,
-        "sensor_hysteresis.w_n": HALF_WIDTH_N,
-    }
+    truth = {"F_c_n": DRY_N, "F_s_n": DRY_N, "F_v_n_s_m": VISCOUS_N_S_M}
+    truth["sensor_hysteresis.w_n"] = HALF_WIDTH_N
     return problem, np.array([truth[name] for name in problem.names])
 
 
 def settled_play(runs: list[Run]) -> tuple[Problem, Array, Campaign | None]:
-    """The campaign without the initial transient of a model with play."""
     problem, truth = play_problem(runs)
     solution = problem.solution(truth, problem.campaign.samples, WHITE)
     return problem, truth, settled_again(problem, solution)
@@ -257,15 +234,12 @@ def settled_play(runs: list[Run]) -> tuple[Problem, Array, Campaign | None]:
 @pytest.mark.parametrize("branch", [-1.0, 1.0], ids=["fallen", "risen"])
 def test_start_within_the_play_is_excluded_until_the_force_has_reversed(branch: float) -> None:
     problem, truth, settled = settled_play(play_runs(branch))
-    assert settled is not None
     residuals, every = problem.residuals(truth), problem.campaign.samples.counted
-    for p, kept, whole, residual in zip(
-        settled.prepared, settled.samples.counted, every, residuals, strict=True
-    ):
+    for kept, whole, residual in zip(settled.samples.counted, every, residuals, strict=True):
         gone = whole & ~kept
         assert abs(float(residual[gone].mean())) > 2.0 * PLAY_NOISE_N
         assert abs(float(residual[kept].mean())) < REMEMBERED * PLAY_NOISE_N
-        assert 8.0 < p.run.time_s[gone][-1] < 30.0
+        assert 8.0 < settled.prepared[0].run.time_s[gone][-1] < 30.0
     found = [f.run for f in settled.more_findings if f.kind == "unsettled_start"]
     assert found == [f"run {k}" for k in range(4)]
 
@@ -273,21 +247,94 @@ def test_start_within_the_play_is_excluded_until_the_force_has_reversed(branch: 
 def test_run_whose_force_never_reverses_is_excluded_if_other_runs_remain() -> None:
     steady = play_run("steady", 0.0, 1.0, -1.0, 9)
     settled = settled_play([*play_runs(-1.0), steady])[2]
-    assert settled is not None
     *others, last = (int(kept.sum()) for kept in settled.samples.counted)
     assert last == 0
     assert min(others) > 1000
 
 
-def test_no_run_is_excluded_if_the_force_reverses_in_no_run() -> None:
+def test_all_runs_are_kept_if_the_force_reverses_in_none_of_them() -> None:
     runs = [play_run(f"steady {k}", 0.0, 1.0, -1.0, k) for k in range(3)]
     assert settled_play(runs)[2] is None
 
 
-def test_start_is_excluded_only_if_the_play_of_the_model_has_a_width() -> None:
+def test_run_starts_are_excluded_only_if_the_play_of_the_model_has_a_width() -> None:
     problem, values = play_problem(play_runs(1.0))
     every = problem.campaign.samples
     gone = [w & ~c for w, c in zip(every.counted, problem.samples_at(values).counted, strict=True)]
     assert all(8.0 < 0.02 * int(g.sum()) < 30.0 for g in gone)
     values[problem.names.index("sensor_hysteresis.w_n")] = 0.0
     assert problem.samples_at(values) is every
+
+
+LEAST_N = 0.02
+TIME = np.arange(0.0, 16.0, 0.02)
+
+
+def step_of_speed(at_s: float, up: bool) -> Array:
+    """A speed that rises tenfold at an instant, or falls to a tenth."""
+    rise = np.clip((TIME - at_s) / 0.04, 0.0, 1.0)
+    return 0.01 + 0.1 * (rise if up else 1.0 - rise)
+
+
+def with_gap(first_s: float, last_s: float, at_s: float = 8.0, up: bool = True) -> Run:
+    """The friction of the bearing, without the rows between two instants."""
+    whole = Run.from_arrays(TIME, step_of_speed(at_s, up), np.ones(len(TIME)), name="gap")
+    problem, values = journal_problem(whole)
+    whole = replace(whole, friction_n=problem.predict(values)[0])
+    return whole.select((first_s > TIME) | (last_s < TIME))
+
+
+@pytest.mark.parametrize(
+    ("at_s", "up", "last_s", "least_n"),
+    [(8.0, True, 8.11, LEAST_N), (8.0, False, 8.11, LEAST_N), (7.05, False, 7.6, 4.0)],
+    ids=["faster at its end", "slower at its end", "slower at its start"],
+)
+def test_samples_whose_film_depends_on_the_motion_in_a_gap_are_excluded(
+    at_s: float, up: bool, last_s: float, least_n: float
+) -> None:
+    """The model interpolates the speed across a gap from 7 s on; the speed changes at one end."""
+    run = with_gap(7.0, last_s, at_s, up)
+    problem, values = journal_problem(run)
+    wrong = np.abs(problem.residuals(values)[0]) > 1.2 * least_n
+    (mask,) = behind_gaps(problem, values, least_n)
+    assert wrong.any()
+    assert mask[wrong].all()
+    set_aside = run.time_s[mask]
+    assert last_s < set_aside.min() < last_s + 0.1
+    assert set_aside.max() - set_aside.min() < 3.0
+    assert behind_gaps(problem, values, 1e3)[0].sum() == 0
+
+
+@pytest.mark.parametrize(("first_s", "last_s"), [(3.0, 4.0), (12.0, 13.0), (8.01, 8.05)])
+def test_gap_at_constant_speed_or_of_two_rows_is_ignored(first_s: float, last_s: float) -> None:
+    problem, values = journal_problem(with_gap(first_s, last_s))
+    assert not behind_gaps(problem, values, LEAST_N)[0].any()
+
+
+@pytest.mark.parametrize(("missing", "gap"), [(3, False), (4, True)])
+def test_four_missing_rows_count_as_a_gap_and_three_do_not(missing: int, gap: bool) -> None:
+    """A gap is a step above 4.5 times the usual one; here it is within the change of speed."""
+    kept = np.ones(len(TIME), dtype=bool)
+    kept[401 : 401 + missing] = False
+    run = Run.from_arrays(TIME, step_of_speed(8.0, True), np.ones(len(TIME)), name="a").select(kept)
+    problem, values = journal_problem(run)
+    assert bool(behind_gaps(problem, values, 1e-4)[0].any()) == gap
+
+
+def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise() -> None:
+    run, noise_n = with_gap(7.0, 8.11, up=False), 0.02
+    noise = noise_n * np.random.default_rng(4).standard_normal(len(run))
+    campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction_n=run.friction_n + noise)])
+    settled = settled_campaign(campaign, "journal", "journal")
+    gone = run.time_s[campaign.samples.counted[0] & ~settled.samples.counted[0]]
+    (behind,) = behind_gaps(*journal_problem(run), REMEMBERED * noise_n)
+    found, expected = gone[gone > 8.0], run.time_s[behind]
+    assert (found[0], found[-1]) == pytest.approx((expected[0], expected[-1]), abs=0.15)
+
+
+def test_samples_excluded_after_a_gap_do_not_depend_on_the_zero_of_time() -> None:
+    run = with_gap(7.0, 8.11)
+    later = Run.from_arrays(run.time_s + 1000.0, run.velocity_m_s, run.friction_n, name="later")
+    masks = [behind_gaps(*journal_problem(r), LEAST_N)[0] for r in (run, later)]
+    assert masks[0].any()
+    np.testing.assert_array_equal(*masks)

@@ -1,14 +1,17 @@
-"""Samples next to jumps whose instants are fitted or uncertain: their weights, and fits."""
+"""Samples next to jumps whose instants are fitted or uncertain: their weights, and fits.
 
-from __future__ import annotations
+The standard error of the instant of a reversal is that of the speed over the acceleration; the
+prediction is off by its rate of change times that.
+"""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array
 from campaigns import campaign
-from delayed_runs import DELAY, TAU, fitted, reversing_campaign
 from jbf import Model, Parameter, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import (
@@ -18,39 +21,35 @@ from jbf.estimation.jumps import (
     samples_beside_jumps,
     spreads_jumps,
 )
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.reversals import instant_errors_n
 from jbf.models.catalogue import parameters_of
+from jbf.records.motion.imposed import ImposedMotion
+from rigsim.motions import sine
 
 EXTENDED = pytest.mark.extended
 
 
-# ---- detection -----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_jump_within_one_step_is_found_at_both_samples_with_its_size(unit: float) -> None:
-    """Both samples next to the jump receive its size."""
     t = np.arange(0.0, 10.0, 0.02)
     smooth = 20.0 * unit * np.cos(t)
     assert not jumps(smooth).any()
     assert not jumps(np.zeros(20)).any()
-    jumped = np.where(t < 5.0, smooth + 20.0 * unit, smooth - 20.0 * unit)
-    found = jumps(jumped)
+    found = jumps(smooth + unit * np.where(t < 5.0, 20.0, -20.0))
     assert np.flatnonzero(found).tolist() == [249, 250]
     np.testing.assert_allclose(found[249:251], 40.0 * unit, rtol=0.02)
 
 
 @pytest.mark.parametrize(("size", "found"), [(0.39, False), (0.41, True)])
-def test_change_is_a_jump_only_if_above_a_tenth_of_the_largest_force(
-    size: float, found: bool
-) -> None:
+def test_change_is_a_jump_above_a_tenth_of_the_largest_force(size: float, found: bool) -> None:
     force = np.array([4.0 - size] * 3 + [4.0] * 3)
     assert bool(jumps(force).any()) == found
 
 
 @pytest.mark.parametrize(("neighbour", "found"), [(0.32, True), (0.35, False)])
-def test_rise_over_several_samples_is_not_a_jump(neighbour: float, found: bool) -> None:
+def test_gradual_rise_over_several_samples_is_not_a_jump(neighbour: float, found: bool) -> None:
     """The change is compared with three times the smaller of two neighbours on either side."""
     change = np.array([0.0, neighbour, neighbour, 1.0, 0.0, 0.0])
     for steps in (change, change[::-1]):
@@ -94,9 +93,6 @@ def test_effect_is_inactive_only_if_all_its_nulls_are_reached() -> None:
         assert found == (["load_dependence"] if active else [])
 
 
-# ---- weights -------------------------------------------------------------------------------------
-
-
 def square_wave(noise_n: float) -> tuple[Campaign, Array]:
     """A run whose force changes its sign once, at sample 250, with noise of alternating sign."""
     t = np.arange(0.0, 10.0, 0.02)
@@ -111,9 +107,7 @@ def square_wave(noise_n: float) -> tuple[Campaign, Array]:
 
 @pytest.mark.parametrize("noise_n", [0.3, 3.0])
 @pytest.mark.parametrize("before", [1.0, 0.5])
-def test_weight_next_to_a_moved_jump_is_the_share_of_noise_in_the_total_error(
-    noise_n: float, before: float
-) -> None:
+def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_n: float, before: float) -> None:
     """Half of the change, 20 N, is added to the noise in squares; the samples count in no test."""
     campaign_, force = square_wave(noise_n)
     samples = replace(campaign_.samples, weight=(np.full(len(force), before),))
@@ -148,19 +142,6 @@ def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_erro
     np.testing.assert_allclose(found.weight[0], expected)
 
 
-def test_all_samples_count_if_the_effect_that_moves_jumps_is_at_its_null() -> None:
-    bare = fitted(reversing_campaign((0.0,) * 2))[0]
-    problem = Problem(bare.campaign, "coulomb", "journal", DELAY)
-    values = problem.starts({})[0]
-    every = problem.campaign.samples
-    assert problem.samples_at(values).count < every.count
-    values[problem.names.index(TAU)] = 0.0
-    assert problem.samples_at(values) is every
-
-
-# ---- recovery on simulated campaigns -------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["time_delay", pytest.param("backlash", marks=EXTENDED)])
 def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(name: str) -> None:
     rig, runs, truth = campaign(5, (name,))
@@ -169,10 +150,128 @@ def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(n
     (short, value), *_ = truth["effects"][name].items()
     full = next(n for n in solution.parameters if n.startswith(f"{name}.{short}"))
     found = solution.parameters[full]
-    assert found.stderr is not None
     assert abs(found.value - value) < 3.5 * found.stderr
     assert found.stderr < 0.3 * value
     # Only the samples next to the moved jumps are left out.
     bare = compare(Model(rig), runs)
     assert 0.97 * bare.samples.count < solution.samples < bare.samples.count
     assert compare(solution.model, runs).rms_n < 1.03 * truth["noise_n"]
+
+
+STEP_S = 0.1
+SLOW = (sine("slow", 160.0, 0.02, 0.05),)
+
+
+def prepared(
+    velocity: Sequence[float], *, error: float | Array = 1e-3, unknown: Sequence[int] = ()
+) -> Prepared:
+    """A run with a given motion; `unknown` are samples at which its sign is not known."""
+    v = np.array(velocity)
+    n = len(v)
+    long = np.where(np.arange(200) < 100, 0.2, -0.2)
+    run = Run.from_arrays(STEP_S * np.arange(200), long, 5.0 * np.sign(long) + 0.01 * np.cos(long))
+    made = Prepared.of(Rig(), run)
+    rest = v == 0.0
+    known = ~rest & ~np.isin(np.arange(n), unknown)
+    errors = np.broadcast_to(np.asarray(error, dtype=float), (n,)).copy()
+    motion = ImposedMotion(v, np.zeros(n), STEP_S * np.cumsum(v), errors, rest, known)
+    short = made.run.select(np.arange(200) < n)
+    return replace(made, run=short, motion=motion, friction_n=made.friction_n[:n])
+
+
+def ramp(p: Prepared, rate_n_s: float = 10.0) -> Array:
+    return rate_n_s * np.asarray(p.run.time_s)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_error_after_a_reversal_is_rate_of_change_times_error_of_the_instant(unit: float) -> None:
+    """2 mm/s at 2 m/s^2 are 1 ms: 0.05 N at 50 N/s, until it falls below the least size."""
+    p = prepared([0.2] * 3 + [0.1, -0.1] + [-0.2] * 11, error=2e-3)
+    slope = 50.0 * ((np.arange(15) >= 3) & (np.arange(15) < 9))
+    prediction = unit * np.concatenate(([0.0], np.cumsum(slope * STEP_S)))
+    rate = np.abs(np.gradient(prediction, p.run.time_s))
+    found = instant_errors_n(p, prediction, 0.02 * unit)
+    np.testing.assert_array_equal(found[:4], 0.0)
+    np.testing.assert_allclose(found[4:10], 1e-3 * rate[4:10])
+    assert found[5] == pytest.approx(0.05 * unit)
+    np.testing.assert_array_equal(found[10:], 0.0)
+    # The rate falls to half at the ninth sample.
+    assert instant_errors_n(p, prediction, 0.03 * unit)[9] == 0.0
+
+
+def test_error_of_the_instant_is_at_most_that_of_a_uniform_distribution_over_a_step() -> None:
+    p = prepared([0.2] * 4 + [-0.2] * 8, error=1e3)
+    found = instant_errors_n(p, ramp(p), 1e-9)
+    np.testing.assert_allclose(found[4:], STEP_S * 10.0 / np.sqrt(12.0), rtol=0.01)
+
+
+def test_samples_of_unknown_sign_next_to_a_reversal_share_its_error() -> None:
+    error = np.array([9.0, 1e-3, 5e-3, 1e-3, 2e-3, 9.0, 9.0, 9.0])
+    p = prepared([0.2, 0.2, 0.1, -0.1, -0.2, -0.2, -0.2, -0.2], error=error, unknown=(2, 3))
+    found = instant_errors_n(p, ramp(p), 1e-9)
+    np.testing.assert_array_equal(found[:2], 0.0)
+    np.testing.assert_allclose(found[2:], 10.0 * 5e-3 / (0.4 / 0.3))
+
+
+def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversal() -> None:
+    error = np.where(np.arange(11) < 6, 1e-3, 1e-4)
+    p = prepared([0.2] * 3 + [-0.2] * 4 + [0.2] * 4, error=error)
+    first, second = 1e-3 / 4.0 * 20.0, 1e-4 / 4.0 * 20.0
+    found = instant_errors_n(p, ramp(p, 20.0), 1e-9)
+    np.testing.assert_allclose(found, [0.0] * 3 + [first] * 4 + [second] * 4)
+    # A rate that begins later than the reversal has no error by its instant.
+    p = prepared([0.2] * 3 + [-0.2] * 8)
+    late = np.maximum(ramp(p) - ramp(p)[6], 0.0)
+    assert not instant_errors_n(p, late, 1e-9).any()
+
+
+@pytest.mark.parametrize(
+    ("velocity", "unknown", "first"),
+    [
+        ([1.0, 1.0, -1.0, -1.0, -1.0], (), 2),
+        ([1.0, 0.1, -0.1, -1.0, -1.0], (1, 2), 1),
+        # A stop between two directions is no reversal, nor is a start.
+        ([1.0, 0.0, -1.0, -1.0, -1.0], (), None),
+        ([0.0, 1.0, 1.0, 2.0, 2.0], (), None),
+        ([1.0, 0.0, 0.0, 1.0, -1.0], (), 4),
+    ],
+)
+def test_reversal_is_a_sign_change_without_a_rest(velocity: Any, unknown: Any, first: Any) -> None:
+    p = prepared(velocity, unknown=unknown)
+    found = np.flatnonzero(instant_errors_n(p, ramp(p), 1e-9))
+    assert (int(found[0]) if len(found) else None) == first
+
+
+def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:
+    two = prepared([0.2, -0.2])
+    assert instant_errors_n(two, np.array([1.0, -1.0]), 0.0).tolist() == [0.0, 0.0]
+
+
+def true_model(seed: int, effects: tuple[str, ...]) -> tuple[Problem, Array, float]:
+    rig, runs, truth = campaign(seed, effects, motions=SLOW)
+    problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", effects)
+    known = {name.removesuffix("_m_s"): value for name, value in truth["base"].items()}
+    for effect, values in truth["effects"].items():
+        known |= {f"{effect}.{name}": value for name, value in values.items()}
+    names = [name.removesuffix("_m_s").removesuffix("_s") for name in problem.names]
+    return problem, np.array([known[name] for name in names]), truth["noise_n"]
+
+
+@pytest.mark.parametrize(
+    "seeds", [range(20, 23), pytest.param(range(23, 32), marks=pytest.mark.extended)]
+)
+def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> None:
+    doubtful, others = [], []
+    for seed in seeds:
+        problem, values, noise_n = true_model(seed, ("sensor_lag",))
+        (p,), (prediction,) = problem.campaign.prepared, problem.predict(values)
+        error_n = instant_errors_n(p, prediction, 0.5 * noise_n)
+        residual = p.friction_n - prediction
+        counted = p.motion.sign_known
+        behind = counted & (error_n > 0.0)
+        doubtful.append(residual[behind] / np.hypot(noise_n, error_n[behind]))
+        others.append(residual[counted & (error_n == 0.0)] / noise_n)
+        assert 0 < behind.sum() < 0.1 * counted.sum()
+        assert np.max(error_n) > 2.0 * noise_n
+    assert 0.4 < np.sqrt(np.mean(np.concatenate(doubtful) ** 2)) < 2.0
+    assert np.sqrt(np.mean(np.concatenate(others) ** 2)) == pytest.approx(1.0, abs=0.05)

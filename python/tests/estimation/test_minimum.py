@@ -1,7 +1,5 @@
 """The minimum of a fit: the colour of its noise, other peaks of the likelihood, robust weights."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -26,11 +24,8 @@ NOISE_N = 0.1
 
 
 def runs_with(more: Callable[[int, Run], Array], seed: int = 0) -> list[Run]:
-    """Runs of Coulomb's law in white noise, with an additional force in each."""
     runs = four_runs(coulomb, noise_n=NOISE_N, seed=seed)
-    return [
-        replace(r, friction_n=np.asarray(r.friction_n) + more(i, r)) for i, r in enumerate(runs)
-    ]
+    return [replace(r, friction_n=r.friction_n + more(i, r)) for i, r in enumerate(runs)]
 
 
 def fitted(runs: list[Run]) -> tuple[Problem, Solution]:
@@ -63,7 +58,6 @@ def rms(values: Array) -> float:
 
 
 def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_rises() -> None:
-    """If its RMS is no more than 2 % above that of ordinary least squares."""
     weighted = 0
     for seed in (1, 3, 4, 6):
         noise = [autoregressive(10 * seed + i, 0.3, 0.5, 501) for i in range(4)]
@@ -81,13 +75,8 @@ def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_ri
 
 @pytest.mark.parametrize("height", [1.0, 3.0])
 def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -> None:
-    """Friction that decays during the run, smoothly, which Coulomb's law does not describe."""
-
-    def sinking(i: int, run: Run) -> Array:
-        found: Array = height * np.sign(run.velocity_m_s) * np.exp(-run.time_s / 2.0)
-        return found
-
-    problem, found = fitted(runs_with(sinking))
+    runs = runs_with(lambda i, r: height * np.sign(r.velocity_m_s) * np.exp(-r.time_s / 2.0))
+    problem, found = fitted(runs)
     assert found.noise.colour > 0.0
     values, least = regression(problem)
     _, coloured = regression(problem, found.noise)
@@ -114,7 +103,6 @@ def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
     # The peak at which the search has ended is not among them.
     at_best = other_peaks(square, np.array([7.0, 2e-3]), 1, 1e-6, 1e2)
     assert [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in at_best] == pytest.approx([1, -1], abs=0.1)
-    # From a fifth to five times the value.
     evaluated.clear()
     other_peaks(square, here, 1, 1e-6, 1e2)
     assert min(evaluated) == pytest.approx(here[1] / 5.0)
@@ -139,7 +127,6 @@ def test_resonance_of_a_drive_is_found_from_a_wrong_frequency() -> None:
     assert likelihood_gain(minimum(problem, [{name: right}]), found) < 1.0
     assert abs(found.values[which] / right - 1.0) < 0.2
     assert abs(stuck.values[which] / right - 1.0) > 0.5
-    # Held parameters are not moved to another peak.
     held = Problem(problem.campaign, "journal", "journal", problem.effects, {name: right})
     start = settle(held, approach(held, [{}], 60))
     assert search_peaks(held, start) is start
@@ -166,17 +153,6 @@ def test_unweighted_fit_is_returned_if_noise_is_gaussian() -> None:
         assert best_weighting(problem, plain) is plain
 
 
-def outlying(seed: int) -> Callable[[int, Run], Array]:
-    """One run in which three samples of ten are off by ten standard deviations."""
-    random = np.random.default_rng(seed)
-
-    def more(i: int, run: Run) -> Array:
-        found: Array = (random.random(len(run)) < 0.3) * np.sign(run.velocity_m_s) * (i == 0)
-        return found
-
-    return more
-
-
 def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) -> Array:
     """Four rounds of weighted least squares, scaled by the median absolute residual."""
     values, residual = regression(problem)
@@ -187,12 +163,14 @@ def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) 
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.extended)])
-def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error(
-    seed: int,
-) -> None:
-    runs = runs_with(outlying(seed), seed)
+def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    # In one run three samples of ten are off by ten standard deviations.
+    runs = runs_with(
+        lambda i, run: (random.random(len(run)) < 0.3) * np.sign(run.velocity_m_s) * (i == 0), seed
+    )
     early = np.arange(501) < 30
-    spoilt = [replace(r, friction_n=np.asarray(r.friction_n) + 20.0 * early) for r in runs]
+    spoilt = [replace(r, friction_n=r.friction_n + 20.0 * early) for r in runs]
     # Excluded samples have no weight, however large their residual is.
     kept = coulomb_problem(spoilt).campaign.without([early] * 4)
     problem = Problem(kept, "coulomb", "journal", (), HELD)
@@ -203,12 +181,9 @@ def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error
     # Iteratively reweighted least squares by numpy, with either weights.
     ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
     assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3
-    # The result is closer to the true law.
     speed = np.linspace(0.05, 0.15, 11)
-    before, after = (
-        rms(s.values[0] - LAW["F_c_n"] + (s.values[2] - LAW["F_v_n_s_m"]) * speed)
-        for s in (plain, found)
-    )
+    true = LAW["F_c_n"] + LAW["F_v_n_s_m"] * speed
+    before, after = (rms(s.values[0] + s.values[2] * speed - true) for s in (plain, found))
     assert after < 0.6 * before
     far = np.abs(found.samples.flat(found.residuals)) > 6.0 * NOISE_N
     weight = found.samples.flat(found.samples.weight)
@@ -222,8 +197,7 @@ def test_robust_weights_reduce_the_bias_of_the_slope_by_few_outliers() -> None:
 
     def wild(i: int, run: Run) -> Array:
         v = run.velocity_m_s
-        found: Array = 4.0 * (random.random(len(run)) < 0.05) * np.sign(v) * (np.abs(v) > 0.1)
-        return found
+        return 4.0 * (random.random(len(run)) < 0.05) * np.sign(v) * (np.abs(v) > 0.1)
 
     problem, plain = fitted(runs_with(wild))
     slope = LAW["F_v_n_s_m"]

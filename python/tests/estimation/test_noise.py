@@ -6,31 +6,26 @@ With `r_t = phi r_t-1 + e_t - theta e_t-1` the variance of r is `(1 + theta^2 - 
 (1 - phi^2)` times.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from by_hand import Array, coulomb, four_runs, one_way
 from campaigns import campaign
-from coulomb_problems import (
-    STEP_S,
-    arma_innovations,
-    autoregressive,
-    coulomb_problem,
-    values_of,
-)
+from coulomb_problems import STEP_S, arma_innovations, autoregressive, coulomb_problem, values_of
 from jbf import Rig, Run, fit
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.noise_floor import most_noise, noise_floor
+from linear_campaigns import mass
 from scipy import optimize, signal
 
 
-def everywhere(n: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def everywhere(n: int) -> npt.NDArray[np.bool_]:
     return np.ones(n, dtype=bool)
 
 
@@ -66,9 +61,7 @@ def test_noise_without_memory_or_colour_is_white(noise: Noise) -> None:
 
 @pytest.mark.parametrize("memory_s", [0.05, 0.2, 0.6])
 @pytest.mark.parametrize("colour", [0.01, 0.2, 0.9])
-def test_coloured_share_of_the_variance_is_that_of_an_arma_process(
-    memory_s: float, colour: float
-) -> None:
+def test_coloured_share_is_that_of_an_arma_process(memory_s: float, colour: float) -> None:
     phi = float(np.exp(-STEP_S / memory_s))
     theta = phi * (1.0 - colour)
     # Only the coloured part is correlated, with phi from step to step.
@@ -84,9 +77,8 @@ def test_innovation_cost_is_minus_twice_the_profile_log_likelihood(noise: Noise)
     steps = [STEP_S, 0.05]
     runs = [white(2, 0.5, 300), white(3, 1.0, 200)]
     masks = [everywhere(300), np.random.default_rng(4).random(200) < 0.7]
-    e = np.concatenate(
-        [arma_innovations(r, s, noise)[m] for r, s, m in zip(runs, steps, masks, strict=True)]
-    )
+    parts = zip(runs, steps, masks, strict=True)
+    e = np.concatenate([arma_innovations(r, step, noise)[m] for r, step, m in parts])
     sd = float(np.sqrt(np.mean(e**2)))
     minus_twice = float(np.sum((e / sd) ** 2 + 2.0 * np.log(sd)))
     assert innovation_cost(noise, runs, steps, masks) == pytest.approx(minus_twice - len(e))
@@ -100,10 +92,8 @@ def test_noise_estimated_from_white_noise_is_white(seed: int) -> None:
 @pytest.mark.parametrize("seed", [0, 3])
 def test_noise_estimate_is_at_least_as_likely_as_any_of_a_grid(seed: int) -> None:
     random = np.random.default_rng(seed)
-    runs = [
-        autoregressive(10 * seed + k, random.uniform(0.08, 0.4), 0.3, 3000) + white(k, 0.3, 3000)
-        for k in range(2)
-    ]
+    slow = [autoregressive(10 * seed + k, random.uniform(0.08, 0.4), 0.3, 3000) for k in (0, 1)]
+    runs = [noise + white(k, 0.3, 3000) for k, noise in enumerate(slow)]
     masks, steps = [random.random(3000) > 0.1 for _ in runs], [STEP_S, 1.5 * STEP_S]
 
     def cost(noise: Noise) -> float:
@@ -128,9 +118,7 @@ def test_estimated_memory_is_at_most_600_ms_or_four_steps(step_s: float, longest
 
 
 @pytest.mark.parametrize(("sd", "seed"), [(0.1, 17), (0.1, 3), (0.095, 16), (0.11, 0)])
-def test_coloured_noise_is_estimated_only_if_the_deviance_falls_by_twenty(
-    sd: float, seed: int
-) -> None:
+def test_coloured_noise_is_estimated_only_if_deviance_falls_by_twenty(sd: float, seed: int) -> None:
     """The largest gain is searched by a simplex (Nelder & Mead 1965); these lie within 1 of 20."""
     kicks = np.random.default_rng(seed).normal(0.0, sd * np.sqrt(1.0 - 0.85**2), 3000)
     slow = np.asarray(signal.lfilter([1.0], [1.0, -0.85], kicks))
@@ -149,7 +137,7 @@ def test_coloured_noise_is_estimated_only_if_the_deviance_falls_by_twenty(
     assert estimate_noise(residual, [STEP_S], every).white == (gain < 20.0)
 
 
-def test_coloured_part_is_limited_to_the_largest_possible_noise() -> None:
+def test_coloured_part_of_estimated_noise_is_limited_to_the_largest_noise() -> None:
     n, every = 6000, [everywhere(6000)]
     residual = autoregressive(3, 0.4, 1.0, n) + white(4, 0.5, n)
     free = estimate_noise([residual], [STEP_S], every)
@@ -163,13 +151,10 @@ def test_coloured_part_is_limited_to_the_largest_possible_noise() -> None:
 
 def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
     """An unmodelled mass that swings once a second: repetitions show that the noise is 0.1 N."""
-
-    def heavy(t: Array, v: Array, a: Array) -> Array:
-        return coulomb(t, v, a) + 1.5 * a
-
+    options: dict[str, Any] = {"rate": 2.0 * np.pi, "noise_n": 0.1}
     runs = [
-        one_way(name, heavy, way=way, rate=2.0 * np.pi, noise_n=0.1, seed=seed)
-        for name, way, seed in (("forth", 1.0, 1), ("back", -1.0, 2))
+        one_way("forth", mass(1.5), seed=1, **options),
+        one_way("back", mass(1.5), way=-1.0, seed=2, **options),
     ]
     fitted = fit(Rig(), runs, law="coulomb")
     assert fitted.rms_n > 0.2
@@ -178,11 +163,9 @@ def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
 
 
 def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
-    runs = [
-        replace(r, friction_n=r.friction_n + autoregressive(i, 0.2, 0.3, len(r)))
-        for i, r in enumerate(four_runs(coulomb, noise_n=0.1))
-        if r.friction_n is not None
-    ]
+    slow = [autoregressive(i, 0.2, 0.3, 501) for i in range(4)]
+    plain = zip(four_runs(coulomb, noise_n=0.1), slow, strict=True)
+    runs = [replace(run, friction_n=run.friction_n + noise) for run, noise in plain]
     problem = coulomb_problem(runs)
     samples = problem.campaign.samples.within([np.arange(len(r)) > 150 for r in runs])
     values = values_of(problem)
@@ -202,8 +185,7 @@ def test_random_effect_of_a_run_is_not_taken_for_coloured_noise() -> None:
     problem = coulomb_problem(runs)
     samples, values = problem.campaign.samples, values_of(problem)
     assert not noise_at(problem, samples, values).white
-    directions = tuple(np.full((len(r), 1), 0.5) for r in runs)
-    between = BetweenRuns(("zero",), directions, 0.1)
+    between = BetweenRuns(("zero",), tuple(np.full((len(r), 1), 0.5) for r in runs), 0.1)
     assert noise_at(problem, replace(samples, between=between), values) == WHITE
 
 
@@ -228,25 +210,21 @@ def with_rests(noise: Array, name: str = "rests") -> Run:
 
 
 @pytest.mark.parametrize(("coloured", "whole"), [(False, 1.0), (True, np.sqrt(1.25))])
-def test_noise_floor_is_the_simulated_noise(coloured: bool, whole: float) -> None:
+def test_noise_floor_of_simulated_runs_is_their_noise_rms(coloured: bool, whole: float) -> None:
     """The coloured part has a quarter of the white part's variance; repetitions show it."""
-    ratios = []
-    for seed in (3, 4):
-        rig, runs, truth = campaign(seed, coloured=coloured)
-        ratios.append(floor_of(rig, runs) / truth["noise_n"])
+    simulated = (campaign(seed, coloured=coloured) for seed in (3, 4))
+    ratios = [floor_of(rig, runs) / truth["noise_n"] for rig, runs, truth in simulated]
     assert np.mean(ratios) == pytest.approx(whole, rel=0.06)
 
 
 @pytest.mark.parametrize("over_noise", [1.0, 2.0, 4.0])
-def test_noise_floor_of_quantised_readings_includes_the_quantisation_error(
-    over_noise: float,
-) -> None:
+def test_noise_floor_of_quantised_readings_includes_quantisation_error(over_noise: float) -> None:
     """Uniform error of a step: its variance is a twelfth of the step's square (Widrow 1956)."""
     rig, runs, truth = campaign(6)
     step = over_noise * truth["noise_n"]
     coarse = [replace(run, friction_n=step * np.round(run.friction_n / step)) for run in runs]
-    whole = np.hypot(truth["noise_n"], step / np.sqrt(12.0))
-    assert floor_of(rig, coarse) == pytest.approx(whole, rel=0.15)
+    expected = np.hypot(truth["noise_n"], step / np.sqrt(12.0))
+    assert floor_of(rig, coarse) == pytest.approx(expected, rel=0.15)
 
 
 def test_largest_noise_at_rest_is_the_scatter_about_a_line_through_each_rest() -> None:
@@ -272,28 +250,22 @@ def test_largest_noise_requires_three_hundred_samples_at_rest(length: int, known
 
 
 @pytest.mark.parametrize(("times", "taken"), [(1.0, False), (2.0, True), (4.0, False)])
-def test_coloured_noise_raises_the_noise_floor_up_to_three_times_the_white_part(
-    times: float, taken: bool
-) -> None:
+def test_coloured_noise_raises_the_noise_floor_only_to_a_limit(times: float, taken: bool) -> None:
     """A part larger than three times the white one is not attributed to the instrument."""
     slow = autoregressive(2, 2.0, 0.05 * np.sqrt(times**2 - 1.0) + 1e-9, 8000)
     run = with_rests(slow + white(3, 0.05, 8000))
     found, largest = floor_of(Rig(), [run]), largest_of(run)
-    assert largest is not None
     assert largest == pytest.approx(0.05 * times, rel=0.2)
     assert found == pytest.approx(largest if taken else 0.05, rel=1e-12 if taken else 0.15)
 
 
 def repeated(noise: Array, period: int) -> Run:
-    """A motion that repeats after `period` samples."""
     t = STEP_S * np.arange(len(noise))
     v = 0.1 + 0.05 * np.sin(2.0 * np.pi * np.arange(len(noise)) / period)
     return Run.from_arrays(t, v, 5.0 + 20.0 * v + noise, name="repeated")
 
 
 def test_largest_noise_includes_coloured_noise_if_the_motion_repeats() -> None:
-    found = [
-        largest_of(repeated(autoregressive(s, 0.2, 0.3, 6000) + white(s, 0.1, 6000), 313))
-        for s in range(4)
-    ]
+    noises = (autoregressive(s, 0.2, 0.3, 6000) + white(s, 0.1, 6000) for s in range(4))
+    found = [largest_of(repeated(noise, 313)) for noise in noises]
     assert np.mean(np.array(found, dtype=float)) == pytest.approx(np.hypot(0.3, 0.1), rel=0.05)

@@ -1,7 +1,5 @@
 """Recorded load and temperature: their use in predictions, and recovery of their effects."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -25,7 +23,6 @@ EXTENDED = pytest.mark.extended
 
 
 def slide_run(celsius: Array | None, name: str = "run", seed: int = 3) -> Run:
-    """A slide under Coulomb friction, with a column of temperature."""
     v = 0.1 * np.sin(0.5 * TIME)
     noise = 0.2 * np.random.default_rng(seed).standard_normal(len(TIME))
     force = 6.0 * np.sign(v) + 40.0 * v + noise
@@ -33,22 +30,11 @@ def slide_run(celsius: Array | None, name: str = "run", seed: int = 3) -> Run:
 
 
 def drive_runs(seed: int, *effects: str, **options: Any) -> list[Run]:
-    """A campaign of the simulator of drives."""
-    return [
-        Run.from_arrays(
-            r.time_s,
-            r.velocity_m_s,
-            r.force_n,
-            position_m=r.path,
-            load_n=r.load_n,
-            temperature_c=r.temperature_c,
-            name=r.name,
-        )
-        for r in axis_campaign(seed, effects, **options)[0]
-    ]
-
-
-# ---- use of the record --------------------------------------------------------------------------
+    runs = []
+    for r in axis_campaign(seed, effects, **options)[0]:
+        columns = {"position_m": r.path, "load_n": r.load_n, "temperature_c": r.temperature_c}
+        runs.append(Run.from_arrays(r.time_s, r.velocity_m_s, r.force_n, name=r.name, **columns))
+    return runs
 
 
 def test_run_without_temperature_is_rejected_if_the_model_requires_one() -> None:
@@ -116,9 +102,6 @@ def test_fit_does_not_depend_on_the_reference_temperature() -> None:
     assert other[f"{DRY}.a"].value == pytest.approx(expected, rel=1e-3)
 
 
-# ---- recovery ------------------------------------------------------------------------------------
-
-
 def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
     """Three runs that start cold, whose dry friction falls as the slide warms, and a warm one."""
     random = np.random.default_rng(1)
@@ -130,9 +113,8 @@ def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
         force = 6.0 * (1.0 + 0.25 * cold) * np.sign(v) + 0.2 * random.standard_normal(len(time))
         path = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))))
         celsius = 34.0 - 16.0 * cold
-        runs.append(
-            Run.from_arrays(time, v, force, position_m=path, temperature_c=celsius, name=f"run_{k}")
-        )
+        columns = {"position_m": path, "temperature_c": celsius}
+        runs.append(Run.from_arrays(time, v, force, name=f"run_{k}", **columns))
     return runs
 
 
@@ -142,7 +124,6 @@ def test_temperature_coefficient_of_dry_friction_is_recovered_within_its_error()
     reference = found[f"{DRY}.T_0"].value
     level = 1.0 + 0.25 * (34.0 - reference) / 16.0
     slope = found[f"{DRY}.a"]
-    assert slope.stderr is not None
     assert abs(slope.value + 0.25 / 16.0 / level) < 4.0 * slope.stderr
     assert slope.stderr < 0.1 * abs(slope.value)
     assert found.rms_n == pytest.approx(0.2, rel=0.05)
@@ -159,18 +140,14 @@ def test_diagnosis_is_ambiguous_if_temperature_is_confounded_with_time() -> None
 
 @EXTENDED
 @pytest.mark.parametrize(("step_s", "also_warm"), [(0.08, True), (0.01, False)])
-def test_warm_start_or_many_samples_separate_temperature_from_time(
-    step_s: float, also_warm: bool
-) -> None:
+def test_warm_run_or_dense_sampling_identifies_temperature(step_s: float, also_warm: bool) -> None:
     found = diagnose(Rig(), warming_slide(step_s, also_warm=also_warm), **COULOMB)
     assert (found.verdict, found.effects) == ("missing", (DRY,))
 
 
 @EXTENDED
 @pytest.mark.parametrize("course", ["wandering", "warming", "days"])
-def test_diagnosis_names_no_temperature_effect_if_friction_does_not_depend_on_it(
-    course: str,
-) -> None:
+def test_no_temperature_effect_is_diagnosed_if_friction_is_independent_of_it(course: str) -> None:
     found = diagnose(Rig(), drive_runs(33, temperature=course), **COULOMB)
     assert (found.verdict, found.effects) == ("adequate", ())
     assert not {DRY, VISCOUS} & set(found.not_tried)
@@ -190,6 +167,5 @@ def test_temperature_dependence_of_the_viscosity_of_a_bearing_is_recovered() -> 
     assert (found.verdict, found.effects) == ("missing", ("vogel_viscosity",))
     assert not any(found.alternatives.values())
     steepness = found.model.parameters["vogel_viscosity.B_k"]
-    assert steepness.stderr is not None
     expected = truth["effects"]["vogel_viscosity"]["B"]
     assert abs(steepness.value - expected) < 4.5 * steepness.stderr + 0.02 * expected

@@ -1,7 +1,5 @@
 """Fits in parallel threads: order and equality of results, and cancellation."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Iterator
@@ -24,8 +22,7 @@ def test_parallel_results_are_in_the_order_of_the_arguments(at_once: int) -> Non
     assert list(side_by_side(work, range(5), at_once)) == [0, 1, 4, 9, 16]
 
 
-def test_two_tasks_run_at_the_same_time() -> None:
-    """Each waits for the other."""
+def test_two_tasks_run_at_the_same_time_if_two_are_allowed() -> None:
     both = threading.Barrier(2, timeout=20.0)
     assert len(list(side_by_side(lambda _: both.wait(), range(2), 2))) == 2
 
@@ -48,7 +45,6 @@ def test_first_exception_cancels_the_remaining_tasks(at_once: int) -> None:
 
 @pytest.fixture
 def drag_effect() -> Iterator[None]:
-    """Registers a Python function as the effect `own_drag`."""
     jbf.register_effect(
         lambda velocity_m_s, c_n: c_n * np.sign(velocity_m_s),
         parameters=[jbf.Parameter("c_n", "N", lower=-9.0, upper=9.0, null=0.0, starts=(0.5,))],
@@ -59,7 +55,7 @@ def drag_effect() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("drag_effect")
-def test_number_of_parallel_fits_follows_the_threads_and_is_one_for_python_effects(
+def test_parallel_fits_are_as_many_as_threads_but_one_for_python_effects(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Effects in Python may have a state, so that they are fitted one at a time."""

@@ -1,13 +1,12 @@
-"""Pitches at which a force repeats along the path, and the stroke of a drive."""
+"""Friction and forces that depend on the position along the stroke, and their pitches."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf import Rig, Run
+from jbf import Rig, Run, diagnose, fit
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
@@ -23,7 +22,6 @@ Waves = Sequence[tuple[float, float]]
 
 
 def waves_of(x: Array, waves: Waves) -> Array:
-    """Sum of the waves along a path (N)."""
     total = np.zeros(len(x))
     for pitch_m, amplitude_n in waves:
         total += amplitude_n * np.sin(2.0 * np.pi * x / pitch_m - 0.7)
@@ -51,11 +49,6 @@ def axis_runs(
     return runs
 
 
-def path_m(campaign: Campaign) -> float:
-    """Range of the positions of all runs (m)."""
-    return float(np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared])))
-
-
 def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign:
     """A run back and forth at 0.05 m/s, 0.5 mm for each sample."""
     count = round(path_m / 0.05 / STEP_S)
@@ -65,9 +58,6 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
     noise = 0.01 * np.random.default_rng(1).standard_normal(len(t))
     force = 5.0 * way + waves_of(x, waves) + noise
     return Campaign.prepare(Rig(), [Run.from_arrays(t, 0.05 * way, force, position_m=x, name="s")])
-
-
-# ---- search --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -83,11 +73,11 @@ def test_most_likely_pitch_is_that_of_the_simulated_wave(pitch_m: float, along: 
     """A fit finds the peak from within half a period over the path; here a quarter is required."""
     campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
     found = pitches(campaign, along=along)
-    assert abs(path_m(campaign) / found[0] - path_m(campaign) / pitch_m) < 0.25
+    path_m = np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared]))
+    assert abs(path_m / found[0] - path_m / pitch_m) < 0.25
 
 
-def test_waves_are_found_in_the_order_of_their_amplitudes() -> None:
-    """The weakest wave is lower than the side lobes of the others."""
+def test_pitches_of_waves_are_found_in_the_order_of_their_amplitudes() -> None:
     some = [(0.0123, 0.4), (0.0079, 0.2), (0.0043, 0.04)]
     campaign = Campaign.prepare(Rig(), axis_runs(some, noise_n=0.05))
     found = pitches(campaign, along=False)
@@ -101,9 +91,7 @@ def test_pitch_is_found_only_if_the_path_contains_four_periods(periods: float, f
 
 
 @pytest.mark.parametrize(("samples", "found"), [(3.8, False), (4.3, True)])
-def test_pitch_is_found_only_if_it_spans_four_samples_of_the_path(
-    samples: float, found: bool
-) -> None:
+def test_pitch_is_found_only_if_it_spans_four_path_samples(samples: float, found: bool) -> None:
     pitch_m = samples * 0.5e-3
     likeliest = pitches(shuttle([(pitch_m, 1.0)]), along=False)[0]
     assert (likeliest == pytest.approx(pitch_m, rel=2e-3)) == found
@@ -124,9 +112,8 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
     for seed in seeds:
         runs = axis_runs(seed=seed)
         samples = sum(len(r) for r in runs)
-        noise = np.concatenate(
-            [np.random.default_rng([seed, i]).standard_normal(len(r)) for i, r in enumerate(runs)]
-        )
+        randoms = (np.random.default_rng([seed, i]) for i in range(len(runs)))
+        noise = np.concatenate([r.standard_normal(samples // len(runs)) for r in randoms])
         place = np.concatenate([np.asarray(r.position_m) for r in runs])
         for pitch in pitches(Campaign.prepare(Rig(), runs), along=False):
             phase = 2.0 * np.pi * place / pitch
@@ -136,9 +123,6 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
     # Two parameters of a fixed pitch would gain 1.4 in the median.
     assert 4.0 < np.median(gains) < 0.8 * threshold
     assert max(gains) < threshold
-
-
-# ---- limits --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("shaft", [False, True])
@@ -170,16 +154,71 @@ def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
         (Drive("linear", "force"), ()),
         (Drive("rotary", "torque", gear_ratio=100.0), (0.02 * np.pi,)),
         (Drive("rotary", "torque"), ()),
+        (None, ()),
     ],
 )
-def test_pitches_of_screw_and_motor_follow_from_the_drive(
-    drive: Drive, found: tuple[float, ...]
-) -> None:
+def test_drive_gives_the_pitches_of_screw_and_motor(drive: Any, found: tuple[float, ...]) -> None:
     assert known_pitches(Rig(drive=drive)) == pytest.approx(found)
 
 
 def test_fit_of_cogging_starts_at_the_pitches_of_the_drive() -> None:
-    assert known_pitches(Rig()) == ()
     rig = Rig(drive=Drive("linear", "force", pitch_m=0.02, gear_ratio=4.0))
     problem = Problem(Campaign.prepare(rig, axis_runs()), "coulomb", "journal", ("cogging",))
     assert {0.02, 0.005} <= set(problem.parameters["cogging.pitch_m"].starts)
+
+
+SLIDE_NOISE_N = 0.15
+STROKE = "stroke_dependence"
+
+
+def slide(dry: Callable[[Array], Array], count: int = 4) -> list[Run]:
+    """Runs over 0.4 m, with a dry level that is a function of the position (m)."""
+    found = []
+    for i in range(count):
+        random = np.random.default_rng([4130, i])
+        t = np.arange(0.0, 30.0, STEP_S)
+        rate = 0.5 + 0.15 * i
+        x = 0.2 + 0.16 * np.sin(rate * t) + 0.04 * np.sin(3.1 * rate * t + i)
+        v = 0.16 * rate * np.cos(rate * t) + 0.124 * rate * np.cos(3.1 * rate * t + i)
+        force = np.sign(v) * dry(x) + 30.0 * v + SLIDE_NOISE_N * random.standard_normal(len(t))
+        found.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
+    return found
+
+
+def test_fitted_stroke_dependence_predicts_the_friction_level_over_the_position() -> None:
+    def level(x: Array) -> Array:
+        return 6.0 + 1.2 * np.cos(np.pi * x / 0.4) + 0.5 * np.sin(2.0 * x / 0.4)
+
+    model = fit(Rig(), slide(level, count=2), [STROKE], law="coulomb").model
+    x = np.linspace(0.02, 0.38, 50)
+    v = np.full(50, x[1] - x[0])
+    run = Run.from_arrays(np.arange(50.0), v, position_m=x)
+    np.testing.assert_allclose(model.predict(run), level(x) + 30.0 * v, atol=0.06)
+
+
+def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
+    runs = slide(lambda x: 6.0 + 2.0 * x, count=2)
+    places = np.concatenate([np.asarray(r.position_m) for r in runs])
+    found = fit(Rig(), runs, [STROKE], law="coulomb")
+    # A tenth of the path is added at either end.
+    wanted = {"x_0_m": 0.5 * (places.min() + places.max()), "h_m": 0.6 * np.ptp(places)}
+    for name, value in wanted.items():
+        p = found[f"{STROKE}.{name}"]
+        assert (p.held, p.stderr) == (True, None)
+        assert p.value == pytest.approx(value, abs=2e-3)
+    assert found[f"{STROKE}.a_1"].stderr is not None
+    campaign = Campaign.prepare(Rig(), runs)
+    # Only the six coefficients are fitted; given ends are used.
+    given = Problem(campaign, "coulomb", "journal", (STROKE,), {f"{STROKE}.x_0_m": 0.25})
+    assert len(given.open) - len(Problem(campaign, "coulomb", "journal", ()).open) == 6
+    assert given.fixed[f"{STROKE}.x_0_m"] == 0.25
+
+
+@pytest.mark.extended
+def test_tight_spot_is_diagnosed_as_stroke_dependence() -> None:
+    """A bump and a slope, which are not among the waves of the effect."""
+    runs = slide(lambda x: 6.0 + 1.5 * np.exp(-(((x - 0.3) / 0.08) ** 2)) - 2.0 * (x - 0.2))
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert (found.verdict, found.effects) == ("missing", (STROKE,))
+    assert found.steps[-1].rms_n == pytest.approx(SLIDE_NOISE_N, rel=0.05)
+    assert found.steps[-1].holdout_rms_n == pytest.approx(SLIDE_NOISE_N, rel=0.05)

@@ -1,7 +1,5 @@
 """Search variables, predictions, derivatives and rows of a fit, on a law that is linear."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -13,11 +11,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
-from jbf.estimation.rows import (
-    MOST_SEARCHED,
-    every_so_many,
-    triangular,
-)
+from jbf.estimation.rows import MOST_SEARCHED, every_so_many, triangular
 
 OFFSET = "sensor_offset.b_n"
 
@@ -32,11 +26,8 @@ def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
     problem = Problem(campaign, "stribeck", "journal", ["sensor_offset"], {"delta": 1.5})
     values = problem.starts({})[0]
     names = [n for n in problem.names if n != "delta"]
-    wanted = [
-        np.log(x) if problem.parameters[n].log else x
-        for n, x in zip(problem.names, values, strict=True)
-        if n in names
-    ]
+    free = [(problem.parameters[n], values[problem.names.index(n)]) for n in names]
+    wanted = [np.log(value) if page.log else value for page, value in free]
     assert [problem.names[i] for i in problem.open] == names
     assert {problem.parameters[n].log for n in names} == {True, False}
     np.testing.assert_allclose(problem.encode(values), wanted)
@@ -53,14 +44,11 @@ def test_decode_takes_fixed_parameters_from_the_base_and_clips_at_bounds(problem
     for far, bound in ((-1e9, problem.lower), (1e9, problem.upper)):
         out = problem.decode(np.full(len(x), far), values)
         np.testing.assert_array_equal(out[problem.open], bound[problem.open])
-    np.testing.assert_allclose(
-        problem.encode(np.full(len(values), 1e300)), problem.encode(problem.upper)
-    )
+    far_values = np.full(len(values), 1e300)
+    np.testing.assert_allclose(problem.encode(far_values), problem.encode(problem.upper))
 
 
-def test_starts_are_all_combinations_of_values_that_the_seed_does_not_give(
-    problem: Problem,
-) -> None:
+def test_starts_combine_all_values_of_parameters_that_the_seed_lacks(problem: Problem) -> None:
     pages = problem.parameters
     starts = problem.starts({"F_s_n": 6.0, OFFSET: 0.125})
     free = [n for n in problem.names if n not in ("F_s_n", OFFSET)]
@@ -70,7 +58,7 @@ def test_starts_are_all_combinations_of_values_that_the_seed_does_not_give(
     assert [starts[0][problem.names.index(n)] for n in free] == [pages[n].starts[0] for n in free]
 
 
-def test_angles_are_wrapped_into_one_period() -> None:
+def test_angle_parameters_are_wrapped_into_one_period() -> None:
     problem = reversing(("cogging",))
     (phase,) = [i for i, p in enumerate(problem.parameters.values()) if p.period is not None]
     values = problem.starts({})[0]
@@ -89,7 +77,7 @@ def test_named_values_are_accepted_within_their_bounds_or_at_their_null() -> Non
             named_values({"b_n": wrong}, pages)
 
 
-def test_residual_is_record_minus_prediction(problem: Problem) -> None:
+def test_residual_of_each_run_is_record_minus_prediction(problem: Problem) -> None:
     values = values_of(problem, F_c_n=5.2, **{OFFSET: 0.3})
     predictions, residuals = problem.predict(values), problem.residuals(values)
     for f, r, p in zip(predictions, residuals, problem.campaign.prepared, strict=True):
@@ -125,9 +113,7 @@ def test_derivatives_above_a_limit_or_undefined_are_replaced_by_zero() -> None:
 
 
 @pytest.mark.parametrize("noise", [WHITE, Noise(0.1, 0.5)])
-def test_gauss_newton_rows_have_the_inner_products_of_all_rows(
-    problem: Problem, noise: Noise
-) -> None:
+def test_gauss_newton_rows_have_inner_products_of_all_rows(problem: Problem, noise: Noise) -> None:
     values, samples = values_of(problem), problem.campaign.samples
     lines = problem.linearise(values)
     r, j = samples.stacked(*lines, noise)
@@ -145,16 +131,12 @@ def test_gauss_newton_rows_have_the_inner_products_of_all_rows(
 
 
 @cache
-def reversing_campaign() -> Campaign:
+def reversing(effects: tuple[str, ...]) -> Problem:
     t = 0.01 * np.arange(3000)
     v = 0.1 * np.sin(1.3 * t)
     noise = 0.05 * np.random.default_rng(1).standard_normal(len(t))
     run = Run.from_arrays(t, v, coulomb(t, v, v) + noise, position_m=-0.1 / 1.3 * np.cos(1.3 * t))
-    return Campaign.prepare(Rig(), [run])
-
-
-def reversing(effects: tuple[str, ...]) -> Problem:
-    return Problem(reversing_campaign(), "coulomb", "journal", effects)
+    return Problem(Campaign.prepare(Rig(), [run]), "coulomb", "journal", effects)
 
 
 @pytest.mark.parametrize("effect", ["time_delay", "backlash", "sensor_hysteresis"])
@@ -168,13 +150,11 @@ def test_samples_at_reversals_are_excluded_if_an_effect_moves_jumps(effect: str)
     known = problem.samples_at(values, problem.linearise(values))
     np.testing.assert_array_equal(known.counted[0], after.counted[0])
     # No sample is excluded with the effect at its null, or with an effect that moves no jump.
-    nulls = [
-        v if p.null is None else p.null
-        for v, p in zip(values, problem.parameters.values(), strict=True)
-    ]
+    pages = zip(values, problem.parameters.values(), strict=True)
+    nulls = [value if page.null is None else page.null for value, page in pages]
     assert problem.samples_at(np.array(nulls)) is before
     offset = reversing(("sensor_offset",))
-    assert offset.samples_at(offset.starts({})[0]) is before
+    assert offset.samples_at(offset.starts({})[0]) is offset.campaign.samples
 
 
 def test_triangular_rows_preserve_all_inner_products() -> None:
@@ -189,7 +169,6 @@ def test_triangular_rows_preserve_all_inner_products() -> None:
 
 
 def test_search_of_very_many_samples_uses_every_fourth_run_by_name() -> None:
-    """With twice the limit of samples every fourth run, in whatever order the runs are given."""
     names = [f"{k:02d}" for k in range(20)]
     length = 2 * MOST_SEARCHED // 20
     assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]
@@ -200,7 +179,6 @@ def test_search_of_very_many_samples_uses_every_fourth_run_by_name() -> None:
 
 @pytest.mark.extended
 def test_fit_of_a_million_samples_is_the_regression_over_all_of_them() -> None:
-    """Derivatives are computed on demand, and the search uses five of the thirty runs."""
     t = 0.01 * np.arange(34_000)
     runs = []
     for k in range(30):

@@ -4,8 +4,6 @@ The mean of readings in steps q of a force f with Gaussian noise s is off by
 `(q / pi) sum_k (-1)^k / k exp(-2 (k pi s / q)^2) sin(2 k pi f / q)` (Widrow 1956).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -30,11 +28,7 @@ def mean_reading(step: float, noise: float, force: Array) -> Array:
     """Readings to the nearest step, each with its Gaussian probability."""
     upper = stats.norm.cdf((step * (LEVELS + 0.5) - force[:, None]) / noise)
     lower = stats.norm.cdf((step * (LEVELS - 0.5) - force[:, None]) / noise)
-    found: Array = (upper - lower) @ (step * LEVELS)
-    return found
-
-
-# ---- formulas ------------------------------------------------------------------------------------
+    return (upper - lower) @ (step * LEVELS)
 
 
 @pytest.mark.parametrize("step", [1e-3, 1.0, 40.0])
@@ -66,9 +60,7 @@ def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float)
 
 @pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
 @pytest.mark.parametrize("origin", [-0.4, 0.0, 0.25])
-def test_origin_is_the_distance_of_readings_from_multiples_of_the_step(
-    step: float, origin: float
-) -> None:
+def test_origin_of_readings_is_their_distance_from_whole_steps(step: float, origin: float) -> None:
     readings = step * (np.array([-3.0, 0.0, 1.0, 7.0, np.nan]) + origin)
     assert origin_n(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
 
@@ -79,32 +71,22 @@ def test_origin_of_noisy_readings_is_their_circular_mean() -> None:
     assert origin_n(1.0, readings + 0.2) == pytest.approx(0.2)
 
 
-def repeat_probability(noise: float) -> float:
-    """`E max(0, 1 - |d|)` of the difference d of two noises, in steps."""
-    sd = np.sqrt(2.0) * noise
-    found, _ = integrate.quad(lambda d: (1.0 - d) * 2.0 * stats.norm.pdf(d, 0.0, sd), 0.0, 1.0)
-    return float(found)
-
-
 @pytest.mark.parametrize("step", [1e-3, 40.0])
 @pytest.mark.parametrize("noise", [0.05, 0.3, 1.0])
-def test_noise_before_the_converter_follows_from_the_share_of_repeated_readings(
-    step: float, noise: float
-) -> None:
-    n = 100_000
-    repeats = round(repeat_probability(noise) * n)
+def test_noise_before_conversion_follows_from_repeated_readings(step: float, noise: float) -> None:
+    """The share is `E max(0, 1 - |d|)` of the difference d of two noises, in steps."""
+    n, d = 100_000, stats.norm(0.0, np.sqrt(2.0) * noise)
+    share, _ = integrate.quad(lambda x: (1.0 - x) * 2.0 * d.pdf(x), 0.0, 1.0)
+    repeats = round(share * n)
     # A change of less than half a step is a repetition.
     moves = step * np.concatenate((np.full(repeats, 0.49), np.full(n - repeats, -0.51)))
     assert noise_before(step, moves) == pytest.approx(noise * step, rel=2e-3)
 
 
-def test_noise_estimate_is_limited_if_readings_always_or_never_repeat() -> None:
+def test_noise_before_conversion_is_limited_if_readings_always_or_never_repeat() -> None:
     assert noise_before(2.0, np.zeros(100)) == 0.0
     assert noise_before(2.0, np.zeros(0)) == 0.0
     assert noise_before(2.0, np.full(100, 2.0)) == 2.0 * MOST_NOISE
-
-
-# ---- removal -------------------------------------------------------------------------------------
 
 
 @cache
@@ -124,18 +106,15 @@ def quantised() -> tuple[Problem, list[Array]]:
 
 
 def at_truth(problem: Problem) -> Solution:
-    """The true parameters, of which the dry friction is free."""
-    return problem.solution(
-        problem.starts({**LAW, "F_s_n": 6.0})[0], problem.campaign.samples, WHITE
-    )
+    values = problem.starts({**LAW, "F_s_n": 6.0})[0]
+    return problem.solution(values, problem.campaign.samples, WHITE)
 
 
-def test_bias_of_quantised_readings_is_removed() -> None:
+def test_quantisation_bias_is_removed_if_the_model_is_the_true_one() -> None:
     """Its size depends on the noise before the converter, which is estimated from the bias."""
     problem, forces = quantised()
     assert problem.campaign.step_n == pytest.approx(STEP_N)
     corrected = without_bias(problem, at_truth(problem), DEFAULT)
-    assert corrected is not None
     coarse, fine = corrected.prepared
     removed = coarse.readings_n - coarse.friction_n
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
@@ -150,23 +129,21 @@ def test_bias_of_quantised_readings_is_removed() -> None:
     np.testing.assert_array_equal(coarse.shifted(0.0, 0.0).friction_n, coarse.readings_n)
 
 
-def test_bias_is_removed_iteratively_with_a_fit_of_the_model() -> None:
+def test_quantisation_bias_is_removed_iteratively_if_the_model_is_fitted() -> None:
     """A fit to biased readings predicts another force, and so another bias; both are repeated."""
     problem, forces = quantised()
     free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
     start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]
     corrected = without_bias(free, free.solution(start, free.campaign.samples, WHITE), DEFAULT)
-    assert corrected is not None
     removed = corrected.prepared[0].readings_n - corrected.prepared[0].friction_n
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
     np.testing.assert_allclose(removed, expected, atol=0.03 * STEP_N)
 
 
-def test_bias_is_not_removed_if_the_correction_is_below_the_limit_of_the_policy() -> None:
+def test_quantisation_bias_is_kept_if_its_correction_is_below_the_policy_limit() -> None:
     problem, _ = quantised()
     solution = at_truth(problem)
     corrected = without_bias(problem, solution, DEFAULT)
-    assert corrected is not None
     off = [p.readings_n - p.friction_n for p in corrected.prepared]
     moves = corrected.samples.rms(off) / problem.campaign.step_n
     for share, removed in ((0.95, True), (1.05, False)):
@@ -174,8 +151,7 @@ def test_bias_is_not_removed_if_the_correction_is_below_the_limit_of_the_policy(
         assert (without_bias(problem, solution, policy) is not None) == removed
 
 
-def test_bias_is_not_removed_if_the_model_error_exceeds_a_step() -> None:
-    """Such a model does not determine where within a step the force lies."""
+def test_quantisation_bias_is_kept_if_the_model_error_exceeds_a_step() -> None:
     problem, _ = quantised()
     right = at_truth(problem)
     wave = [3.0 * STEP_N * np.sin(0.01 * np.arange(len(r))) for r in right.residuals]

@@ -1,7 +1,5 @@
 """Detection of the period of a repeated motion, on motions with a known period."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from by_hand import Array
@@ -11,8 +9,7 @@ from jbf.estimation.replicates import period_samples
 def wave(count: int, period: int) -> Array:
     """A sine with its second harmonic: no half of a period is like the other."""
     turn = 2.0 * np.pi * np.arange(count) / period
-    found: Array = np.sin(turn) + 0.3 * np.sin(2.0 * turn + 0.5)
-    return found
+    return np.sin(turn) + 0.3 * np.sin(2.0 * turn + 0.5)
 
 
 @pytest.mark.parametrize("period", [7, 20, 61, 150])
@@ -59,7 +56,5 @@ def test_period_covers_two_strokes_if_their_sizes_differ(second: float, period: 
 
 
 @pytest.mark.parametrize(("period", "found"), [(150, 150), (240, None)])
-def test_period_is_found_only_up_to_three_quarters_of_the_record(
-    period: int, found: int | None
-) -> None:
+def test_period_is_found_up_to_three_quarters_of_the_record(period: int, found: int | None) -> None:
     assert period_samples(wave(300, period)) == found

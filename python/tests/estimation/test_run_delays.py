@@ -1,9 +1,12 @@
-"""Delay of the force channel of each run, against known delays and an independent scan."""
+"""Delay of the force channel of each run: a search, and a step jointly with the law.
 
-from __future__ import annotations
+Friction `F_c sign(v) + F_v v` delayed by d is, to first order, less by `d F_v a`: delays and law
+together are one linear regression. The search is compared with an independent scan.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from delayed_runs import (
     DURATION_S,
     TAU,
     fitted,
+    one_way_acceleration,
     one_way_campaign,
     one_way_speed,
     reversing_campaign,
@@ -20,22 +24,17 @@ from delayed_runs import (
 )
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
-from jbf.estimation.lateness import Lateness, lateness
+from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, drift_step, lateness_step
+from jbf.estimation.lateness import lateness
+from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from scipy import optimize, stats
+from scipy import ndimage, optimize, stats
 
 CHANCE = DEFAULT.deviation_chance
 DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
 EXTENDED = pytest.mark.extended
-
-
-def estimated(
-    delays_s: Sequence[float], drift: float = 0.0, effects: Sequence[str] = (), *, seed: int = 0
-) -> Lateness | None:
-    """The estimate for reversing runs with these delays."""
-    return lateness(*fitted(reversing_campaign(delays_s, drift, seed=seed), effects), 0, CHANCE)
 
 
 def scanned(problem: Problem, solution: Solution) -> tuple[Array, Array]:
@@ -46,8 +45,7 @@ def scanned(problem: Problem, solution: Solution) -> tuple[Array, Array]:
 
         def residual(delay_s: float, run: int = i, p: Prepared = p) -> Array:
             v = one_way_speed(run, p.run.time_s - delay_s)
-            left: Array = p.friction_n - dry - viscous * v
-            return left
+            return p.friction_n - dry - viscous * v
 
         best = optimize.minimize_scalar(
             lambda d, r=residual: float(np.sum(r(d) ** 2)), bounds=(-0.03, 0.03), method="bounded"
@@ -59,22 +57,19 @@ def scanned(problem: Problem, solution: Solution) -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
-def test_delays_that_differ_between_runs_are_recovered(seed: int) -> None:
+def test_run_delays_are_recovered_with_their_spread_if_they_differ(seed: int) -> None:
     problem, solution = fitted(reversing_campaign(DELAYS_S, seed=seed), DELAY)
     found = lateness(problem, solution, 0, CHANCE)
-    assert found is not None
     assert found.drift == 0.0
-    # The model's own delay is the part that all runs share.
+    # The delay of the model is the part that all runs share.
     total = np.array(found.late_s) + value(problem, solution, TAU)
     np.testing.assert_allclose(total, DELAYS_S, atol=0.6e-3)
     assert found.spread_s == pytest.approx(np.std(DELAYS_S, ddof=1), rel=0.15)
 
 
 def test_delays_and_their_spread_are_those_of_a_least_squares_scan() -> None:
-    """The spread between runs is that of DerSimonian and Laird from these estimates."""
     problem, solution = fitted(one_way_campaign((4e-3, -3e-3, -5e-3, 4e-3), noise_n=0.02))
     found = lateness(problem, solution, 0, CHANCE)
-    assert found is not None
     delays, variances = scanned(problem, solution)
     np.testing.assert_allclose(found.late_s, delays, atol=0.25 * np.sqrt(variances.min()))
     w = 1.0 / variances
@@ -110,7 +105,7 @@ def test_delays_are_reported_only_if_half_their_chi_square_is_significant(
 
 @pytest.mark.parametrize("changed", ["outliers", "offsets"])
 def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed: str) -> None:
-    """Unclipped, 2 % of outliers of 100 standard deviations would by several milliseconds."""
+    """Outliers of 100 standard deviations, 2 %, would change unclipped delays by milliseconds."""
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
     usual = lateness(problem, solution, 0, CHANCE)
     random, prepared, samples = np.random.default_rng(5), [], solution.samples
@@ -125,17 +120,14 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
     again = Problem(campaign, "coulomb", "journal", DELAY, problem.fixed)
     there = again.solution(solution.values, samples, solution.noise)
     found = lateness(again, there, 0, CHANCE)
-    assert usual is not None
-    assert found is not None
     np.testing.assert_allclose(found.late_s, usual.late_s, atol=0.6e-3)
 
 
 @pytest.mark.parametrize("drift", [1e-3, pytest.param(-6e-4, marks=EXTENDED)])
-def test_clock_drift_is_recovered(drift: float) -> None:
+def test_clock_drift_is_recovered_within_ten_percent_in_reversing_runs(drift: float) -> None:
     """A clock that was right at the start has half of its error in the middle of the run."""
     middle = (0.5 * drift * DURATION_S,) * 4
-    found = estimated(middle, drift, DELAY)
-    assert found is not None
+    found = lateness(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
     assert found.drift == pytest.approx(drift, rel=0.1)
     assert found.spread_s == 0.0
     np.testing.assert_allclose(found.late_s, middle, rtol=0.1)
@@ -147,41 +139,195 @@ def test_clock_drift_is_recovered(drift: float) -> None:
     [(0.0, ()), (5e-3, ()), (25e-3, DELAY)],
     ids=["no delay", "common delay", "common delay in the model"],
 )
-def test_no_delay_is_reported_if_it_is_common_to_all_runs(
-    delay_s: float, effects: tuple[str, ...], seed: int
+def test_no_delay_is_reported_if_common_to_all_runs(
+    delay_s: float, effects: Any, seed: int
 ) -> None:
-    assert estimated((delay_s,) * 4, effects=effects, seed=seed) is None
+    campaign = reversing_campaign((delay_s,) * 4, seed=seed)
+    assert lateness(*fitted(campaign, effects), 0, CHANCE) is None
 
 
-def test_delay_is_reported_if_the_force_leads_the_motion_in_all_runs() -> None:
-    """No instrument responds early, so that a delay effect cannot describe it."""
-    found = estimated((-6e-3,) * 4)
-    assert found is not None
-    assert (found.drift, found.spread_s) == (0.0, 0.0)
-    np.testing.assert_allclose(found.late_s, -6e-3, atol=0.5e-3)
-
-
-def test_delay_outside_the_range_is_replaced_by_the_weighted_mean_of_the_others() -> None:
+def test_delay_outside_the_search_range_is_replaced_by_the_mean_of_the_others() -> None:
     problem, solution = fitted(one_way_campaign((14e-3, -12e-3, 9e-3, 60e-3)))
     found = lateness(problem, solution, 0, CHANCE)
-    assert found is not None
     *others, last = found.late_s
     w = 1.0 / scanned(problem, solution)[1][:3]
     assert last == pytest.approx(np.average(others, weights=w), abs=0.3e-3)
 
 
-def test_second_search_resolves_delays_below_one_millisecond() -> None:
+def test_second_search_resolves_run_delays_below_one_millisecond() -> None:
     """It searches within 8 ms in steps of 0.5 ms."""
     small = (6e-4, -4e-4, 9e-4, 1e-4)
     there = fitted(reversing_campaign(small, noise_n=3e-3), DELAY)
     found = lateness(*there, 1, CHANCE)
-    assert found is not None
     total = np.array(found.late_s) + value(*there, TAU)
     np.testing.assert_allclose(total, small, atol=0.06e-3)
 
 
 def test_delays_are_recovered_from_jumps_at_reversals_within_a_share_of_a_step() -> None:
     found = lateness(*fitted(reversing_campaign(DELAYS_S)), 0, CHANCE, at_jumps=True)
-    assert found is not None
     np.testing.assert_allclose(found.late_s, DELAYS_S, atol=2.2e-3)
     assert lateness(*fitted(reversing_campaign((0.0,) * 4)), 0, CHANCE, at_jumps=True) is None
+
+
+COVARIANCE = np.array([[4.0, 1.0], [1.0, 2.0]])
+STEP = LatenessStep(np.array([3.0, 0.0, -1.0]), COVARIANCE, np.array([True, False, True]))
+"""A step of three runs, of which the second does not determine its delay."""
+
+
+def white(problem: Problem, solution: Solution) -> LatenessStep:
+    return lateness_step(problem, replace(solution, noise=WHITE))
+
+
+def regression(
+    problem: Problem, solution: Solution, columns: Sequence[Array], by_run: bool = True
+) -> tuple[Array, Array]:
+    """Coefficients of the delay columns, estimated with `F_c` and `F_v`, and their covariance.
+
+    Samples within `LINEAR_S` of a reversal are left out: a jump is not linear in a delay.
+    """
+    rows, right = [], []
+    for i, (p, residual, column) in enumerate(
+        zip(problem.campaign.prepared, solution.residuals, columns, strict=True)
+    ):
+        width = int(np.ceil(LINEAR_S / p.step_s))
+        far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
+        keep = solution.samples.counted[i] & far
+        v = p.motion.velocity_m_s
+        delays = np.zeros((len(v), len(columns) if by_run else 1))
+        delays[:, i if by_run else 0] = column
+        weight = solution.samples.weight[i][:, None]
+        design = np.column_stack([np.sign(v), v, delays]) * weight
+        rows.append(design[keep])
+        right.append((residual * weight[:, 0])[keep])
+    x, y = np.concatenate(rows), np.concatenate(right)
+    coefficients = np.linalg.lstsq(x, y, rcond=None)[0]
+    left = y - x @ coefficients
+    covariance = float(left @ left) / len(y) * np.linalg.inv(x.T @ x)
+    return coefficients[2:], covariance[2:, 2:]
+
+
+def test_significance_of_a_delay_step_is_that_of_its_wald_statistic() -> None:
+    """(3, -1) C^-1 (3, -1)' with C^-1 = ((2, -1), (-1, 4)) / 7 is 28 / 7."""
+    assert STEP.square == pytest.approx(4.0)
+    assert STEP.chance == pytest.approx(stats.chi2.sf(4.0, 2))
+
+
+@pytest.mark.parametrize("share", [0.25, 1.0])
+def test_significance_of_unequal_delays_follows_from_their_weighted_scatter(share: float) -> None:
+    """Delays (5, 1) plus the step (3, -1) are (8, 0); the rows of C^-1 sum to 1/7 and 3/7, so the
+    mean is 2, and (6, -2) has the square 112 / 7."""
+    delays = np.array([5.0, 99.0, 1.0])
+    expected = stats.chi2.sf(share * 112.0 / 7.0, 1)
+    assert STEP.differ_chance(delays, share) == pytest.approx(expected)
+    assert STEP.differ_chance(delays + 40.0, share) == pytest.approx(expected)
+
+
+def test_mean_delay_is_weighted_by_inverse_variances() -> None:
+    assert STEP.mean_s(np.array([6.0, 99.0, 3.0])) == pytest.approx((6.0 / 4 + 3.0 / 2) / 0.75)
+
+
+def test_runs_without_information_on_the_delay_do_not_change_its_significance() -> None:
+    nothing = LatenessStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
+    assert nothing.chance == 1.0
+    assert nothing.mean_s(np.array([1.0, 2.0])) == 0.0
+    assert nothing.differ_chance(np.ones(2), 1.0) == 1.0
+    one = LatenessStep(np.array([0.0, 3.0]), np.eye(1), np.array([False, True]))
+    assert one.chance == pytest.approx(stats.chi2.sf(9.0, 1))
+    assert one.differ_chance(np.zeros(2), 1.0) == 1.0
+
+
+def test_delay_step_of_one_way_runs_solves_the_normal_equations() -> None:
+    problem, solution = fitted(one_way_campaign((2e-3, -1e-3, 3e-3)))
+    step = white(problem, solution)
+    viscous = value(problem, solution, "F_v_n_s_m")
+    t = [p.run.time_s for p in problem.campaign.prepared]
+    columns = [-viscous * one_way_acceleration(i, t[i]) for i in range(3)]
+    delays, covariance = regression(problem, solution, columns)
+    assert step.told.all()
+    np.testing.assert_allclose(step.late_s, delays, atol=2e-5)
+    np.testing.assert_allclose(step.late_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
+    np.testing.assert_allclose(step.covariance_s2, covariance, rtol=0.02, atol=1e-11)
+
+
+def test_samples_next_to_reversals_are_excluded_from_the_delay_step() -> None:
+    delays_s = (2e-3, -1e-3, 3e-3, 0.0)
+    problem, solution = fitted(reversing_campaign(delays_s, noise_n=0.1, speed_noise_m_s=1e-3))
+    assert all(np.any(~p.motion.sign_known) for p in problem.campaign.prepared)
+    step = white(problem, solution)
+    viscous = value(problem, solution, "F_v_n_s_m")
+    columns = [-viscous * p.motion.acceleration_m_s2 for p in problem.campaign.prepared]
+    delays, covariance = regression(problem, solution, columns)
+    sd = np.sqrt(np.diag(covariance))
+    assert np.all(np.abs(step.late_s - delays) < 0.15 * sd)
+    np.testing.assert_allclose(np.sqrt(np.diag(step.covariance_s2)), sd, rtol=0.05)
+
+
+def test_delay_of_the_model_and_the_step_add_up_to_the_delay_of_each_run() -> None:
+    delays_s = (12e-3, 9e-3, 13e-3)
+    problem, solution = fitted(one_way_campaign(delays_s), DELAY)
+    step = white(problem, solution)
+    total = step.late_s + value(problem, solution, TAU)
+    np.testing.assert_allclose(total, delays_s, atol=4e-4)
+    alone = white(*fitted(one_way_campaign((0.0,) * 3)))
+    np.testing.assert_allclose(np.diag(step.covariance_s2), np.diag(alone.covariance_s2), rtol=0.1)
+
+
+@pytest.mark.parametrize(("ratio", "known"), [(0.98, True), (1.02, False)])
+def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, known: bool) -> None:
+    """Standard errors are proportional to the residuals; that of a drift counts over a run."""
+    problem, solution = fitted(one_way_campaign((0.0, 0.0), durations_s=(20.0, 10.0)))
+    plain = replace(solution, noise=WHITE)
+    delay_sd = lateness_step(problem, plain).covariance_s2[0, 0] ** 0.5
+    drift_sd = drift_step(problem, plain).variance ** 0.5 * 20.0
+    scales = (ratio * LINEAR_S / sd for sd in (delay_sd, drift_sd))
+    delay, drift = (replace(plain, residuals=[x * r for r in plain.residuals]) for x in scales)
+    assert lateness_step(problem, delay).told[0] == known
+    assert np.isfinite(drift_step(problem, drift).variance) == known
+
+
+def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
+    problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_n=0.0))
+    step = lateness_step(problem, solution)
+    assert np.all(np.isfinite(step.late_s))
+    exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
+    step = lateness_step(problem, exact)
+    assert not np.any(step.told)
+    assert step.chance == 1.0
+
+
+@pytest.mark.extended
+def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
+    """Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
+    campaigns = (one_way_campaign((0.0,) * 3, seed=seed) for seed in range(60))
+    chances = [lateness_step(*fitted(campaign)).chance for campaign in campaigns]
+    assert stats.kstest(chances, "uniform").pvalue > 0.02
+
+
+def test_drift_step_of_one_way_runs_solves_the_normal_equations() -> None:
+    drift = 1.2e-4
+    campaign = one_way_campaign((0.0, 0.0), drift, durations_s=(20.0, 10.0))
+    problem, solution = fitted(campaign)
+    viscous = value(problem, solution, "F_v_n_s_m")
+    times = [p.run.time_s for p in campaign.prepared]
+    columns = [-viscous * one_way_acceleration(i, t) * t for i, t in enumerate(times)]
+    (expected,), covariance = regression(problem, solution, columns, by_run=False)
+    step = drift_step(problem, replace(solution, noise=WHITE))
+    assert step.drift == pytest.approx(expected, rel=0.02)
+    assert step.drift == pytest.approx(drift, abs=4.0 * covariance[0, 0] ** 0.5)
+    assert step.variance == pytest.approx(covariance[0, 0], rel=0.02)
+    assert step.square == pytest.approx(step.drift**2 / step.variance)
+
+
+def test_common_delay_biases_the_drift_unless_both_are_estimated() -> None:
+    """The regression of a constant on t over the length T of a run has the slope 3 d / (2 T)."""
+    delay_s = 3e-3
+    campaign = one_way_campaign((delay_s,) * 2, seed=5)
+    there = fitted(campaign)
+    alone, with_delay = drift_step(*there), drift_step(*there, beside_delay=True)
+    assert alone.drift == pytest.approx(1.5 * delay_s / 20.0, rel=0.3)
+    assert alone.square > 50.0
+    assert with_delay.square < 9.0
+    assert with_delay.variance == pytest.approx(4.0 * alone.variance, rel=0.3)
+    # The delay of a model that has one is not estimated twice.
+    delayed = fitted(campaign, DELAY)
+    assert drift_step(*delayed, beside_delay=True) == drift_step(*delayed)

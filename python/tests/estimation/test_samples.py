@@ -1,6 +1,8 @@
-"""Samples that count, their weights, parts, innovations and blocks, on small arrays."""
+"""Samples that count, their weights, parts, innovations and blocks, and random effects of runs.
 
-from __future__ import annotations
+The mixed model (Laird & Ware 1982) and the estimate of its spread (DerSimonian & Laird 1986) are
+compared with closed forms.
+"""
 
 from dataclasses import replace
 
@@ -13,7 +15,9 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.blocks import blocks_of
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
+from jbf.estimation.random_effect import spread_between
 from jbf.estimation.samples import Samples
+from scipy import linalg, stats
 
 COUNTED = (np.array([True, True, False, True]), np.array([True, False, True]))
 WEIGHT = (np.array([1.0, 0.5, 0.0, 1.0]), np.array([1.0, 0.25, 1.0]))
@@ -23,7 +27,6 @@ COLOURED = Noise(0.1, 0.5)
 
 
 def lists(arrays: tuple[Array, ...] | None) -> list[list[float]]:
-    assert arrays is not None
     return [a.tolist() for a in arrays]
 
 
@@ -38,8 +41,7 @@ def test_samples_count_if_the_sign_of_motion_is_known_and_the_reading_is_usable(
     assert 0 < np.count_nonzero(~counted) < 30
     # A run that reverses at once begins with a sample of unknown sign.
     assert not counted[0]
-    (moving,) = Campaign.prepare(Rig(), [run.select(t > 0.5)]).samples.counted
-    assert moving[0]
+    assert Campaign.prepare(Rig(), [run.select(t > 0.5)]).samples.counted[0][0]
 
 
 def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() -> None:
@@ -53,22 +55,20 @@ def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() 
     assert empty.cost(VALUES, WHITE) == 0.0
 
 
-def test_only_selects_all_properties_of_the_given_runs() -> None:
+def test_samples_only_selects_all_properties_of_the_given_runs() -> None:
     level = tuple(0.5 * np.ones(len(w)) for w in WEIGHT)
     between = BetweenRuns(("zero",), (np.ones((4, 1)), 2.0 * np.ones((3, 1))), 0.7)
     one = replace(SAMPLES, level=level, between=between).only([1])
     assert (one.runs, one.steps_s) == (("b",), (0.1,))
     assert one.counted[0] is COUNTED[1]
     assert one.weight[0] is WEIGHT[1]
-    assert one.level is not None
     assert one.level[0] is level[1]
-    assert one.between is not None
     assert one.between.directions == (between.directions[1],)
     assert SAMPLES.only([1, 0]).runs == ("b", "a")
     assert SAMPLES.only([0]).between is None
 
 
-def test_halves_split_each_run_in_its_middle() -> None:
+def test_samples_halves_split_each_run_in_its_middle() -> None:
     first, second = SAMPLES.halves()
     assert lists(first.counted) == [[True, True, False, False], [True, False, False]]
     assert lists(first.weight) == [[1.0, 0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]
@@ -76,16 +76,14 @@ def test_halves_split_each_run_in_its_middle() -> None:
     assert lists(second.weight) == [[0.0, 0.0, 0.0, 1.0], [0.0, 0.25, 1.0]]
 
 
-def test_weighed_multiplies_weights_and_accumulates_the_noise_level() -> None:
-    level = [np.full(4, 0.5), np.full(3, 0.8)]
-    robust = [np.full(4, 0.1), np.full(3, 1.0)]
+def test_samples_weighed_multiplies_weights_and_accumulates_the_noise_level() -> None:
+    level, robust = [np.full(4, 0.5), np.full(3, 0.8)], [np.full(4, 0.1), np.ones(3)]
     once = SAMPLES.weighed(level, robust, None)
     np.testing.assert_allclose(once.weight[0], [0.05, 0.025, 0.0, 0.05])
     np.testing.assert_allclose(once.weight[1], [0.8, 0.2, 0.8])
     # Robust weights do not change the noise level.
     assert lists(once.level) == [[0.5] * 4, [0.8] * 3]
     twice = once.weighed(level, robust, None)
-    assert twice.level is not None
     np.testing.assert_allclose(twice.level[1], 0.64)
     np.testing.assert_allclose(twice.weight[0][0], 0.0025)
 
@@ -108,7 +106,6 @@ def test_stacked_rows_are_innovations_of_weighted_residuals_and_derivatives() ->
 
 
 def test_innovations_are_zero_at_samples_that_do_not_count() -> None:
-    """With full weights, with the noise level only, and of all samples with weight."""
     level = (np.full(4, 0.5), np.full(3, 0.25))
     samples = replace(SAMPLES, level=level)
     has_weight = [w > 0.0 for w in WEIGHT]
@@ -150,3 +147,100 @@ def test_blocks_last_a_second_or_four_memories_and_do_not_span_runs() -> None:
     sparse = samples_of([np.ones(3), np.ones(2)], step_s=5.0)
     assert blocks_of(sparse, 1.0).tolist() == [0, 2, 3]
     assert blocks_of(sparse, 10.0).tolist() == [0, 1, 2, 3, 4]
+
+
+N = 120
+SIGMA_N = 0.3
+SLOW_NOISE = Noise(memory_s=0.2, colour=0.4)
+NOISES = pytest.mark.parametrize("noise", [WHITE, SLOW_NOISE], ids=["white", "coloured"])
+
+
+def deviations(runs: int = 2) -> BetweenRuns:
+    """Random effects: an offset of 0.5 N and a wave of 0.8 N whose frequency differs by run."""
+    time = STEP_S * np.arange(N)
+    waves = [0.8 * np.sin((i + 1.0) * time) for i in range(runs)]
+    directions = (np.stack([np.full(N, 0.5), wave], axis=1) for wave in waves)
+    return BetweenRuns(("zero", "wave"), tuple(directions), SIGMA_N)
+
+
+def weights() -> Array:
+    """Weights of samples: zero for four of them, 0.2 to 1 for the others."""
+    weight = np.random.default_rng(1).uniform(0.2, 1.0, N)
+    weight[[0, 17, 18, 90]] = 0.0
+    return weight
+
+
+def filtered(noise: Noise, values: Array, weight: Array) -> Array:
+    """Innovations of weighted values, at the samples with weight."""
+    weighted = (values.T * weight).T
+    return arma_innovations(weighted, STEP_S, noise)[weight > 0.0]
+
+
+@NOISES
+@pytest.mark.parametrize("run", [0, 1])
+def test_whitening_with_random_effects_uses_the_inverse_covariance(noise: Noise, run: int) -> None:
+    """Innovations over their standard deviation have the covariance I + Z Z'."""
+    between, weight = deviations(), weights()
+    values = np.random.default_rng(2).standard_normal((N, 4)) + np.eye(4)[0]
+    e = filtered(noise, values, weight)
+    z = filtered(noise, between.directions[run], weight) / SIGMA_N
+    root = np.linalg.cholesky(np.eye(len(e)) + z @ z.T)
+    wanted = linalg.solve_triangular(root, e, lower=True)
+    found, vector = between.whitened(run, [e, e[:, 1]], weight, STEP_S, noise)
+    np.testing.assert_allclose(found.T @ found, wanted.T @ wanted, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(vector, found[:, 1], rtol=1e-12)
+
+
+@NOISES
+def test_predicted_random_effect_is_a_ridge_regression_over_weighted_samples(noise: Noise) -> None:
+    """Deviations of unit variance are penalised by their squares (Henderson 1975)."""
+    between, weight = deviations(), weights()
+    residual = np.random.default_rng(5).standard_normal(N) + between.directions[1] @ [1.5, -0.7]
+    z = filtered(noise, between.directions[1], weight)
+    e = filtered(noise, residual, weight)
+    rows = np.vstack([z, SIGMA_N * np.eye(2)])
+    size, *_ = np.linalg.lstsq(rows, np.concatenate([e, np.zeros(2)]), rcond=None)
+    found = between.predicted(1, residual, weight, STEP_S, noise)
+    np.testing.assert_allclose(found, between.directions[1] @ size, rtol=1e-9, atol=1e-12)
+    spoilt = residual + 1e3 * (weight == 0.0)
+    np.testing.assert_array_equal(between.predicted(1, spoilt, weight, STEP_S, noise), found)
+
+
+@NOISES
+def test_random_effects_give_the_cost_and_determinant_of_a_correlated_normal(noise: Noise) -> None:
+    between, weight = deviations(), weights()
+    samples = Samples(("a", "b"), (STEP_S,) * 2, (weight > 0.0,) * 2, (weight,) * 2, between)
+    residuals = list(np.random.default_rng(7).standard_normal((2, N)))
+    square = count = determinant = 0.0
+    for i in range(2):
+        e = filtered(noise, residuals[i], weight)
+        z = filtered(noise, between.directions[i], weight) / SIGMA_N
+        covariance = np.eye(len(e)) + z @ z.T
+        square += float(e @ np.linalg.solve(covariance, e))
+        determinant += float(np.linalg.slogdet(covariance)[1])
+        count += len(e)
+    assert samples.cost(residuals, noise) == pytest.approx(count * np.log(square / count))
+    found = between.log_determinant(samples.weight, samples.steps_s, noise)
+    assert found == pytest.approx(determinant)
+    swapped = samples.only([1, 0]).cost(residuals[::-1], noise)
+    assert swapped == pytest.approx(samples.cost(residuals, noise), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("estimates", "precisions", "square", "q"),
+    [
+        # Errors of one and a sample variance of 4: the excess is 3.
+        ([5.0, 7.0, 9.0], [1.0] * 3, 3.0, 8.0),
+        # Weighted mean 4, Q = 16 + 4 = 20 with one degree of freedom; 19 over 5 - 17/5.
+        ([0.0, 5.0], [1.0, 4.0], 19.0 / 1.6, 20.0),
+        # Differences within the errors.
+        ([-0.5, 0.5], [1.0] * 2, 0.0, 0.5),
+        ([2.5] * 4, [1.0, 2.0, 3.0, 4.0], 0.0, 0.0),
+    ],
+)
+def test_spread_between_runs_is_that_of_dersimonian_and_laird_or_zero_if_small(
+    estimates: list[float], precisions: list[float], square: float, q: float
+) -> None:
+    found = spread_between(np.array(estimates), np.array(precisions))
+    freedom = len(estimates) - 1
+    assert found == pytest.approx((np.sqrt(square), stats.chi2.sf(q / 2.0, freedom), q / freedom))

@@ -1,7 +1,5 @@
 """Sizes of a campaign, and the starting values that follow from them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -44,7 +42,6 @@ def page(start: str = "catalogue", **more: Any) -> Parameter:
 
 
 def axis(name: str = "a", scale: float = 1.0, **columns: Any) -> Run:
-    """A linear axis at up to 0.1 m/s over 0.2 m."""
     path = 0.1 * (1.0 - np.cos(TIME))
     force = columns.pop("force", scale * (5.0 * np.sign(SPEED) + 20.0 * SPEED))
     return Run.from_arrays(TIME, SPEED, force, position_m=path, name=name, **columns)
@@ -94,9 +91,7 @@ def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
         ("drive_damping", (80.0,)),
     ],
 )
-def test_rule_gives_the_expected_starting_values_for_given_sizes(
-    rule: str, starts: tuple[float, ...]
-) -> None:
+def test_starting_values_of_a_rule_follow_from_sizes(rule: str, starts: tuple[float, ...]) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)
 
 
@@ -119,8 +114,7 @@ def test_law_that_scales_with_the_load_takes_its_starting_values_from_the_catalo
 
 
 @pytest.mark.parametrize(
-    ("starts", "upper", "bound"),
-    [((0.05,), 1e3, 0.5), ((0.5, 2.0), 1e3, 4.0), ((0.05,), 0.3, 0.3)],
+    ("starts", "upper", "bound"), [((0.05,), 1e3, 0.5), ((0.5, 2.0), 1e3, 4.0), ((0.05,), 0.3, 0.3)]
 )
 def test_upper_bound_of_the_transition_speed_is_five_times_the_fastest_speed(
     starts: tuple[float, ...], upper: float, bound: float
@@ -130,69 +124,50 @@ def test_upper_bound_of_the_transition_speed_is_five_times_the_fastest_speed(
 
 
 @pytest.mark.parametrize("name", ["drive_compliance.k_n_m_rad", "backlash.gap_rad"])
-def test_drive_effect_takes_its_starting_values_from_the_data_on_a_linear_axis_only(
-    name: str,
-) -> None:
+def test_drive_effect_starts_follow_from_the_data_only_on_a_linear_axis(name: str) -> None:
     pages = parameters_of("coulomb", (name.partition(".")[0],))
-    shaft = with_starts(pages, on_bearing(), in_newtons=True)
-    assert shaft[name].starts == pages[name].starts
-    found = with_starts(pages, slide(), in_newtons=True)[name].starts
-    assert found == pytest.approx(LINEAR_RULES[pages[name].start](scales(slide())))
+    shaft, axis_ = (with_starts(pages, c, in_newtons=True)[name] for c in (on_bearing(), slide()))
+    assert shaft.starts == pages[name].starts
+    assert axis_.starts == pytest.approx(LINEAR_RULES[pages[name].start](scales(slide())))
 
 
 def test_time_constants_start_at_0_3_and_0_1_of_the_run_duration() -> None:
-    last = float(TIME[-1])
-    assert started(page("run_time")).starts == pytest.approx((0.3 * last, 0.1 * last))
+    assert started(page("run_time")).starts == pytest.approx((0.3 * TIME[-1], 0.1 * TIME[-1]))
 
 
 def test_starting_delays_decrease_threefold_from_0_5_s_to_a_quarter_of_a_step() -> None:
-    """From 0.5 s to 5 ms in five steps, for any law."""
     wanted = (*CATALOGUE, *(0.5 / 3.0**k for k in range(1, 6)))
     for in_newtons in (False, True):
-        found = started(page("lateness"), in_newtons=in_newtons)
-        assert found.starts == pytest.approx(wanted)
+        assert started(page("lateness"), in_newtons=in_newtons).starts == pytest.approx(wanted)
     assert started(page("lateness", starts=(0.004,))).starts == (0.004,)
 
 
 def test_stroke_dependence_starts_at_the_middle_and_half_length_of_the_stroke() -> None:
-    (middle,) = started(page("stroke_middle")).starts
-    (half,) = started(page("stroke_half")).starts
-    assert middle == pytest.approx(0.1, abs=0.005)
+    assert started(page("stroke_middle")).starts == pytest.approx((0.1,), abs=0.005)
     # A tenth of the path is added at either end.
-    assert half == pytest.approx(0.12, abs=0.002)
+    assert started(page("stroke_half")).starts == pytest.approx((0.12,), abs=0.002)
 
 
 @pytest.mark.parametrize(("more", "upper"), [({}, 0.05), ({"upper": 0.01}, 0.01)])
-def test_upper_bound_of_the_pitch_is_a_quarter_of_the_path(
-    more: dict[str, float], upper: float
-) -> None:
+def test_pitch_is_bounded_by_a_quarter_of_the_path(more: dict[str, float], upper: float) -> None:
     assert started(page("pitch", **more)).upper == pytest.approx(upper, rel=0.02)
     assert started(page("pitch", **more), in_newtons=False).upper == page(**more).upper
 
 
 @pytest.mark.parametrize(("scale", "in_newtons"), [(1.0, False), (1e3, True)])
-def test_load_cell_errors_start_at_three_percent_of_the_largest_force(
-    scale: float, in_newtons: bool
-) -> None:
-    force: Array = scale * 5.0 * np.sign(SPEED)
-    force[400] *= 1e3
-    run = axis(force=force)
-    bounds = {"lower": 1e-12, "upper": 1e9}
-    play = started(page("cell_play", **bounds), run, in_newtons=in_newtons).starts
-    cubic = started(page("cell_cubic", **bounds), run, in_newtons=in_newtons).starts
-    assert play == pytest.approx((0.15 * scale,))
-    assert cubic == pytest.approx((0.03 / (25.0 * scale**2),))
+def test_load_cell_errors_start_at_3_percent_of_the_force(scale: float, in_newtons: bool) -> None:
+    run = axis(force=scale * 5.0 * np.sign(SPEED) * np.where(np.arange(len(TIME)) == 400, 1e3, 1.0))
+    for rule, start in (("cell_play", 0.15 * scale), ("cell_cubic", 0.03 / (25.0 * scale**2))):
+        found = started(page(rule, lower=1e-12, upper=1e9), run, in_newtons=in_newtons)
+        assert found.starts == pytest.approx((start,))
 
 
 def test_reference_temperature_is_that_of_the_lubricant_or_the_mean_of_the_runs() -> None:
-    runs = [
-        axis(name, scale, temperature_c=np.full(len(TIME), celsius))
-        for name, scale, celsius in (("a", 1.0, 20.2), ("b", 1.1, 25.0))
-    ]
+    celsius = (np.full(len(TIME), mean) for mean in (20.2, 25.0))
+    runs = [axis(f"{k}", 1.0 + 0.1 * k, temperature_c=c) for k, c in enumerate(celsius)]
     one, thesis = page("reference_temperature"), Rig.thesis()
     assert started(one, *runs).starts == (23.0,)
     assert started(one).starts == CATALOGUE
-    assert thesis.lubricant is not None
     for stated, start in ((41.0, 41.0), (None, 23.0)):
         rig = replace(thesis, lubricant=replace(thesis.lubricant, temperature_c=stated))
         assert started(one, *runs, rig=rig).starts == (start,)
@@ -213,7 +188,6 @@ def sizes_of(*runs: Run) -> Scales:
 
 
 def strokes(*lengths_m: float) -> Run:
-    """Strokes of these lengths in alternating directions, at 0.1 m/s."""
     ends = np.cumsum(np.array(lengths_m) / 0.1)
     t = np.arange(0.0, ends[-1], STEP_S)
     v = 0.1 * np.where(np.searchsorted(ends, t, side="right") % 2, -1.0, 1.0)
@@ -222,10 +196,7 @@ def strokes(*lengths_m: float) -> Run:
 
 @pytest.mark.parametrize("top", [0.01, 1.0])
 @pytest.mark.parametrize("force", [0.5, 50.0])
-def test_sizes_of_linear_friction_over_a_sine_are_those_of_its_formula(
-    top: float, force: float
-) -> None:
-    """The slow and the fast half of the samples show the same height and slope."""
+def test_sizes_of_linear_friction_over_a_sine_follow_its_formula(top: float, force: float) -> None:
     viscous = force / top
     found = sizes_of(swinging(force, viscous, top))
     assert found.kinetic_n == pytest.approx(force, rel=0.02)
@@ -261,13 +232,11 @@ def test_viscous_size_is_zero_if_friction_falls_with_speed() -> None:
         ((0.4, 0.9), 0.9),
     ],
 )
-def test_stroke_is_the_median_distance_between_reversals(
-    lengths_m: tuple[float, ...], stroke_m: float
-) -> None:
+def test_stroke_is_the_median_distance_between_reversals(lengths_m: Any, stroke_m: float) -> None:
     assert sizes_of(strokes(*lengths_m)).stroke_m == pytest.approx(stroke_m, rel=0.03)
 
 
-def test_rest_and_speeds_below_two_percent_do_not_count_as_motion() -> None:
+def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -> None:
     t = np.arange(0.0, 40.0, STEP_S)
     half = t < 20.0
     v = 0.1 * np.sin(0.5 * np.pi * t)
@@ -283,10 +252,9 @@ def test_rest_and_speeds_below_two_percent_do_not_count_as_motion() -> None:
     assert moving(np.full(len(t), 0.0025)).mean() > 0.9
 
 
-def test_one_outlier_does_not_change_any_size() -> None:
+def test_one_force_outlier_does_not_change_any_size_of_a_campaign() -> None:
     run = swinging()
-    force: Array = np.array(run.friction_n)
-    force[777] = 1e5
+    force = np.where(np.arange(len(run)) == 777, 1e5, run.friction_n)
     plain, found = sizes_of(run), sizes_of(replace(run, friction_n=force))
     for name, value in vars(plain).items():
         assert getattr(found, name) == pytest.approx(value, rel=0.02), name

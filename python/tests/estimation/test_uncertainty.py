@@ -4,8 +4,6 @@ Seber & Lee, Linear Regression Analysis (2003), ch. 3: `beta = (X'X)^-1 X'y`, it
 `s^2 (X'X)^-1`, `s^2` the sum of squares over `n - k`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -30,23 +28,17 @@ TERMS: dict[str, Friction] = {
     "inertia_leak.m_e_kg": lambda t, v, a: a,
 }
 """Parameter to its regressor of time, speed and acceleration."""
-TRUTH = np.array([5.0, 20.0, -0.5, 0.04, 3.0])
-EFFECTS = ["sensor_offset", "sensor_drift", "inertia_leak"]
+LinearFit = tuple[list[Run], Fit]
+Bent = Callable[..., tuple[str, ...]]
 
 
-def friction(t: Array, v: Array, a: Array) -> Array:
-    return coulomb(t, v, a) - 0.5 + 0.04 * t + 3.0 * a
-
-
-def covariance_of(x: Array, residual: Array) -> tuple[Array, Array]:
-    """Standard errors and correlations of a regression."""
+def errors_and_correlations(x: Array, residual: Array) -> tuple[Array, Array]:
     covariance = np.linalg.inv(x.T @ x) * (residual @ residual) / (len(x) - x.shape[1])
     sd = np.sqrt(np.diag(covariance))
     return sd, covariance / np.outer(sd, sd)
 
 
 def regression(runs: list[Run]) -> tuple[Array, Array, Array]:
-    """Values, standard errors and correlations of the five terms."""
     rows = []
     for run, rate, way in zip(runs, (2.0, 3.0), (1.0, -1.0), strict=True):
         a = way * 0.05 * rate * np.cos(rate * run.time_s)
@@ -54,22 +46,19 @@ def regression(runs: list[Run]) -> tuple[Array, Array, Array]:
     x = np.concatenate(rows)
     y = np.concatenate([run.friction_n for run in runs if run.friction_n is not None])
     values, *_ = np.linalg.lstsq(x, y, rcond=None)
-    return values, *covariance_of(x, y - x @ values)
-
-
-def fit_all_terms(seed: int) -> tuple[list[Run], Fit]:
-    runs = there_and_back(friction, noise_n=NOISE_N, seed=seed)
-    return runs, fit(Rig(), runs, EFFECTS, law="coulomb", fixed={"F_s": 6.0})
+    return values, *errors_and_correlations(x, y - x @ values)
 
 
 @pytest.fixture(scope="module")
-def fitted() -> tuple[list[Run], Fit]:
-    return fit_all_terms(3)
+def fitted() -> LinearFit:
+    effects = ["sensor_offset", "sensor_drift", "inertia_leak"]
+    runs = there_and_back(
+        lambda t, v, a: coulomb(t, v, a) - 0.5 + 0.04 * t + 3.0 * a, noise_n=NOISE_N, seed=3
+    )
+    return runs, fit(Rig(), runs, effects, law="coulomb", fixed={"F_s": 6.0})
 
 
-def test_values_errors_and_correlations_are_those_of_linear_regression(
-    fitted: tuple[list[Run], Fit],
-) -> None:
+def test_values_errors_and_correlations_are_those_of_linear_regression(fitted: LinearFit) -> None:
     runs, found = fitted
     values, errors, table = regression(runs)
     for name, value, error in zip(TERMS, values, errors, strict=True):
@@ -84,9 +73,7 @@ def test_values_errors_and_correlations_are_those_of_linear_regression(
     assert found.doubtful == ()
 
 
-def test_parameters_of_a_fit_are_found_by_full_or_short_name(
-    fitted: tuple[list[Run], Fit],
-) -> None:
+def test_parameters_of_a_fit_are_found_by_full_or_short_name(fitted: LinearFit) -> None:
     found = fitted[1]
     assert found["F_c"] is found["F_c_n"] is found.parameters["F_c_n"]
     assert [name in found for name in ("F_c_n", "F_c", "zz", 3)] == [True, True, False, False]
@@ -96,7 +83,6 @@ def test_parameters_of_a_fit_are_found_by_full_or_short_name(
 
 
 def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
-    """The error of the logarithm times the value; derivatives of the curve in closed form."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     fixed = {"delta": 2.0, "F_v_n_s_m": 20.0}
     problem = Problem(campaign, "stribeck", "journal", (), fixed)
@@ -111,12 +97,11 @@ def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
     }
     assert problem.log[problem.names.index("v_s_m_s")]
     x = np.column_stack([slopes[problem.names[i]] for i in problem.open])
-    sd, table = covariance_of(x, np.concatenate(solution.residuals))
+    sd, table = errors_and_correlations(x, np.concatenate(solution.residuals))
     found = spread(problem, solution)
     np.testing.assert_allclose(found.sd * found.scale, sd, rtol=1e-6)
     np.testing.assert_allclose(found.correlation, table, atol=1e-6)
-    errors = [found.error(k) for k in range(3)]
-    np.testing.assert_allclose(errors, sd * found.inflation, rtol=1e-6)
+    assert [found.error(k) for k in range(3)] == pytest.approx(sd * found.inflation)
 
 
 def test_parameters_without_influence_and_confounded_parameters_are_marked() -> None:
@@ -148,19 +133,15 @@ def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
     known = spread(problem, replace(solution, residuals=slow))
     assert known.inflation[0] ** 2 == pytest.approx(10.0, rel=0.5)
     swings = [np.where(np.arange(501) % 2, 1.0, -1.0) for _ in range(4)]
-    np.testing.assert_array_equal(
-        spread(problem, replace(solution, residuals=swings)).inflation, 1.0
-    )
+    alternating = spread(problem, replace(solution, residuals=swings))
+    np.testing.assert_array_equal(alternating.inflation, 1.0)
 
 
 def test_error_is_inflated_by_the_scatter_of_offsets_between_runs() -> None:
     """Offsets in the direction of motion: a mean of eight runs is as uncertain as they scatter."""
     offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
-    runs = [
-        replace(four_runs(along(z), noise_n=0.1, seed=k)[k % 4], name=f"{k}")
-        for k, z in enumerate(offsets.tolist())
-    ]
-    problem = dry_level(runs)
+    some = (four_runs(along(z), noise_n=0.1, seed=k)[k % 4] for k, z in enumerate(offsets))
+    problem = dry_level([replace(run, name=f"{k}") for k, run in enumerate(some)])
     error = spread(problem, solution_at(problem, values_of(problem))).error(0)
     assert error == pytest.approx(np.std(offsets, ddof=1) / np.sqrt(8.0), rel=0.15)
 
@@ -199,7 +180,7 @@ N = 501
 
 
 @pytest.fixture
-def bent() -> Callable[..., tuple[str, ...]]:
+def bent() -> Bent:
     """Names of the doubtful parameters of a law whose dry level is `p + bend (p - 5)^2 / sd`, in
     units of its standard error sd, and which has a viscous coefficient as a second parameter."""
     t = 0.02 * np.arange(2 * N)
@@ -240,15 +221,11 @@ def bent() -> Callable[..., tuple[str, ...]]:
     # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
     [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
 )
-def test_error_is_doubtful_if_the_cost_deviates_by_30_percent_from_a_parabola(
-    bent: Callable[..., tuple[str, ...]], bend: float, doubtful: bool
-) -> None:
+def test_error_is_doubtful_if_cost_is_no_parabola(bent: Bent, bend: float, doubtful: bool) -> None:
     assert bent(bend) == (("p",) if doubtful else ())
 
 
-def test_error_is_not_checked_for_held_parameters_or_beyond_a_bound(
-    bent: Callable[..., tuple[str, ...]],
-) -> None:
+def test_no_error_is_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) -> None:
     """At b = 0.155 only the upper side is off by more than three tenths."""
     half = 0.5 / np.sqrt(2 * N)
     assert bent(0.155, bounds=(-1e9, 5.0 + half)) == ()

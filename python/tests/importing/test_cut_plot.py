@@ -1,7 +1,5 @@
 """The plot of an import: curves, shaded runs, hatched excluded pieces, labels."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -21,24 +19,22 @@ from matplotlib.colors import to_hex
 CURVE = (np.arange(4.0), np.array([0.0, 1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0, 7.0]))
 
 
-def imported(pieces: Sequence[Piece], *views: Overview) -> Import:
-    """An import of given pieces and overviews."""
-    overviews = views or (Overview("a.csv", (0.0, 100.0), {"friction_n": CURVE}),)
-    return Import(Path("out"), Rig(), tuple(pieces), {"files": []}, overviews)
+def imported(pieces: Sequence[Piece]) -> Import:
+    """An import of given pieces; the second part of its recording is drawn 100 s later."""
+    overview = Overview("a.csv", (0.0, 100.0), {"friction_n": CURVE})
+    return Import(Path("out"), Rig(), tuple(pieces), {"files": []}, (overview,))
 
 
 def spans(ax: Axes) -> list[tuple[float, float, str]]:
     """Begin, end and colour of each shaded piece; the hatch of excluded ones."""
-    shaded = []
-    for patch in ax.patches:
-        box: Any = patch
-        colour = box.get_hatch() or to_hex(box.get_facecolor())
-        shaded.append((box.get_x(), box.get_x() + box.get_width(), colour))
-    return shaded
+    boxes: Any = ax.patches
+    return [
+        (b.get_x(), b.get_x() + b.get_width(), b.get_hatch() or to_hex(b.get_facecolor()))
+        for b in boxes
+    ]
 
 
-def test_runs_are_shaded_alternately_and_excluded_pieces_hatched() -> None:
-    """A recording whose time restarts is drawn after the part before."""
+def test_runs_are_shaded_alternately_and_excluded_pieces_hatched_in_the_plot() -> None:
     pieces = [
         Piece("a_1", "a.csv", 0, 1.0, 2.0),
         Piece("", "a.csv", 0, 2.0, 4.0, False, "at rest"),
@@ -57,13 +53,13 @@ def test_runs_are_shaded_alternately_and_excluded_pieces_hatched() -> None:
     assert named == [("1", (1.0, 1.0)), ("2", (105.0, 1.0)), ("3", (106.0, 1.0))]
 
 
-@pytest.mark.parametrize(("count", "named"), [(40, 40), (41, 0)])
-def test_runs_are_labelled_in_the_plot_only_up_to_forty(count: int, named: int) -> None:
-    (ax,) = plot_cut(imported([Piece(f"r_{k}", "a.csv", 0, k, k + 0.5) for k in range(count)]))
-    assert (len(ax.patches), len(ax.texts)) == (count, named)
+@pytest.mark.parametrize(("runs", "labels"), [(40, 40), (41, 0)])
+def test_runs_are_labelled_in_the_plot_only_up_to_forty_of_them(runs: int, labels: int) -> None:
+    (ax,) = plot_cut(imported([Piece(f"r_{k}", "a.csv", 0, k, k + 0.5) for k in range(runs)]))
+    assert (len(ax.patches), len(ax.texts)) == (runs, labels)
 
 
-def test_plot_is_drawn_on_given_axes_and_a_wrong_number_of_axes_is_refused() -> None:
+def test_import_is_plotted_on_given_axes_and_a_wrong_number_of_axes_is_refused() -> None:
     outcome = imported([Piece("r", "a.csv", 0, 1.0, 2.0)])
     drawn = plot_cut(outcome)
     assert plot_cut(outcome, drawn) == drawn
@@ -71,7 +67,7 @@ def test_plot_is_drawn_on_given_axes_and_a_wrong_number_of_axes_is_refused() -> 
         plot_cut(outcome, [*drawn, *drawn])
 
 
-def test_plot_is_saved_as_svg_and_an_unknown_file_type_is_refused(tmp_path: Path) -> None:
+def test_import_plot_is_saved_as_svg_and_unknown_file_types_are_refused(tmp_path: Path) -> None:
     outcome = imported([Piece("r", "a.csv", 0, 1.0, 2.0)])
     save_cut(outcome, tmp_path / "cut.svg")
     assert "<svg" in (tmp_path / "cut.svg").read_text()

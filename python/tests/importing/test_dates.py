@@ -1,7 +1,5 @@
 """Dates and times of day as loggers write them, against the calendar of Python."""
 
-from __future__ import annotations
-
 from datetime import datetime, timedelta, timezone
 
 import numpy as np
@@ -26,7 +24,7 @@ MOMENTS = st.datetimes(datetime(1970, 1, 2), datetime(2099, 12, 31))
 def ns(moment: datetime) -> int:
     """Nanoseconds since 1970 by the calendar of the standard library."""
     since = moment.replace(tzinfo=moment.tzinfo or timezone.utc) - EPOCH
-    return (since.days * 86_400 + since.seconds) * 10**9 + since.microseconds * 1000
+    return since // timedelta(microseconds=1) * 1000
 
 
 def parsed(cell: str, order: str = DAY_FIRST) -> int:
@@ -52,25 +50,17 @@ def test_parsed_date_agrees_with_the_standard_library_in_every_notation(moment: 
 @pytest.mark.parametrize(
     ("cell", "hour"),
     [
-        ("12:00:00 AM", 0),
-        ("12:30:00 a.m.", 0.5),
-        ("01:00:00 AM", 1),
-        ("11:59:59 am", 12 - 1 / 3600),
-        ("12:00:00 PM", 12),
-        ("01:00:00 p.m.", 13),
+        ("12:00:00 AM", 0), ("12:30:00 a.m.", 0.5), ("01:00:00 AM", 1),
+        ("11:59:59 am", 12 - 1 / 3600), ("12:00:00 PM", 12), ("01:00:00 p.m.", 13),
         ("11:15 PM", 23.25),
     ],
-)
-def test_twelve_hour_time_is_parsed_with_12_am_as_midnight_and_12_pm_as_noon(
-    cell: str, hour: float
-) -> None:
+)  # fmt: skip
+def test_twelve_hour_time_is_parsed_with_12_am_as_midnight(cell: str, hour: float) -> None:
     assert parsed(cell) == round(hour * 3600) * 10**9
 
 
 @given(MOMENTS, st.integers(-12 * 4, 14 * 4))
-def test_local_time_with_an_offset_is_parsed_as_the_same_instant(
-    moment: datetime, quarters: int
-) -> None:
+def test_local_time_with_offset_is_parsed_as_its_instant(moment: datetime, quarters: int) -> None:
     zone = timezone(timedelta(minutes=15 * quarters))
     local = moment.replace(microsecond=0, tzinfo=timezone.utc).astimezone(zone)
     offset = local.strftime("%z")
@@ -78,21 +68,14 @@ def test_local_time_with_an_offset_is_parsed_as_the_same_instant(
         assert parsed(f"{local:%Y-%m-%d %H:%M:%S}{written}") == ns(local)
 
 
-def test_time_of_day_after_midnight_belongs_to_the_next_day() -> None:
+def test_time_of_day_after_midnight_is_assigned_to_the_next_day() -> None:
     cells = ["23:59:58", "23:59:59.5", "", "00:00:01", "12:00:01", "00:00:00"]
     result = Instants().parse(cells, [not cell for cell in cells])
     day = 86_400 * 10**9
-    assert result.tolist() == [
-        day - 2 * 10**9,
-        day - 5 * 10**8,
-        NO_INSTANT,
-        day + 10**9,
-        day + day // 2 + 10**9,
-        2 * day,
-    ]
+    assert result[:2].tolist() == [day - 2 * 10**9, day - 5 * 10**8]
+    assert result[2:].tolist() == [NO_INSTANT, day + 10**9, day + day // 2 + 10**9, 2 * day]
     seconds = seconds_since(result, int(result[0]))
-    assert np.isnan(seconds[2])
-    assert seconds[[0, 1, 3]].tolist() == [0.0, 1.5, 3.0]
+    np.testing.assert_array_equal(seconds[:4], [0.0, 1.5, np.nan, 3.0])
 
 
 def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> None:
@@ -103,7 +86,7 @@ def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> No
 @pytest.mark.parametrize(
     "cell", ["2026-02-30", "31.04.2026 10:00", "noon", "10", "2026-13-01", "12:00:00 XM", "1.2"]
 )
-def test_invalid_date_is_refused_with_its_row(cell: str) -> None:
+def test_cell_that_is_no_valid_date_or_time_is_refused_with_its_row(cell: str) -> None:
     with pytest.raises(InputError, match="is no date and no time of day") as refused:
         Instants().parse(["2026-01-01", cell], [False, False])
     assert refused.value.row == 1
@@ -120,9 +103,7 @@ def test_invalid_date_is_refused_with_its_row(cell: str) -> None:
         (["2026-01-02", "10:00:00"], DAY_FIRST),
     ],
 )
-def test_order_of_day_and_month_is_inferred_if_it_is_unambiguous(
-    cells: list[str], order: str | None
-) -> None:
+def test_order_of_day_and_month_is_inferred_if_unambiguous(cells: list[str], order: str) -> None:
     assert day_or_month_first(cells) == order
 
 
@@ -131,5 +112,5 @@ def test_time_of_day_without_a_date_is_not_written_as_a_date() -> None:
     assert as_date(ns(datetime(2026, 11, 24, 12, 30))) == "2026-11-24T12:30:00.000000000"
 
 
-def test_year_of_two_digits_is_read_as_a_year_after_2000() -> None:
+def test_year_of_two_digits_in_a_date_is_read_as_a_year_after_2000() -> None:
     assert parsed("24.11.26") == ns(datetime(2026, 11, 24))

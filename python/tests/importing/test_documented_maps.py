@@ -1,7 +1,5 @@
 """The maps of docs/import.md applied to simulated recordings of a drive and of a seal."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -15,9 +13,7 @@ BENCH_MAP, DRIVE_MAP, SEAL_MAP = re.findall(
 )
 
 
-def test_map_with_units_and_a_run_number_column_imports_two_runs_in_si_units(
-    tmp_path: Path,
-) -> None:
+def test_map_with_units_and_run_numbers_imports_two_runs_in_si_units(tmp_path: Path) -> None:
     time = np.arange(400) / 50.0
     rows = [
         f"{t};{5.0 * np.sign(np.cos(t)):.4f};{60.0 * np.sin(t):.4f};{60.0 * np.cos(t):.4f};80;{k}"
@@ -25,19 +21,16 @@ def test_map_with_units_and_a_run_number_column_imports_two_runs_in_si_units(
         for t in time.tolist()
     ]
     header = "Zeit [s];Reibkraft [N];Weg [mm];Geschwindigkeit [mm/s];Normalkraft [N];Versuch"
-    text = "\n".join([header, *rows]).replace(".", ",") + "\n"
-    (tmp_path / "log.csv").write_text(text)
+    (tmp_path / "log.csv").write_text("\n".join([header, *rows]).replace(".", ",") + "\n")
     (tmp_path / "map.toml").write_text(BENCH_MAP)
     _, (first, second) = jbf.read_recording(tmp_path / "log.csv", tmp_path / "map.toml")
     for run in (first, second):
-        assert run.position_m is not None
-        assert run.load_n is not None
         np.testing.assert_allclose(run.position_m, 0.06 * np.sin(time), atol=1e-7)
         np.testing.assert_allclose(run.velocity_m_s, 0.06 * np.cos(time), atol=1e-7)
         np.testing.assert_array_equal(run.load_n, 80.0)
 
 
-def test_torque_in_percent_is_converted_with_the_rated_torque(tmp_path: Path) -> None:
+def test_torque_in_percent_is_converted_with_the_rated_torque_of_the_drive(tmp_path: Path) -> None:
     """30 % at standstill and 2.5 % more at 100 rpm, of a rated torque of 0.64 N m."""
     rng = np.random.default_rng(5)
     lines = ["setpoint_rpm,time_ms,speed_rpm,torque_pct"]
@@ -57,9 +50,7 @@ def test_torque_in_percent_is_converted_with_the_rated_torque(tmp_path: Path) ->
     assert fit["F_v"].value == pytest.approx(0.00025 * 0.64 * 60 / (2 * np.pi), rel=0.05)
 
 
-def test_fit_of_imported_strokes_recovers_the_friction_per_pressure_of_a_seal(
-    tmp_path: Path,
-) -> None:
+def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Path) -> None:
     """Strokes under three pressures: 2 N, and 1.5 N more for each bar."""
     rng = np.random.default_rng(6)
     for bar in (1, 3, 5):
@@ -74,8 +65,7 @@ def test_fit_of_imported_strokes_recovers_the_friction_per_pressure_of_a_seal(
     files = sorted(tmp_path.glob("s_*.csv"))
     imported = jbf.import_files(files, tmp_path / "map.toml")
     assert [run.name for run in imported.runs] == ["s_1", "s_3", "s_5"]
-    guessed = jbf.import_files(files)
-    for one, other in zip(guessed.runs, imported.runs, strict=True):
+    for one, other in zip(jbf.import_files(files).runs, imported.runs, strict=True):
         np.testing.assert_array_equal(one.friction_n, other.friction_n)
     fit = jbf.fit(imported.rig, imported.runs, ["dry_load_dependence"], law="coulomb")
     assert fit["F_c"].value == pytest.approx(2.0, abs=0.1)

@@ -1,90 +1,75 @@
 """Column headers of instruments: the unit and the quantity that are read from each."""
 
-from __future__ import annotations
-
 import pytest
 from jbf.importing.columns import understood
 
-# Header, its unit, the quantity.
-KNOWN = [
-    ("time_s", "s", "time"),
-    ("Zeit", "", "time"),
-    ("t[ms]", "ms", "time"),
-    ("Elapsed Time (sec)", "sec", "time"),
-    ("time_ms", "ms", "time"),
-    ("Kraft [N]", "N", "force"),
-    ("Kraft in kN", "kN", "force"),
-    ("Force / kN", "kN", "force"),
-    ("Reibkraft [N]", "N", "force"),
-    ("friction_n", "N", "force"),
-    ("Load cell [N]", "N", "force"),
-    ("Normalkraft [N]", "N", "load"),
-    ("Normal Force (N)", "N", "load"),
-    ("Load [kg]", "kg", "load"),
-    ("Weg [mm]", "mm", "place"),
-    ("Déplacement (mm)", "mm", "place"),
-    ("ActPos_mm", "mm", "place"),
-    ("x", "", "place"),
-    ("Drehwinkel [°]", "°", "place"),
-    ("Encoder [counts]", "counts", "place"),
-    ("pos (in)", "in", "place"),
-    ("Geschwindigkeit mm/s", "mm/s", "speed"),
-    ("speed_rpm", "rpm", "speed"),
-    ("Drehzahl [U/min]", "U/min", "speed"),
-    ("n [min-1]", "min-1", "speed"),
-    ("omega (rad/s)", "rad/s", "speed"),
-    ("Vitesse de rotation (tr/min)", "tr/min", "speed"),
-    ("motor_velocity_rad_s", "rad/s", "speed"),
-    ("Torque, Nm", "Nm", "torque"),
-    ("Torque [N-m]", "N-m", "torque"),
-    ("Couple [N.m]", "N.m", "torque"),
-    ("torque_pct", "%", "torque"),
-    ("tau {mNm}", "mNm", "torque"),
-    ("Strom [A]", "A", "current"),
-    ("Iq (mA)", "mA", "current"),
-    ("motor current <A>", "A", "current"),
-    ("Temperatur Öl [°C]", "°C", "temperature"),
-    ("Oil Temperature (°F)", "°F", "temperature"),
-    ("pressure_pa", "Pa", "pressure"),
-    ("Hydraulikdruck / MPa", "MPa", "pressure"),
-    ("Spannung [V]", "V", "voltage"),
-    ("coefficient of friction", "", "coefficient"),
-    ("Reibwert µ", "", "coefficient"),
-    ("Sample #", "", "index"),
-    ("Versuch", "", "run"),
-    ("Kanal 7", "", None),
-    ("Status", "", None),
-]
+UNITS = {
+    "time": {
+        "time_s": "s", "Zeit": "", "t[ms]": "ms", "Elapsed Time (sec)": "sec", "time_ms": "ms",
+    },
+    "force": {
+        "Kraft [N]": "N", "Kraft in kN": "kN", "Force / kN": "kN", "Reibkraft [N]": "N",
+        "friction_n": "N", "Load cell [N]": "N",
+    },
+    "load": {"Normalkraft [N]": "N", "Normal Force (N)": "N", "Load [kg]": "kg"},
+    "place": {
+        "Weg [mm]": "mm", "Déplacement (mm)": "mm", "ActPos_mm": "mm", "x": "",
+        "Drehwinkel [°]": "°", "Encoder [counts]": "counts", "pos (in)": "in",
+    },
+    "speed": {
+        "Geschwindigkeit mm/s": "mm/s", "speed_rpm": "rpm", "Drehzahl [U/min]": "U/min",
+        "n [min-1]": "min-1", "omega (rad/s)": "rad/s", "Vitesse de rotation (tr/min)": "tr/min",
+        "motor_velocity_rad_s": "rad/s",
+    },
+    "torque": {
+        "Torque, Nm": "Nm", "Torque [N-m]": "N-m", "Couple [N.m]": "N.m", "torque_pct": "%",
+        "tau {mNm}": "mNm",
+    },
+    "current": {"Strom [A]": "A", "Iq (mA)": "mA", "motor current <A>": "A"},
+    "temperature": {"Temperatur Öl [°C]": "°C", "Oil Temperature (°F)": "°F"},
+    "pressure": {"pressure_pa": "Pa", "Hydraulikdruck / MPa": "MPa"},
+    "voltage": {"Spannung [V]": "V"},
+    "coefficient": {"coefficient of friction": "", "Reibwert µ": ""},
+    "index": {"Sample #": ""},
+    "run": {"Versuch": ""},
+    None: {"Kanal 7": "", "Status": ""},
+}  # fmt: skip
+"""Units by quantity and header."""
 
 
-@pytest.mark.parametrize(("header", "unit", "kind"), KNOWN, ids=[row[0] for row in KNOWN])
-def test_unit_and_quantity_are_read_from_a_header(header: str, unit: str, kind: str | None) -> None:
-    result = understood(header)
-    assert (result.unit, result.kind) == (unit, kind)
+@pytest.mark.parametrize("kind", UNITS)
+def test_unit_and_quantity_are_read_from_a_header(kind: str | None) -> None:
+    for header, unit in UNITS[kind].items():
+        result = understood(header)
+        assert (result.unit, result.kind) == (unit, kind), header
 
 
 @pytest.mark.parametrize(
-    "header",
-    ["setpoint_rpm", "Soll-Drehzahl [1/min]", "pos_ref_mm", "Consigne (N)", "Target Speed (rpm)"],
+    ("setpoint", "measurement"),
+    [
+        ("setpoint_rpm", "speed_rpm"),
+        ("Soll-Drehzahl [1/min]", "Ist-Drehzahl [1/min]"),
+        ("pos_ref_mm", "pos_mm"),
+        ("Consigne (N)", "Force (N)"),
+        ("Target Speed (rpm)", "Actual Speed (rpm)"),
+    ],
 )
-def test_header_of_a_set_point_is_distinguished_from_that_of_a_measurement(header: str) -> None:
-    assert understood(header).setpoint
-    assert not understood(header.replace("Soll-", "Ist-").replace("Target", "Actual")).setpoint or (
-        "ref" in header or "setpoint" in header or "Consigne" in header
-    )
+def test_header_is_recognised_as_set_point_or_measurement(setpoint: str, measurement: str) -> None:
+    assert understood(setpoint).setpoint
+    assert not understood(measurement).setpoint
 
 
-def test_symbols_f_and_t_are_read_as_force_and_time() -> None:
+def test_headers_f_and_t_are_read_as_force_and_time_whatever_their_unit() -> None:
     assert understood("F_N [N]").kind == "force"
     assert understood("T [°C]").kind == "time"  # the guess rejects it later by its unit
 
 
-def test_motor_speed_is_distinguished_from_other_speeds() -> None:
+def test_speed_of_a_motor_is_distinguished_from_other_speeds_by_its_header() -> None:
     assert understood("Motor Speed [rpm]").motor
     assert not understood("Speed [rpm]").motor
 
 
-def test_unit_is_read_from_brackets_or_an_argument_and_not_from_a_suffix_or_an_index() -> None:
+def test_header_unit_is_read_from_brackets_or_an_argument_not_from_a_suffix() -> None:
     assert understood("Speed_m [rpm]").unit == "rpm"
     assert understood("position[0]").unit == ""
     assert understood("Kraft", "kN").unit == "kN"

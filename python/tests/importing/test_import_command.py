@@ -1,7 +1,5 @@
 """`jbf import`: the guessed map, the imported folder, and refused files, maps and commands."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import shlex
@@ -10,6 +8,7 @@ from pathlib import Path
 import jbf
 import numpy as np
 import pytest
+from input_checks import Capture, refused
 from jbf.cli import main
 from long_recording import recording
 from recording_files import csv
@@ -24,114 +23,96 @@ friction_n = "friction_n"
 motion = "linear"
 friction = "force"
 """
+RESTS = MAP + '[cut]\nby = "rests"\n'
+IMPORT = "import log.csv --map map.toml --out runs"
+OPEN = "time,speed_rpm,torque_pct\n" + "1,2,3\n2,3,4\n" * 20
+"""A recording whose map has open entries."""
 
 
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+@pytest.fixture(autouse=True)
+def working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work in a folder with a recording of three motions, `log.csv`, and its `map.toml`."""
     monkeypatch.chdir(tmp_path)
-    csv(tmp_path / "log.csv", recording(3, 8.0, 4.0).columns)
-    (tmp_path / "map.toml").write_text(MAP)
-    return tmp_path
+    csv(Path("log.csv"), recording(3, 8.0, 4.0).columns)
+    Path("map.toml").write_text(MAP)
 
 
-def printed(capsys: pytest.CaptureFixture[str], command: str, code: int = 0) -> str:
+def printed(capsys: Capture, command: str, code: int = 0) -> str:
     """Return the standard output of a command, or its standard error if it fails."""
     assert main(shlex.split(command)) == code
     out = capsys.readouterr()
     return out.out if code == 0 else out.err
 
 
-def files(folder: Path) -> dict[Path, bytes]:
-    return {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+def refusal(capsys: Capture, command: str, fragment: str) -> str:
+    """Check that a command fails with one line and changes no file; return the line."""
+    return refused(shlex.split(command), fragment, capsys)
 
 
-def test_import_without_a_map_writes_a_map_that_can_be_imported(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "map.toml").unlink()
+def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture) -> None:
+    Path("map.toml").unlink()
     text = printed(capsys, "import log.csv")
     assert "Nothing is open" in text
     assert "jbf import log.csv --map map.toml --out FOLDER" in text
-    assert "3 runs" not in printed(capsys, "import log.csv --map map.toml --out runs")
-    assert sorted(p.name for p in (folder / "runs").iterdir()) == [
-        "cut.toml", "import.json", "log.csv", "map.toml", "rig.toml",
-    ]  # fmt: skip
+    assert "3 runs" not in printed(capsys, IMPORT)
+    written = {path.name for path in Path("runs").iterdir()}
+    assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
 
 
-def test_open_questions_are_written_to_the_map_and_reported(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "log.csv").write_text("time,speed_rpm,torque_pct\n" + "1,2,3\n2,3,4\n" * 20)
-    (folder / "map.toml").unlink()
+def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture) -> None:
+    Path("log.csv").write_text(OPEN)
+    Path("map.toml").unlink()
     assert "Not sure" in printed(capsys, "import log.csv")
-    text = (folder / "map.toml").read_text()
+    text = Path("map.toml").read_text()
     assert 'time_s = "`time` [?]"' in text
     assert 'rated_torque_n_m = "?"' in text
-    assert "key columns.time_s: is open" in printed(
-        capsys, "import log.csv --map map.toml --out runs", 2
-    )
+    assert "key columns.time_s: is open" in printed(capsys, IMPORT, 2)
     # Without the map, each question is one line.
     lines = printed(capsys, "import log.csv --out runs", 2).splitlines()
     assert len(lines) == 2
     assert all(line.startswith("jbf: log.csv, ") for line in lines)
-    assert not (folder / "runs").exists()
+    assert not Path("runs").exists()
 
 
-def test_existing_map_is_replaced_only_with_the_force_option(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "is there already" in printed(capsys, "import log.csv", 2)
-    assert (folder / "map.toml").read_text() == MAP
+def test_existing_map_is_replaced_only_with_the_force_option(capsys: Capture) -> None:
+    refusal(capsys, "import log.csv", "is there already")
     printed(capsys, "import log.csv --force")
-    assert (folder / "map.toml").read_text() != MAP
+    assert Path("map.toml").read_text() != MAP
 
 
-def test_import_folder_is_replaced_only_with_force_and_never_if_it_holds_other_files(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    command = "import log.csv --map map.toml --out runs"
-    printed(capsys, command)
-    before = files(folder)
-    assert "holds an import already" in printed(capsys, command, 2)
-    assert files(folder) == before
-    printed(capsys, f"{command} --force")
-    (folder / "mine").mkdir()
-    (folder / "mine" / "notes.txt").write_text("something else")
-    assert "holds other files" in printed(capsys, command.replace("runs", "mine") + " --force", 2)
+def test_force_option_replaces_an_import_but_no_folder_with_other_files(capsys: Capture) -> None:
+    printed(capsys, IMPORT)
+    refusal(capsys, IMPORT, "holds an import already")
+    printed(capsys, f"{IMPORT} --force")
+    Path("mine").mkdir()
+    Path("mine/notes.txt").write_text("something else")
+    refusal(capsys, IMPORT.replace("runs", "mine") + " --force", "holds other files")
 
 
-def test_import_without_an_output_folder_writes_nothing(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    before = files(folder)
+def test_import_without_an_output_folder_writes_nothing(capsys: Capture) -> None:
+    before = {path: path.read_bytes() for path in Path().iterdir()}
     assert "Nothing was written" in printed(capsys, "import log.csv --map map.toml")
-    assert files(folder) == before
+    assert {path: path.read_bytes() for path in Path().iterdir()} == before
 
 
-def test_import_with_the_plot_option_writes_a_png_and_reports_the_runs(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "map.toml").write_text(MAP + '[cut]\nby = "rests"\n')
-    text = printed(capsys, "import log.csv --map map.toml --out runs --plot cut.png")
+def test_import_with_the_plot_option_writes_a_png_and_reports_the_runs(capsys: Capture) -> None:
+    Path("map.toml").write_text(RESTS)
+    text = printed(capsys, f"{IMPORT} --plot cut.png")
     assert "3 runs" in text
     assert "Left out:" in text
-    assert (folder / "cut.png").read_bytes().startswith(b"\x89PNG")
+    assert Path("cut.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_fit_and_compare_give_equal_results_from_an_imported_folder_and_from_a_map(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "map.toml").write_text(MAP + '[cut]\nby = "rests"\n')
-    printed(capsys, "import log.csv --map map.toml --out runs")
-    by_folder = printed(capsys, "fit runs --law coulomb --effects inertia_leak --out a.toml")
-    by_map = printed(
-        capsys, "fit map.toml log.csv --law coulomb --effects inertia_leak --out b.toml"
-    )
-    assert by_folder == by_map
-    assert (folder / "a.toml").read_bytes() == (folder / "b.toml").read_bytes()
+def test_fit_and_compare_give_equal_results_for_a_map_and_its_import(capsys: Capture) -> None:
+    Path("map.toml").write_text(RESTS)
+    printed(capsys, IMPORT)
+    options = "--law coulomb --effects inertia_leak --out"
+    by_folder = printed(capsys, f"fit runs {options} a.toml")
+    assert printed(capsys, f"fit map.toml log.csv {options} b.toml") == by_folder
+    assert Path("a.toml").read_bytes() == Path("b.toml").read_bytes()
     compared = printed(capsys, "compare a.toml runs")
     assert printed(capsys, "compare a.toml log.csv --map map.toml") == compared
-    model = jbf.Model.load(folder / "a.toml")
+    model = jbf.Model.load("a.toml")
     assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(12.0, abs=0.2)
 
 
@@ -144,9 +125,7 @@ def set_cell(text: str, row: int, column: int, new: str) -> str:
 
 
 BAD_FILES = {
-    "a word for a number": (
-        lambda t: set_cell(t, 30, 3, "abc"), 'row 30, column friction_n: "abc"',
-    ),
+    "a word": (lambda t: set_cell(t, 30, 3, "abc"), 'row 30, column friction_n: "abc"'),
     "a row too long": (lambda t: set_cell(t, 9, 2, "1,2"), "row 9: has 6 cells"),
     "a row too short": (lambda t: t.replace(t.splitlines()[8], "1"), "row 9: has 1 cell"),
     "time runs back": (lambda t: set_cell(t, 500, 0, "5.0"), "row 500: sample 499: time runs back"),
@@ -156,19 +135,12 @@ BAD_FILES = {
 
 
 @pytest.mark.parametrize("case", BAD_FILES)
-def test_invalid_recording_is_refused_in_one_line_and_writes_nothing(
-    case: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_invalid_recording_is_refused_and_writes_nothing(case: str, capsys: Capture) -> None:
     change, fragment = BAD_FILES[case]
-    path = folder / "log.csv"
+    path = Path("log.csv")
     path.write_text(change(path.read_text()))
-    before = files(folder)
-    line = printed(capsys, "import log.csv --map map.toml --out runs", 2)
-    assert line.count("\n") == 1
-    assert line.startswith("jbf: log.csv")
-    assert fragment in line
-    assert files(folder) == before
-    assert [p.name for p in folder.iterdir() if p.is_dir()] == []
+    assert refusal(capsys, IMPORT, fragment).startswith("jbf: log.csv")
+    assert not any(p.is_dir() for p in Path().iterdir())
 
 
 BAD_MAPS = {
@@ -197,23 +169,15 @@ BAD_MAPS = {
     MAP.partition("[drive]")[0]: "nothing says what it was recorded on",
     MAP.replace("[drive]", "[drve]"): 'did you mean "drive"',
     MAP.replace('"time_s"', '"time_s [kg]"'): "which is no s",
-    "\n".join(
-        line for line in MAP.splitlines() if "time_s" not in line
-    ): "columns.time_s: is missing",
+    MAP.replace('time_s = "time_s"\n', ""): "columns.time_s: is missing",
     "[columns\n": "is not TOML",
 }
 
 
 @pytest.mark.parametrize("text", BAD_MAPS, ids=range(len(BAD_MAPS)))
-def test_invalid_map_is_refused_in_one_line_and_writes_nothing(
-    text: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "map.toml").write_text(text)
-    before = files(folder)
-    line = printed(capsys, "import log.csv --map map.toml --out runs", 2)
-    assert line.count("\n") == 1
-    assert BAD_MAPS[text] in line
-    assert files(folder) == before
+def test_invalid_map_is_refused_and_writes_nothing(text: str, capsys: Capture) -> None:
+    Path("map.toml").write_text(text)
+    refusal(capsys, IMPORT, BAD_MAPS[text])
 
 
 BAD_COMMANDS = {
@@ -232,34 +196,22 @@ BAD_COMMANDS = {
 
 
 @pytest.mark.parametrize("command", BAD_COMMANDS)
-def test_invalid_import_command_is_refused_in_one_line_and_writes_nothing(
-    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    before = files(folder)
-    line = printed(capsys, command, 2)
-    assert line.count("\n") == 1
-    assert BAD_COMMANDS[command] in line
-    assert files(folder) == before
+def test_invalid_command_is_refused_and_writes_nothing(command: str, capsys: Capture) -> None:
+    refusal(capsys, command, BAD_COMMANDS[command])
 
 
-def test_error_about_open_questions_can_be_pickled(folder: Path) -> None:
-    (folder / "log.csv").write_text("time,speed_rpm,torque_pct\n" + "1,2,3\n2,3,4\n" * 20)
-    with pytest.raises(jbf.InputError) as refused:
+def test_error_about_open_map_entries_is_unchanged_by_pickling() -> None:
+    Path("log.csv").write_text(OPEN)
+    with pytest.raises(jbf.InputError) as caught:
         jbf.import_files("log.csv")
-    assert "(and 1 more)" in str(refused.value)
-    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
+    assert "(and 1 more)" in str(caught.value)
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
-def test_read_recording_returns_the_same_runs_as_import_files(folder: Path) -> None:
+def test_read_recording_returns_the_same_runs_as_import_files() -> None:
     rig, runs = jbf.read_recording("log.csv", "map.toml")
     assert rig.drive is not None
     assert len(runs) == 1
     result = jbf.import_files(["log.csv"], jbf.read_map("map.toml"), "runs")
     np.testing.assert_array_equal(result.runs[0].friction_n, runs[0].friction_n)
-    assert result.to_dict() == json.loads((folder / "runs" / "import.json").read_text())
-
-
-def test_look_maps_the_column_names_of_jbf_without_questions(folder: Path) -> None:
-    guess = jbf.look("log.csv")
-    assert guess.sure
-    assert dict(guess.map().columns)["friction_n"] == "`friction_n`"
+    assert result.to_dict() == json.loads(Path("runs/import.json").read_text())

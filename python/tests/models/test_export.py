@@ -1,7 +1,5 @@
 """Exported Rust and C code is compiled, run and compared bit for bit with `jbf predict`."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from pathlib import Path
@@ -9,12 +7,12 @@ from pathlib import Path
 import jbf
 import numpy as np
 import pytest
+from input_checks import Capture
 from jbf import cli, export
-from jbf.errors import InputError
-from jbf.models.catalogue import Parameter
 from jbf.models.chain import MAX_STEP_S, imposed
 
 ROOT = Path(__file__).resolve().parents[3]
+Rows = dict[str, list[list[str]]]
 TEMPERATURE_EFFECTS = ("dry_temperature_dependence", "viscous_temperature_dependence")
 
 RUST_MAIN = """
@@ -145,10 +143,8 @@ CARGO = """
 name = "exported"
 version = "0.0.0"
 edition = "2021"
-
 [dependencies]
 jbf-core = {{ path = "{core}" }}
-
 [workspace]
 """
 
@@ -165,9 +161,7 @@ def models() -> dict[str, jbf.Model]:
         "slider": jbf.Model(jbf.Rig(), law="lugre", effects=["sensor_offset"]),
         "gms": jbf.Model(jbf.Rig(), law="maxwell_slip", effects=["stribeck_excess"]),
         "gear": jbf.Model(
-            jbf.Rig(),
-            law="elasto_plastic",
-            effects=["dry_load_dependence", *TEMPERATURE_EFFECTS],
+            jbf.Rig(), law="elasto_plastic", effects=["dry_load_dependence", *TEMPERATURE_EFFECTS]
         ),
         "warm": jbf.Model(jbf.Rig.thesis("4.2"), effects=["vogel_viscosity"]),
     }
@@ -203,9 +197,8 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, model in models().items():
         record, m = motion(model), imposed(model.rig, motion(model))
         load = np.full(len(record), 104.0 if model.rig.load else 1.0)
-        celsius = record.temperature_c
-        if celsius is None:
-            celsius = np.full(len(record), np.nan)
+        missing = np.full(len(record), np.nan)
+        celsius = missing if record.temperature_c is None else record.temperature_c
         columns = (record.time_s, m.velocity_m_s, m.acceleration_m_s2, m.angle_rad, load, celsius)
         rows = zip(*(c.tolist() for c in columns), strict=True)
         text = "\n".join(" ".join(map(repr, row)) for row in rows)
@@ -214,26 +207,21 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def rust(prepared: Path) -> dict[str, list[list[str]]]:
+def rust(prepared: Path) -> Rows:
     """Output of the exported Rust: predicted, stepped in f64, stepped in f32."""
     source = prepared / "src"
     source.mkdir()
     core = (ROOT / "crates" / "jbf-core").as_posix()
     (prepared / "Cargo.toml").write_text(CARGO.format(core=core))
     shutil.copy(ROOT / "Cargo.lock", prepared / "Cargo.lock")
-    main = RUST_MAIN.replace("MAX_STEP_S", f"{MAX_STEP_S!r}")
-    (source / "main.rs").write_text(main)
+    (source / "main.rs").write_text(RUST_MAIN.replace("MAX_STEP_S", repr(MAX_STEP_S)))
     for name, model in models().items():
         (source / f"{name}.rs").write_text(export.rust(model))
     target = ROOT / "target" / "exported"
     run("cargo", "build", "--quiet", "--target-dir", target, folder=prepared)
     program = target / "debug" / "exported"
-    return {
-        name: [
-            row.split() for row in run(program, f"{name}.txt", name, folder=prepared).split("\n")
-        ]
-        for name in models()
-    }
+    texts = {name: run(program, f"{name}.txt", name, folder=prepared) for name in models()}
+    return {name: [row.split() for row in text.split("\n")] for name, text in texts.items()}
 
 
 def bits(text: str) -> float:
@@ -243,21 +231,16 @@ def bits(text: str) -> float:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("name", models())
-def test_exported_rust_predicts_the_same_bits_as_the_model(
-    rust: dict[str, list[list[str]]], name: str
-) -> None:
+def test_exported_rust_predicts_the_same_bits_as_the_model(rust: Rows, name: str) -> None:
     model = models()[name]
-    expected = model.predict(motion(model)).tolist()
-    got = [bits(row[0]) for row in rust[name] if row]
-    assert got == expected
-    assert len(set(got)) > 100
+    force = [bits(row[0]) for row in rust[name] if row]
+    assert force == model.predict(motion(model)).tolist()
+    assert len(set(force)) > 100
 
 
 @pytest.mark.extended
 @pytest.mark.parametrize("name", models())
-def test_exported_rust_in_single_precision_agrees_with_double_precision(
-    rust: dict[str, list[list[str]]], name: str
-) -> None:
+def test_exported_rust_in_single_precision_agrees_with_double(rust: Rows, name: str) -> None:
     single = [np.uint32(int(row[2], 16)).view(np.float32) for row in rust[name] if row]
     double = [bits(row[1]) for row in rust[name] if row]
     assert np.allclose(single, double, atol=2e-3 * np.max(np.abs(double)))
@@ -265,8 +248,8 @@ def test_exported_rust_in_single_precision_agrees_with_double_precision(
 
 @pytest.mark.extended
 @pytest.mark.parametrize("name", models())
-def test_exported_c_returns_the_same_bits_as_exported_rust(
-    prepared: Path, rust: dict[str, list[list[str]]], name: str
+def test_exported_c_returns_the_bits_of_exported_rust(
+    prepared: Path, rust: Rows, name: str
 ) -> None:
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
@@ -292,63 +275,41 @@ def test_exported_source_contains_every_constant_of_the_model(name: str) -> None
     rust, c = export.rust(model), export.c(model)
     for dotted, parameter in model.parameters.items():
         block, _, parameter_name = dotted.rpartition(".")
-        rust_head, c_head = (
-            f"pub const {(block or model.law).upper()}: ",
-            f"MODEL_{(block or model.law).upper()}[",
-        )
-        for source, head, comment in ((rust, rust_head, "// {}"), (c, c_head, "/* {} */")):
-            constants = source[source.index(head) :].split(";\n")[0]
-            (line,) = [
-                line
-                for line in constants.splitlines()
-                if line.endswith(", " + comment.format(parameter_name))
-            ]
+        table = (block or model.law).upper()
+        for source, head, end in (
+            (rust, f"pub const {table}: ", f", // {parameter_name}"),
+            (c, f"MODEL_{table}[", f", /* {parameter_name} */"),
+        ):
+            constants = source[source.index(head) :].split(";\n")[0].splitlines()
+            (line,) = [line for line in constants if line.endswith(end)]
             assert float(line.split(",")[0]) == parameter.value
     if model.rig.bearing is not None:
-        assert model.rig.load is not None
         assert f"LOAD_N: f64 = {model.rig.load.normal_n!r};" in rust
         assert f"MODEL_LOAD_N = {model.rig.load.normal_n!r};" in c
         for key in ("radius_m", "length_m", "clearance_m", "mass_kg"):
             assert f".with_{key}({getattr(model.rig.bearing, key)!r})" in rust
             assert f".{key} = {getattr(model.rig.bearing, key)!r}," in c
-    clock = "THESIS" if model.clock == "thesis" else "JOURNAL"
-    if model.rig.bearing is not None:
-        assert f"Clock::{clock.capitalize()}" in rust
-        assert f"JBF_CLOCK_{clock}" in c
+        assert f"Clock::{model.clock.capitalize()}" in rust
+        assert f"JBF_CLOCK_{model.clock.upper()}" in c
 
 
-def test_export_command_writes_rust_and_c_source(tmp_path: Path) -> None:
-    model = models()["drag"]
-    path = tmp_path / "model.toml"
-    model.save(path)
-    wanted = [tmp_path / "model.rs", tmp_path / "model.h"]
-    code = cli.main(["export", str(path), "--rust", str(wanted[0]), "--c", str(wanted[1])])
-    assert code == 0
-    assert wanted[0].read_text() == export.rust(model, "model.toml")
-    assert wanted[1].read_text() == export.c(model, "model.toml")
+@pytest.fixture
+def saved(tmp_path: Path) -> Path:
+    """The model file of `drag`."""
+    models()["drag"].save(tmp_path / "model.toml")
+    return tmp_path / "model.toml"
 
 
-def test_export_command_without_an_output_file_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "model.toml"
-    models()["drag"].save(path)
-    assert cli.main(["export", str(path)]) == 2
+def test_export_command_writes_rust_and_c_source(saved: Path) -> None:
+    rust, c = saved.with_suffix(".rs"), saved.with_suffix(".h")
+    assert cli.main(["export", str(saved), "--rust", str(rust), "--c", str(c)]) == 0
+    assert rust.read_text() == export.rust(models()["drag"], "model.toml")
+    assert c.read_text() == export.c(models()["drag"], "model.toml")
+
+
+def test_export_command_without_an_output_file_is_refused(saved: Path, capsys: Capture) -> None:
+    assert cli.main(["export", str(saved)]) == 2
     assert "nothing to write" in capsys.readouterr().err
-
-
-def test_model_with_a_user_effect_cannot_be_exported() -> None:
-    def wiper(velocity_m_s: np.ndarray, k_n: float) -> np.ndarray:
-        return k_n * np.sign(velocity_m_s)
-
-    page = Parameter("k_n", "N", lower=0.0, upper=9.0, null=0.0, starts=(1.0,))
-    jbf.register_effect(wiper, parameters=[page])
-    try:
-        model = jbf.Model(jbf.Rig.thesis("4.2"), effects=["wiper"])
-        with pytest.raises(InputError, match="the effect wiper is written in Python"):
-            export.rust(model)
-    finally:
-        jbf.forget_effect("wiper")
 
 
 def test_effect_is_exported_unless_its_parameter_is_at_an_infinite_null() -> None:

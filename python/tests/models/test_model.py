@@ -1,7 +1,5 @@
 """Predictions of the journal-bearing law against reference values; steady friction; refusals."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 
@@ -24,18 +22,15 @@ REFERENCE = [
 ]
 
 
-def sine_run(omega: float = 1.0, duration_s: float = 12.0) -> Run:
+def sine_run(duration_s: float = 12.0, load_n: float | None = 104.0) -> Run:
     """A noiseless two-way sine, finely sampled."""
     t = np.arange(0.0, duration_s, 0.002)
-    return Run.from_arrays(
-        t,
-        0.127 * np.sin(omega * t),
-        angle_rad=0.127 / omega * (1.0 - np.cos(omega * t)) / 0.0127,
-        load_n=np.full(len(t), 104.0),
-    )
+    angle = 0.127 * (1.0 - np.cos(t)) / 0.0127
+    load = None if load_n is None else np.full(len(t), load_n)
+    return Run.from_arrays(t, 0.127 * np.sin(t), angle_rad=angle, load_n=load)
 
 
-def test_prediction_agrees_with_reference_values() -> None:
+def test_journal_prediction_agrees_with_an_integration_of_order_eight() -> None:
     run = sine_run()
     force = Model(Rig.thesis(), parameters=TABLE_4_2, clock="thesis").predict(run)
     for time, f in REFERENCE:
@@ -43,28 +38,17 @@ def test_prediction_agrees_with_reference_values() -> None:
 
 
 def test_prediction_uses_the_recorded_load_and_otherwise_that_of_the_rig() -> None:
-    run = sine_run()
-    heavy = Model(Rig.thesis("4.2"), parameters=TABLE_4_2).predict(run)
-    light_rig = Rig.thesis("4.3")
-    with_recorded_load = Model(light_rig, parameters=TABLE_4_2).predict(run)
-    np.testing.assert_allclose(heavy, with_recorded_load, rtol=1e-9, atol=1e-9)
-    unloaded_run = Run.from_arrays(run.time_s, run.velocity_m_s, angle_rad=run.angle_rad)
-    light = Model(light_rig, parameters=TABLE_4_2).predict(unloaded_run)
-    with_load_of_the_rig = Model(light_rig, parameters=TABLE_4_2).predict(
-        Run.from_arrays(
-            run.time_s,
-            run.velocity_m_s,
-            angle_rad=run.angle_rad,
-            load_n=np.full(len(run), 83.5),
-        )
-    )
-    np.testing.assert_array_equal(light, with_load_of_the_rig)
-    assert not np.allclose(light, heavy, rtol=1e-2)
+    heavy, light = (Model(Rig.thesis(table), parameters=TABLE_4_2) for table in ("4.2", "4.3"))
+    expected = heavy.predict(sine_run())
+    np.testing.assert_allclose(light.predict(sine_run()), expected, rtol=1e-9, atol=1e-9)
+    light_force = light.predict(sine_run(load_n=None))
+    np.testing.assert_array_equal(light_force, light.predict(sine_run(load_n=83.5)))
+    assert not np.allclose(light_force, expected, rtol=1e-2)
 
 
-def test_steady_friction_agrees_with_reference_values_and_is_odd() -> None:
-    model = Model(Rig.thesis(), parameters=TABLE_4_2)
-    f = model.steady_friction([0.001, 0.02, 0.127, -0.02]) / 104.0
+def test_steady_friction_of_a_bearing_agrees_with_reference_values_and_is_odd() -> None:
+    speeds = [0.001, 0.02, 0.127, -0.02]
+    f = Model(Rig.thesis(), parameters=TABLE_4_2).steady_friction(speeds) / 104.0
     np.testing.assert_allclose(f[:2], [0.21635118264163442, 0.05782937675212433], rtol=1e-9)
     assert f[2] == pytest.approx(0.0086, abs=1e-4)
     assert f[3] == -f[1]
@@ -76,11 +60,10 @@ def test_model_predicts_the_same_bits_after_saving_and_loading(tmp_path: Path) -
     model.save(tmp_path / "m.toml")
     again = Model.load(tmp_path / "m.toml")
     assert again == model
-    run = sine_run()
-    np.testing.assert_array_equal(model.predict(run), again.predict(run))
+    np.testing.assert_array_equal(model.predict(sine_run()), again.predict(sine_run()))
 
 
-def test_effects_are_sorted_in_the_order_of_the_signal_chain() -> None:
+def test_effects_of_a_model_are_sorted_in_the_order_of_the_signal_chain() -> None:
     model = Model(Rig.thesis(), effects=["sensor_lag", "coulomb_drag", "drive_compliance"])
     assert model.effects == ("drive_compliance", "coulomb_drag", "sensor_lag")
 
@@ -96,10 +79,7 @@ def test_catalogue_effects_are_in_chain_order_and_cover_every_stage() -> None:
 
 def test_catalogue_effects_are_documented_and_have_starting_values_within_bounds() -> None:
     for effect in effects().values():
-        assert effect.equation
-        assert effect.source
-        assert effect.limits
-        assert effect.parameters
+        assert all((effect.equation, effect.source, effect.limits, effect.parameters)), effect.name
         for p in effect.parameters:
             assert p.lower < p.upper
             assert all(p.lower <= s <= p.upper for s in p.starts)
@@ -107,15 +87,13 @@ def test_catalogue_effects_are_documented_and_have_starting_values_within_bounds
 
 def test_prediction_warns_and_stays_finite_if_the_film_responds_too_fast() -> None:
     run = sine_run(duration_s=1.0)
-    usual = Model(Rig.thesis("4.2"), parameters=TABLE_4_2)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        usual.predict(run)
+        Model(Rig.thesis("4.2"), parameters=TABLE_4_2).predict(run)
     # The transition speed is a thousand times the speed of the record.
     fast = Model(Rig.thesis("4.2"), parameters={**TABLE_4_2, "U_tr": 100.0})
     with pytest.warns(jbf.FilmWarning, match="U_tr_m_s, K0 and the load"):
-        friction = fast.predict(run)
-    assert np.all(np.isfinite(friction))
+        assert np.all(np.isfinite(fast.predict(run)))
 
 
 def simulated(
@@ -144,22 +122,18 @@ EVENTS = ("drive_compliance", "backlash")
 
 
 @pytest.mark.parametrize("effect", [None, *rigsim.CATALOGUE])
-def test_prediction_with_each_effect_agrees_with_the_independent_simulator(
-    effect: str | None,
-) -> None:
-    base = rigsim.Base()
-    law = {"f_m": base.f_m, "U_tr": base.U_tr, "K0": base.K0, "gamma": base.gamma}
-    values: dict[str, float] = {}
+def test_prediction_with_each_effect_agrees_with_the_simulator(effect: str | None) -> None:
+    values = {name: getattr(rigsim.Base(), name) for name in TABLE_4_2}
     hidden: dict[str, dict[str, float]] = {}
     if effect is not None:
         hidden = {effect: rigsim.draw(effect, np.random.default_rng(5))}
-        values = {f"{effect}.{name}": value for name, value in hidden[effect].items()}
+        values |= {f"{effect}.{name}": value for name, value in hidden[effect].items()}
     celsius = 18.0 if effect == "vogel_viscosity" else None
     if celsius is not None:
         values["vogel_viscosity.T_0"] = REFERENCE_C
     motion = STOPS if effect == "dwell_stiction" else SINE
     run, friction = simulated(hidden, motion, celsius)
-    model = Model(Rig.thesis("4.2"), effects=list(hidden), parameters=law | values)
+    model = Model(Rig.thesis("4.2"), effects=list(hidden), parameters=values)
     _, bare = simulated({}, motion, None)
     change = np.sqrt(np.mean((friction - bare) ** 2))
     error = np.sqrt(np.mean((model.predict(run) - friction) ** 2))
@@ -167,22 +141,17 @@ def test_prediction_with_each_effect_agrees_with_the_independent_simulator(
     assert effect is None or change > 0.02
 
 
-@pytest.mark.parametrize(
-    "effect",
-    [
-        "gravity",
-        "cogging",
-        "position_ripple",
-        "stroke_dependence",
-        "dry_asymmetry",
-        "quadratic_drag",
-    ],
-)
-def test_reading_with_an_effect_without_memory_depends_on_its_own_sample_only(effect: str) -> None:
+MEMORYLESS_EFFECTS = (
+    "gravity", "cogging", "position_ripple", "stroke_dependence", "dry_asymmetry", "quadratic_drag",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("effect", MEMORYLESS_EFFECTS)
+def test_prediction_of_a_memoryless_effect_is_independent_of_earlier_samples(effect: str) -> None:
     t = np.arange(0.0, 4.0, 0.01)
     angle, speed = 0.4 * np.sin(2.0 * t), 0.8 * np.cos(2.0 * t)
-    own = {f"{effect}.{p.name}": p.starts[0] for p in jbf.effects()[effect].parameters}
-    model = Model(Rig(), "coulomb", [effect], {"F_c_n": 5.0, "F_v_n_s_m": 8.0} | own)
+    values = {f"{effect}.{p.name}": p.starts[0] for p in jbf.effects()[effect].parameters}
+    model = Model(Rig(), "coulomb", [effect], {"F_c_n": 5.0, "F_v_n_s_m": 8.0} | values)
     path = {"position_m": angle} if effect == "stroke_dependence" else {"angle_rad": angle}
     # The smoothed speed at the ends of a run differs by some 1e-6.
     whole = model.predict(Run.from_arrays(t, speed, **path))

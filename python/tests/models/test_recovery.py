@@ -5,8 +5,6 @@ nearly always for a bias of two standard errors or for errors wrong by a factor 
 study is `benches/recovery.py`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import recovery
@@ -35,9 +33,7 @@ def test_summary_of_standardised_errors_reports_bias_spread_and_coverage() -> No
 @pytest.mark.parametrize(
     "effect", ["coulomb_drag", "sensor_lag", "shear_thinning", "backlash", "vogel_viscosity"]
 )
-def test_standardised_errors_of_eight_fits_are_consistent_with_a_standard_normal(
-    effect: str,
-) -> None:
+def test_standardised_errors_of_eight_fits_agree_with_a_standard_normal(effect: str) -> None:
     truth = recovery.make_truth(effect, 7, SHORT)
     errors = [recovery.errors_of(truth, (7, k), False) for k in range(REPEATS)]
     for name in errors[0]:
@@ -61,9 +57,7 @@ def test_at_least_39_of_48_confidence_intervals_cover_the_truth(effect: str | No
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", MULTIMODAL)
-def test_at_least_12_of_16_bootstrap_intervals_of_multimodal_effects_cover_the_truth(
-    effect: str,
-) -> None:
+def test_at_least_12_of_16_bootstrap_intervals_cover_a_multimodal_effect(effect: str) -> None:
     for name, z in recovery.study(effect, 16, 8, 1, False, 1, 19).items():
         row = recovery.Row.of(z)
         # Of 16 intervals of 95 %, fewer than 12 cover in 1 of 1e5 studies.

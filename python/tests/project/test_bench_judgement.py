@@ -1,6 +1,6 @@
 """Judgement of diagnoses in the validation suite of recorded campaigns."""
 
-from __future__ import annotations
+from typing import Any
 
 import pytest
 from recorded.judge import FOUND_AS, OUTCOMES, found, judge
@@ -30,23 +30,18 @@ TIED = {"coulomb_drag": ["sensor_offset"]}
         (("a", "b"), ("gaps",), "missing", ["a", "c"], {}, "named falsely"),
     ],
 )
-def test_outcome_of_a_diagnosis_follows_from_verdict_hidden_effects_and_artefacts(
-    hidden: tuple[str, ...],
-    artefacts: tuple[str, ...],
-    verdict: str,
-    named: list[str],
-    tied: dict[str, list[str]],
-    outcome: str,
+def test_outcome_of_a_diagnosis_follows_from_verdict_and_hidden_effects(
+    hidden: Any, artefacts: Any, verdict: str, named: Any, tied: Any, outcome: str
 ) -> None:
     assert judge(hidden, artefacts, verdict, named, tied) == outcome
     assert outcome in OUTCOMES
 
 
-def test_findings_are_classified_as_reported_missed_or_false() -> None:
-    reported, missed, false = found(("spikes", "gaps", "off_grid"), ["glitches", "jitter"])
-    assert (reported, missed, false) == (["spikes"], ["gaps"], ["jitter"])
+def test_recording_findings_are_classified_as_reported_missed_or_false() -> None:
+    classes = found(("spikes", "gaps", "off_grid"), ["glitches", "jitter"])
+    assert classes == (["spikes"], ["gaps"], ["jitter"])
     assert found(("off_grid",), ["unsettled_start"]) == ([], [], [])
 
 
-def test_every_artefact_is_assigned_to_a_finding() -> None:
+def test_every_simulated_artefact_is_assigned_to_a_finding() -> None:
     assert set(FOUND_AS) == set(ARTEFACTS)

@@ -1,12 +1,11 @@
 """Every program of `benches` starts and describes its options."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from input_checks import cases
 
 BENCHES = Path(__file__).parents[3] / "benches"
 PROGRAMS = sorted(
@@ -25,13 +24,7 @@ def test_list_of_bench_programs_includes_known_programs() -> None:
     assert {"drives.py", "control_runs.py", *FAST} <= {name_of(path) for path in PROGRAMS}
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        pytest.param(p, id=name_of(p), marks=() if name_of(p) in FAST else pytest.mark.extended)
-        for p in PROGRAMS
-    ],
-)
+@pytest.mark.parametrize("path", cases({name_of(p): (p,) for p in PROGRAMS}, FAST))
 def test_bench_program_prints_its_usage_with_the_help_option(path: Path) -> None:
     program = path.parent if path.name == "__main__.py" else path
     command = [sys.executable, str(program), "--help"]

@@ -1,7 +1,5 @@
 """README and documentation: code runs, commands are valid, links lead to files, names exist."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from dataclasses import fields
@@ -9,6 +7,7 @@ from pathlib import Path
 
 import jbf
 import pytest
+from input_checks import Capture
 from jbf import Model, Rig
 from jbf.cli import main
 from jbf.importing.cutting.settings import WAYS, CutSettings
@@ -17,17 +16,9 @@ from jbf.importing.formats.registry import FORMATS
 from jbf.importing.formats.table import Options
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGES = (
-    "README.md",
-    "CONTRIBUTING.md",
-    "SECURITY.md",
-    "docs/control.md",
-    "docs/dependencies.md",
-    "docs/drives.md",
-    "docs/import.md",
-    "docs/versions.md",
-    "release/README.md",
-)
+DOCS = ("control", "dependencies", "drives", "import", "versions")
+PAGES = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "release/README.md")
+PAGES += tuple(f"docs/{name}.md" for name in DOCS)
 
 
 def text_of(name: str) -> str:
@@ -40,7 +31,6 @@ def python_of(name: str) -> str:
 
 
 def targets() -> set[str]:
-    """Targets of the Makefile."""
     return set(re.findall(r"^([a-z][a-z-]*):", text_of("Makefile"), flags=re.MULTILINE))
 
 
@@ -69,18 +59,14 @@ def test_cargo_and_citation_files_have_the_version_of_the_package() -> None:
 
 
 @pytest.mark.extended
-def test_python_example_of_the_readme_identifies_presliding_and_saves_the_model(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.usefixtures("working_folder")
+def test_readme_example_identifies_presliding_and_saves_the_model(capsys: Capture) -> None:
     exec(compile(python_of("README.md"), "README.md", "exec"), {})
     assert "missing ('presliding',)" in capsys.readouterr().out
     assert Model.load("model.toml").effects == ("presliding",)
 
 
-def test_python_example_of_the_control_page_prints_a_value_below_one_tenth(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_example_of_the_control_page_prints_a_value_below_one_tenth(capsys: Capture) -> None:
     exec(compile(python_of("docs/control.md"), "docs/control.md", "exec"), {})
     assert 0.0 < float(capsys.readouterr().out) < 0.1
 
@@ -93,14 +79,9 @@ def control_commands() -> list[str]:
 
 
 @pytest.mark.extended
+@pytest.mark.usefixtures("working_folder")
 @pytest.mark.parametrize("command", control_commands())
-def test_command_of_the_control_page_runs_without_an_error_message(
-    command: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_command_of_the_control_page_prints_no_error(command: str, capsys: Capture) -> None:
     for name in ("model.toml", "bare.toml"):
         Model(Rig.thesis("4.2")).save(name)
     rows = [f"{0.02 * i:.2f},{0.02 * (-1) ** (i // 40):.2f}" for i in range(300)]

@@ -1,7 +1,5 @@
 """Optional and slow libraries are imported only where they are needed."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 
@@ -9,6 +7,7 @@ import jbf
 import pytest
 
 EXTENDED = pytest.mark.extended
+EFFECTS = "from jbf.cli import main; main(['effects'])"
 HEAVY = (
     "scipy", "matplotlib", "jinja2", "rich", "tomlkit", "threadpoolctl", "multiprocessing",
     "concurrent.futures", "asyncio", "starlette", "pandas", "h5py", "pyarrow",
@@ -37,26 +36,28 @@ def test_package_and_help_import_neither_numpy_nor_models(code: str) -> None:
     assert not modules & {*HEAVY, "numpy", "jbf.models", "jbf.records"}
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        "from jbf.cli import main; main(['effects'])",
-        pytest.param("from jbf.cli import main; main(['diagnose', '--help'])", marks=EXTENDED),
-        "import jbf; jbf.Model(jbf.Rig.thesis(), parameters={'f_m': 0.26})",
-    ],
-)
-def test_commands_without_a_fit_do_not_import_scipy(code: str) -> None:
+DIAGNOSE_HELP = "from jbf.cli import main; main(['diagnose', '--help'])"
+MODEL = "import jbf; jbf.Model(jbf.Rig.thesis(), parameters={'f_m': 0.26})"
+
+
+@pytest.mark.parametrize("code", [EFFECTS, pytest.param(DIAGNOSE_HELP, marks=EXTENDED), MODEL])
+def test_effects_command_and_model_construction_do_not_import_scipy(code: str) -> None:
     # Rigs and models are TOML files.
     assert not imported(code) & ({*HEAVY} - {"tomlkit", "concurrent.futures", "multiprocessing"})
 
 
-def test_effects_command_does_not_import_other_commands() -> None:
-    modules = imported("from jbf.cli import main; main(['effects'])")
+def test_plot_package_imports_matplotlib_only_when_drawing_and_never_pyplot() -> None:
+    assert "matplotlib" not in imported("import jbf.plot, jbf.reporting.door")
+    assert "matplotlib.pyplot" not in imported("import jbf.reporting.pictures")
+
+
+def test_effects_command_does_not_import_modules_of_other_commands() -> None:
+    modules = imported(EFFECTS)
     assert "jbf.cli.effects" in modules
     assert not modules & {"jbf.cli.fit", "jbf.cli.diagnose", "jbf.cli.control", "jbf.cli.workbench"}
 
 
-def test_every_public_name_is_importable_and_an_unknown_one_raises_attribute_error() -> None:
+def test_public_names_are_importable_and_unknown_ones_raise_attribute_error() -> None:
     for name in jbf.__all__:
         assert getattr(jbf, name) is getattr(jbf, name)
     assert set(jbf.__all__) <= set(dir(jbf))

@@ -1,7 +1,5 @@
 """Channels with different clocks: combined in one run, compared at the instants of the force."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,33 +18,26 @@ NOISE_N = 0.05
 FAST_S, SLOW_S = np.arange(0.0, 3.0, 0.1), np.arange(-0.35, 2.1, 0.2)
 
 
-def test_channels_are_combined_at_the_instants_of_all_channels_within_the_motion() -> None:
-    columns, read = side_by_side(
-        {"velocity_m_s": (FAST_S, 2.0 * FAST_S), "friction_n": (SLOW_S, 5.0 * SLOW_S)}, "a"
-    )
-    time_s, slow = columns["time_s"], SLOW_S[SLOW_S >= 0.0]
+def test_channels_are_combined_at_all_their_instants_within_the_motion() -> None:
+    fast, slow = (FAST_S, 2.0 * FAST_S), (SLOW_S, 5.0 * SLOW_S)
+    columns, read = side_by_side({"velocity_m_s": fast, "friction_n": slow}, "a")
+    time_s, slow_s = columns["time_s"], SLOW_S[SLOW_S >= 0.0]
     assert list(columns) == ["time_s", "velocity_m_s", "friction_n"]
-    assert time_s.tolist() == sorted({*FAST_S.tolist(), *slow.tolist()})
+    assert time_s.tolist() == sorted({*FAST_S.tolist(), *slow_s.tolist()})
     np.testing.assert_allclose(columns["velocity_m_s"], 2.0 * time_s)
-    inside = time_s <= slow[-1]
+    inside = time_s <= slow_s[-1]
     np.testing.assert_allclose(columns["friction_n"][inside], 5.0 * time_s[inside])
     assert time_s[read["velocity_m_s"]].tolist() == FAST_S.tolist()
-    assert time_s[read["friction_n"]].tolist() == slow.tolist()
+    assert time_s[read["friction_n"]].tolist() == slow_s.tolist()
 
 
-def test_combined_run_lasts_from_the_latest_start_to_the_earliest_end_of_its_motion() -> None:
-    columns, _ = side_by_side(
-        {
-            "velocity_m_s": (FAST_S, FAST_S),
-            "position_m": (FAST_S + 0.55, FAST_S),
-            "own": (FAST_S - 9.0, FAST_S),
-        },
-        "a",
-    )
+def test_combined_run_covers_only_the_time_common_to_its_motion_channels() -> None:
+    clocks_s = {"velocity_m_s": FAST_S, "position_m": FAST_S + 0.55, "own": FAST_S - 9.0}
+    columns, _ = side_by_side({name: (clock_s, FAST_S) for name, clock_s in clocks_s.items()}, "a")
     assert columns["time_s"][[0, -1]] == pytest.approx([0.55, FAST_S[-1]])
 
 
-def test_channels_with_equal_clocks_have_no_masks_of_readings() -> None:
+def test_channels_with_equal_clocks_are_combined_without_reading_masks() -> None:
     run = Run.from_channels({"velocity_m_s": (FAST_S, FAST_S), "friction_n": (FAST_S, -FAST_S)})
     assert run.read == {}
     assert run.to_csv() == Run.from_arrays(FAST_S, FAST_S, -FAST_S).to_csv()
@@ -65,9 +56,9 @@ def test_channels_with_equal_clocks_have_no_masks_of_readings() -> None:
         ("load_n", (FAST_S, FAST_S)),
     ],
 )
-def test_invalid_channel_is_reported_by_run_and_column(column: str, channel: Any) -> None:
-    given = {"velocity_m_s": (FAST_S, FAST_S), column: channel}
-    error = input_error(Run.from_channels, given, name="a")
+def test_invalid_channel_is_reported_with_its_run_and_column(column: str, channel: Any) -> None:
+    channels = {"velocity_m_s": (FAST_S, FAST_S), column: channel}
+    error = input_error(Run.from_channels, channels, name="a")
     assert (error.file, error.column) == ("a", column)
 
 
@@ -76,21 +67,14 @@ def test_channels_without_speed_or_position_are_rejected() -> None:
     assert error.column == "velocity_m_s"
 
 
-@pytest.mark.parametrize(
-    ("samples", "missing", "own"),
-    [(100, 9, False), (100, 10, True), (400, 19, False), (400, 20, True)],
-)
-def test_column_has_its_own_clock_if_ten_samples_and_five_percent_are_missing(
-    samples: int, missing: int, own: bool
-) -> None:
-    time_s, values = np.arange(float(samples)), np.ones(samples)
-    values[:missing] = np.nan
-    clock, read = with_own_clock(time_s, values)
-    assert len(clock) == len(read) == (samples - missing if own else samples)
-    assert clock[0] == (missing if own else 0)
+def test_column_has_its_own_clock_if_ten_samples_and_five_percent_are_missing() -> None:
+    for samples, missing, omitted in ((100, 9, 0), (100, 10, 10), (400, 19, 0), (400, 20, 20)):
+        time_s = np.arange(float(samples))
+        clock, read = with_own_clock(time_s, np.where(time_s < missing, np.nan, 1.0))
+        assert (clock[0], len(clock), len(read)) == (omitted, samples - omitted, samples - omitted)
 
 
-def test_own_clock_finding_has_the_sampling_rate_of_the_force() -> None:
+def test_own_clock_finding_has_the_force_rate_if_force_and_motion_rates_differ() -> None:
     index = np.arange(1000)
     run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
     # The force is compared with the fastest channel of the motion.
@@ -101,9 +85,9 @@ def test_own_clock_finding_has_the_sampling_rate_of_the_force() -> None:
         ({"friction_n": index % 4 == 0}, 25.0),
         ({"velocity_m_s": index % 4 == 0}, 100.0),
     ):
-        (finding,) = own_clock(replace(run, read=read))
-        assert (finding.kind, finding.channel, finding.unit) == ("own_clock", "friction_n", "Hz")
-        assert finding.size == pytest.approx(rate_hz)
+        (f,) = own_clock(replace(run, read=read))
+        assert (f.kind, f.channel, f.unit) == ("own_clock", "friction_n", "Hz")
+        assert f.size == pytest.approx(rate_hz)
     assert own_clock(replace(run, read={"load_n": index % 4 == 0})) == own_clock(run) == []
 
 
@@ -126,10 +110,9 @@ def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> di
     }
 
 
-def test_prepared_run_has_the_instants_and_values_of_the_force_readings() -> None:
+def test_run_with_own_force_clock_is_prepared_at_the_force_readings() -> None:
     channels = slide()
-    run = Run.from_channels(channels, name="slide")
-    prepared = Prepared.of(jbf.Rig(), run)
+    prepared = Prepared.of(jbf.Rig(), Run.from_channels(channels))
     force_s, force_n = channels["friction_n"]
     np.testing.assert_array_equal(prepared.run.time_s, force_s)
     np.testing.assert_array_equal(prepared.friction_n, force_n)
@@ -137,12 +120,10 @@ def test_prepared_run_has_the_instants_and_values_of_the_force_readings() -> Non
 
 
 def test_fit_to_a_force_with_its_own_clock_recovers_law_and_noise() -> None:
-    run = Run.from_channels(slide(), name="slide")
-    fit = jbf.fit(jbf.Rig(), [run], law="coulomb")
+    fit = jbf.fit(jbf.Rig(), [Run.from_channels(slide())], law="coulomb")
     for name, value in LAW.items():
-        found = fit.parameters[name]
-        assert found.stderr is not None
-        assert abs(found.value - value) < 4.0 * found.stderr + 1e-3 * value
+        estimate: Any = fit.parameters[name]
+        assert abs(estimate.value - value) < 4.0 * estimate.stderr + 1e-3 * value
     assert fit.rms_n == pytest.approx(NOISE_N, rel=0.06)
 
 
@@ -154,9 +135,8 @@ def test_prediction_at_the_motion_instants_does_not_depend_on_the_force_clock() 
     model = jbf.Model(jbf.Rig(), law="coulomb", parameters=LAW)
     of_motion = np.isin(run.time_s, time_s)
     common = (time_s >= run.time_s[0]) & (time_s <= run.time_s[-1])
-    np.testing.assert_allclose(
-        model.predict(run)[of_motion], model.predict(without_force)[common], rtol=0.0, atol=1e-12
-    )
+    predictions = model.predict(run)[of_motion], model.predict(without_force)[common]
+    np.testing.assert_allclose(*predictions, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.extended

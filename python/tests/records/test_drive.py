@@ -1,7 +1,5 @@
 """Drives: constants, columns, conversion of motor quantities, and files of drives."""
 
-from __future__ import annotations
-
 import re
 from math import pi
 from pathlib import Path
@@ -14,7 +12,6 @@ from input_errors import input_error
 from jbf import Rig
 from jbf.records.drive import Drive
 from jbf.records.drive_columns import RPM, DriveColumns
-from jbf.records.rig import read_rig
 
 TORQUE = Drive("rotary", "torque", gear_ratio=20.0)
 CURRENT = Drive("rotary", "current", torque_constant_n_m_a=0.5, gear_ratio=8.0)
@@ -24,9 +21,12 @@ SCREW = Drive("linear", "torque", pitch_m=0.02, gear_ratio=3.0)
 LINEAR_MOTOR = Drive("linear", "current", force_constant_n_a=60.0)
 RATED = Drive("linear", "percent", rated_force_n=250.0)
 SERVO = Drive("linear", "percent", rated_torque_n_m=1.5, pitch_m=0.01, gear_ratio=2.0)
-
-
-# ---- constants -----------------------------------------------------------------------------------
+BOTH = {"force_constant_n_a": 1.0, "torque_constant_n_m_a": 1.0}
+TIME_S = 0.01 * np.arange(200)
+ANGLE = 1.5 * np.sin(TIME_S)
+SPEED = 1.5 * np.cos(TIME_S)
+TORQUE_N_M = 3.0 * np.sign(SPEED) + 0.7 * SPEED
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "drives.md"
 
 
 @pytest.mark.parametrize(
@@ -39,10 +39,10 @@ SERVO = Drive("linear", "percent", rated_torque_n_m=1.5, pitch_m=0.01, gear_rati
         (SERVO, "torque_percent", 2 * 2 * pi / 0.01, 1.5 / 100.0 * 2 * 2 * pi / 0.01),
     ],
 )
-def test_force_per_ampere_or_percent_follows_from_gear_and_screw(
+def test_force_per_ampere_or_percent_of_a_drive_includes_gear_and_screw(
     drive: Drive, column: str, motor_rad: float | None, unit: float
 ) -> None:
-    """An ideal transmission: the power of the motor is the power at the joint or slide."""
+    # An ideal transmission: the power of the motor is the power at the joint or slide.
     assert drive.motor_rad == (None if motor_rad is None else pytest.approx(motor_rad))
     assert drive.unit_n == pytest.approx(unit)
     columns = DriveColumns.of(drive)
@@ -50,13 +50,10 @@ def test_force_per_ampere_or_percent_follows_from_gear_and_screw(
     columns.refuse_strangers(Path("a.csv"), 1, [*columns.known, "own"])
 
 
-def test_units_and_sensor_name_follow_from_motion_and_friction_source() -> None:
+def test_units_and_sensor_name_of_a_drive_follow_from_its_motion_and_source() -> None:
     assert [drive.quantities.force for drive in (TORQUE, CURRENT, SLIDE)] == ["N m", "N m", "N"]
     assert "torque sensor" in TORQUE.quantities.sensor
     assert "current sensor" in LINEAR_MOTOR.quantities.sensor
-
-
-BOTH = {"force_constant_n_a": 1.0, "torque_constant_n_m_a": 1.0}
 
 
 @pytest.mark.parametrize(
@@ -80,15 +77,15 @@ BOTH = {"force_constant_n_a": 1.0, "torque_constant_n_m_a": 1.0}
         ("linear", "percent", {"rated_torque_n_m": 1.0}, "pitch_m"),
     ],
 )
-def test_inconsistent_drive_is_reported_by_key(
-    motion: Any, friction: Any, constants: dict[str, Any], key: str
+def test_inconsistent_drive_definition_is_reported_with_the_invalid_key(
+    motion: Any, friction: str, constants: Any, key: str
 ) -> None:
     section = {"motion": motion, "friction": friction} | constants
     assert input_error(Drive, **section).key == key
     assert input_error(Drive.from_mapping, section, "rig.drive").key == f"rig.drive.{key}"
 
 
-def test_toml_section_becomes_a_drive_and_invalid_keys_are_reported() -> None:
+def test_toml_section_gives_a_drive_and_its_invalid_keys_are_reported() -> None:
     section: Any = {"motion": "linear", "friction": "force", "mass_kg": 3}
     assert Drive.from_mapping(section, "drive") == Drive("linear", "force", mass_kg=3.0)
     for wrong, key in ((3, "drive"), ({"motion": "linear"}, "drive.friction")):
@@ -96,25 +93,22 @@ def test_toml_section_becomes_a_drive_and_invalid_keys_are_reported() -> None:
     assert input_error(Drive.from_mapping, {"motin": "linear"}, "drive").key == "drive.motin"
 
 
-# ---- columns -------------------------------------------------------------------------------------
-
-
-def test_conversion_factors_of_joint_and_slide_columns_follow_from_gear_and_screw() -> None:
+def test_conversion_factors_of_motor_columns_follow_from_gear_and_screw() -> None:
     joint, slide = DriveColumns.of(TORQUE), DriveColumns.of(SCREW)
     screw = 1.0 / (3.0 * 2.0 * pi / 0.02)
     assert joint.friction == {"torque_n_m": 1.0, "motor_torque_n_m": 20.0}
     assert joint.place == pytest.approx({"angle_rad": 1.0, "motor_angle_rad": 0.05})
-    assert list(joint.speed) == [
-        "velocity_rad_s", "speed_rpm", "motor_velocity_rad_s", "motor_speed_rpm"
-    ]  # fmt: skip
     rpm = 2.0 * pi / 60.0
-    assert list(joint.speed.values()) == pytest.approx([1.0, rpm, 0.05, 0.05 * rpm])
+    speeds = {"velocity_rad_s": 1.0, "speed_rpm": rpm}
+    speeds |= {"motor_velocity_rad_s": 0.05, "motor_speed_rpm": 0.05 * rpm}
+    assert list(joint.speed) == list(speeds)
+    assert joint.speed == pytest.approx(speeds)
     assert slide.friction == pytest.approx({"motor_torque_n_m": 1.0 / screw})
     assert slide.place == pytest.approx({"position_m": 1.0, "motor_angle_rad": screw})
     assert list(slide.speed.values()) == pytest.approx([1.0, screw, rpm * screw])
 
 
-def test_required_columns_are_time_and_the_first_motion_and_friction_column_present() -> None:
+def test_drive_requires_time_and_one_of_its_motion_and_friction_columns() -> None:
     columns = DriveColumns.of(TORQUE)
     assert columns.required([], True) == ["time_s", "velocity_rad_s", "torque_n_m"]
     header = ["motor_torque_n_m", "motor_angle_rad"]
@@ -138,9 +132,7 @@ def test_required_columns_are_time_and_the_first_motion_and_friction_column_pres
         (SCREW, "torque_n_m", "motor_torque_n_m"),
     ],
 )
-def test_column_that_does_not_fit_the_drive_is_rejected_with_a_hint(
-    drive: Drive, name: str, hint: str
-) -> None:
+def test_unsuitable_drive_column_is_rejected_with_hint(drive: Drive, name: str, hint: str) -> None:
     columns = DriveColumns.of(drive)
     error = input_error(columns.refuse_strangers, Path("a.csv"), 3, ["time_s", name])
     assert (error.file, error.row, error.column) == ("a.csv", 3, name)
@@ -156,23 +148,22 @@ def test_motor_columns_are_converted_to_the_output_side_and_reported() -> None:
     np.testing.assert_allclose(converted["friction_n"], 20.0 * torque)
     np.testing.assert_allclose(converted["velocity_m_s"], 2.0 * pi)
     np.testing.assert_allclose(converted["angle_rad"], angle / 20.0)
-    assert [(f.kind, f.channel, f.unit) for f in findings] == [
-        ("converted", "friction_n", "N m"),
-        ("converted", "velocity_m_s", "rad/s"),
-        ("converted", "angle_rad", "rad"),
+    assert [(f.kind, f.channel, f.size, f.unit) for f in findings] == [
+        ("converted", "friction_n", pytest.approx(20.0), "N m"),
+        ("converted", "velocity_m_s", pytest.approx(RPM), "rad/s"),
+        ("converted", "angle_rad", pytest.approx(0.05), "rad"),
     ]
-    assert [f.size for f in findings] == pytest.approx([20.0, RPM, 0.05])
 
 
-def test_second_friction_column_is_reported_and_left_as_a_further_column() -> None:
+def test_second_friction_column_is_reported_and_kept_unconverted() -> None:
     one, other = np.arange(20.0), -np.arange(20.0)
     columns = {"time_s": one, "motor_torque_n_m": other, "torque_n_m": one, "angle_rad": one}
     converted, (finding,) = DriveColumns.of(TORQUE).converted("a", columns)
     assert converted["friction_n"] is one
     assert converted["motor_torque_n_m"] is other
     assert (finding.kind, finding.channel) == ("second_column", "friction_n")
-    called = DriveColumns.of(TORQUE).called(columns)
-    assert called == {"torque_n_m": "friction_n", "angle_rad": "angle_rad"}
+    names = DriveColumns.of(TORQUE).called(columns)
+    assert names == {"torque_n_m": "friction_n", "angle_rad": "angle_rad"}
 
 
 def test_wrapped_motor_angle_is_unwrapped_before_division_by_the_gear_ratio() -> None:
@@ -180,22 +171,13 @@ def test_wrapped_motor_angle_is_unwrapped_before_division_by_the_gear_ratio() ->
     unwrapped = 0.5 * np.arange(30.0)
     wrapped = np.mod(unwrapped, 2.0 * pi)
     columns = {"time_s": unwrapped, "torque_n_m": unwrapped}
-    convert = DriveColumns.of(TORQUE).converted
     for name, given, expected in (
         ("motor_angle_rad", wrapped, unwrapped / 20.0),
         ("motor_angle_rad", 4.0 * np.arange(30.0), 0.2 * np.arange(30.0)),
         ("angle_rad", wrapped, wrapped),
     ):
-        converted, _ = convert("a", columns | {name: given})
+        converted, _ = DriveColumns.of(TORQUE).converted("a", columns | {name: given})
         np.testing.assert_allclose(converted["angle_rad"], expected, atol=1e-12)
-
-
-# ---- files ---------------------------------------------------------------------------------------
-
-TIME_S = 0.01 * np.arange(200)
-ANGLE = 1.5 * np.sin(TIME_S)
-SPEED = 1.5 * np.cos(TIME_S)
-TORQUE_N_M = 3.0 * np.sign(SPEED) + 0.7 * SPEED
 
 
 def record(folder: Path, columns: dict[str, Any]) -> Path:
@@ -220,8 +202,8 @@ def test_friction_column_of_a_joint_is_converted_to_torque_at_the_joint(
 ) -> None:
     rig = Rig(drive=drive)
     columns = {"time_s": TIME_S, "angle_rad": ANGLE, column: TORQUE_N_M / factor}
-    run = jbf.read_run(record(tmp_path, columns), rig)
-    np.testing.assert_allclose(run.friction_n, TORQUE_N_M, rtol=1e-12)  # type: ignore[arg-type]
+    run: Any = jbf.read_run(record(tmp_path, columns), rig)
+    np.testing.assert_allclose(run.friction_n, TORQUE_N_M, rtol=1e-12)
     assert run.quantities == rig.quantities
     sizes = [finding.size for finding in run.reading]
     assert sizes == ([] if factor == 1.0 else [pytest.approx(factor)])
@@ -229,27 +211,18 @@ def test_friction_column_of_a_joint_is_converted_to_torque_at_the_joint(
 
 def test_motor_columns_of_a_slide_are_converted_without_loss_of_power(tmp_path: Path) -> None:
     motor_rad_s = 40.0 * SPEED
-    columns = {
-        "time_s": TIME_S,
-        "motor_angle_rad": 40.0 * ANGLE,
-        "motor_speed_rpm": motor_rad_s * 60.0 / (2.0 * pi),
-        "motor_torque_n_m": TORQUE_N_M,
-    }
-    run = jbf.read_run(record(tmp_path, columns), Rig(drive=SCREW))
-    assert run.friction_n is not None
-    np.testing.assert_allclose(
-        run.friction_n * run.velocity_m_s, TORQUE_N_M * motor_rad_s, rtol=1e-9
-    )
-    turns = 40.0 * ANGLE / (2.0 * pi)
-    np.testing.assert_allclose(run.position_m, turns / 3.0 * 0.02)  # type: ignore[arg-type]
+    columns = {"time_s": TIME_S, "motor_angle_rad": 40.0 * ANGLE, "motor_torque_n_m": TORQUE_N_M}
+    columns["motor_speed_rpm"] = motor_rad_s * 60.0 / (2.0 * pi)
+    run: Any = jbf.read_run(record(tmp_path, columns), Rig(drive=SCREW))
+    power = run.friction_n * run.velocity_m_s
+    np.testing.assert_allclose(power, TORQUE_N_M * motor_rad_s, rtol=1e-9)
+    np.testing.assert_allclose(run.position_m, 40.0 * ANGLE / (2.0 * pi) / 3.0 * 0.02)
 
 
-def test_run_and_model_of_a_joint_survive_a_file_round_trip(tmp_path: Path) -> None:
+def test_run_and_model_of_a_joint_are_unchanged_by_a_file_round_trip(tmp_path: Path) -> None:
     rig = Rig(drive=TORQUE)
-    columns = {
-        "time_s": TIME_S, "angle_rad": ANGLE, "velocity_rad_s": SPEED, "torque_n_m": TORQUE_N_M
-    }  # fmt: skip
-    run = jbf.read_run(record(tmp_path, columns), rig)
+    columns = {"time_s": TIME_S, "angle_rad": ANGLE, "torque_n_m": TORQUE_N_M}
+    run = jbf.read_run(record(tmp_path, columns | {"velocity_rad_s": SPEED}), rig)
     run.write_csv(tmp_path / "b.csv")
     again = jbf.read_run(tmp_path / "b.csv", rig)
     assert again.to_csv() == run.to_csv()
@@ -257,9 +230,9 @@ def test_run_and_model_of_a_joint_survive_a_file_round_trip(tmp_path: Path) -> N
     assert jbf.Model.load(tmp_path / "model.toml").rig == rig
 
 
-def test_motor_column_with_empty_cells_has_its_own_clock(tmp_path: Path) -> None:
+def test_motor_column_with_half_of_its_cells_empty_has_its_own_clock(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
-    rows = [f"{t},{a},{a if i % 2 else ''}" for i, (t, a) in enumerate(zip(TIME_S, ANGLE))]  # noqa: B905
+    rows = [f"{t},{ANGLE[i]},{ANGLE[i] if i % 2 else ''}" for i, t in enumerate(TIME_S)]
     path.write_text("\n".join(["time_s,angle_rad,current_a", *rows]))
     run = jbf.read_run(path, Rig(drive=CURRENT))
     assert set(run.read) == {"friction_n"}
@@ -279,20 +252,13 @@ def test_motor_column_with_empty_cells_has_its_own_clock(tmp_path: Path) -> None
 def test_missing_or_unsuitable_column_of_a_drive_is_reported_with_a_hint(
     drive: Drive | None, header: str, column: str, hint: str, tmp_path: Path
 ) -> None:
-    columns = {"time_s": TIME_S} | dict.fromkeys(header.split(","), TORQUE_N_M)
-    path = record(tmp_path, columns)
+    path = record(tmp_path, dict.fromkeys(f"time_s,{header}".split(","), TIME_S))
     error = input_error(jbf.read_run, path, Rig(drive=drive))
     assert (error.file, error.row, error.column) == (str(path), 1, column)
     assert hint in str(error.mend)
 
 
-def test_rig_with_a_drive_is_read_back_from_its_file(tmp_path: Path) -> None:
-    joint = Rig(drive=TORQUE)
-    joint.write(tmp_path / "rig.toml")
-    assert read_rig(tmp_path / "rig.toml") == joint
-
-
-def test_run_or_law_of_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
+def test_run_or_law_for_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
     joint = Rig(drive=TORQUE)
     path = record(tmp_path, {"time_s": TIME_S, "angle_rad": ANGLE, "torque_n_m": TORQUE_N_M})
     run = jbf.read_run(path, joint)
@@ -301,19 +267,12 @@ def test_run_or_law_of_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
     assert "coulomb" in str(input_error(jbf.Model, joint).mend)
 
 
-# ---- documentation -------------------------------------------------------------------------------
-
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "drives.md"
-
-
 def test_documentation_names_every_key_and_column_of_a_drive() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    screw = Drive("linear", "force", pitch_m=0.01)
-    columns = [
-        c for d in (TORQUE, CURRENT, PERCENT, screw, RATED) for c in DriveColumns.of(d).known
-    ]
-    missing = [name for name in (*Drive.__dataclass_fields__, *columns) if f"`{name}`" not in text]
-    assert missing == []
+    names = set(Drive.__dataclass_fields__)
+    for drive in (TORQUE, CURRENT, PERCENT, Drive("linear", "force", pitch_m=0.01), RATED):
+        names |= set(DriveColumns.of(drive).known)
+    assert {name for name in names if f"`{name}`" not in text} == set()
 
 
 def documented_effects() -> set[str]:

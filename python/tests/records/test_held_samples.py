@@ -1,7 +1,5 @@
 """Held samples: a constant stretch of the force, and readings of a slow channel that repeat."""
 
-from __future__ import annotations
-
 from math import erf
 from typing import Any
 
@@ -10,12 +8,13 @@ import pytest
 from jbf import Run
 from jbf.records.findings.held_samples import find_held, held
 from jbf.records.findings.slow_channel import find_repeated
-from known_motions import Array, places, quantised, reversing_force, white
+from known_motions import Array, places, quantised, reading_instants, reversing_force, white
 
 SAMPLES = 2000
 TIME_S: Any = 0.01 * np.arange(SAMPLES)
 NOISE = white(SAMPLES, 1)
 NOISY_SINE: Any = 10.0 * np.sin(0.7 * TIME_S) + 0.1 * NOISE
+FAST_S: Any = 0.02 * np.arange(3000)
 
 
 def repeating(values: Any, first: int, count: int) -> Array:
@@ -25,26 +24,19 @@ def repeating(values: Any, first: int, count: int) -> Array:
     return changed
 
 
-@pytest.mark.parametrize(("count", "found"), [(4, False), (5, True), (9, True)])
-def test_equal_readings_of_noisy_data_are_held_samples_from_five_on(
-    count: int, found: bool
-) -> None:
-    """The first is a reading; those that repeat it are held samples."""
-    mask = held(repeating(NOISY_SINE, 300, count))
-    assert places(mask) == (list(range(301, 300 + count)) if found else [])
+def test_five_equal_readings_in_noisy_data_are_held_samples_except_the_first() -> None:
+    for count, expected in ((4, []), (5, [301, 302, 303, 304]), (9, list(range(301, 309)))):
+        assert places(held(repeating(NOISY_SINE, 300, count))) == expected
 
 
-@pytest.mark.parametrize(("count", "found"), [(30, False), (31, True)])
-def test_equal_readings_are_held_samples_if_their_probability_is_below_1e_minus_6(
-    count: int, found: bool
-) -> None:
+def test_equal_readings_are_held_samples_if_less_probable_than_1e_minus_6() -> None:
     """Half of the readings repeat: k equal ones have the probability 2000 / 2^(k-1) < 1e-6."""
     pairs = np.repeat(NOISE, np.where(np.arange(SAMPLES) % 2, 1, 2))[:SAMPLES]
-    mask = held(repeating(pairs, 302, count))
-    assert places(mask) == (list(range(303, 302 + count)) if found else [])
+    assert places(held(repeating(pairs, 302, 30))) == []
+    assert places(held(repeating(pairs, 302, 31))) == list(range(303, 333))
 
 
-def test_least_length_of_held_samples_follows_from_noise_and_quantisation_step() -> None:
+def test_least_length_of_held_samples_follows_from_noise_and_quantisation() -> None:
     """Rounding to whole steps adds 1/12 to the variance of the noise. A reading in the middle of a
     step is repeated k times with probability p^k, which must be below 1e-6 in the record."""
     values = np.round(np.linspace(-50.0, 50.0, SAMPLES) + 0.5 * NOISE)
@@ -56,16 +48,14 @@ def test_least_length_of_held_samples_follows_from_noise_and_quantisation_step()
 
 
 @pytest.mark.parametrize("over_noise", [1.5, 3.5, 6.0])
-@pytest.mark.parametrize("scale", [1e-6, 1.0])
-def test_equal_readings_of_a_coarsely_quantised_force_are_not_held_samples(
-    over_noise: float, scale: float
-) -> None:
-    force = scale * quantised(reversing_force(TIME_S, 5), over_noise * 0.3)
+def test_equal_readings_of_a_coarsely_quantised_force_are_not_held(over_noise: float) -> None:
+    force = quantised(reversing_force(TIME_S, 5), over_noise * 0.3)
     assert np.mean(np.diff(force) == 0.0) > 0.2
     assert not held(force).any()
+    assert not held(1e-6 * force).any()
 
 
-def test_held_samples_finding_has_the_longest_stretch_that_no_other_finding_explains() -> None:
+def test_held_samples_finding_has_the_longest_otherwise_unexplained_stretch() -> None:
     force = repeating(repeating(NOISY_SINE, 300, 6), 800, 21)
     run = Run.from_arrays(TIME_S, 0.1 + 0.0 * TIME_S, force, name="a")
     (finding,), mask = find_held(run, np.zeros(SAMPLES, dtype=bool))
@@ -74,57 +64,40 @@ def test_held_samples_finding_has_the_longest_stretch_that_no_other_finding_expl
     assert (finding.kind, finding.channel, finding.unit) == ("held_samples", "friction_n", "s")
     (finding,), mask = find_held(run, np.arange(SAMPLES) > 500)
     assert (mask.sum(), finding.size) == (5, pytest.approx(0.05))
-    nothing, mask = find_held(run, np.ones(SAMPLES, dtype=bool))
-    assert nothing == []
-    assert not mask.any()
+    no_findings, mask = find_held(run, np.ones(SAMPLES, dtype=bool))
+    assert (no_findings, mask.any()) == ([], False)
 
 
-FAST_S: Any = 0.02 * np.arange(3000)
-
-
-def ticks_of(rate_hz: float) -> Array:
-    """Instants of a slow clock that covers the record, s."""
-    ticks: Array = np.arange(-0.3 / rate_hz, FAST_S[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
-    return ticks
-
-
-def repeated(ticks_s: Array, read: Array) -> Array:
-    """The last reading at each sample of the fast clock."""
-    values: Array = read[np.searchsorted(ticks_s, FAST_S, side="right") - 1]
-    return values
+def recovered(ticks_s: Array, read: Array) -> tuple[Any, Array]:
+    """Readings recovered from a record that repeats each until the next, and their numbers."""
+    native: Any = find_repeated(FAST_S, read[np.searchsorted(ticks_s, FAST_S, side="right") - 1])
+    which = np.round((native.time_s - ticks_s[0]) / (ticks_s[1] - ticks_s[0])).astype(int)
+    np.testing.assert_array_equal(native.values, read[which])
+    return native, which
 
 
 @pytest.mark.parametrize("rate_hz", [9.3, 31.7, 46.0])
 def test_readings_of_a_slow_channel_and_their_instants_are_recovered(rate_hz: float) -> None:
-    ticks_s = ticks_of(rate_hz)
-    read = reversing_force(ticks_s, 6)
-    native = find_repeated(FAST_S, repeated(ticks_s, read))
-    assert native is not None
+    ticks_s = reading_instants(rate_hz, FAST_S)
+    native, which = recovered(ticks_s, reversing_force(ticks_s, 6))
     assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-4)
-    which = np.round((native.time_s - ticks_s[0]) * rate_hz).astype(int)
-    np.testing.assert_array_equal(native.values, read[which])
     np.testing.assert_allclose(native.time_s, ticks_s[which], atol=0.25 * 0.02)
 
 
 @pytest.mark.parametrize(("rate_hz", "step_n"), [(6.3, 2.5), (17.0, 0.8), (23.0, 2.5)])
 def test_quantised_readings_of_a_slow_channel_are_recovered(rate_hz: float, step_n: float) -> None:
     """Consecutive equal readings are separated by the period of the channel."""
-    ticks_s = ticks_of(rate_hz)
+    ticks_s = reading_instants(rate_hz, FAST_S)
     read = quantised(1.7 * reversing_force(ticks_s, 6, 0.4), step_n)
     assert np.mean(np.diff(read) == 0.0) > 0.1
-    native = find_repeated(FAST_S, repeated(ticks_s, read))
-    assert native is not None
+    native, which = recovered(ticks_s, read)
     assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=3e-4)
-    which = np.round((native.time_s - ticks_s[0]) * rate_hz).astype(int)
     np.testing.assert_array_equal(np.diff(which), 1)
-    np.testing.assert_array_equal(native.values, read[which])
 
 
 @pytest.mark.parametrize("step_n", [0.0, 0.05, 0.5, 2.0])
 @pytest.mark.parametrize("omega", [0.02, 3.0])
-def test_quantised_noisy_force_has_no_readings_of_a_slow_channel(
-    step_n: float, omega: float
-) -> None:
+def test_quantised_force_has_no_readings_of_a_slow_channel(step_n: float, omega: float) -> None:
     noise = white(len(FAST_S), 7, 0.3)
     for force in (20.0 * np.tanh(5.0 * np.sin(omega * FAST_S)) + noise, 0.3 * FAST_S + noise):
         assert find_repeated(FAST_S, quantised(force, step_n) if step_n else force) is None
@@ -146,7 +119,7 @@ def test_slow_channel_is_recognised_from_forty_readings_on(rows: int, found: boo
     assert (find_repeated(*rows_of_clock(2.7, rows)) is not None) == found
 
 
-def test_slow_channel_is_recognised_only_with_even_time_stamps_and_a_constant_rate() -> None:
+def test_slow_channel_is_recognised_only_with_even_stamps_and_constant_rate() -> None:
     time_s, values = rows_of_clock(2.7, 200)
     for error_s, found in ((0.5e-5, True), (2e-5, False)):
         uneven = time_s.copy()

@@ -1,7 +1,5 @@
 """Jitter: uneven time stamps, and positions that were read at other instants than stated."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,12 +17,9 @@ def stamps(size_s: float, samples: int = 400) -> Any:
 
 
 @pytest.mark.parametrize("size_s", [1.2e-4, 1e-3])
-def test_jitter_of_alternating_time_stamps_follows_from_their_fourth_differences(
-    size_s: float,
-) -> None:
+def test_jitter_size_follows_from_fourth_differences_of_the_time_stamps(size_s: float) -> None:
     """Fourth differences are 16 times the size; of unit white noise their variance is 70."""
-    finding = uneven_stamps("a", STEP_S * np.arange(1000) + size_s * ALTERNATING)
-    assert finding is not None
+    finding: Any = uneven_stamps("a", STEP_S * np.arange(1000) + size_s * ALTERNATING)
     assert finding.size == pytest.approx(16.0 * size_s / 0.6745 / np.sqrt(70.0))
 
 
@@ -33,38 +28,35 @@ def test_time_stamp_jitter_is_reported_from_sixty_one_samples_on() -> None:
     assert uneven_stamps("a", stamps(1e-3)[:61]) is not None
 
 
-def test_smoothly_changing_and_constant_sampling_rates_have_no_jitter() -> None:
+def test_time_stamps_with_a_smoothly_changing_or_constant_rate_have_no_jitter() -> None:
     time_s = STEP_S * np.arange(600)
     assert uneven_stamps("a", time_s + 0.2 * time_s**2) is None
     assert uneven_stamps("a", np.round(time_s, 3)) is None
 
 
-def test_time_stamp_jitter_is_reported_only_if_nine_of_ten_steps_are_near_the_median() -> None:
-    """Each missing sample makes one step of twice the length."""
+def test_time_stamp_jitter_is_reported_only_if_nine_of_ten_steps_are_alike() -> None:
+    # Each missing sample makes one step of twice the length.
     for every, found in ((8, False), (20, True)):
         lossy = np.delete(stamps(1e-3), np.arange(0, 400, every))
         assert (uneven_stamps("a", lossy) is not None) == found
 
 
-def shaken(size_s: float, *, count: float = 0.0, samples: int = 4000, ripple: bool = False) -> Any:
+def shaken(size_s: float, count: float = 1e-12, samples: int = 4000, ripple: bool = False) -> Any:
     """The finding of a slow motion whose positions were read at other instants than stated."""
     time_s: Any = STEP_S * np.arange(samples)
-    off_s = white(samples, 6, size_s)
-    if ripple:
-        off_s = size_s * np.sin(2.0 * np.pi / 6.0 * np.arange(samples))
+    wave = np.sin(2.0 * np.pi / 6.0 * np.arange(samples))
+    off_s = size_s * (wave if ripple else white(samples, 6))
     path = path_of(0.2 * (time_s + off_s)) / 0.2
-    path = quantised(path, count) if count else path
-    return shaken_path("a", time_s, path, speed_of(0.2 * time_s))
+    return shaken_path("a", time_s, quantised(path, count), speed_of(0.2 * time_s))
 
 
 def test_position_jitter_is_recovered_from_noise_that_grows_with_the_speed() -> None:
-    finding = shaken(1e-3)
-    assert finding is not None
+    finding: Any = shaken(1e-3)
     assert (finding.kind, finding.channel, finding.unit) == ("jitter", "time_s", "s")
     assert finding.size == pytest.approx(1e-3, rel=0.25)
 
 
-def test_small_quantised_periodic_and_short_deviations_are_not_reported_as_jitter() -> None:
+def test_small_quantised_periodic_and_short_deviations_are_not_jitter() -> None:
     assert shaken(0.5e-4) is None
     assert shaken(1e-3, count=1e-3) is None
     assert shaken(1e-2, ripple=True) is None
@@ -80,21 +72,16 @@ def test_position_noise_that_does_not_grow_with_speed_is_not_reported_as_jitter(
     assert shaken_path("a", uneven, path, speed) is None
 
 
-def alternating(
-    delay_s: float,
-    slow_noise: float,
-) -> tuple[Any, Any]:
-    """Finding and path of three constant speeds, read alternately before and after the stamp."""
-    speed: Any = np.repeat([0.1, 0.45, 1.0], 300)
-    path = integrated(speed, STEP_S) + (delay_s * speed + slow_noise) * ALTERNATING[:900]
-    return shaken_path("a", STEP_S * np.arange(900), path, speed), path
-
-
 @pytest.mark.parametrize("slow_noise", [0.0, 5e-5])
 def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: float) -> None:
-    """Fifth differences are 32 times the size; of unit white noise their variance is 252."""
+    """Three constant speeds, read alternately before and after the time stamp.
+
+    Fifth differences are 32 times the size; of unit white noise their variance is 252.
+    """
     delay_s, unit = 2e-3, 32.0 / 0.6745 / np.sqrt(252.0)
-    finding, path = alternating(delay_s, slow_noise)
+    speed: Any = np.repeat([0.1, 0.45, 1.0], 300)
+    path = integrated(speed, STEP_S) + (delay_s * speed + slow_noise) * ALTERNATING[:900]
+    finding: Any = shaken_path("a", STEP_S * np.arange(900), path, speed)
     floor = np.min(np.abs(np.diff(path))) / np.sqrt(12.0)
     slow = max(unit * (0.1 * delay_s + slow_noise), floor)
     fast = unit * (delay_s + slow_noise)

@@ -1,7 +1,5 @@
 """A motion at other instants: interpolation in closed form, and runs shifted in time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,10 @@ from jbf import Rig, Run
 from jbf.estimation.prepared import Prepared
 from jbf.records.motion.imposed import ImposedMotion
 from known_motions import white
+from numpy.polynomial import Polynomial
 
 INSTANTS_S = np.array([0.0, 1.0, 2.0, 4.0, 5.0])
+DURATION_S = 20.0
 
 
 def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> ImposedMotion:
@@ -21,30 +21,24 @@ def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> Imposed
     return ImposedMotion(np.array(v), np.array(a), 3.0 * INSTANTS_S, error, resting, sign_known)
 
 
-def test_speed_is_interpolated_by_cubics_through_speed_and_acceleration() -> None:
-    t, at_s = INSTANTS_S, np.array([0.0, 0.25, 1.0, 1.7, 3.0, 3.9, 5.0])
-
-    def cubic(t: Any) -> Any:
-        return 1.0 + 0.5 * t - 0.3 * t**2 + 0.1 * t**3
-
-    a = 0.5 - 0.6 * t + 0.3 * t**2
-    found = motion(cubic(t), a).at(t, at_s)
+def test_speed_is_interpolated_by_cubics_that_match_speed_and_acceleration() -> None:
+    at_s, cubic = np.array([0.0, 0.25, 1.0, 1.7, 3.0, 3.9, 5.0]), Polynomial([1.0, 0.5, -0.3, 0.1])
+    a = cubic.deriv()(INSTANTS_S)
+    found = motion(cubic(INSTANTS_S), a).at(INSTANTS_S, at_s)
     np.testing.assert_allclose(found.velocity_m_s, cubic(at_s))
     np.testing.assert_allclose(found.angle_rad, 3.0 * at_s)
-    np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, t, a))
+    np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, INSTANTS_S, a))
     # The error is the larger one of both neighbours.
     assert found.velocity_error_m_s.tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 1.0]
-    assert found.sign_known.all()
-    assert not found.resting.any()
+    assert (found.sign_known & ~found.resting).all()
 
 
-def test_start_and_stop_of_a_motion_are_extrapolated_from_speed_and_acceleration() -> None:
+def test_start_and_stop_next_to_a_rest_are_extrapolated_with_acceleration() -> None:
     """At 0.5 m/s after 1 m/s^2 it started 0.5 s before; at -2 m/s^2 it stops 0.25 s later."""
     at_s = np.array([0.5, 1.25, 1.5, 1.75, 2.0, 4.1, 4.25, 4.5])
     v, rest = [0.0, 0.0, 0.5, 0.5, 0.0], "11001"
     found = motion(v, [0.0, 0.0, 1.0, -2.0, 0.0], rest).at(INSTANTS_S, at_s)
-    expected = [0, 0, 0, 0.25, 0.5, 0.3, 0.0, 0.0]
-    np.testing.assert_allclose(found.velocity_m_s, expected, atol=1e-12)
+    np.testing.assert_allclose(found.velocity_m_s, [0, 0, 0, 0.25, 0.5, 0.3, 0, 0], atol=1e-12)
     assert found.resting.tolist() == [True, True, True, False, False, False, True, True]
     np.testing.assert_allclose(found.acceleration_m_s2, [0, 0, 0, 1.0, 1.0, -2.0, 0.0, 0.0])
     # If the acceleration is too small for the interval or has the wrong sign, the speed is
@@ -63,15 +57,12 @@ def test_start_and_stop_of_a_motion_are_extrapolated_from_speed_and_acceleration
         ([0.0, 0.0, 1.0, 1.0, 1.0], "11000", "11111", [1.5]),  # between rest and motion
     ],
 )
-def test_sign_between_samples_is_known_only_if_both_have_the_same_known_sign(
-    v: list[float], rest: str, known: str, unknown_s: list[float]
+def test_sign_of_motion_is_known_only_between_samples_of_equal_known_sign(
+    v: Any, rest: str, known: str, unknown_s: Any
 ) -> None:
     at_s = np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5, 5.0])
     found = motion(v, [0.0] * 5, rest, known).at(INSTANTS_S, at_s)
     assert at_s[~found.sign_known].tolist() == unknown_s
-
-
-DURATION_S = 20.0
 
 
 def speed(time_s: Any) -> Any:
@@ -101,15 +92,14 @@ def test_delayed_force_is_compared_with_the_motion_at_earlier_instants(
     expected = speed(at_s[inside])
     np.testing.assert_allclose(found.motion.velocity_m_s[3:-3], expected[3:-3], atol=5e-6)
     known = found.motion.sign_known
-    signs = np.sign(found.motion.velocity_m_s)[known]
-    np.testing.assert_array_equal(signs, np.sign(expected)[known])
+    assert (found.motion.velocity_m_s * expected)[known].min() > 0.0
     assert np.sum(~known) <= 8 * np.count_nonzero(np.diff(np.sign(expected))) + 4
 
 
 def test_zero_delay_and_drift_change_neither_force_nor_motion(prepared: Prepared) -> None:
     same = prepared.shifted(0.0, 0.0)
     np.testing.assert_array_equal(same.friction_n, prepared.friction_n)
-    expected = prepared.motion.velocity_m_s
-    np.testing.assert_allclose(same.motion.velocity_m_s, expected, rtol=0.0, atol=1e-15)
+    unchanged = prepared.motion.velocity_m_s
+    np.testing.assert_allclose(same.motion.velocity_m_s, unchanged, rtol=0.0, atol=1e-15)
     assert not prepared.motion.sign_known.all()
     np.testing.assert_array_equal(same.motion.sign_known, prepared.motion.sign_known)

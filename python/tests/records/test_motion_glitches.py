@@ -1,7 +1,5 @@
 """Glitches and held samples of position and speed, and their replacement."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -22,16 +20,12 @@ PATH_M: Any = -0.2 / 1.7 * np.cos(1.7 * TIME_S + 0.4)
 COUNTED_M = quantised(PATH_M, COUNT_M)
 
 
-# ---- position ------------------------------------------------------------------------------------
-
-
-def mended_path(jumps: dict[int, float], path: Array = COUNTED_M, arm_m: float = 0.5) -> Any:
+def mended_path(jumps: dict[int, float], path: Array = COUNTED_M) -> Any:
     """The repaired position and the finding of a path with offsets at single samples."""
     corrupt = path.copy()
     for i, size in jumps.items():
         corrupt[i] += size
-    position = Position(corrupt, "angle_rad", "rad", arm_m)
-    return mend_position("a", TIME_S[: len(path)], position)
+    return mend_position("a", TIME_S, Position(corrupt, "angle_rad", "rad", 0.5))
 
 
 def test_position_outliers_are_replaced_by_a_cubic_through_their_neighbours() -> None:
@@ -44,7 +38,7 @@ def test_position_outliers_are_replaced_by_a_cubic_through_their_neighbours() ->
     assert finding.size == pytest.approx(2e-2 / 0.5, rel=2e-3)
 
 
-def test_position_outlier_between_uneven_samples_is_replaced_by_a_cubic() -> None:
+def test_position_outlier_at_uneven_sampling_is_replaced_by_a_cubic() -> None:
     """A straight line would be off by 80 m/s^2 (0.01 s)^2 / 2 = 4 mm."""
     time_s = np.cumsum(np.where(np.arange(SAMPLES) % 3 == 0, 1.5, 1.0)) * STEP_S
     path = 0.2 * np.sin(20.0 * time_s)
@@ -56,8 +50,7 @@ def test_position_outlier_between_uneven_samples_is_replaced_by_a_cubic() -> Non
 
 def test_quantisation_steps_and_corners_of_a_path_are_not_outliers() -> None:
     assert mended_path({})[1] is None
-    stepped = COUNTED_M.copy()
-    stepped[500:] += 1e-2
+    stepped = COUNTED_M + np.where(np.arange(SAMPLES) >= 500, 1e-2, 0.0)
     mended, finding = mended_path({}, stepped)
     assert finding is None
     np.testing.assert_array_equal(mended.path_m, stepped)
@@ -65,19 +58,12 @@ def test_quantisation_steps_and_corners_of_a_path_are_not_outliers() -> None:
     assert mended_path({}, corner)[1] is None
 
 
-@pytest.mark.parametrize(("noises", "found"), [(7.8, False), (8.2, True)])
-def test_position_jump_is_an_outlier_if_it_exceeds_eight_standard_deviations(
-    noises: float, found: bool
-) -> None:
+def test_position_jump_beyond_eight_standard_deviations_is_an_outlier() -> None:
     """Cubics through the neighbours of an alternating path deviate by 8/3 of its amplitude."""
-    amplitude = 1e-4
-    path = 1e-3 * np.arange(1000.0) + amplitude * np.where(np.arange(1000) % 2, -1.0, 1.0)
-    usual = 8.0 / 3.0 * amplitude
-    size = noises * usual / 0.6745 - usual
-    assert (mended_path({500: size}, path)[1] is not None) == found
-
-
-# ---- speed ---------------------------------------------------------------------------------------
+    path = 1e-3 * np.arange(1000.0) + 1e-4 * np.where(np.arange(1000) % 2, -1.0, 1.0)
+    usual = 8.0 / 3.0 * 1e-4
+    assert mended_path({500: 7.8 * usual / 0.6745 - usual}, path)[1] is None
+    assert mended_path({500: 8.2 * usual / 0.6745 - usual}, path)[1] is not None
 
 
 def mended_speed(jumps: dict[int, float], *, path: Any = PATH_M, noise: float = 1e-4) -> Any:
@@ -95,40 +81,32 @@ def test_speed_outliers_that_the_path_contradicts_are_replaced() -> None:
     assert finding.size == pytest.approx(0.2, rel=0.01)
 
 
-@pytest.mark.parametrize(("share", "found"), [(0.31, True), (0.36, False), (1.0, False)])
-def test_speed_peak_is_not_an_outlier_if_the_path_contains_a_third_of_it(
-    share: float, found: bool
-) -> None:
+def test_speed_peak_is_not_an_outlier_if_the_path_contains_a_third_of_it() -> None:
     """The error of the speed relative to the path must be twice that of the repaired speed."""
-    path = PATH_M.copy()
-    path[200:] += 0.5 * share * 0.1 * STEP_S
-    path[201:] += 0.5 * share * 0.1 * STEP_S
-    assert (mended_speed({200: 0.1}, path=path, noise=1e-6)[1] is not None) == found
+    for share, found in ((0.31, True), (0.36, False), (1.0, False)):
+        path = PATH_M.copy()
+        path[200:] += 0.5 * share * 0.1 * STEP_S
+        path[201:] += 0.5 * share * 0.1 * STEP_S
+        assert (mended_speed({200: 0.1}, path=path, noise=1e-6)[1] is not None) == found, share
 
 
-@pytest.mark.parametrize(
-    ("count", "with_path", "found"),
-    [(3, False, True), (4, False, False), (4, True, True), (20, True, True), (21, True, False)],
-)
-def test_speed_outliers_are_reported_up_to_0_3_percent_or_2_percent_with_a_recorded_path(
-    count: int, with_path: bool, found: bool
-) -> None:
-    jumps = {40 + 40 * k: 0.1 for k in range(count)}
-    assert (mended_speed(jumps, path=PATH_M if with_path else None)[1] is not None) == found
+def test_speed_outliers_are_reported_up_to_0_3_percent_or_2_percent_with_a_path() -> None:
+    jumps = [(40 + 40 * k, 0.1) for k in range(21)]
+    for count, path in ((3, None), (4, PATH_M), (20, PATH_M)):
+        assert mended_speed(dict(jumps[:count]), path=path)[1] is not None
+    for count, path in ((4, None), (21, PATH_M)):
+        assert mended_speed(dict(jumps[:count]), path=path)[1] is None
 
 
-@pytest.mark.parametrize(("noises", "found"), [(7.8, False), (8.2, True)])
-def test_speed_jump_is_an_outlier_if_it_exceeds_eight_standard_deviations(
-    noises: float, found: bool
-) -> None:
+@pytest.mark.parametrize(("sd", "found"), [(7.8, False), (8.2, True)])
+def test_speed_jump_beyond_eight_standard_deviations_is_an_outlier(sd: float, found: bool) -> None:
     """All second differences of this speed are of one size."""
-    bend = 1e-3
-    speed = bend * np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
-    speed[502] += noises * bend / 0.6745 / np.sqrt(6.0)
+    speed = 1e-3 * np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
+    speed[502] += sd * 1e-3 / 0.6745 / np.sqrt(6.0)
     assert (mend_speed("a", TIME_S, speed, None)[1] is not None) == found
 
 
-def test_no_outlier_is_reported_if_the_speed_has_a_step_or_a_corner_or_no_noise() -> None:
+def test_speed_with_a_step_or_a_corner_or_no_noise_has_no_outlier() -> None:
     step = SPEED_M_S + white(SAMPLES, 3, 1e-4)
     step[500:] += 0.1
     corner = 0.2 * np.abs(TIME_S - 5.0) + white(SAMPLES, 2, 1e-4)
@@ -141,32 +119,25 @@ def test_no_outlier_is_reported_if_the_speed_has_a_step_or_a_corner_or_no_noise(
 def test_speed_outliers_are_reported_from_sixty_samples_on() -> None:
     spike = SPEED_M_S + white(SAMPLES, 1, 1e-4)
     spike[30] += 0.1
-    for samples, found in ((59, False), (60, True)):
-        assert (
-            mend_speed("a", TIME_S[:samples], spike[:samples], PATH_M[:samples])[1] is not None
-        ) == found
+    assert mend_speed("a", TIME_S[:59], spike[:59], PATH_M[:59])[1] is None
+    assert mend_speed("a", TIME_S[:60], spike[:60], PATH_M[:60])[1] is not None
 
 
 def test_speed_that_contradicts_the_path_for_six_samples_is_not_used() -> None:
-    """Six samples are too many for an outlier."""
-    for change in (lambda v: 0.5 * v, lambda v: v + 0.05):
+    # Six samples are too many for an outlier.
+    for factor, offset in ((0.5, 0.0), (1.0, 0.05)):
         speed = SPEED_M_S + white(SAMPLES, 6, 1e-4)
-        speed[500:506] = change(speed[500:506])
+        speed[500:506] = factor * speed[500:506] + offset
         motion = impose(Run.from_arrays(TIME_S, speed, position_m=COUNTED_M), None)
         assert np.max(np.abs(motion.velocity_m_s - SPEED_M_S)[490:516]) < 1e-3
 
 
-# ---- ends ----------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])
-@pytest.mark.parametrize("with_angle", [False, True])
-def test_outlier_at_an_end_of_the_speed_is_replaced_and_its_sign_unknown(
-    end: int, with_angle: bool
-) -> None:
+@pytest.mark.parametrize("angle", [False, True])
+def test_speed_outlier_at_a_record_end_is_replaced_with_unknown_sign(end: int, angle: bool) -> None:
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4)
     speed[end] = 40.0
-    run = Run.from_arrays(TIME_S, speed, angle_rad=PATH_M / 0.5 if with_angle else None)
+    run = Run.from_arrays(TIME_S, speed, angle_rad=PATH_M / 0.5 if angle else None)
     records = believed(run, 0.5)
     assert places(records.loose) == [end]
     np.testing.assert_allclose(records.speed, SPEED_M_S, atol=2e-3)
@@ -178,15 +149,13 @@ def test_outlier_at_an_end_of_the_speed_is_replaced_and_its_sign_unknown(
 
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])
 @pytest.mark.parametrize("with_speed", [False, True])
-def test_outlier_at_an_end_of_the_position_is_replaced_by_extrapolation(
-    end: int, with_speed: bool
-) -> None:
+def test_position_outlier_at_a_record_end_is_extrapolated(end: int, with_speed: bool) -> None:
     path = PATH_M.copy()
     path[end] += 0.1
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4) if with_speed else None
-    records = believed(Run.from_arrays(TIME_S, speed, angle_rad=path / 0.5), 0.5)
+    records: Any = believed(Run.from_arrays(TIME_S, speed, angle_rad=path / 0.5), 0.5)
     assert places(records.loose) == [end]
-    np.testing.assert_allclose(records.path, PATH_M, atol=1e-4)  # type: ignore[arg-type]
+    np.testing.assert_allclose(records.path, PATH_M, atol=1e-4)
     (finding,) = [f for f in records.findings if f.kind == "glitches"]
     assert (finding.channel, finding.unit) == ("angle_rad", "rad")
     assert finding.size == pytest.approx(0.2, rel=0.02)
@@ -205,9 +174,6 @@ def test_deviating_end_of_the_speed_is_an_outlier_only_if_the_path_lacks_it() ->
     assert mended[-1] == pytest.approx(SPEED_M_S[-1], abs=2e-3)
 
 
-# ---- held samples of the position ----------------------------------------------------------------
-
-
 def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tuple[Any, Any, Any]:
     """Repaired position, finding and true path of a shaft at 0.1 m/s.
 
@@ -218,13 +184,11 @@ def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tu
     path[0] = true[0] = path[1] - step
     for first, count in at.items():
         path[first + 1 : first + 1 + count] = path[first]
-    position = Position(path, "angle_rad", "rad", 0.5)
-    speeds = np.broadcast_to(speed, 400)
-    mended, finding = mend_held("a", TIME_S[:400], position, speeds, "the drive")
-    return mended, finding, true
+    position, speeds = Position(path, "angle_rad", "rad", 0.5), np.broadcast_to(speed, 400)
+    return *mend_held("a", TIME_S[:400], position, speeds, "the drive"), true
 
 
-def test_held_positions_are_reconstructed_from_the_speed() -> None:
+def test_held_positions_of_a_moving_shaft_are_reconstructed_from_the_speed() -> None:
     mended, finding, true = held_path({100: 5, 200: 3})
     np.testing.assert_allclose(mended.path_m, true, atol=2e-6)
     assert (finding.kind, finding.channel, finding.unit) == ("held_samples", "angle_rad", "s")
@@ -245,8 +209,8 @@ def test_held_positions_are_reconstructed_from_the_speed() -> None:
         ({393: 5}, 1e-6, 0.1, True),
     ],
 )
-def test_position_is_held_only_if_it_is_constant_and_then_catches_up_with_the_speed(
-    at: dict[int, int], step: float, speed: float, found: bool
+def test_constant_position_is_held_only_if_it_catches_up_with_the_speed(
+    at: Any, step: float, speed: float, found: bool
 ) -> None:
     assert (held_path(at, step=step, speed=speed)[1] is not None) == found
 

@@ -1,10 +1,9 @@
 """One record as that of a slide and of a joint: equal numbers in the units of each drive."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jbf
 import pytest
@@ -22,22 +21,27 @@ JOINT = Rig(drive=Drive("rotary", "current", torque_constant_n_m_a=0.5, inertia_
 HIDDEN = ("inertia_leak", "sensor_offset")
 LINEAR_UNIT = re.compile(r"\bN\b(?! m)|(?<!N )\bm/s\b|\d m\b|\(m\)")
 """A unit that a rotary drive does not have."""
+TORQUE_SCALE, ANGLE_SCALE = 1.0 / 3000.0, 30.0
+PARAMETER_SCALES = {
+    "F_c": TORQUE_SCALE,
+    "F_v": TORQUE_SCALE / ANGLE_SCALE,
+    "inertia_leak.m_e": TORQUE_SCALE / ANGLE_SCALE,
+    "sensor_offset.b": TORQUE_SCALE,
+}
 
 
 @cache
-def records() -> tuple[AxisRun, ...]:
-    return tuple(axis_campaign(21, HIDDEN)[0])
+def records() -> list[AxisRun]:
+    return axis_campaign(21, HIDDEN)[0]
 
 
 def runs_of(rig: Rig, torque: float = 1.0, angle: float = 1.0) -> list[Run]:
     """The records as runs of a rig, forces and motions multiplied by these factors."""
-    place = "position_m" if rig == SLIDE else "angle_rad"
-    return [
-        Run.from_arrays(
-            r.time_s, angle * r.velocity_m_s, torque * r.force_n, **{place: angle * r.path}
-        )
-        for r in records()
-    ]  # fmt: skip
+    runs = []
+    for r in records():
+        place: Any = {"position_m" if rig == SLIDE else "angle_rad": angle * r.path}
+        runs.append(Run.from_arrays(r.time_s, angle * r.velocity_m_s, torque * r.force_n, **place))
+    return runs
 
 
 @cache
@@ -56,18 +60,9 @@ def diagnosed(rig: Rig, torque: float = 1.0, angle: float = 1.0) -> Diagnosis:
     return jbf.diagnose(rig, runs_of(rig, torque, angle), law="coulomb")
 
 
-def test_fit_of_a_joint_has_the_values_of_a_slide_with_the_same_numbers() -> None:
-    assert fitted(SLIDE).values == fitted(JOINT).values
-    assert fitted(SLIDE).rms_n == fitted(JOINT).rms_n
-
-
-TORQUE_SCALE, ANGLE_SCALE = 1.0 / 3000.0, 30.0
-PARAMETER_SCALES = {
-    "F_c": TORQUE_SCALE,
-    "F_v": TORQUE_SCALE / ANGLE_SCALE,
-    "inertia_leak.m_e": TORQUE_SCALE / ANGLE_SCALE,
-    "sensor_offset.b": TORQUE_SCALE,
-}
+def test_fit_of_a_joint_equals_that_of_a_slide_with_the_same_numbers() -> None:
+    slide, joint = fitted(SLIDE), fitted(JOINT)
+    assert (slide.values, slide.rms_n) == (joint.values, joint.rms_n)
 
 
 def assert_scaled(large: Fit, small: Fit) -> None:
@@ -92,9 +87,6 @@ def test_diagnosis_names_the_same_effects_if_torque_and_angle_are_scaled() -> No
     assert_scaled(large.fit, small.fit)
 
 
-# ---- texts, pictures, files ----------------------------------------------------------------------
-
-
 def reported_units(fit: Fit) -> dict[str, str]:
     """Unit of each estimate in the text of a fit."""
     text = fit.report().partition("\n[[Correl")[0].partition("\nWhat")[0]
@@ -102,22 +94,15 @@ def reported_units(fit: Fit) -> dict[str, str]:
     return {line.split()[0]: line.split("  ")[-1].strip() for line in lines}
 
 
-def test_fit_report_has_parameter_names_and_units_of_the_drive() -> None:
-    assert reported_units(fitted(JOINT)) == {
-        "F_c": "N m",
-        "F_v": "N m s/rad",
-        "inertia_leak.m_e": "kg m^2",
-        "sensor_offset.b": "N m",
-    }
-    assert reported_units(fitted(SLIDE)) == {
-        "F_c_n": "N",
-        "F_v_n_s_m": "N s/m",
-        "inertia_leak.m_e_kg": "kg",
-        "sensor_offset.b_n": "N",
-    }
+def test_fit_report_has_parameter_names_and_units_of_a_joint_or_slide() -> None:
+    joint, slide = reported_units(fitted(JOINT)), reported_units(fitted(SLIDE))
+    effects = {"inertia_leak.m_e": "kg m^2", "sensor_offset.b": "N m"}
+    assert joint == {"F_c": "N m", "F_v": "N m s/rad"} | effects
+    effects = {"inertia_leak.m_e_kg": "kg", "sensor_offset.b_n": "N"}
+    assert slide == {"F_c_n": "N", "F_v_n_s_m": "N s/m"} | effects
 
 
-def test_axis_labels_of_a_comparison_plot_have_the_units_of_the_drive() -> None:
+def test_comparison_plot_labels_have_the_units_of_a_joint_or_slide() -> None:
     for result, speed, friction in (
         (compared(JOINT), "Speed (rad/s)", "Friction torque (N m)"),
         (compared(SLIDE), "Speed (m/s)", "Friction force (N)"),
@@ -127,22 +112,18 @@ def test_axis_labels_of_a_comparison_plot_have_the_units_of_the_drive() -> None:
 
 
 def test_json_of_a_comparison_has_units_only_if_the_rig_has_a_drive() -> None:
-    units = compared(JOINT).to_dict()["units"]
-    assert units == {"force": "N m", "velocity": "rad/s", "length": "rad"}
+    assert compared(JOINT).to_dict()["units"] == ROTARY.to_dict()
     assert compared(SLIDE).to_dict()["units"]["force"] == "N"
     plain = jbf.compare(Model(Rig(), law="coulomb"), runs_of(SLIDE)[:1]).to_dict()
     assert "units" not in plain
 
 
-def test_prediction_file_of_a_joint_has_a_torque_column(tmp_path: Path) -> None:
+def test_prediction_file_of_a_rotary_joint_has_a_torque_column(tmp_path: Path) -> None:
     fitted(JOINT).model.save(tmp_path / "model.toml")
     run_on(JOINT, runs_of(JOINT)[0]).write_csv(tmp_path / "run.csv")
     names = [str(tmp_path / name) for name in ("model.toml", "run.csv", "out.csv")]
     assert main(["predict", *names[:2], "--out", names[2]]) == 0
     assert (tmp_path / "out.csv").read_text().startswith("time_s,torque_n_m\n")
-
-
-# ---- units of parameters -------------------------------------------------------------------------
 
 
 def test_catalogue_units_are_converted_to_those_of_a_linear_or_rotary_drive() -> None:
@@ -152,7 +133,7 @@ def test_catalogue_units_are_converted_to_those_of_a_linear_or_rotary_drive() ->
     assert OF_BEARING.unit("N m/rad") == "N m/rad"
 
 
-def test_load_coefficients_are_forces_for_a_drive_and_dimensionless_for_a_bearing() -> None:
+def test_load_coefficients_are_forces_for_a_drive_but_ratios_for_a_bearing() -> None:
     chosen = ("presliding", "stribeck_excess", "dwell_stiction")
     for quantities, force, stiffness in ((LINEAR, "N", "N/m"), (ROTARY, "N m", "N m/rad")):
         units = shown("coulomb", chosen, quantities)

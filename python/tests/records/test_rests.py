@@ -1,21 +1,16 @@
 """Rests of a shaft: their samples, the start and end of motion next to them, their position."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
-from jbf.records.motion.rests import (
-    backward_beside_rest,
-    place_rests,
-    rest_edges,
-    resting_samples,
-    still_samples,
-    unsure_beside_rest,
-    without_swings,
-)
+from jbf.records.motion import rests
 from known_motions import places, quantised
+from numpy.polynomial import Polynomial
+
+COUNT_M = 1e-4
+SLOW_S: Any = 5e-3 * np.arange(400)
+RATE_M_S2, FINE_COUNT_M = 0.008, 7e-6
 
 
 def mask(text: str) -> Any:
@@ -23,14 +18,11 @@ def mask(text: str) -> Any:
     return np.array([character == "1" for character in text])
 
 
-def test_three_zero_speeds_in_a_row_are_a_rest() -> None:
-    v = np.array([0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0], dtype=float)
-    assert places(resting_samples(v)) == [0, 1, 2, 7, 8, 9, 10, 12, 13, 14]
-    assert not resting_samples(np.array([1e-300, 0.0, 0.0])).any()
-    assert len(resting_samples(np.array([]))) == 0
-
-
-COUNT_M = 1e-4
+def test_at_least_three_consecutive_zero_speeds_are_a_rest() -> None:
+    v = np.array([0.0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0])
+    assert places(rests.resting_samples(v)) == [0, 1, 2, 7, 8, 9, 10, 12, 13, 14]
+    assert not rests.resting_samples(np.array([1e-300, 0.0, 0.0])).any()
+    assert len(rests.resting_samples(np.array([]))) == 0
 
 
 def stop(samples: int, *, hum: float = 0.0) -> tuple[Any, Any, Any]:
@@ -42,45 +34,36 @@ def stop(samples: int, *, hum: float = 0.0) -> tuple[Any, Any, Any]:
 
 
 @pytest.mark.parametrize(("samples", "found"), [(19, False), (20, True), (40, True)])
-def test_twenty_samples_within_one_count_are_a_rest(samples: int, found: bool) -> None:
-    rest = still_samples(*stop(samples), COUNT_M)
+def test_twenty_samples_within_one_encoder_count_are_a_rest(samples: int, found: bool) -> None:
+    rest = rests.still_samples(*stop(samples), COUNT_M)
     assert places(rest) == (list(range(60, 60 + samples)) if found else [])
 
 
-@pytest.mark.parametrize(("share", "found"), [(0.99, True), (1.01, False)])
-def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit(
-    share: float, found: bool
-) -> None:
-    time_s, path, speed = stop(40, hum=share * 5e-3 * 0.1)
-    assert still_samples(time_s, path, speed, COUNT_M).any() == found
-    assert places(still_samples(time_s, path, speed, COUNT_M, hum=1e-3)) == list(range(60, 100))
+def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit() -> None:
+    for share, found in ((0.99, True), (1.01, False)):
+        record = (*stop(40, hum=share * 5e-3 * 0.1), COUNT_M)
+        assert rests.still_samples(*record).any() == found
+        assert places(rests.still_samples(*record, hum=1e-3)) == list(range(60, 100))
 
 
 @pytest.mark.parametrize(("counts", "found"), [(1.4, True), (1.6, False)])
 def test_path_of_a_rest_stays_within_one_and_a_half_counts(counts: float, found: bool) -> None:
     time_s, path, speed = stop(38, hum=1e-4)
     path[79:] += counts * COUNT_M
-    assert still_samples(time_s, path, speed, COUNT_M)[70:90].any() == found
+    assert rests.still_samples(time_s, path, speed, COUNT_M)[70:90].any() == found
 
 
-SLOW_S: Any = 5e-3 * np.arange(400)
-RATE_M_S2, FINE_COUNT_M = 0.008, 7e-6
-
-
-def test_slow_reversal_within_one_encoder_count_is_not_a_rest() -> None:
-    v = RATE_M_S2 * (SLOW_S - 1.0)
-    path = quantised(0.5 * RATE_M_S2 * (SLOW_S - 1.0) ** 2, FINE_COUNT_M)
-    assert np.ptp(path[190:211]) <= FINE_COUNT_M
+@pytest.mark.parametrize(
+    ("terms", "slow"),
+    [([0.0, RATE_M_S2], slice(190, 211)), ([-3e-5, 0.0, 0.05], slice(188, 213))],
+    ids=["reversal", "two reversals"],
+)
+def test_slow_reversal_within_one_encoder_count_is_not_a_rest(terms: Any, slow: Any) -> None:
+    speed = Polynomial(terms)
+    v, path = speed(SLOW_S - 1.0), quantised(speed.integ()(SLOW_S - 1.0), FINE_COUNT_M)
+    assert np.ptp(path[slow]) <= FINE_COUNT_M
     v[-1] = 0.2
-    assert not still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
-
-
-def test_slow_passage_of_the_speed_through_zero_and_back_is_not_a_rest() -> None:
-    v = 0.05 * (SLOW_S - 1.0) ** 2 - 3e-5
-    path = quantised(0.05 / 3.0 * (SLOW_S - 1.0) ** 3 - 3e-5 * (SLOW_S - 1.0), FINE_COUNT_M)
-    assert np.ptp(path[188:213]) <= FINE_COUNT_M
-    v[-1] = 0.2
-    assert not still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
+    assert not rests.still_samples(SLOW_S, path, v, FINE_COUNT_M).any()
 
 
 def test_long_stop_between_equal_or_opposite_speeds_is_a_rest() -> None:
@@ -89,25 +72,22 @@ def test_long_stop_between_equal_or_opposite_speeds_is_a_rest() -> None:
         v = np.where(inside, 0.0, moving)
         path = quantised(np.cumsum(v) * 5e-3, FINE_COUNT_M)
         v[-1] = 0.2
-        assert still_samples(SLOW_S, path, v, FINE_COUNT_M)[140:260].all()
+        assert rests.still_samples(SLOW_S, path, v, FINE_COUNT_M)[140:260].all()
     # Speeds of the size of rounding errors on both sides are not a reversal.
     v = np.where(np.abs(SLOW_S - 1.0) < 0.8, 0.0, 1e-15 * np.sign(SLOW_S - 1.0))
     v[-1] = 1.0
-    assert still_samples(SLOW_S, np.zeros(400), v, FINE_COUNT_M)[45:355].all()
+    assert rests.still_samples(SLOW_S, np.zeros(400), v, FINE_COUNT_M)[45:355].all()
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.7, False), (1.1, True), (1.3, True)])
-def test_stop_is_a_rest_if_it_lasts_twice_as_long_as_a_reversal_within_1_5_counts(
-    share: float, found: bool
-) -> None:
+def test_stop_of_twice_the_time_of_a_slow_reversal_is_a_rest(share: float, found: bool) -> None:
     """At 8 mm/s^2 a reversal stays within 1.5 counts of 7 um for 2 sqrt(2 s / a) = 0.1 s."""
     within_s = 2.0 * np.sqrt(2.0 * 1.5 * FINE_COUNT_M / RATE_M_S2)
     beyond = np.maximum(np.abs(SLOW_S - 1.0) - share * within_s, 0.0)
-    way = np.sign(SLOW_S - 1.0)
-    v = RATE_M_S2 * way * beyond
+    v = RATE_M_S2 * np.sign(SLOW_S - 1.0) * beyond
+    path = quantised(0.5 * v * beyond, FINE_COUNT_M)
     v[-1] = 0.2
-    path = quantised(0.5 * RATE_M_S2 * way * beyond**2, FINE_COUNT_M)
-    rest = still_samples(SLOW_S, path, v, FINE_COUNT_M)
+    rest = rests.still_samples(SLOW_S, path, v, FINE_COUNT_M)
     assert rest.any() == found
     if found:
         np.testing.assert_array_equal(rest[100:300], (beyond == 0.0)[100:300])
@@ -124,45 +104,43 @@ def test_stop_is_a_rest_if_it_lasts_twice_as_long_as_a_reversal_within_1_5_count
         (100.0, 1.0, [5, *range(15, 35)]),  # at most twenty samples
     ],
 )
-def test_rest_edges_extend_to_the_extrapolated_start_of_the_motion(
-    v: float, a: float, edges: list[int]
-) -> None:
+def test_rest_edges_extend_to_the_extrapolated_motion_start(v: float, a: float, edges: Any) -> None:
     rest = mask("0" * 5 + "1" * 30 + "0" * 5)
-    found = rest_edges(rest, 0.1 * np.arange(40), np.where(rest, 0.0, v), np.where(rest, 0.0, a))
-    assert places(found) == edges
+    motion = (np.where(rest, 0.0, v), np.where(rest, 0.0, a))
+    assert places(rests.rest_edges(rest, 0.1 * np.arange(40), *motion)) == edges
 
 
-def test_speed_next_to_a_rest_is_backward_if_its_acceleration_contradicts_its_sign() -> None:
+def test_speed_next_to_a_rest_is_backward_if_acceleration_contradicts_it() -> None:
     rest = mask("110000011")
     time_s: Any = 0.1 * np.arange(9)
     v = np.array([0.0, 0.0, -0.05, -0.02, 0.1, 0.2, 0.04, 0.0, 0.0])
     a = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0])
-    assert places(backward_beside_rest(rest, time_s, v, a)) == [2, 3, 6]
-    assert places(backward_beside_rest(rest, time_s, -v, -a)) == [2, 3, 6]
+    assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [2, 3, 6]
+    assert places(rests.backward_beside_rest(rest, time_s, -v, -a)) == [2, 3, 6]
     # Only from the rest on, without interruption.
     v[2] = 0.2
-    assert places(backward_beside_rest(rest, time_s, v, a)) == [6]
-    assert not backward_beside_rest(mask("0" * 9), time_s, v, a).any()
-    assert not backward_beside_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
+    assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [6]
+    assert not rests.backward_beside_rest(mask("0" * 9), time_s, v, a).any()
+    assert not rests.backward_beside_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
 
 
-def test_direction_next_to_a_rest_is_uncertain_until_the_path_exceeds_the_threshold() -> None:
+def test_direction_next_to_a_rest_is_uncertain_up_to_a_threshold_of_the_path() -> None:
     rest = mask("11000011")
     path = np.array([0.0, 0.0, 0.5, 1.0, 3.0, 4.0, 4.9, 4.9])
     v = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
-    assert places(unsure_beside_rest(rest, path, v, 0.9)) == [2]
-    assert places(unsure_beside_rest(rest, path, v, 1.0)) == [2, 3, 5]
-    assert places(unsure_beside_rest(rest, path, -v, 0.9)) == [2, 3, 4, 5]
-    assert places(unsure_beside_rest(mask("00000011"), path, v, 0.95)) == [5]
-    assert not unsure_beside_rest(mask("0" * 8), path, v, 0.9).any()
+    assert places(rests.unsure_beside_rest(rest, path, v, 0.9)) == [2]
+    assert places(rests.unsure_beside_rest(rest, path, v, 1.0)) == [2, 3, 5]
+    assert places(rests.unsure_beside_rest(rest, path, -v, 0.9)) == [2, 3, 4, 5]
+    assert places(rests.unsure_beside_rest(mask("00000011"), path, v, 0.95)) == [5]
+    assert not rests.unsure_beside_rest(mask("0" * 8), path, v, 0.9).any()
 
 
-def test_uncertain_speed_next_to_a_rest_is_zeroed_if_opposite_to_the_nearest_certain_one() -> None:
+def test_uncertain_speed_at_a_rest_is_zeroed_if_opposite_to_a_certain_one() -> None:
     v = np.array([0.0, -0.1, 0.1, 0.5, -0.1, 0.4, -0.1, 0.2, 0.0])
-    without_swings(mask("100000001"), v, mask("100101001"))
+    rests.without_swings(mask("100000001"), v, mask("100101001"))
     assert v.tolist() == [0.0, 0.0, 0.1, 0.5, -0.1, 0.4, 0.0, 0.2, 0.0]
     without_rest = np.array([-0.1, 0.5, -0.1])
-    without_swings(mask("000"), without_rest, mask("010"))
+    rests.without_swings(mask("000"), without_rest, mask("010"))
     assert without_rest.tolist() == [-0.1, 0.5, -0.1]
 
 
@@ -179,11 +157,11 @@ def test_uncertain_speed_next_to_a_rest_is_zeroed_if_opposite_to_the_nearest_cer
     ],
 )
 def test_rest_position_is_the_mean_of_the_extrapolated_stop_and_start(
-    before: tuple[float, float], after: tuple[float, float], half_step: float, place: float
+    before: Any, after: Any, half_step: float, place: float
 ) -> None:
     """A motion of speed v and deceleration a stops after v^2 / 2a."""
     path = np.array([0.9, 1.0, 1.0, 1.0, 1.0, 1.3, 2.0])
     v, a = np.zeros(7), np.zeros(7)
     (v[0], a[0]), (v[5], a[5]) = before, after
-    place_rests(mask("0111100"), path, v, a, half_step)
+    rests.place_rests(mask("0111100"), path, v, a, half_step)
     np.testing.assert_allclose(path, [0.9, place, place, place, place, 1.3, 2.0])

@@ -1,7 +1,5 @@
 """Noise of a signal, steps of an encoder, and contradictions between path and speed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,7 +8,7 @@ from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.agreement import contradiction_of, disagreement_of
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.roughness import encoder_step, local_noise, noise_of, step_of
-from known_motions import path_of, quantised, speed_of, white
+from known_motions import path_of, places, quantised, speed_of, white
 
 STEP_S = 0.01
 TIME_S: Any = STEP_S * np.arange(400)
@@ -19,7 +17,7 @@ NOISE_OF_ALTERNATING = 8.0 / 0.6745 / np.sqrt(20.0)
 """Its third differences are 8; those of unit white noise have a variance of 20."""
 
 
-def test_lagrange_weights_reproduce_a_cubic() -> None:
+def test_lagrange_weights_of_four_samples_reproduce_a_cubic() -> None:
     even = weights_at_zero(np.array([-2.0, -1.0, 1.0, 2.0]))
     np.testing.assert_allclose(even, np.array([-1.0, 4.0, 4.0, -1.0]) / 6.0)
     t = np.array([[-3.0, -2.0], [-1.0, -0.5], [0.5, 1.0], [4.0, 7.0]])
@@ -27,7 +25,7 @@ def test_lagrange_weights_reproduce_a_cubic() -> None:
     np.testing.assert_allclose(np.sum(weights_at_zero(t) * value, axis=0), 2.0)
 
 
-def test_noise_is_the_standard_deviation_of_white_noise_on_a_smooth_signal() -> None:
+def test_noise_estimate_is_the_deviation_of_white_noise_on_a_smooth_signal() -> None:
     assert noise_of(TIME_S**2) < 1e-12
     assert noise_of(ALTERNATING) == pytest.approx(NOISE_OF_ALTERNATING)
     assert noise_of(ALTERNATING[:8]) > 0.0
@@ -37,15 +35,11 @@ def test_noise_is_the_standard_deviation_of_white_noise_on_a_smooth_signal() -> 
     assert noise_of(signal) == pytest.approx(0.3, rel=0.15)
 
 
-@pytest.mark.parametrize(("times", "local"), [(2.9, False), (3.1, True)])
-def test_noise_estimate_is_local_if_a_part_is_three_times_as_noisy_as_the_rest(
-    times: float, local: bool
-) -> None:
-    loud = np.where((np.arange(1000) > 400) & (np.arange(1000) < 700), times, 1.0)
-    found = local_noise(loud * ALTERNATING)
-    assert isinstance(found, np.ndarray) == local
-    if isinstance(found, np.ndarray):
-        assert found[[100, 550]] == pytest.approx(NOISE_OF_ALTERNATING * np.array([1.0, times]))
+def test_noise_estimate_is_local_if_a_part_is_three_times_as_noisy_as_the_rest() -> None:
+    loud = (np.arange(1000) > 400) & (np.arange(1000) < 700)
+    assert not isinstance(local_noise(np.where(loud, 2.9, 1.0) * ALTERNATING), np.ndarray)
+    noise: Any = local_noise(np.where(loud, 3.1, 1.0) * ALTERNATING)
+    assert noise[[100, 550]] == pytest.approx(NOISE_OF_ALTERNATING * np.array([1.0, 3.1]))
 
 
 def test_encoder_step_is_the_smallest_change_above_rounding_and_noise() -> None:
@@ -56,24 +50,20 @@ def test_encoder_step_is_the_smallest_change_above_rounding_and_noise() -> None:
     assert encoder_step(path + white(400, 3, 1e-4)) == 0.0
 
 
-def test_disagreement_is_the_speed_error_beyond_the_noise_of_the_path() -> None:
-    error = 1e-3
+def test_disagreement_of_path_and_speed_is_the_speed_error_beyond_path_noise() -> None:
     path, speed = path_of(TIME_S), speed_of(TIME_S)
     assert disagreement_of(TIME_S, path, speed, 0.0, 1e-9) < 1e-4
-    found = disagreement_of(TIME_S, path, speed + error, 0.0, 1e-9)
-    assert found == pytest.approx(error / 0.6745, rel=0.05)
+    disagreement = disagreement_of(TIME_S, path, speed + 1e-3, 0.0, 1e-9)
+    assert disagreement == pytest.approx(1e-3 / 0.6745, rel=0.05)
 
 
 @pytest.mark.parametrize(("times", "found"), [(1.49, False), (1.51, True)])
-def test_disagreement_is_zero_up_to_1_5_times_the_gap_that_noise_explains(
-    times: float, found: bool
-) -> None:
+def test_path_and_speed_agree_up_to_1_5_times_the_gap_of_noise(times: float, found: bool) -> None:
     """Var(gap) = 2 var(path) + dt^2 var(speed) / 2."""
     still, gap = np.zeros(400), 1e-3 * STEP_S / 0.6745
     sd_path = gap / times / np.sqrt(2.0)
     expected = np.sqrt(gap**2 - 2.0 * sd_path**2) / STEP_S if found else 0.0
-    by_path = disagreement_of(TIME_S, still, still + 1e-3, sd_path, 0.0)
-    assert by_path == pytest.approx(expected)
+    assert disagreement_of(TIME_S, still, still + 1e-3, sd_path, 0.0) == pytest.approx(expected)
     sd_speed = gap / times / np.sqrt(0.5) / STEP_S
     by_speed = disagreement_of(TIME_S, still, still + 1e-3, 0.0, sd_speed)
     assert by_speed == pytest.approx(gap / STEP_S if found else 0.0)
@@ -88,23 +78,21 @@ def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: floa
 
 
 def test_path_jump_contradicts_the_speed_at_three_samples_on_each_side() -> None:
-    found = contradictions({100: 1e-3})
-    assert np.flatnonzero(found).tolist() == [98, 99, 100, 101, 102, 103]
-    assert found[100] == pytest.approx(1e-3 / STEP_S, rel=2e-3)
+    single = contradictions({100: 1e-3})
+    assert places(single) == [98, 99, 100, 101, 102, 103]
+    assert single[100] == pytest.approx(1e-3 / STEP_S, rel=2e-3)
     both = contradictions({100: 1e-3, 103: -3e-3})
-    assert np.flatnonzero(both).tolist() == list(range(98, 107))
+    assert places(both) == list(range(98, 107))
     assert both[[99, 102]] == pytest.approx([0.1, 0.3], rel=2e-3)
     assert not contradictions({}).any()
 
 
-@pytest.mark.parametrize(("times", "found"), [(9.6, False), (10.4, True)])
-def test_path_jump_contradicts_the_speed_from_ten_times_the_median_gap_or_noise_on(
-    times: float, found: bool
-) -> None:
+@pytest.mark.parametrize(("n", "found"), [(9.6, False), (10.4, True)])
+def test_path_jump_over_ten_times_gap_or_noise_contradicts_speed(n: float, found: bool) -> None:
     usual, sd = 1e-6, 1e-5
-    of_usual = contradictions({100: times * usual / 0.6745 - usual})
-    of_path = contradictions({100: times * np.sqrt(2.0) * sd - usual}, sd_path=sd)
-    of_speed = contradictions({100: times * sd - usual}, sd_speed=sd / np.sqrt(0.5) / STEP_S)
+    of_usual = contradictions({100: n * usual / 0.6745 - usual})
+    of_path = contradictions({100: n * np.sqrt(2.0) * sd - usual}, sd_path=sd)
+    of_speed = contradictions({100: n * sd - usual}, sd_speed=sd / np.sqrt(0.5) / STEP_S)
     assert [values.any() for values in (of_usual, of_path, of_speed)] == [found] * 3
 
 
@@ -112,8 +100,6 @@ def test_path_jump_contradicts_the_speed_from_ten_times_the_median_gap_or_noise_
     ("first", "hum"),
     [([0.5], True), ([5.0], False), ([0.0], False), ([0.4] * 3, True), ([0.6] * 3, False)],
 )
-def test_first_stroke_is_an_oscillation_at_rest_if_below_a_thousandth_of_the_longest(
-    first: list[float], hum: bool
-) -> None:
+def test_first_stroke_below_a_thousandth_of_the_longest_is_a_rest(first: Any, hum: bool) -> None:
     speed = np.array([*first, *([-1.0] * 1001)])
     assert begins_in_a_hum(np.arange(float(len(speed))), speed) == hum

@@ -1,7 +1,5 @@
 """Runs from files, folders and patterns; campaigns as folders."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from input_errors import input_error
@@ -41,7 +39,7 @@ def test_runs_of_equal_file_names_are_named_with_parent_folder_or_suffix(tmp_pat
     assert [run.name for run in read_runs(map(write, paths))] == ["r.csv", "r.txt"]
 
 
-def test_missing_and_repeated_files_are_reported(tmp_path: Path) -> None:
+def test_missing_and_repeated_run_files_are_reported(tmp_path: Path) -> None:
     file = write(tmp_path / "x" / "b.csv")
     assert input_error(read_runs, [file, tmp_path / "x"]).file == str(file)
     assert input_error(read_runs, tmp_path).file == str(tmp_path)
@@ -52,8 +50,7 @@ def test_missing_and_repeated_files_are_reported(tmp_path: Path) -> None:
 
 
 def test_campaign_is_read_from_a_folder_only_if_it_has_a_rig_file(tmp_path: Path) -> None:
-    folder = tmp_path / "one"
-    write(folder / "a.csv")
+    folder = write(tmp_path / "one" / "a.csv").parent
     assert input_error(read_campaign, folder).file == str(folder)
     Rig.thesis().write(folder / "rig.toml")
     rig, runs = read_campaign(folder)
@@ -63,8 +60,8 @@ def test_campaign_is_read_from_a_folder_only_if_it_has_a_rig_file(tmp_path: Path
 
 def test_campaigns_of_a_folder_are_its_subfolders_with_a_rig_or_a_run(tmp_path: Path) -> None:
     write(tmp_path / "one" / "a.csv")
-    (tmp_path / "empty").mkdir()
-    (tmp_path / "two").mkdir()
+    for name in ("empty", "two"):
+        (tmp_path / name).mkdir()
     Rig.thesis().write(tmp_path / "two" / "rig.toml")
     assert campaigns_in(tmp_path) == {name: tmp_path / name for name in ("one", "two")}
     for folder in (tmp_path / "empty", tmp_path / "nowhere"):

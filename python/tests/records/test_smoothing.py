@@ -1,7 +1,5 @@
 """Local polynomials through path and speed, against exact polynomials and least squares."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -22,16 +20,13 @@ def cubic(t: Any) -> tuple[Any, Any, Any]:
 
 @pytest.mark.parametrize("half", HALF_WIDTHS)
 @TIMES
-@pytest.mark.parametrize("local", [False, True], ids=["one error", "local errors"])
-def test_cubic_path_is_fitted_exactly_at_all_samples_including_the_ends(
-    half: int, time_s: Any, local: bool
-) -> None:
+def test_cubic_path_is_fitted_exactly_at_all_samples_and_both_ends(half: int, time_s: Any) -> None:
     path, speed, acceleration = cubic(time_s)
-    sd: Any = np.full(SAMPLES, 1e-3) if local else 1e-3
-    found = local_fit(time_s, path, speed, 1e-4, sd, half)
-    np.testing.assert_allclose(found[0], path, atol=1e-9)
-    np.testing.assert_allclose(found[1], speed, atol=1e-7)
-    np.testing.assert_allclose(found[2], acceleration, atol=1e-5)
+    for sd in (1e-3, np.full(SAMPLES, 1e-3)):
+        fit = local_fit(time_s, path, speed, 1e-4, sd, half)
+        np.testing.assert_allclose(fit[0], path, atol=1e-9)
+        np.testing.assert_allclose(fit[1], speed, atol=1e-7)
+        np.testing.assert_allclose(fit[2], acceleration, atol=1e-5)
 
 
 def least_squares(
@@ -47,9 +42,8 @@ def least_squares(
     window = slice(first, first + width)
     t, k = time_s[window] - time_s[i], np.arange(order + 1)
     sd = np.broadcast_to(sd_speed, len(time_s))[window]
-    rows = np.vstack((
-        t[:, None] ** k / sd_path, k * t[:, None] ** np.maximum(k - 1, 0) / sd[:, None]
-    ))  # fmt: skip
+    slopes = k * t[:, None] ** np.maximum(k - 1, 0)
+    rows = np.vstack((t[:, None] ** k / sd_path, slopes / sd[:, None]))
     target = np.concatenate(((path[window] - path[i]) / sd_path, speed[window] / sd))
     return np.linalg.lstsq(rows, target, rcond=None)[0], np.linalg.inv(rows.T @ rows)
 
@@ -81,7 +75,7 @@ def test_record_shorter_than_the_window_is_fitted_as_one_window() -> None:
         np.testing.assert_allclose(value, expected)
 
 
-def test_smooth_motion_is_fitted_with_the_widest_window() -> None:
+def test_smooth_motion_is_fitted_with_the_widest_smoothing_window() -> None:
     path, speed, acceleration = cubic(EVEN_S)
     _, found, slope, error = smooth(EVEN_S, path, speed, 2e-4, 1e-3)
     np.testing.assert_allclose(found, speed, atol=1e-7)

@@ -1,7 +1,5 @@
 """A recorded speed that is delayed, is a difference of the path, or has a standstill offset."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -17,21 +15,17 @@ from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised,
 PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
 COUNT_M = 1e-4
 COUNTED_M = quantised(PATH_M, COUNT_M)
-
-# ---- delay ---------------------------------------------------------------------------------------
+ALTERNATING = np.where(np.arange(800) % 2, -1.0, 1.0)
 
 
 @pytest.mark.parametrize(
     ("delay_steps", "kind"),
     [(0.2, "late_speed"), (0.39, "late_speed"), (0.45, "filtered_speed"), (3.0, "filtered_speed")],
 )
-def test_delay_of_the_speed_is_recovered_and_classified_by_its_length(
-    delay_steps: float, kind: str
-) -> None:
+def test_speed_delay_is_recovered_and_classified_by_size(delay_steps: float, kind: str) -> None:
     """Up to 0.4 samples the speed is shifted; beyond, the path alone is used."""
     delay_s = delay_steps * STEP_S
-    finding = late_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
-    assert finding is not None
+    finding: Any = late_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
     assert (finding.kind, finding.channel, finding.unit) == (kind, "velocity_m_s", "s")
     assert finding.size == pytest.approx(delay_s, rel=0.03)
 
@@ -43,16 +37,16 @@ def estimated_delay(speed: Array) -> tuple[float, float]:
     for window in compared(TIME_S, PATH_M, speed):
         design = np.stack([window.by_path, window.acceleration], axis=1)
         part = np.arange(len(design)) * 12 // len(design)
-        delays = [
-            -np.linalg.lstsq(design[kept], window.by_speed[kept], rcond=None)[0][1]
-            for kept in (np.full(len(design), True), *(part != k for k in range(12)))
-        ]
-        estimates.append((float(np.std(delays[1:])) * np.sqrt(11.0), float(delays[0])))
+        delays = []
+        for kept in (part >= 0, *(part != k for k in range(12))):
+            solution = np.linalg.lstsq(design[kept], window.by_speed[kept], rcond=None)[0]
+            delays.append(-float(solution[1]))
+        estimates.append((float(np.std(delays[1:])) * np.sqrt(11.0), delays[0]))
     error_s, delay_s = min(estimates)
     return delay_s, error_s
 
 
-def test_delay_is_reported_from_six_jackknife_standard_errors_on() -> None:
+def test_speed_delay_is_reported_from_six_jackknife_standard_errors_on() -> None:
     decisions = set()
     for delay_steps in np.arange(0.1, 1.3, 0.1):
         speed = speed_of(TIME_S - delay_steps * STEP_S) + white(len(TIME_S), 2, 0.01)
@@ -71,12 +65,9 @@ def test_delay_of_an_exponentially_decaying_speed_is_not_reported() -> None:
     assert late_speed("a", TIME_S, -2.0 * decaying, 1.1 * decaying) is None
 
 
-def test_correction_of_a_delayed_speed_preserves_its_zeros() -> None:
+def test_correction_of_a_delayed_speed_preserves_its_zeros_at_rests() -> None:
     speed = np.array([0.0, 0.0, 1.0, 2.0, 0.0, 0.0])
     assert earlier(np.arange(6.0), speed, 0.25).tolist() == [0.0, 0.0, 1.25, 1.5, 0.0, 0.0]
-
-
-# ---- differences of the path ---------------------------------------------------------------------
 
 
 def backward_difference(path: Array, span: int) -> Array:
@@ -86,37 +77,27 @@ def backward_difference(path: Array, span: int) -> Array:
 
 
 @pytest.mark.parametrize("span", [1, 2, 5, 12])
-def test_backward_difference_is_recognised_with_half_its_span_as_delay(span: int) -> None:
-    finding = derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, span))
-    assert finding is not None
-    assert (finding.kind, finding.channel, finding.unit) == (
-        "coarse_speed", "velocity_m_s", "samples"
-    )  # fmt: skip
-    assert finding.size == span
+def test_speed_from_backward_differences_is_recognised_with_half_a_span_delay(span: int) -> None:
+    finding: Any = derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, span))
+    assert (finding.kind, finding.channel) == ("coarse_speed", "velocity_m_s")
+    assert (finding.size, finding.unit) == (span, "samples")
     assert f"{0.5 * span * 1e3 * STEP_S:.3g} ms late" in finding.words
 
 
 @pytest.mark.parametrize("span", [2, 8])
-def test_central_difference_is_recognised_without_a_delay(span: int) -> None:
+def test_speed_from_central_differences_is_recognised_without_a_delay(span: int) -> None:
     speed, half = np.zeros(len(TIME_S)), span // 2
     speed[half:-half] = (COUNTED_M[span:] - COUNTED_M[:-span]) / (span * STEP_S)
-    finding = derived_speed("a", TIME_S, COUNTED_M, speed)
-    assert finding is not None
-    assert finding.size == span
-    assert "late" not in finding.words
+    finding: Any = derived_speed("a", TIME_S, COUNTED_M, speed)
+    assert (finding.size, "late" in finding.words) == (span, False)
 
 
-def test_independent_speeds_long_spans_short_records_and_rests_are_not_differences() -> None:
+def test_speed_is_not_a_path_difference_if_independent_long_short_or_at_rest() -> None:
     assert derived_speed("a", TIME_S, COUNTED_M, SPEED_M_S) is None
     assert derived_speed("a", TIME_S, COUNTED_M, backward_difference(COUNTED_M, 13)) is None
     coarse = backward_difference(COUNTED_M, 1)
     assert derived_speed("a", TIME_S[:47], COUNTED_M[:47], coarse[:47]) is None
     assert derived_speed("a", TIME_S, 0.0 * PATH_M, 0.0 * PATH_M) is None
-
-
-# ---- offset at standstill ------------------------------------------------------------------------
-
-ALTERNATING = np.where(np.arange(800) % 2, -1.0, 1.0)
 
 
 def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: float = 1e-5) -> Any:
@@ -133,45 +114,33 @@ def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: f
 def test_speed_offset_at_standstill_is_subtracted_from_the_whole_record(offset: float) -> None:
     speed, hum, finding = at_standstill(offset)
     np.testing.assert_allclose(speed[160:240], 0.0, atol=1e-12)
-    assert speed[0] == pytest.approx(0.1)
-    assert hum == pytest.approx(0.1)
+    assert (speed[0], hum) == pytest.approx((0.1, 0.1))
     assert (finding.kind, finding.unit) == ("speed_zero", "m/s")
     assert finding.size == pytest.approx(offset)
 
 
 @pytest.mark.parametrize(
-    ("offset", "samples", "found"),
-    [
-        (2e-3, 55, False),
-        (2e-3, 65, True),
-        (3.5e-5, 100, False),
-        (4.5e-5, 100, True),
-        (0, 100, False),
-    ],
+    ("offset", "samples"), [(2e-3, 55), (3.5e-5, 100), (0, 100)], ids=["short", "small", "none"]
 )
-def test_speed_offset_is_reported_from_sixty_samples_and_four_counts_of_drift_on(
-    offset: float, samples: int, found: bool
-) -> None:
+def test_short_or_small_speed_offset_at_rest_is_not_corrected(offset: Any, samples: int) -> None:
     speed, hum, finding = at_standstill(offset, samples=samples)
-    assert (finding is not None) == found
-    if not found:
-        assert (hum, speed[0]) == (0.0, 0.1 + offset)
+    assert (hum, speed[0], finding) == (0.0, 0.1 + offset, None)
 
 
-@pytest.mark.parametrize(("errors", "found"), [(4.9, False), (5.1, True)])
-def test_speed_offset_is_reported_beyond_five_standard_errors_of_means_over_twenty_samples(
-    errors: float, found: bool
-) -> None:
+def test_speed_offset_is_reported_from_60_samples_and_4_counts_of_drift_on() -> None:
+    assert at_standstill(2e-3, samples=65)[2] is not None
+    assert at_standstill(4.5e-5)[2] is not None
+
+
+def test_speed_offset_is_reported_beyond_five_standard_errors_of_its_mean() -> None:
     # The last moving sample already shows the position of the rest.
-    standard_error = 1e-4 / np.sqrt(201.0 / 20.0)
-    finding = at_standstill(errors * standard_error, 1e-4, 200, 1e-7)[2]
-    assert (finding is not None) == found
+    error = 1e-4 / np.sqrt(201.0 / 20.0)
+    assert at_standstill(4.9 * error, 1e-4, 200, 1e-7)[2] is None
+    assert at_standstill(5.1 * error, 1e-4, 200, 1e-7)[2] is not None
 
 
 @pytest.mark.parametrize("count_m_s", [0.0, 4e-3])
-def test_run_with_a_speed_offset_is_at_rest_where_its_position_is_constant(
-    count_m_s: float,
-) -> None:
+def test_run_with_a_speed_offset_rests_where_its_position_is_constant(count_m_s: float) -> None:
     """A tachometer with an offset, or a quantised speed whose levels are half a step off zero."""
     phase = np.mod(TIME_S, 4.0)
     true = 0.08 * np.clip(np.minimum(phase - 0.503, 3.007 - phase), 0.0, 0.5)
@@ -181,7 +150,6 @@ def test_run_with_a_speed_offset_is_at_rest_where_its_position_is_constant(
     path = quantised(integrated(true, STEP_S), 5e-6)
     motion = impose(Run.from_arrays(TIME_S, recorded, position_m=path), None)
     (finding,) = motion.findings
-    assert finding.kind == "speed_zero"
-    assert finding.size == pytest.approx(offset, abs=2e-5)
+    assert (finding.kind, finding.size) == ("speed_zero", pytest.approx(offset, abs=2e-5))
     assert motion.resting[true == 0.0].mean() > 0.9
     assert not motion.resting[true > 0.02].any()

@@ -1,7 +1,5 @@
 """Converter findings: quantisation step, saturation, and decimal digits of the force."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -27,22 +25,12 @@ def run_of(force: Any) -> Run:
     return replace(run, quantities=ROTARY)
 
 
-# ---- quantisation --------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("values", "digit"),
-    [
-        ([1.25, 3.5, -2.0], 0.01),
-        ([99.0, 100.0], 1.0),
-        ([0.0, 0.0], 0.0),
-        ([np.pi, 1.0], 1e-9 * np.pi),
-    ],
+    [([1.25, 3.5, -2.0], 0.01), ([99, 100], 1.0), ([0, 0], 0.0), ([np.pi, 1.0], 1e-9 * np.pi)],
 )
-def test_last_digit_is_the_decimal_step_of_the_values_or_1e_minus_9_of_the_largest(
-    values: list[float], digit: float
-) -> None:
-    assert last_digit(np.array(values)) == pytest.approx(digit)
+def test_last_digit_is_a_decimal_step_or_1e_minus_9_of_largest(values: Any, digit: float) -> None:
+    assert last_digit(np.array(values, float)) == pytest.approx(digit)
 
 
 def test_quantisation_step_is_found_if_levels_are_missing_or_uneven() -> None:
@@ -66,9 +54,7 @@ def test_quantisation_step_is_found_if_levels_are_missing_or_uneven() -> None:
         (np.repeat(np.cumsum(np.where(np.arange(100) < 12, 1.4, 1.0)), 10), 0.0),
     ],
 )
-def test_quantisation_step_requires_few_levels_that_are_whole_steps_apart(
-    values: Array, step: float
-) -> None:
+def test_quantisation_step_needs_few_levels_whole_steps_apart(values: Array, step: float) -> None:
     """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
     assert step_of(values) == pytest.approx(step)
 
@@ -79,14 +65,11 @@ def test_quantisation_step_of_interpolated_readings_tolerates_rounding_errors() 
     assert step_of(corners) == 0.0
 
 
-@pytest.mark.parametrize(("step", "found"), [(0.3, False), (0.7, True)])
-def test_quantisation_step_below_half_of_the_noise_is_not_reported(
-    step: float, found: bool
-) -> None:
-    run = run_of(quantised(WAVE + NOISE, step))
-    findings = find_steps(run, np.ones(SAMPLES, dtype=bool))
-    assert [(f.kind, f.unit) for f in findings] == ([("steps", "N m")] if found else [])
-    assert all(f.size == pytest.approx(step) for f in findings)
+def test_quantisation_step_is_reported_only_if_above_half_of_the_noise() -> None:
+    usable = np.ones(SAMPLES, dtype=bool)
+    assert find_steps(run_of(quantised(WAVE + NOISE, 0.3)), usable) == []
+    (finding,) = find_steps(run_of(quantised(WAVE + NOISE, 0.7)), usable)
+    assert (finding.kind, finding.size, finding.unit) == ("steps", pytest.approx(0.7), "N m")
 
 
 def test_quantisation_step_is_estimated_from_usable_readings_only() -> None:
@@ -96,12 +79,8 @@ def test_quantisation_step_is_estimated_from_usable_readings_only() -> None:
     assert len(find_steps(run, first)) == 1
 
 
-# ---- saturation ----------------------------------------------------------------------------------
-
-
-def clipped(low: float = -np.inf, high: float = np.inf, noise: float = 0.3) -> Array:
-    force: Array = np.clip(WAVE + noise * NOISE, low, high)
-    return force
+def clipped(low: float = -np.inf, high: float = np.inf, noise: float = 0.3) -> Any:
+    return np.clip(WAVE + noise * NOISE, low, high)
 
 
 def test_saturation_at_either_limit_is_found_with_seven_samples_on_each_side() -> None:
@@ -113,31 +92,28 @@ def test_saturation_at_either_limit_is_found_with_seven_samples_on_each_side() -
     assert saturated(clipped(high=9.0))[1] == [9.0]
     assert saturated(clipped(low=-8.0))[1] == [-8.0]
     mask, ends = saturated(clipped())
-    assert ends == []
-    assert not mask.any()
+    assert (mask.any(), ends) == (False, [])
 
 
-@pytest.mark.parametrize(("count", "found"), [(4, False), (5, True)])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_five_equal_extreme_readings_are_saturation(count: int, found: bool, sign: float) -> None:
-    values = clipped()
-    values[100 : 100 + 60 * count : 60] = sign * 20.0
-    assert (saturated(values)[1] == [sign * 20.0]) == found
+def test_at_least_five_equal_extreme_readings_are_saturation(sign: float) -> None:
+    for count, found in ((4, False), (5, True)):
+        values = clipped()
+        values[100 : 100 + 60 * count : 60] = sign * 20.0
+        assert (saturated(values)[1] == [sign * 20.0]) == found
 
 
-@pytest.mark.parametrize(("noise", "found"), [(0.3, False), (0.75, True)])
-def test_plateau_of_a_force_quantised_more_coarsely_than_its_noise_is_not_saturation(
-    noise: float, found: bool
-) -> None:
-    assert (saturated(np.round(clipped(-8.0, 8.0, noise)))[1] != []) == found
+def test_plateau_of_a_force_quantised_above_its_noise_is_not_saturation() -> None:
+    assert saturated(np.round(clipped(-8.0, 8.0, 0.3)))[1] == []
+    assert saturated(np.round(clipped(-8.0, 8.0, 0.75)))[1] != []
 
 
 @pytest.mark.parametrize("force", [WAVE, np.sign(WAVE), np.clip(WAVE, -8.0, 8.0)])
-def test_noise_free_force_has_no_saturation(force: Array) -> None:
+def test_noise_free_force_with_or_without_a_plateau_has_no_saturation(force: Array) -> None:
     assert saturated(force)[1] == []
 
 
-def test_size_of_a_saturation_finding_is_the_largest_limit() -> None:
+def test_saturation_finding_has_the_largest_limit_of_both_directions() -> None:
     (finding,), _ = find_saturation(run_of(clipped(-8.0, 9.0)))
     assert (finding.kind, finding.channel) == ("saturation", "friction_n")
     assert (finding.size, finding.unit, finding.done) == (9.0, "N m", "set aside")
@@ -154,18 +130,17 @@ def test_usable_readings_next_to_saturation_are_unbiased(of_peak: float, step_n:
     speed = 0.1 * np.sin(0.3 * time_s + 0.4)
     size = 15.0 + 10.0 * np.exp(-np.abs(speed) / 0.02) + 40.0 * np.abs(speed)
     friction = np.tanh(speed / 0.002) * size
-    whole = friction + white(3000, 11, 0.3)
-    limit = of_peak * float(np.quantile(np.abs(whole), 0.995))
-    force = np.clip(whole, -limit, limit)
+    unclipped = friction + white(3000, 11, 0.3)
+    limit = of_peak * float(np.quantile(np.abs(unclipped), 0.995))
+    force = np.clip(unclipped, -limit, limit)
     force = quantised(force, step_n) if step_n else force
-    found = examine(Run.from_arrays(time_s, speed, force))
-    assert [f.kind for f in found.findings] == ["saturation"]
-    assert found.findings[0].size == pytest.approx(limit, abs=0.06)
-    assert not found.usable[np.abs(whole) > limit + step_n].any()
-    kept = found.usable & (np.abs(speed) > 0.01)
-    residual = ((force - friction) * np.sign(speed))[kept]
+    examined = examine(Run.from_arrays(time_s, speed, force))
+    (finding,) = examined.findings
+    assert (finding.kind, finding.size) == ("saturation", pytest.approx(limit, abs=0.06))
+    assert not examined.usable[np.abs(unclipped) > limit + step_n].any()
+    residual = ((force - friction) * np.sign(speed))[examined.usable & (np.abs(speed) > 0.01)]
     assert abs(np.mean(residual)) < 0.3 * (0.1 + 3.0 / np.sqrt(len(residual)))
-    assert np.mean(found.usable) > 0.8 * np.mean(np.abs(whole) < limit - 1.2)
+    assert np.mean(examined.usable) > 0.8 * np.mean(np.abs(unclipped) < limit - 1.2)
 
 
 def test_constant_levels_of_dry_friction_are_not_saturation() -> None:

@@ -1,7 +1,5 @@
 """Path and speed that differ by a factor: wrong units, wrong signs, an unknown radius."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,13 +14,13 @@ from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY, Quantities
 from known_motions import TIME_S, path_of, quantised, speed_of, white
 
 PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
+TURN = 2.0 * np.pi
 
 
-def test_windows_of_a_parabola_have_its_mean_speed_and_acceleration() -> None:
+def test_windows_of_a_parabolic_path_have_its_mean_speed_and_acceleration() -> None:
     time_s: Any = 0.1 * np.arange(200)
     path = 0.5 * 3.0 * time_s**2
-    windows = list(compared(time_s, path, 6.0 * time_s))
-    assert len(windows) == len(HALF_WIDTHS)
+    windows = compared(time_s, path, 6.0 * time_s)
     for half, window in zip(HALF_WIDTHS, windows, strict=True):
         inner = time_s[2 * half : -2 * half]
         np.testing.assert_allclose(window.by_path, 3.0 * inner)
@@ -31,9 +29,9 @@ def test_windows_of_a_parabola_have_its_mean_speed_and_acceleration() -> None:
         assert window.count == pytest.approx((path[1] - path[0]) / (2 * half * 0.1))
 
 
-def test_windows_that_contain_a_gap_are_omitted() -> None:
+def test_windows_of_path_and_speed_that_contain_a_gap_are_omitted() -> None:
     time_s: Any = np.concatenate((0.1 * np.arange(100), 50.0 + 0.1 * np.arange(100)))
-    windows = list(compared(time_s, time_s, np.ones(200)))
+    windows = compared(time_s, time_s, np.ones(200))
     assert [len(w.by_path) for w in windows] == [200 - 16, 200 - 32, 200 - 64]
 
 
@@ -44,7 +42,7 @@ def test_number_of_window_widths_follows_from_the_length_of_the_record() -> None
 
 
 @pytest.mark.parametrize("factor", [1.25, -1.0, 57.3, 1e-3, 0.75])
-def test_factor_between_path_and_speed_is_recovered(factor: float) -> None:
+def test_factor_between_path_and_speed_is_recovered_if_wrong_by_25_percent(factor: float) -> None:
     path = factor * PATH_M
     assert factor_between(TIME_S, path, SPEED_M_S) == pytest.approx(factor, rel=5e-3)
     assert slope_near(TIME_S, path, SPEED_M_S, factor) == pytest.approx(factor, rel=2e-3)
@@ -52,13 +50,9 @@ def test_factor_between_path_and_speed_is_recovered(factor: float) -> None:
     assert way == (None if factor < 0.0 else pytest.approx(1.0 / factor, rel=2e-3))
 
 
-@pytest.mark.parametrize(
-    ("factor", "found"), [(1.0, False), (1.18, False), (1.22, True), (0.82, False), (0.78, True)]
-)
-def test_factor_between_path_and_speed_is_reported_beyond_a_deviation_of_20_percent(
-    factor: float, found: bool
-) -> None:
-    assert (factor_between(TIME_S, factor * PATH_M, SPEED_M_S) is not None) == found
+def test_factor_between_path_and_speed_is_reported_beyond_20_percent() -> None:
+    factors = [factor_between(TIME_S, f * PATH_M, SPEED_M_S) for f in (1.0, 1.18, 1.22, 0.82, 0.78)]
+    assert [factor is not None for factor in factors] == [False, False, True, False, True]
 
 
 def test_slope_search_returns_its_initial_factor_if_that_factor_is_wrong() -> None:
@@ -66,26 +60,21 @@ def test_slope_search_returns_its_initial_factor_if_that_factor_is_wrong() -> No
 
 
 def test_unrelated_or_short_path_and_speed_have_no_factor() -> None:
-    other = white(len(TIME_S), 1)
-    assert factor_between(TIME_S, PATH_M, other) is None
-    assert way_per_unit(TIME_S, PATH_M, other) is None
+    unrelated = white(len(TIME_S), 1)
+    assert factor_between(TIME_S, PATH_M, unrelated) is None
+    assert way_per_unit(TIME_S, PATH_M, unrelated) is None
     assert factor_between(TIME_S[:60], 3.0 * PATH_M[:60], SPEED_M_S[:60]) is None
 
 
 @pytest.mark.parametrize(("growth", "found"), [(8.0, False), (0.5, True)])
-def test_ratio_of_path_and_speed_that_changes_in_time_is_not_reported(
-    growth: float, found: bool
-) -> None:
-    speed = np.full(len(TIME_S), 0.1)
+def test_changing_ratio_of_path_and_speed_is_not_reported(growth: float, found: bool) -> None:
     path = 0.1 * (2.0 * TIME_S + 0.5 * growth * TIME_S**2 / TIME_S[-1])
-    assert (factor_between(TIME_S, path, speed) is not None) == found
-    assert (way_per_unit(TIME_S, path, speed) is not None) == found
+    for function in (factor_between, way_per_unit):
+        assert (function(TIME_S, path, np.full(len(TIME_S), 0.1)) is not None) == found
 
 
 @pytest.mark.parametrize("gap_s", [0.5, 2.0])
-def test_gaps_of_a_fast_motion_do_not_change_the_factor_between_path_and_speed(
-    gap_s: float,
-) -> None:
+def test_gaps_of_a_fast_motion_do_not_change_the_ratio_of_path_and_speed(gap_s: float) -> None:
     time_s: Any = 0.02 * np.arange(900)
     for begin_s in (3.1, 8.4, 13.3):
         time_s = time_s[(time_s < begin_s) | (time_s > begin_s + gap_s)]
@@ -109,12 +98,8 @@ def test_distance_per_radian_of_a_slow_quantised_motion_is_recovered(even: bool)
 
 def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:
     """The mismatch of a path whose derivative is `factor` times the speed."""
-    unit = "rad" if column == "angle_rad" else "m"
-    position = Position(factor * PATH_M, column, unit, arm_m)
+    position = Position(factor * PATH_M, column, column.rpartition("_")[2], arm_m)
     return wrong_unit("a", TIME_S, position, SPEED_M_S, kind)
-
-
-TURN = 2.0 * np.pi
 
 
 @pytest.mark.parametrize(
@@ -133,49 +118,44 @@ TURN = 2.0 * np.pi
         ("position_m", 1.0 / 60.0, 1.0, LINEAR, "velocity_m_s", "m/min"),
     ],
 )
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_wrong_unit_is_recognised_by_its_factor(
-    column: str, factor: float, arm_m: float, kind: Quantities, channel: str, hint: str, sign: float
+def test_wrong_unit_of_path_or_speed_is_recognised_by_their_ratio(
+    column: str, factor: float, arm_m: float, kind: Quantities, channel: str, hint: str
 ) -> None:
-    found = mismatch(column, sign * factor, arm_m, kind)
-    assert (found.finding.kind, found.finding.channel) == ("units", channel)
-    assert found.finding.size == pytest.approx(sign * factor, rel=5e-3)
-    assert found.factor == pytest.approx(sign * factor, rel=1e-12)
-    assert found.of_speed == (channel == "velocity_m_s")
-    assert f" {hint}?" in found.finding.words
+    for signed in (factor, -factor):
+        found = mismatch(column, signed, arm_m, kind)
+        assert (found.finding.kind, found.finding.channel) == ("units", channel)
+        assert found.finding.size == pytest.approx(signed, rel=5e-3)
+        assert found.factor == pytest.approx(signed, rel=1e-12)
+        assert found.of_speed == (channel == "velocity_m_s")
+        assert f" {hint}?" in found.finding.words
 
 
-def test_factor_that_matches_no_unit_is_applied_to_the_path() -> None:
+def test_ratio_of_path_and_speed_that_matches_no_unit_is_applied_to_the_path() -> None:
     found = mismatch("angle_rad", 5.0, 0.3)
-    assert found.finding.channel == "angle_rad"
-    assert found.factor == pytest.approx(5.0, rel=2e-3)
+    assert (found.finding.channel, found.factor) == ("angle_rad", pytest.approx(5.0, rel=2e-3))
 
 
-def test_factor_is_attributed_to_millimetres_at_five_but_not_ten_percent_off() -> None:
+def test_ratio_of_path_and_speed_means_millimetres_if_within_5_percent() -> None:
     for factor, is_unit in ((1.05e3, True), (1.1e3, False)):
         assert ("mm" in mismatch("position_m", factor).finding.words) == is_unit
 
 
-@pytest.mark.parametrize(
-    ("factor", "kind"), [(-1.0, "sign"), (-1.15, "sign"), (-1.3, "units"), (1.0, None)]
-)
-def test_factor_near_minus_one_is_reported_as_a_wrong_sign(factor: float, kind: str | None) -> None:
-    found = mismatch("angle_rad", factor, 0.3)
-    assert (found and found.finding.kind) == kind
-    if kind == "sign":
-        assert (found.factor, found.of_speed) == (-1, False)
+def test_ratio_of_path_and_speed_near_minus_one_is_a_wrong_sign() -> None:
+    for factor in (-1.0, -1.15):
+        found = mismatch("angle_rad", factor, 0.3)
+        assert (found.finding.kind, found.factor, found.of_speed) == ("sign", -1, False)
+    assert mismatch("angle_rad", -1.3, 0.3).finding.kind == "units"
+    assert mismatch("angle_rad", 1.0, 0.3) is None
 
 
 def test_path_is_the_unwrapped_angle_times_the_radius_or_else_the_position() -> None:
     angle = np.mod(8.0 * TIME_S, TURN)
     run = Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle, position_m=PATH_M)
-    found = recorded_position(run, 0.25)
-    assert found is not None
-    np.testing.assert_allclose(found.path_m, 2.0 * TIME_S, atol=1e-12)
-    assert (found.column, found.unit, found.arm_m) == ("angle_rad", "rad", 0.25)
-    found = recorded_position(run, None)
-    assert found is not None
-    assert (found.column, found.unit, found.arm_m) == ("position_m", "m", 1.0)
+    by_angle: Any = recorded_position(run, 0.25)
+    np.testing.assert_allclose(by_angle.path_m, 2.0 * TIME_S, atol=1e-12)
+    assert (by_angle.column, by_angle.unit, by_angle.arm_m) == ("angle_rad", "rad", 0.25)
+    by_position: Any = recorded_position(run, None)
+    assert (by_position.column, by_position.unit, by_position.arm_m) == ("position_m", "m", 1.0)
     assert recorded_position(Run.from_arrays(TIME_S, SPEED_M_S), 0.25) is None
     assert recorded_position(Run.from_arrays(TIME_S, angle_rad=PATH_M), None) is None
 
@@ -190,7 +170,7 @@ def test_motion_is_recovered_from_speed_and_angle_if_the_radius_is_unknown(radiu
     assert np.max(np.abs(np.diff(motion.angle_rad - angle))) < 1e-4
 
 
-def test_angle_unrelated_to_the_speed_is_unwrapped_but_does_not_change_the_speed() -> None:
+def test_angle_unrelated_to_the_speed_is_unwrapped_but_not_used_for_speed() -> None:
     angle = np.mod(np.cumsum(np.random.default_rng(3).uniform(0.0, 1.0, len(TIME_S))), TURN)
     motion = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
     np.testing.assert_allclose(motion.angle_rad, np.unwrap(angle))

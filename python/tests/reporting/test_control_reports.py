@@ -1,7 +1,5 @@
 """Runs of the loop, robustness and the tables of the thesis as text, data and pictures."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any
@@ -19,6 +17,7 @@ from jbf.reporting.control_run_plot import plot_run_of_loop, plot_runs
 from jbf.reporting.control_run_text import robustness_text, runs_text, status_words
 from jbf.reporting.control_tables_text import friction_lines, score_text, tables_report, tables_text
 
+THREE_FLAGS = "saturated 50 %, encoder jumped 25 %, reference not finite 25 %"
 SHORT = replace(TASKS["velocity sine"], seconds=2.5)
 
 
@@ -32,22 +31,14 @@ def rows_of(text: str) -> list[list[str]]:
     return [re.split(r"  +", line.strip()) for line in text.splitlines()]
 
 
-@pytest.mark.parametrize(
-    ("flags", "expected"),
-    [
+def test_loop_status_states_the_share_of_samples_with_each_flag(loop: Result) -> None:
+    for flags, expected in (
         ([0, 0, 0, 0], "ok"),
         ([SATURATED, 0, 0, 0], "saturated 25 %"),
         ([FROZEN | FALLBACK, FALLBACK, 0, 0], "encoder frozen 25 %, control law alone 50 %"),
-        (
-            [JUMPED, NOT_FINITE, SATURATED, SATURATED],
-            "saturated 50 %, encoder jumped 25 %, reference not finite 25 %",
-        ),
-    ],
-)
-def test_status_states_the_share_of_the_samples_with_each_flag(
-    loop: Result, flags: list[int], expected: str
-) -> None:
-    assert status_words(replace(loop, status=np.array(flags, dtype=np.uint8))) == expected
+        ([JUMPED, NOT_FINITE, SATURATED, SATURATED], THREE_FLAGS),
+    ):
+        assert status_words(replace(loop, status=np.array(flags, dtype=np.uint8))) == expected
 
 
 def test_loop_runs_are_listed_with_their_errors_below_their_task(loop: Result) -> None:
@@ -78,15 +69,12 @@ def test_loop_runs_are_drawn_in_columns_with_axis_labels_on_the_first_only(loop:
 
 
 ROWS = ("position sine", "velocity triangle")
-OUTCOMES = [
-    Outcome("load doubled", dict(zip(ROWS, (0.5, 0.25), strict=True))),
-    Outcome("noise", dict(zip(ROWS, (0.1234, 1.0), strict=True))),
-    Outcome("belt", dict(zip(ROWS, (1.5, 0.2), strict=True))),
-    Outcome("motor", dict(zip(ROWS, (0.1, 0.2), strict=True))),
-]
+RATIOS = {"load doubled": (0.5, 0.25), "noise": (0.1234, 1.0), "belt": (1.5, 0.2)}
+RATIOS["motor"] = (0.1, 0.2)
+OUTCOMES = [Outcome(name, dict(zip(ROWS, x, strict=True))) for name, x in RATIOS.items()]
 
 
-def test_robustness_text_and_json_have_ratios_worst_ratio_and_verdict_of_each_case() -> None:
+def test_robustness_text_and_json_have_ratios_and_verdict_of_each_case() -> None:
     rows = rows_of(robustness_text(OUTCOMES))
     start = rows.index(["plant", "p sine", "v triangle", "worst"])
     assert rows[start + 1 : start + 5] == [
@@ -96,12 +84,9 @@ def test_robustness_text_and_json_have_ratios_worst_ratio_and_verdict_of_each_ca
         ["motor", "0.100", "0.200", "0.200", "help"],
     ]
     assert rows[-1] == ["help 2, neutral 1, harm 1"]
-    assert robustness_dict(OUTCOMES)["cases"][2] == {
-        "name": "belt",
-        "ratios": {"position sine": 1.5, "velocity triangle": 0.2},
-        "worst": 1.5,
-        "verdict": "harm",
-    }
+    ratios = {"position sine": 1.5, "velocity triangle": 0.2}
+    belt = {"name": "belt", "ratios": ratios, "worst": 1.5, "verdict": "harm"}
+    assert robustness_dict(OUTCOMES)["cases"][2] == belt
 
 
 def test_robustness_plot_marks_the_worst_ratio_of_each_case() -> None:
@@ -128,15 +113,12 @@ def tables_of(*cells: Cell) -> Tables:
     return Tables({(c.row, c.column): c for c in cells}, thesis_model(), THESIS_BENCH)
 
 
+SCHEMES = ("none", "learning", "coulomb", "observed")
+POSITION = zip(SCHEMES, (0.44, 0.2, 0.3, 0.05), (0.4, 0.1, None, None), strict=True)
+VELOCITY = zip(SCHEMES, (0.3, 0.04, 0.63, 0.08), (0.5, 0.1, 0.3, None), strict=True)
 SMALL = tables_of(
-    cell("position sine", "none", 0.44, 0.4),
-    cell("position sine", "learning", 0.2, 0.1),
-    cell("position sine", "coulomb", 0.3, None),
-    cell("position sine", "observed", 0.05, None),
-    cell("velocity sine", "none", 0.3, 0.5),
-    cell("velocity sine", "learning", 0.04, 0.1),
-    cell("velocity sine", "coulomb", 0.63, 0.3),
-    cell("velocity sine", "observed", 0.08, None),
+    *(cell("position sine", *numbers) for numbers in POSITION),
+    *(cell("velocity sine", *numbers) for numbers in VELOCITY),
 )
 GAINS = dict(zip(TASKS, (1.0, 2.0, 0.5, 4.0, 8.0, 1.5, 3.0), strict=True))
 
@@ -153,7 +135,7 @@ def tables_with_gains() -> Tables:
     return tables_of(*cells)
 
 
-def test_tables_text_has_simulated_and_printed_errors_and_their_ratio() -> None:
+def test_thesis_tables_text_has_simulated_and_printed_errors_and_their_ratio() -> None:
     rows = rows_of(tables_text(SMALL))
     sine = ["0.440 / 0.400 = 1.10", "0.200 / 0.100 = 2.00", "0.300 / - = -", "0.0500"]
     fast = ["0.300 / 0.500 = 0.60", "0.0400 / 0.100 = 0.40", "0.630 / 0.300 = 2.10", "0.0800"]
@@ -162,16 +144,13 @@ def test_tables_text_has_simulated_and_printed_errors_and_their_ratio() -> None:
     assert next(row[1:] for row in rows if row[0] == "velocity sine") == fast
 
 
-def test_score_counts_ratios_within_each_factor_and_lists_those_beyond_two() -> None:
+def test_thesis_score_counts_ratios_within_factors_and_lists_those_beyond_two() -> None:
     fitted, predicted, far = score_text(SMALL).splitlines()
     assert "40 %" in fitted
     assert re.findall(r"\d+(?= cells| within)", predicted) == ["3", "1", "0"]
     assert re.findall(r"\((\d\.\d\d)\)", far) == ["0.40", "2.10"]
-    near = tables_of(
-        cell("a", "none", 1.25, 1.0),
-        cell("a", "learning", 1.0, 2.0),
-        cell("a", "coulomb", 1.4, 1.0),
-    )
+    cells = (("none", 1.25, 1.0), ("learning", 1.0, 2.0), ("coulomb", 1.4, 1.0))
+    near = tables_of(*(cell("a", *numbers) for numbers in cells))
     fitted, predicted = score_text(near).splitlines()
     assert "25 %" in fitted
     assert re.findall(r"\d+(?= cells| within)", predicted) == ["2", "2", "1"]
@@ -179,17 +158,16 @@ def test_score_counts_ratios_within_each_factor_and_lists_those_beyond_two() -> 
 
 def test_fitted_friction_scale_is_printed_in_volts_at_the_load_of_the_rig() -> None:
     """28.26 mV/N times 104 N."""
-    values = {
-        row[0]: row[1] for row in rows_of(tables_report(tables_with_gains(), [])) if len(row) > 1
-    }
-    assert float(values["friction scale"].split()[0]) == pytest.approx(2.939, abs=1e-3)
+    rows = rows_of(tables_report(tables_with_gains(), []))
+    scale = next(row[1] for row in rows if row[0] == "friction scale")
+    assert float(scale.split()[0]) == pytest.approx(2.939, abs=1e-3)
     lines = rows_of("\n".join(friction_lines(thesis_model(K0=1.5e6, gamma=33.0), 0.03, 100.0)))
     numbers = {row[0]: float(row[1].split()[0]) for row in lines}
     assert numbers["friction scale"] == 3.0
     assert (numbers["K0"], numbers["gamma"]) == (1.5e6, 33.0)
 
 
-def test_tables_json_has_friction_ratios_gains_and_assumptions() -> None:
+def test_thesis_tables_json_has_friction_ratios_gains_and_assumptions() -> None:
     found = tables_with_gains()
     content: dict[str, Any] = tables_dict(found, [("as it is", SMALL)])
     assert content["friction"]["volts_per_n"] == THESIS_BENCH.volts_per_n
@@ -200,21 +178,17 @@ def test_tables_json_has_friction_ratios_gains_and_assumptions() -> None:
     assert (content["within_2"], content["within_1.5"]) == (3, 0)
     (other,) = content["assumptions"]
     assert (other["name"], other["within_2"], other["within_1.5"]) == ("as it is", 1, 0)
-    assert other["ratios"] == {
-        "position sine, learning": 2.0,
-        "velocity sine, learning": pytest.approx(0.4),
-        "velocity sine, coulomb": pytest.approx(2.1),
-    }
+    ratios = {"position sine, learning": 2.0, "velocity sine, learning": 0.4}
+    assert other["ratios"] == pytest.approx(ratios | {"velocity sine, coulomb": 2.1})
 
 
-def test_tables_plot_has_a_bar_for_each_cell_and_a_diamond_for_each_printed_figure() -> None:
+def test_thesis_tables_plot_has_a_bar_per_cell_and_a_diamond_per_printed_figure() -> None:
     (ax,) = plot_tables(SMALL).axes
     heights = np.array([[bar.get_height() for bar in group] for group in ax.containers])
     # The observed compensator is shown by its true error.
     assert heights.tolist() == [[0.44, 0.3], [0.2, 0.04], [0.3, 0.63], [0.025, 0.04]]
-    centres = np.array(
-        [[bar.get_x() + 0.5 * bar.get_width() for bar in group] for group in ax.containers]
-    )
+    groups = ax.containers
+    centres = np.array([[b.get_x() + 0.5 * b.get_width() for b in group] for group in groups])
     assert centres.mean(axis=0) == pytest.approx([0.0, 1.0])
     assert np.all(np.diff(centres, axis=0) >= ax.patches[0].get_width())  # type: ignore[attr-defined]
     diamonds = np.concatenate([np.asarray(line.get_xydata()) for line in ax.lines])

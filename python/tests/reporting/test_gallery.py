@@ -1,7 +1,5 @@
 """Cards of failures and residual structure: their causes, sizes and advice."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import get_args
@@ -35,12 +33,9 @@ def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Di
     }
     values = {"sensor_offset.b_n": found_offset_n, "sensor_drift.d_n_s": drift_n_s}
     before = compare(Model(Rig(), "coulomb", (), fixed), runs)
-    after = compare(
-        Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**fixed, **values}), runs
-    )
-    return replace(
-        diagnosis_by_hand("missing"), before=before, after=after, failures=before.failures
-    )
+    final = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**fixed, **values})
+    found, failures = diagnosis_by_hand("missing"), before.failures
+    return replace(found, before=before, after=compare(final, runs), failures=failures)
 
 
 def test_shares_of_effects_are_projections_of_their_force_on_the_pattern() -> None:
@@ -112,9 +107,7 @@ def test_simulated_pattern_is_attributed_to_the_hidden_effect_that_removes_it() 
         ("parameters", "disagree", "parameters", "Time (s)"),
     ],
 )
-def test_card_of_residual_structure_has_the_plot_share_and_advice_of_its_kind(
-    axis: str, where: str, kind: str, label: str
-) -> None:
+def test_structure_card_has_plot_and_advice(axis: str, where: str, kind: str, label: str) -> None:
     remains = (Remainder(axis, where, 0.126),)
     (card,) = remainder_cards(replace(diagnosis_by_hand("unexplained"), unexplained=remains))
     assert f">{label}</text>" in str(card.picture)
@@ -124,7 +117,7 @@ def test_card_of_residual_structure_has_the_plot_share_and_advice_of_its_kind(
     assert card.to_do.lower() == f"{advice_on(kind).to_do}.".lower()
 
 
-def test_every_axis_and_kind_of_residual_structure_has_advice() -> None:
+def test_every_axis_and_kind_of_residual_structure_has_advice_text() -> None:
     kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects"}
     assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
     assert advice_on("nothing known") is NONE

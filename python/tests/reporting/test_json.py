@@ -1,7 +1,5 @@
 """Results as JSON: values that JSON lacks, and the published schema."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,25 +20,19 @@ from jbf.reporting.control_json import robustness_dict, tables_dict
 from jbf.reporting.json import json_text
 
 FILE = Path(__file__).resolve().parents[3] / "docs" / "schema" / "results.json"
+EXTENDED = pytest.mark.extended
 SCHEMA: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 
 
 def test_json_text_has_null_for_nan_a_string_for_infinity_and_lists_for_arrays() -> None:
     inf, nan = float("inf"), float("nan")
-    value = {
-        1: nan,
-        "a": (inf, -inf, True, None, "é"),
-        "b": {"c": np.float64(2.0), "d": np.int64(3)},
-    }
+    numpy = {"c": np.float64(2.0), "d": np.int64(3), "f": np.bool_(True)}
     array = np.array([[1.0, -inf], [nan, 2.0]])
-    text = json_text({**value, "e": array, "f": np.bool_(True)})
-    assert json.loads(text) == {
-        "1": None,
-        "a": ["inf", "-inf", True, None, "é"],
-        "b": {"c": 2.0, "d": 3},
-        "e": [[1.0, "-inf"], [None, 2.0]],
-        "f": True,
-    }
+    text = json_text({1: nan, "a": (inf, -inf, True, None, "é"), "b": numpy, "e": array})
+    content = json.loads(text)
+    assert content.pop("1") is None
+    assert content.pop("a") == ["inf", "-inf", True, None, "é"]
+    assert content == {"b": {"c": 2.0, "d": 3, "f": True}, "e": [[1.0, "-inf"], [None, 2.0]]}
     assert text.endswith("\n")
 
 
@@ -74,7 +66,7 @@ def test_published_schema_is_a_valid_json_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
 
 
-def test_schema_allows_new_keys_and_rejects_unknown_verdicts_and_missing_keys() -> None:
+def test_result_schema_allows_new_keys_but_no_unknown_verdict_or_missing_key() -> None:
     content = as_written(diagnosis_by_hand("missing").to_dict())
     assert violations("diagnosis", content | {"later": 1}, SCHEMA) == []
     assert any("'later'" in v for v in violations("diagnosis", content | {"later": 1}))
@@ -84,31 +76,30 @@ def test_schema_allows_new_keys_and_rejects_unknown_verdicts_and_missing_keys() 
 
 
 @pytest.mark.parametrize("verdict", ["adequate", "missing", "ambiguous", "unexplained"])
-def test_diagnosis_of_each_verdict_agrees_with_the_schema(verdict: str) -> None:
+def test_json_of_a_diagnosis_with_each_verdict_agrees_with_the_schema(verdict: str) -> None:
     assert violations("diagnosis", as_written(diagnosis_by_hand(verdict).to_dict())) == []
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["bearing_coulomb_drag", pytest.param("slide_law_selection", marks=pytest.mark.extended)],
-)
-def test_diagnosis_of_a_simulated_campaign_agrees_with_the_schema(name: str) -> None:
+SIMULATED = ("bearing_coulomb_drag", pytest.param("slide_law_selection", marks=EXTENDED))
+
+
+@pytest.mark.parametrize("name", SIMULATED)
+def test_json_of_a_simulated_diagnosis_has_power_and_agrees_with_the_schema(name: str) -> None:
     content = as_written(golden(name).to_dict())
     assert violations("diagnosis", content) == []
     assert content["power"]
     assert bool(content["laws"]) == (name == "slide_law_selection")
 
 
-def test_comparison_on_a_drive_has_its_units_and_agrees_with_the_schema() -> None:
+def test_json_of_a_comparison_has_units_of_the_drive_and_agrees_with_the_schema() -> None:
     rig = jbf.Rig(drive=jbf.Drive("rotary", "current", torque_constant_n_m_a=0.5))
-    comparison = comparison_by_hand(1.25, (1.0, 1.5))
-    model = replace(comparison.model, rig=rig)
-    content = as_written(replace(comparison, model=model).to_dict())
+    linear = comparison_by_hand(1.25, (1.0, 1.5))
+    content = as_written(replace(linear, model=replace(linear.model, rig=rig)).to_dict())
     assert violations("comparison", content) == []
     assert content["units"] == {"force": "N m", "velocity": "rad/s", "length": "rad"}
 
 
-def test_robustness_and_thesis_tables_agree_with_the_schema() -> None:
+def test_json_of_robustness_and_thesis_tables_agrees_with_the_schema() -> None:
     outcomes = [Outcome("a case", {"velocity sine": 0.3})]
     assert violations("robustness", as_written(robustness_dict(outcomes))) == []
     short = {row: replace(task, seconds=3.0) for row, task in jbf.control.TASKS.items()}
@@ -119,10 +110,8 @@ def test_robustness_and_thesis_tables_agree_with_the_schema() -> None:
 
 
 @pytest.mark.extended
-def test_json_files_of_the_commands_agree_with_the_schema(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.usefixtures("working_folder")
+def test_json_of_each_command_agrees_with_the_schema() -> None:
     rig = jbf.Rig.thesis()
     rig.write("rig.toml")
     model = jbf.Model(rig, effects=["coulomb_drag"], parameters={"coulomb_drag.F_d_n": 2.0})

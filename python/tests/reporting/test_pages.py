@@ -1,27 +1,14 @@
 """HTML pages: self-contained, escaped, and with the numbers under their headings."""
 
-from __future__ import annotations
-
 import base64
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import jbf
 import pytest
 from by_hand import LAW, TRIALS, along, diagnosis_by_hand, fit_by_hand, there_and_back
-from jbf import (
-    Bootstrap,
-    Diagnosis,
-    Drive,
-    InputError,
-    Model,
-    ParameterValue,
-    Rig,
-    TrajectoryFit,
-    compare,
-    control,
-)
 from jbf.diagnosis.power import Power
 from jbf.reporting.diagnosis_page import diagnosis_page
 from jbf.reporting.fit_page import bootstrap_page, fit_page, loop_page, trajectory_page
@@ -78,7 +65,7 @@ class Page(HTMLParser):
         return found[1:]
 
 
-def diagnosis_of(verdict: str) -> Diagnosis:
+def diagnosis_of(verdict: str) -> jbf.Diagnosis:
     """A diagnosis of each verdict: `missing` with power, `unexplained` of a rotary drive."""
     found = diagnosis_by_hand(verdict)
     if verdict == "missing":
@@ -86,15 +73,14 @@ def diagnosis_of(verdict: str) -> Diagnosis:
         second = replace(found.steps[1], trials=TRIALS[2:])
         return replace(found, power=power, steps=(found.steps[0], second), unseen=("wear_in",))
     if verdict == "unexplained":
-        joint = Rig(drive=Drive("rotary", "current", torque_constant_n_m_a=0.5))
+        joint = jbf.Rig(drive=jbf.Drive("rotary", "current", torque_constant_n_m_a=0.5))
         model = replace(found.fit.model, rig=joint)
         return replace(found, fit=replace(found.fit, model=model))
     return found
 
 
-@shared
+@shared  # drawing takes a second
 def html_of(verdict: str) -> str:
-    """The page of a diagnosis, which takes a second to draw."""
     return diagnosis_page(diagnosis_of(verdict), "jbf diagnose 'a b'")
 
 
@@ -102,14 +88,10 @@ def page(verdict: str) -> Page:
     return Page(html_of(verdict))
 
 
-@pytest.mark.parametrize(
-    "verdict",
-    [
-        "missing",
-        "unexplained",
-        *(pytest.param(v, marks=pytest.mark.extended) for v in ("adequate", "ambiguous")),
-    ],
-)
+EXTENDED = (pytest.param(v, marks=pytest.mark.extended) for v in ("adequate", "ambiguous"))
+
+
+@pytest.mark.parametrize("verdict", ["missing", "unexplained", *EXTENDED])
 def test_diagnosis_page_has_all_plots_and_no_external_links(verdict: str) -> None:
     text = html_of(verdict)
     found = Page(text)
@@ -134,20 +116,18 @@ def test_diagnosis_page_begins_with_the_verdict_and_the_ledger() -> None:
 
 
 def test_diagnosis_page_lists_the_errors_of_each_step_of_the_ledger() -> None:
-    assert page("missing").below(*LEDGER) == [
-        ["bare law", "2.50", "2.75", "0.500", "5.50"],
-        ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
-    ]
+    bare = ["bare law", "2.50", "2.75", "0.500", "5.50"]
+    added = ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"]
+    assert page("missing").below(*LEDGER) == [bare, added]
     torques = [cell.replace("(N)", "(N m)") for cell in LEDGER]
-    assert page("unexplained").below(*torques) == [["bare law", "2.50", "2.75", "0.500", "5.50"]]
+    assert page("unexplained").below(*torques) == [bare]
 
 
 def test_diagnosis_page_has_the_rms_of_each_run_under_bare_law_and_final_model() -> None:
     both = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
-    assert page("missing").below(*both) == [
-        ["there", "501", "2.00", "0.450", "0.90"],
-        ["back", "500", "3.00", "0.600", "1.20"],
-    ]
+    there, back = page("missing").below(*both)
+    assert there == ["there", "501", "2.00", "0.450", "0.90"]
+    assert back == ["back", "500", "3.00", "0.600", "1.20"]
 
 
 def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() -> None:
@@ -162,10 +142,8 @@ def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() 
 
 
 def test_diagnosis_page_lists_candidates_under_each_step_that_tried_them() -> None:
-    assert re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing")) == [
-        "bare law",
-        "bare law + sensor_offset",
-    ]
+    headings = re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing"))
+    assert headings == ["bare law", "bare law + sensor_offset"]
     assert len(re.findall("inertia_leak</td>", html_of("missing"))) == 2
 
 
@@ -198,26 +176,20 @@ def test_diagnosis_page_has_detection_limits_undetectable_and_untried_effects() 
     assert "structure stands above it" in page("unexplained").text
 
 
-def test_diagnosis_page_of_a_rotary_drive_has_its_units() -> None:
+def test_diagnosis_page_of_a_rotary_drive_has_the_units_of_the_drive() -> None:
     found = page("unexplained")
-    assert found.below("run", "samples", "RMS (N m)", "RMS / noise") == [
-        ["there", "501", "2.00", "4.00"],
-        ["back", "500", "3.00", "6.00"],
-    ]
+    there, back = found.below("run", "samples", "RMS (N m)", "RMS / noise")
+    assert there == ["there", "501", "2.00", "4.00"]
+    assert back == ["back", "500", "3.00", "6.00"]
     rows = found.below("parameter", "value", "standard error", "", "unit", "note")
-    assert [(row[0], row[4]) for row in rows] == [
-        ("F_c", "N m"),
-        ("F_s", "N m"),
-        ("F_v", "N m s/rad"),
-    ]
+    units = {row[0]: row[4] for row in rows}
+    assert units == {"F_c": "N m", "F_s": "N m", "F_v": "N m s/rad"}
 
 
 def test_comparison_page_has_runs_and_failures_and_escapes_run_names(tmp_path: Path) -> None:
-    runs = [
-        replace(run, name=f"<script>$x^{{$</script>{i}")
-        for i, run in enumerate(there_and_back(along(1.0)))
-    ]
-    compared = compare(Model(Rig(), "coulomb", parameters=LAW), runs)
+    plain = enumerate(there_and_back(along(1.0)))
+    runs = [replace(run, name=f"<script>$x^{{$</script>{i}") for i, run in plain]
+    compared = jbf.compare(jbf.Model(jbf.Rig(), "coulomb", parameters=LAW), runs)
     compared.save_html(tmp_path / "c.html")
     assert [p.name for p in tmp_path.iterdir()] == ["c.html"]
     text = (tmp_path / "c.html").read_text(encoding="utf-8")
@@ -233,15 +205,15 @@ def test_comparison_page_has_runs_and_failures_and_escapes_run_names(tmp_path: P
 
 
 def test_saving_a_page_in_a_missing_folder_is_rejected(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="folder does not exist"):
+    with pytest.raises(jbf.InputError, match="folder does not exist"):
         fit_by_hand().save_html(tmp_path / "no" / "c.html")
 
 
 def test_pages_of_fits_and_loops_have_their_summary_and_one_plot() -> None:
     fit = fit_by_hand()
-    bootstrap = Bootstrap(fit, dict.fromkeys(fit.parameters, fit.residuals[0][:3]))
-    trajectory = TrajectoryFit({"f_m": ParameterValue(0.25, 0.01)}, 1.0, 2, 3, True, "")
-    loop = control.run(None, "none", replace(control.TASKS["velocity sine"], seconds=2.1))
+    bootstrap = jbf.Bootstrap(fit, dict.fromkeys(fit.parameters, fit.residuals[0][:3]))
+    trajectory = jbf.TrajectoryFit({"f_m": jbf.ParameterValue(0.25, 0.01)}, 1.0, 2, 3, True, "")
+    loop = jbf.control.run(None, "none", replace(jbf.control.TASKS["velocity sine"], seconds=2.1))
     for text, result in (
         (fit_page(fit), fit),
         (bootstrap_page(bootstrap), bootstrap),

@@ -1,7 +1,5 @@
 """A report in a browser: network requests, layout, colour schemes and print."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
@@ -35,10 +33,8 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a campaign of many runs with long names."""
     diagnosis = diagnosis_by_hand("missing")
     runs = [p.run for p in diagnosis.before.campaign.prepared]
-    many = [
-        replace(runs[i % len(runs)], name=f"{i:02d}_a_run_with_a_long_name_{i % 7}")
-        for i in range(RUNS)
-    ]
+    names = [f"{i:02d}_a_run_with_a_long_name_{i % 7}" for i in range(RUNS)]
+    many = [replace(runs[i % len(runs)], name=name) for i, name in enumerate(names)]
 
     def repeated(comparison: Comparison) -> Comparison:
         return compare(comparison.model, [run.select(slice(0, 400)) for run in many])
@@ -51,9 +47,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_report_fits_the_screen_follows_the_colour_scheme_and_loads_no_external_file(
-    browser: Any, report: Path, scheme: str
-) -> None:
+def test_report_fits_screen_without_external_files(browser: Any, report: Path, scheme: str) -> None:
     assert report.stat().st_size < MOST_BYTES
     page = browser.new_page(viewport=SCREEN, color_scheme=scheme)
     messages: list[str] = []
@@ -83,9 +77,7 @@ def test_report_fits_the_screen_follows_the_colour_scheme_and_loads_no_external_
 
 
 @pytest.mark.extended
-def test_printed_report_has_dark_headings_and_fits_the_page_width(
-    browser: Any, report: Path
-) -> None:
+def test_printed_report_has_dark_headings_and_fits_the_page(browser: Any, report: Path) -> None:
     page = browser.new_page(viewport={"width": 720, "height": 1000}, color_scheme="dark")
     page.goto(report.as_uri())
     page.emulate_media(media="print", color_scheme="dark")

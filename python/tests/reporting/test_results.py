@@ -1,7 +1,5 @@
 """Methods of all results: summary, plot, page, JSON, frame, repr and HTML table."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Sequence
@@ -22,26 +20,22 @@ from jbf.reporting.json import json_text
 from jbf.reporting.short import LONGEST, first_of
 from jbf.results import Result
 
+Results = dict[str, Result]
+KINDS = ("fit", "bootstrap", "trajectory fit", "comparison", "diagnosis", "loop")
 TRAJECTORY = TrajectoryFit(
     {"f_m": ParameterValue(0.25, 0.0012), "U_tr_m_s": ParameterValue(0.05)}, 4e-4, 100, 7, True, ""
 )
 
 
 @pytest.fixture(scope="module")
-def results() -> dict[str, Result]:
-    """One result of each kind."""
+def results() -> Results:
     fit = fit_by_hand(["sensor_offset"])
+    answers = {n: p.value + np.arange(3.0) for n, p in fit.parameters.items()}
     task = control.Task("velocity", "sine", -5.0, 5.0, 2.0, seconds=2.0)
-    return {
-        "fit": fit,
-        "bootstrap": Bootstrap(
-            fit, {n: p.value + np.arange(3.0) for n, p in fit.parameters.items()}
-        ),
-        "trajectory fit": TRAJECTORY,
-        "comparison": comparison_by_hand(1.25, (1.0, 1.5)),
-        "diagnosis": diagnosis_by_hand("ambiguous"),
-        "loop": control.run(None, "observed", task),
-    }
+    comparison, diagnosis = comparison_by_hand(1.25, (1.0, 1.5)), diagnosis_by_hand("ambiguous")
+    loop = control.run(None, "observed", task)
+    all_results = (fit, Bootstrap(fit, answers), TRAJECTORY, comparison, diagnosis, loop)
+    return dict(zip(KINDS, all_results, strict=True))
 
 
 @pytest.fixture
@@ -53,12 +47,8 @@ def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("frame_is_dict")
-@pytest.mark.parametrize(
-    "kind", ["fit", "bootstrap", "trajectory fit", "comparison", "diagnosis", "loop"]
-)
-def test_each_kind_of_result_has_summary_plot_json_page_repr_table_and_frame(
-    kind: str, results: dict[str, Result], tmp_path: Path
-) -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_result_is_reported_in_every_form(kind: str, results: Results, tmp_path: Path) -> None:
     result = results[kind]
     assert result.summary()
     for ax in result.plot():
@@ -84,7 +74,7 @@ def test_reporting_functions_reject_an_object_that_is_not_a_result() -> None:
             method(3)  # type: ignore[operator]
 
 
-def test_parameter_is_found_by_its_full_and_its_short_name() -> None:
+def test_fit_parameter_is_found_by_full_name_and_by_name_without_unit() -> None:
     fit = fit_by_hand(["sensor_offset"])
     assert fit["sensor_offset.b"] is fit.parameters["sensor_offset.b_n"]
     assert fit["F_c"].value == fit.values["F_c_n"] == 4.9876
@@ -148,7 +138,7 @@ def test_repr_of_a_comparison_and_a_diagnosis_have_error_and_noise() -> None:
     assert repr(diagnosis_by_hand("adequate")).startswith("Diagnosis(adequate;")
 
 
-def test_list_longer_than_120_characters_is_shortened_after_an_item() -> None:
+def test_repr_list_above_120_characters_is_shortened_after_an_item() -> None:
     assert LONGEST == 120
     assert first_of(["a" * 59, "b" * 59]) == f"{'a' * 59}, {'b' * 59}"
     assert first_of(["a" * 59, "b" * 60]) == f"{'a' * 59}, ..."
@@ -166,9 +156,7 @@ def test_list_longer_than_120_characters_is_shortened_after_an_item() -> None:
         ("diagnosis", ("+ sensor_offset", "0.525", "0.550", "0.500", "1.10")),
     ],
 )
-def test_html_table_shows_parameters_of_a_fit_runs_of_a_comparison_and_diagnosis_steps(
-    results: dict[str, Result], kind: str, row: tuple[str, ...]
-) -> None:
+def test_html_table_has_rows_of_a_result(results: Results, kind: str, row: tuple[str, ...]) -> None:
     cells = "".join(f"<td>{cell}</td>" for cell in row)
     assert f"<tr>{cells}</tr>" in results[kind]._repr_html_()
 

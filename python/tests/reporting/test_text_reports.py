@@ -1,7 +1,5 @@
 """Reports as plain text: sections, and the numbers in the table of each."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any
@@ -45,25 +43,19 @@ def has_section(text: str, heading: str) -> bool:
 def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     report = fit_by_hand(["sensor_offset"]).summary()
     statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
-    assert statistics == {
-        "law": "= coulomb",
-        "effects": "= sensor_offset",
-        "runs": "= 2",
-        "samples": "= 1001",
-        "RMS of the residual": "= 0.525 N",
-        "noise in the residual": "= coloured, share 0.25, memory 0.15 s",
-        "search": "= converged",
-    }
+    expected = {"law": "coulomb", "effects": "sensor_offset", "runs": "2", "samples": "1001"}
+    expected |= {"RMS of the residual": "0.525 N", "search": "converged"}
+    expected["noise in the residual"] = "coloured, share 0.25, memory 0.15 s"
+    assert statistics == {name: f"= {value}" for name, value in expected.items()}
     assert section(report, "[[Parameters]]") == [
         ["F_c_n", "4.988", "+/- 0.012", "(0.25 %)", "N"],
         ["F_s_n", "held at 6.0000", "N", "(held fixed)"],
         ["F_v_n_s_m", "20.44", "+/- 0.52", "(2.5 %)", "N s/m"],
         ["sensor_offset.b_n", "-0.250", "+/- 0.025", "(10 %)", "N"],
     ]
-    assert section(report, "[[Correlations]]") == [
-        ["C(F_c_n, F_v_n_s_m)", "= -0.900"],
-        ["C(F_c_n, sensor_offset.b_n)", "= +0.450"],
-    ]
+    strong, weak = section(report, "[[Correlations]]")
+    assert strong == ["C(F_c_n, F_v_n_s_m)", "= -0.900"]
+    assert weak == ["C(F_c_n, sensor_offset.b_n)", "= +0.450"]
 
 
 def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:
@@ -93,10 +85,9 @@ def test_trajectory_report_has_statistics_and_parameters() -> None:
     assert (statistics["samples"], statistics["simulations"]) == ("= 100", "= 7")
     assert statistics["sum of squares"].startswith("= 0.000400")
     assert statistics["search"] == "= converged"
-    assert section(found.summary(), "[[Parameters]]") == [
-        ["f_m", "0.2500", "+/- 0.0012", "(0.48 %)"],
-        ["U_tr_m_s", "0.050000", "m/s", "(no error known)"],
-    ]
+    f_m, u_tr = section(found.summary(), "[[Parameters]]")
+    assert f_m == ["f_m", "0.2500", "+/- 0.0012", "(0.48 %)"]
+    assert u_tr == ["U_tr_m_s", "0.050000", "m/s", "(no error known)"]
     assert "not converged: lost" in replace(found, converged=False, message="lost").summary()
 
 
@@ -140,10 +131,8 @@ def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> N
         ["bare law", "2.50", "2.75", "0.500", "5.50"],
         ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
     ]
-    assert section(report, "Parameters of the final model")[3][:2] == [
-        "sensor_offset.b_n",
-        "-0.250",
-    ]
+    parameters = section(report, "Parameters of the final model")
+    assert parameters[3][:2] == ["sensor_offset.b_n", "-0.250"]
 
 
 def test_optional_sections_of_a_diagnosis_report_appear_only_with_content() -> None:
@@ -151,42 +140,33 @@ def test_optional_sections_of_a_diagnosis_report_appear_only_with_content() -> N
     laws = (LawTried("coulomb", 2, 0.55, True), LawTried("stribeck", 4, 0.551, True))
     plain = replace(diagnosis_by_hand("missing"), not_tried={})
     full = replace(plain, power=power, laws=laws, findings=(GAP,)).summary()
-    assert section(full, "Which law")[1:] == [
-        ["coulomb", "2", "0.550", "taken"],
-        ["stribeck", "4", "0.551", "predicts as well"],
-    ]
-    assert section(full, "What these runs would have shown")[1] == [
-        "sensor_lag",
-        "tau_s 0.0100 s",
-        "10 %",
-        "0.0200",
-    ]
+    assert section(full, "Which law")[2] == ["stribeck", "4", "0.551", "predicts as well"]
+    shown = section(full, "What these runs would have shown")[1]
+    assert shown == ["sensor_lag", "tau_s 0.0100 s", "10 %", "0.0200"]
     assert has_section(full, "What the recording did")
     for heading in ("Which law", "What these runs", "What the recording did", "Not tried"):
         assert not has_section(plain.summary(), heading)
 
 
-def test_diagnosis_report_has_residual_structure_next_experiment_and_unseen_effects() -> None:
+def test_diagnosis_report_has_structure_next_experiment_and_unseen_effects() -> None:
     unexplained = diagnosis_by_hand("unexplained").summary()
-    assert section(unexplained, "What remains") == [
-        ["frequency", "12 %", "a 3.00 Hz tone"],
-        ["time", "4 %", "2 bursts"],
-    ]
+    tone, bursts = section(unexplained, "What remains")
+    assert tone == ["frequency", "12 %", "a 3.00 Hz tone"]
+    assert bursts == ["time", "4 %", "2 bursts"]
     assert "Next experiment: record a rest" in diagnosis_by_hand("ambiguous").summary()
     adequate = diagnosis_by_hand("adequate").summary()
     assert section(adequate, "Could be there")[0] == ["backlash"]
     assert "no pattern along any axis" in adequate
 
 
-def test_report_of_a_simulated_campaign_has_lines_of_100_characters_and_all_steps() -> None:
+def test_diagnosis_report_has_all_steps_in_lines_of_at_most_100_characters() -> None:
     diagnosis = golden("bearing_coulomb_drag")
     report = diagnosis.summary()
     assert max(map(len, report.splitlines())) <= 100
     rows = section(report, "The error falling")[1:]
     steps = [(float(row[1]), float(row[2])) for row in rows]
-    assert steps == [
-        pytest.approx((step.rms_n, step.holdout_rms_n), rel=5e-3) for step in diagnosis.steps
-    ]
+    expected = [(step.rms_n, step.holdout_rms_n) for step in diagnosis.steps]
+    assert steps == [pytest.approx(errors, rel=5e-3) for errors in expected]
     parameters = section(report, "Parameters of the final model")
     assert [row[0] for row in parameters] == list(diagnosis.model.parameters)
 
@@ -207,7 +187,7 @@ def test_check_report_has_counts_shares_and_exact_intervals() -> None:
 LEVEL = Level(0.025, 20, 0.00125, imperfection=0.0, worth=0.0)
 
 
-def test_level_states_false_alarm_rate_candidates_and_threshold() -> None:
+def test_level_text_has_false_alarm_rate_candidates_and_threshold() -> None:
     words = level_words(LEVEL)
     assert "2.5 %" in words
     assert "20 candidates" in words
@@ -225,9 +205,7 @@ def test_level_states_false_alarm_rate_candidates_and_threshold() -> None:
         ({"decoys": 2, "decoys_named": 2}, "below 100 %"),
     ],
 )
-def test_level_states_each_further_threshold_only_if_it_applies(
-    changes: dict[str, Any], fragment: str
-) -> None:
+def test_level_text_has_further_thresholds_only_if_they_apply(changes: Any, fragment: str) -> None:
     assert fragment in level_words(replace(LEVEL, **changes))
     assert fragment not in level_words(LEVEL)
 
@@ -245,10 +223,9 @@ def test_planned_power_report_lists_noise_detection_limits_and_untried_effects()
     planned = planned_power()
     report = planned.summary()
     assert report.startswith("2 runs beside coulomb + inertia_leak, noise of 0.100 N")
-    assert section(report, "What such runs show")[1:3] == [
-        ["sensor_offset", "b_n 2.00 N", "1.2 %", "same", "wear_in"],
-        ["sensor_lag", "never"],
-    ]
+    _, offset, lag = section(report, "What such runs show")[:3]
+    assert offset == ["sensor_offset", "b_n 2.00 N", "1.2 %", "same", "wear_in"]
+    assert lag == ["sensor_lag", "never"]
     assert section(report, "Not asked for")[0] == ["backlash: no path"]
     assert "2 runs show 1 of 2 effects" in repr(planned)
 

@@ -1,9 +1,8 @@
 """Sentences about comparisons and verdicts: which effects and which numbers they contain."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from by_hand import TRIALS, diagnosis_by_hand
@@ -11,17 +10,7 @@ from jbf import Diagnosis, Model, Rig
 from jbf.diagnosis import Remainder, Step, Trial
 from jbf.diagnosis.which_law import LawTried
 from jbf.models.parameter_value import ParameterValue
-from jbf.reporting.words import (
-    headline_and_rest,
-    law_and_effects,
-    law_words,
-    listed,
-    measured,
-    number,
-    percent,
-    times,
-    verdict_sentence,
-)
+from jbf.reporting import words
 
 ADDED, TIED, REJECTED, NO_GAIN = TRIALS
 FALL = [2.75, 0.55, 1.1, 0.5]
@@ -34,38 +23,34 @@ def numbers_in(text: str) -> list[float]:
     return [float(x) for x in re.findall(r"\d+\.\d+", text)]
 
 
-def test_value_is_rounded_to_the_second_digit_of_its_error() -> None:
-    assert measured(0.25996, 0.00071) == ("0.25996", "0.00071")
-    assert measured(649312.7, 7346.0) == ("649300", "7300")
-    assert measured(0.0, 0.5) == ("0.00", "0.50")
-    assert measured(3.0e9, 2.0e6) == ("3.0000e+09", "2.0e+06")
-    assert measured(1.5, None) == measured(1.5, float("nan")) == ("1.5000", "")
+def test_parameter_value_is_rounded_to_the_second_digit_of_its_error() -> None:
+    assert words.measured(0.25996, 0.00071) == ("0.25996", "0.00071")
+    assert words.measured(649312.7, 7346.0) == ("649300", "7300")
+    assert words.measured(0.0, 0.5) == ("0.00", "0.50")
+    assert words.measured(3.0e9, 2.0e6) == ("3.0000e+09", "2.0e+06")
+    assert words.measured(1.5, None) == words.measured(1.5, float("nan")) == ("1.5000", "")
 
 
 def test_numbers_are_printed_with_three_digits_and_percentages_with_two() -> None:
-    assert [number(x) for x in (0.0, 0.28571, 12345.6, 1e-9)] == ["0", "0.286", "12346", "1.00e-09"]
-    assert percent(ParameterValue(-2.0, 0.01)) == "0.50 %"
-    assert percent(ParameterValue(0.0, 0.01)) == percent(ParameterValue(1.0)) == ""
-    assert [times(e, 0.5) for e in (0.25, 0.6474)] == ["0.50 times", "1.29 times"]
-    assert times(1.0, 0.0) == "above"
+    numbers = [words.number(x) for x in (0.0, 0.28571, 12345.6, 1e-9)]
+    assert numbers == ["0", "0.286", "12346", "1.00e-09"]
+    assert words.percent(ParameterValue(-2.0, 0.01)) == "0.50 %"
+    assert words.percent(ParameterValue(0.0, 0.01)) == words.percent(ParameterValue(1.0)) == ""
+    assert [words.times(e, 0.5) for e in (0.25, 0.6474)] == ["0.50 times", "1.29 times"]
+    assert words.times(1.0, 0.0) == "above"
 
 
-def test_listed_items_are_joined_by_commas_and_a_conjunction_before_the_last() -> None:
-    assert [listed("abcd"[:n], "or") for n in range(5)] == [
-        "",
-        "a",
-        "a or b",
-        "a, b or c",
-        "a, b, c or d",
-    ]
+def test_list_is_joined_by_commas_and_a_conjunction_before_the_last_item() -> None:
+    lists = [words.listed("abcd"[:n], "or") for n in range(5)]
+    assert lists == ["", "a", "a or b", "a, b or c", "a, b, c or d"]
 
 
-def test_clock_is_printed_only_for_a_law_with_a_film() -> None:
+def test_film_clock_is_printed_only_for_a_law_with_a_film() -> None:
     coulomb = Model(Rig(), "coulomb", ["sensor_offset", "wear_in"])
-    assert law_words(Model(Rig.thesis())) == "journal (clock journal)"
-    assert law_words(Model(Rig.thesis()), ", ") == "journal, clock journal"
-    assert law_words(coulomb) == law_words(coulomb, ", ") == "coulomb"
-    assert law_and_effects(coulomb) == "coulomb + wear_in + sensor_offset"
+    assert words.law_words(Model(Rig.thesis())) == "journal (clock journal)"
+    assert words.law_words(Model(Rig.thesis()), ", ") == "journal, clock journal"
+    assert words.law_words(coulomb) == words.law_words(coulomb, ", ") == "coulomb"
+    assert words.law_and_effects(coulomb) == "coulomb + wear_in + sensor_offset"
 
 
 @pytest.mark.parametrize(
@@ -77,28 +62,24 @@ def test_clock_is_printed_only_for_a_law_with_a_film() -> None:
         ("unexplained", "no effect in the catalogue explains", [3.0, 2.75, 5.5, 0.5]),
     ],
 )
-def test_verdict_sentence_has_the_effects_and_held_out_errors_of_each_verdict(
-    verdict: str, key: str, values: list[float]
-) -> None:
-    sentence = verdict_sentence(diagnosis_by_hand(verdict))
+def test_verdict_sentence_has_effects_and_their_errors(verdict: str, key: str, values: Any) -> None:
+    sentence = words.verdict_sentence(diagnosis_by_hand(verdict))
     assert key in sentence
     assert numbers_in(sentence) == values
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_verdict_sentence_has_the_held_out_errors_of_the_first_and_the_last_step(
-    count: int,
-) -> None:
+def test_verdict_sentence_has_held_out_errors_of_first_and_last_step(count: int) -> None:
     steps = tuple(Step(("a",) * i, 1.0, 9.5 - i, 0.5 + 0.1 * i, ()) for i in range(count))
     diagnosis = replace(diagnosis_by_hand("missing"), steps=steps)
     last, noise = 10.5 - count, 0.4 + 0.1 * count
     expected = [9.5, last, last / noise, noise]
-    assert numbers_in(verdict_sentence(diagnosis)) == pytest.approx(expected, abs=6e-3)
+    assert numbers_in(words.verdict_sentence(diagnosis)) == pytest.approx(expected, abs=6e-3)
 
 
 def test_headline_has_the_verdict_with_posterior_weights_but_without_errors() -> None:
     heads = {
-        verdict: headline_and_rest(diagnosis_by_hand(verdict))[0]
+        verdict: words.headline_and_rest(diagnosis_by_hand(verdict))[0]
         for verdict in ("adequate", "missing", "ambiguous", "unexplained")
     }
     assert heads["adequate"] == "Nothing is missing."
@@ -106,34 +87,32 @@ def test_headline_has_the_verdict_with_posterior_weights_but_without_errors() ->
     assert "sensor_offset (62 %) or sensor_drift (38 %)" in heads["ambiguous"]
     assert "no effect in the catalogue" in heads["unexplained"]
     for verdict, head in heads.items():
-        rest = headline_and_rest(diagnosis_by_hand(verdict))[1]
+        rest = words.headline_and_rest(diagnosis_by_hand(verdict))[1]
         assert numbers_in(head) == []
-        assert numbers_in(rest) == numbers_in(verdict_sentence(diagnosis_by_hand(verdict)))
+        assert numbers_in(rest) == numbers_in(words.verdict_sentence(diagnosis_by_hand(verdict)))
 
 
 def test_unexplained_verdict_names_the_effects_found_and_the_residual_structure() -> None:
     remains = diagnosis_by_hand("unexplained").unexplained
     both = replace(diagnosis_by_hand("missing"), verdict="unexplained", unexplained=remains)
-    sentence = verdict_sentence(both)
+    sentence = words.verdict_sentence(both)
     assert sentence.startswith("Missing: sensor_offset.")
     assert numbers_in(sentence) == [*FALL, 3.0]
-    headline, _ = headline_and_rest(both)
+    headline, _ = words.headline_and_rest(both)
     assert "sensor_offset" in headline
     assert "no effect in the catalogue" in headline
 
 
-def test_alternatives_are_listed_by_effect_with_their_weights_if_known() -> None:
+def test_ambiguous_verdict_lists_alternatives_by_effect_with_known_weights() -> None:
+    effects = ("sensor_offset", "wear_in", "backlash")
+    ties = (("sensor_drift",), (), ("presliding", "time_delay"))
     diagnosis = replace(
         diagnosis_by_hand("ambiguous"),
-        effects=("sensor_offset", "wear_in", "backlash"),
-        alternatives={
-            "sensor_offset": ("sensor_drift",),
-            "wear_in": (),
-            "backlash": ("presliding", "time_delay"),
-        },
+        effects=effects,
+        alternatives=dict(zip(effects, ties, strict=True)),
         weights={"sensor_offset": {"sensor_offset": 0.704, "sensor_drift": 0.296}},
     )
-    alternatives = verdict_sentence(diagnosis).partition(". With")[0].partition(": ")[2]
+    alternatives = words.verdict_sentence(diagnosis).partition(". With")[0].partition(": ")[2]
     assert alternatives.split("; ") == [
         "sensor_offset (70 %) or sensor_drift (30 %)",
         "backlash, presliding or time_delay",
@@ -149,12 +128,10 @@ def test_alternatives_are_listed_by_effect_with_their_weights_if_known() -> None
         ((0.3, 0.2, 0.1), ": place 0 (and 2 more, see there)"),
     ],
 )
-def test_largest_residual_structure_is_named_and_the_others_are_counted(
-    shares: tuple[float, ...], expected: str
-) -> None:
+def test_verdict_names_largest_residual_structure(shares: tuple[float, ...], expected: str) -> None:
     remains = tuple(Remainder("time", f"place {i}", share) for i, share in enumerate(shares))
     diagnosis = replace(diagnosis_by_hand("unexplained"), unexplained=remains)
-    sentence = verdict_sentence(diagnosis, ", see there")
+    sentence = words.verdict_sentence(diagnosis, ", see there")
     assert f"explains{expected}." in sentence
 
 
@@ -178,20 +155,17 @@ def with_last_trials(verdict: str, *trials: Trial) -> Diagnosis:
         ("unexplained", (REJECTED,), False),
     ],
 )
-def test_rejected_candidate_with_a_gain_is_named_as_unconfirmed(
-    verdict: str, trials: tuple[Trial, ...], named: bool
-) -> None:
+def test_rejected_gain_is_named_if_nothing_is_added(verdict: str, trials: Any, named: bool) -> None:
     """Only if the last step added nothing and the verdict is missing or adequate."""
-    sentence = verdict_sentence(with_last_trials(verdict, *trials))
+    sentence = words.verdict_sentence(with_last_trials(verdict, *trials))
     assert sentence.endswith("not named: inertia_leak.") == named
 
 
 def test_confounders_of_the_model_are_stated_not_to_be_part_of_the_verdict() -> None:
     for names in (("wear_in",), ("wear_in", "backlash")):
         diagnosis = replace(diagnosis_by_hand("unexplained"), confounders=names)
-        addition = verdict_sentence(diagnosis).removeprefix(
-            verdict_sentence(diagnosis_by_hand("unexplained"))
-        )
+        without = words.verdict_sentence(diagnosis_by_hand("unexplained"))
+        addition = words.verdict_sentence(diagnosis).removeprefix(without)
         assert " and ".join(names) in addition
         assert "not named" in addition
 
@@ -200,19 +174,19 @@ def test_chosen_law_is_named_with_the_laws_that_predict_as_well() -> None:
     tied = {"coulomb": True, "stribeck": True, "lugre": False, "bristle": True}
     laws = tuple(LawTried(name, 2, 0.5, flag) for name, flag in tied.items())
     diagnosis = diagnosis_by_hand("missing")
-    sentence = verdict_sentence(replace(diagnosis, laws=laws))
+    sentence = words.verdict_sentence(replace(diagnosis, laws=laws))
     assert "The data chose the law coulomb" in sentence
     assert "stribeck and bristle too" in sentence
     assert "lugre" not in sentence
-    without_ties = verdict_sentence(replace(diagnosis, laws=(laws[0], laws[2])))
+    without_ties = words.verdict_sentence(replace(diagnosis, laws=(laws[0], laws[2])))
     assert without_ties.endswith("The data chose the law coulomb.")
 
 
-def test_simpler_law_is_named_with_both_held_out_errors_unless_laws_were_compared() -> None:
+def test_simpler_law_is_named_with_both_errors_unless_laws_were_compared() -> None:
     diagnosis = diagnosis_by_hand("missing")
     simpler = LawTried("stribeck", 4, 0.5432, False)
-    sentence = verdict_sentence(replace(diagnosis, simpler_law=simpler))
+    sentence = words.verdict_sentence(replace(diagnosis, simpler_law=simpler))
     assert "stribeck" in sentence
     assert numbers_in(sentence) == [*FALL, 0.543, 0.55]
     chosen = replace(diagnosis, simpler_law=simpler, laws=(LawTried("coulomb", 2, 0.5, True),))
-    assert "stribeck" not in verdict_sentence(chosen)
+    assert "stribeck" not in words.verdict_sentence(chosen)

@@ -1,9 +1,6 @@
 """A folder with a small campaign, a session on it, and an authorised client."""
 
-from __future__ import annotations
-
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
@@ -30,6 +27,11 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
+def inside_folder(campaign: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(campaign)
+
+
+@pytest.fixture
 def session(campaign: Path) -> Iterator[Session]:
     """A session on the folder without a loaded campaign."""
     session = Session(Folder.of(campaign))
@@ -38,8 +40,7 @@ def session(campaign: Path) -> Iterator[Session]:
 
 
 @pytest.fixture
-def loaded_session(session: Session, campaign: Path) -> Session:
-    """A session with the loaded campaign."""
+def loaded(session: Session, campaign: Path) -> Session:
     session.open("rig.toml", sorted(path.name for path in campaign.glob("*.csv")))
     return session
 
@@ -48,16 +49,3 @@ def loaded_session(session: Session, campaign: Path) -> Session:
 def client(session: Session) -> TestClient:
     """A client with the correct host and token."""
     return client_of(session)
-
-
-@pytest.fixture
-def wait_until_idle() -> Callable[[Session], None]:
-    """A function that waits until no fit runs."""
-
-    def wait(session: Session) -> None:
-        limit = time.monotonic() + 120.0
-        while session.jobs.job is not None:
-            assert time.monotonic() < limit, "the fit did not end"
-            time.sleep(0.02)
-
-    return wait

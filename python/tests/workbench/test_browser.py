@@ -11,6 +11,7 @@ import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
+from workbench_parts import slide_log
 from workbench_walk import looked_at, served, why_not
 
 if TYPE_CHECKING:
@@ -110,8 +111,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
             click(page, f"keep-{what}")
             page.wait_for_selector("text=/^Written: /")
             page.wait_for_timeout(300)
-        assert messages.complaints == []
-        assert messages.outside == []
+        assert messages.complaints == messages.outside == []
 
         saved = models(page)
         page.reload()
@@ -138,9 +138,7 @@ FOCUSED = """() => {
 
 
 @pytest.mark.extended
-def test_keyboard_reaches_every_control_with_visible_focus_and_selects_samples(
-    tmp_path: Path,
-) -> None:
+def test_keyboard_reaches_every_control_visibly_and_selects_samples(tmp_path: Path) -> None:
     with served(tmp_path, "--demo") as address, looked_at(address) as (page, messages):
         page.wait_for_selector("[data-drawn] canvas")
         for number in (1, 2, 3, 4):
@@ -185,9 +183,7 @@ SLOW_FILES = """() => {
 }"""
 
 
-def test_uploaded_recordings_can_be_imported_trimmed_and_fitted_in_the_browser(
-    tmp_path: Path,
-) -> None:
+def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> None:
     """Two records of a slide with 12 N of Coulomb friction and a mass, in ms and mm."""
     folder = tmp_path / "bench"
     folder.mkdir()
@@ -197,10 +193,7 @@ def test_uploaded_recordings_can_be_imported_trimmed_and_fitted_in_the_browser(
         x, v = stroke_m * np.sin(w * t), stroke_m * w * np.cos(w * t)
         noise = 0.3 * np.random.default_rng(number).standard_normal(len(t))
         force = 12.0 * np.sign(v) + 40.0 * v - 3.0 * w**2 * x + noise
-        rows = np.column_stack([1000.0 * t, 1000.0 * x, force])
-        lines = [";".join(f"{value:.4f}".replace(".", ",") for value in row) for row in rows]
-        text = "Time [ms];Position [mm];Force [N]\n" + "\n".join(lines) + "\n"
-        (tmp_path / f"log{number}.csv").write_text(text)
+        (tmp_path / f"log{number}.csv").write_text(slide_log(t, x, force))
 
     with served(folder) as address, looked_at(address) as (page, messages):
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
@@ -243,17 +236,15 @@ def test_uploaded_recordings_can_be_imported_trimmed_and_fitted_in_the_browser(
         page.wait_for_selector("[data-key=fit-law]:enabled")
         click(page, "fit-law")
         await_models(page, 1)
-        assert (
-            page.locator("[data-key^=add-]").first.get_attribute("data-key") == "add-inertia_leak"
-        )
+        first = page.locator("[data-key^=add-]").first
+        assert first.get_attribute("data-key") == "add-inertia_leak"
         click(page, "add-inertia_leak")
         await_models(page, 2)
         assert models(page)[1]["left_out"] < 0.33
         open_tab(page, 4)
         click(page, "keep-model")
         page.wait_for_selector("text=/^Written: model.toml/")
-        assert messages.complaints == []
-        assert messages.outside == []
+        assert messages.complaints == messages.outside == []
     model = jbf.Model.load(folder / "model.toml")
     assert model.parameters["F_c_n"].value == pytest.approx(12.0, abs=0.2)
     assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(3.0, abs=0.3)

@@ -1,7 +1,5 @@
 """Recordings in the workbench: guessed map, preview with a map or a form, import."""
 
-from __future__ import annotations
-
 import shlex
 from pathlib import Path
 from typing import Any
@@ -11,10 +9,11 @@ import pytest
 
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
+from jbf.cli import main
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from starlette.testclient import TestClient
-from workbench_parts import client_of
+from workbench_parts import client_of, slide_log
 
 STROKE_M = 0.06
 
@@ -25,13 +24,8 @@ def folder(tmp_path: Path) -> Path:
     t = np.arange(0.0, 20.0, 0.01)
     for number in (1, 2):
         w = 2.0 * np.pi / (3.0 + number)
-        columns = (1000.0 * t, 1000.0 * STROKE_M * np.sin(w * t), 10.0 * np.sign(np.cos(w * t)))
-        lines = ["Time [ms];Position [mm];Force [N]"]
-        lines += [
-            ";".join(f"{v:.4f}".replace(".", ",") for v in row)
-            for row in zip(*columns, strict=False)
-        ]
-        (tmp_path / f"log{number}.csv").write_text("\n".join(lines) + "\n")
+        log = slide_log(t, STROKE_M * np.sin(w * t), 10.0 * np.sign(np.cos(w * t)))
+        (tmp_path / f"log{number}.csv").write_text(log)
     return tmp_path
 
 
@@ -40,9 +34,14 @@ def client(folder: Path) -> TestClient:
     return client_of(Session(Folder.of(folder)))
 
 
+def guess_of(client: TestClient) -> Any:
+    """The map and the form that are guessed from the first log."""
+    return client.post("/api/look", json={"file": "log1.csv"}).json()
+
+
 def request_of(client: TestClient, **more: object) -> dict[str, object]:
     """A request for both logs with the map guessed from the first one."""
-    outcome = client.post("/api/look", json={"file": "log1.csv"}).json()
+    outcome = guess_of(client)
     assert outcome["questions"] == []
     files = ["log1.csv", "log2.csv"]
     return {"files": files, "map": outcome["map"], "into": outcome["into"], **more}
@@ -57,9 +56,7 @@ def test_import_preview_shows_si_units_and_writes_no_file(client: TestClient, fo
     assert sorted(path.name for path in folder.iterdir()) == ["log1.csv", "log2.csv"]
 
 
-def test_import_opens_its_runs_and_an_existing_folder_is_refused(
-    client: TestClient, folder: Path
-) -> None:
+def test_import_opens_runs_and_refuses_an_existing_folder(client: TestClient, folder: Path) -> None:
     assert client.post("/api/import", json=request_of(client, into="slide")).status_code == 200
     state = client.get("/api/state").json()
     assert [run["name"] for run in state["runs"]] == ["log1", "log2"]
@@ -72,29 +69,24 @@ def test_import_opens_its_runs_and_an_existing_folder_is_refused(
 
 
 @pytest.mark.parametrize("into", ["../slide", "/tmp/slide", "", ".."])
-def test_import_into_a_path_outside_the_folder_is_refused(
-    client: TestClient, folder: Path, into: str
-) -> None:
+def test_import_to_an_outside_path_is_refused(client: TestClient, folder: Path, into: str) -> None:
     answer = client.post("/api/import", json=request_of(client, into=into))
     assert answer.status_code == 422
     assert "not a name in the folder" in answer.json()["error"]
     assert not (folder.parent / "slide").exists()
 
 
-def preview_with_form(
-    client: TestClient, text: str, form: dict[str, object], **more: object
-) -> Any:
-    """Return the preview of an import after a form has changed its map."""
-    return client.post(
-        "/api/try", json={"files": ["log1.csv"], "map": text, "form": form, **more}
-    ).json()
+def preview_with_form(client: TestClient, text: str, rows: Any, rig: Any = {}) -> Any:  # noqa: B006
+    """Return the answer to a preview of an import after a form has changed its map."""
+    form = {"rows": rows, "rig": rig}
+    return client.post("/api/try", json={"files": ["log1.csv"], "map": text, "form": form})
 
 
-def test_unit_and_sign_in_the_form_change_the_numbers_and_the_map(client: TestClient) -> None:
-    outcome = client.post("/api/look", json={"file": "log1.csv"}).json()
+def test_unit_and_sign_in_import_form_change_the_numbers_and_the_map(client: TestClient) -> None:
+    outcome = guess_of(client)
     rows = [{**row, "unit": "mN" if row["key"] == "friction_n" else row["unit"],
              "turned": row["key"] == "friction_n"} for row in outcome["form"]["rows"]]  # fmt: skip
-    result = preview_with_form(client, outcome["map"], {"rows": rows, "rig": {}})
+    result = preview_with_form(client, outcome["map"], rows).json()
     (run,) = result["runs"]
     force = next(c for c in run["columns"] if c["name"] == "friction_n")
     assert (force["least"], force["most"], force["unit"]) == (-0.01, 0.01, "N")
@@ -104,49 +96,42 @@ def test_unit_and_sign_in_the_form_change_the_numbers_and_the_map(client: TestCl
     assert "# its name and its unit" in result["map"]
 
 
-def test_friction_in_percent_requires_the_rated_force(
-    client: TestClient,
-) -> None:
-    outcome = client.post("/api/look", json={"file": "log1.csv"}).json()
+def test_friction_in_percent_requires_the_rated_force_of_the_drive(client: TestClient) -> None:
+    outcome = guess_of(client)
     rows = [
         {**row, "key": "force_percent", "unit": "%"} if row["key"] == "friction_n" else row
         for row in outcome["form"]["rows"]
     ]
-    result = preview_with_form(client, outcome["map"], {"rows": rows, "rig": {}})
+    result = preview_with_form(client, outcome["map"], rows).json()
     assert result["form"]["rig"]["drive"]["friction"] == "percent"
     assert "drive.rated_force_n: is open" in result["problem"]
     assert result["runs"] == []
-    rig = {"drive.rated_force_n": "250"}
-    result = preview_with_form(client, result["map"], {"rows": result["form"]["rows"], "rig": rig})
+    rows, rig = result["form"]["rows"], {"drive.rated_force_n": "250"}
+    result = preview_with_form(client, result["map"], rows, rig).json()
     assert result["problem"] is None
     force = next(c for c in result["runs"][0]["columns"] if c["name"] == "friction_n")
     assert force["most"] == pytest.approx(25.0)
 
 
-def test_two_columns_for_one_quantity_are_refused(client: TestClient) -> None:
-    outcome = client.post("/api/look", json={"file": "log1.csv"}).json()
+def test_import_form_with_two_columns_for_one_quantity_is_refused(client: TestClient) -> None:
+    outcome = guess_of(client)
     rows = [{**row, "key": "time_s"} for row in outcome["form"]["rows"]]
-    answer = client.post(
-        "/api/try",
-        json={"files": ["log1.csv"], "map": outcome["map"], "form": {"rows": rows, "rig": {}}},
-    )
+    answer = preview_with_form(client, outcome["map"], rows)
     assert answer.status_code == 422
     assert "two columns are the time" in answer.json()["error"]
 
 
 @pytest.mark.parametrize("text", ["[columns", "", "[columns]\ntime_s = 3\n", "x = 1"])
-def test_broken_map_is_refused_in_one_line(client: TestClient, text: str) -> None:
+def test_preview_with_a_broken_map_is_refused_in_one_line(client: TestClient, text: str) -> None:
     answer = client.post("/api/try", json={"files": ["log1.csv"], "map": text})
     assert answer.status_code == 422
     assert "/tmp" not in answer.json()["error"]
     assert "\n" not in answer.json()["error"]
 
 
-def test_shown_command_line_reproduces_the_imported_run(
+def test_command_line_shown_for_an_import_reproduces_the_run(
     client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from jbf.cli import main
-
     client.post("/api/import", json=request_of(client, into="slide"))
     before = (folder / "slide" / "log1.csv").read_bytes()
     command = client.get("/api/state").json()["command"].splitlines()[0]

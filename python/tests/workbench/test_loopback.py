@@ -1,7 +1,5 @@
 """The workbench listens on the loopback address only and runs no code that a page sends."""
 
-from __future__ import annotations
-
 import socket
 from pathlib import Path
 
@@ -40,7 +38,7 @@ def test_server_listens_on_the_loopback_address_only() -> None:
         listener.close()
 
 
-def test_occupied_port_is_reported() -> None:
+def test_server_on_an_occupied_port_reports_the_port() -> None:
     listener = listening(0)
     listener.listen()
     port = int(listener.getsockname()[1])
@@ -67,14 +65,10 @@ CODE = "__import__('pathlib').Path('run.txt').write_text('x')"
         ("keep", {"what": CODE}),
     ],
 )  # fmt: skip
-def test_code_in_a_request_is_not_run(
-    client: TestClient,
-    campaign: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    address: str,
-    request_body: dict[str, object],
+@pytest.mark.usefixtures("inside_folder")
+def test_python_code_in_a_workbench_request_is_not_run(
+    client: TestClient, campaign: Path, address: str, request_body: dict[str, object]
 ) -> None:
-    monkeypatch.chdir(campaign)
     (campaign / "new.csv").write_text("t,x,f\n0,0,1\n1,1,1\n")
     (campaign / "code.toml").write_text(f'[drive]\nmotion = "{CODE}"\n')
     client.post("/api/open", json={"rig": "rig.toml", "runs": ["stopgo.csv"]})

@@ -1,7 +1,5 @@
 """Data of the plots: thinned series, density of samples, selections."""
 
-from __future__ import annotations
-
 import base64
 
 import numpy as np
@@ -21,9 +19,7 @@ from jbf.workbench.thinning import Stretch, ranges_of, thinned
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.integers(1, 5000), st.integers(1, 800), st.integers(0, 10))
-def test_thinned_series_keeps_the_minimum_and_the_maximum(
-    samples: int, pixels: int, seed: int
-) -> None:
+def test_thinned_series_keeps_minimum_and_maximum(samples: int, pixels: int, seed: int) -> None:
     y = np.random.default_rng(seed).normal(size=samples)
     time = np.arange(samples) * 0.02
     stretch = Stretch.between(time, time[0], time[-1], pixels)
@@ -39,6 +35,7 @@ def test_thinned_series_keeps_the_minimum_and_the_maximum(
 
 
 SIZE = (100, 80)
+BOX = (-0.02, 0.02, -20.0, 0.0)
 
 
 def test_thinned_series_has_null_values_in_a_gap() -> None:
@@ -57,9 +54,7 @@ def test_zoomed_interval_includes_one_sample_beyond_each_end() -> None:
 
 @settings(max_examples=60, derandomize=True, deadline=None)
 @given(st.lists(st.booleans(), max_size=300), st.integers(1, 12))
-def test_ranges_cover_every_selected_sample_within_their_maximum_number(
-    mask: list[bool], most: int
-) -> None:
+def test_limited_ranges_cover_all_selected_samples(mask: list[bool], most: int) -> None:
     selected = np.array(mask, dtype=bool)
     exact = np.zeros(len(selected), dtype=bool)
     for a, b in ranges_of(selected, most=1000):
@@ -73,17 +68,14 @@ def test_ranges_cover_every_selected_sample_within_their_maximum_number(
     assert len(joined) <= most
 
 
-def test_density_agrees_with_a_histogram_of_numpy() -> None:
+def test_density_of_samples_agrees_with_a_histogram_of_numpy() -> None:
     random = np.random.default_rng(4)
     x, y = random.normal(size=3000), random.normal(size=3000)
     frame = Frame.around([x], [y], 50, 40)
     counts = frame.counts([frame.places(x, y)])
     assert counts.sum() == 3000
-    expected, _, _ = np.histogram2d(
-        y,
-        x,
-        bins=[np.linspace(frame.low, frame.high, 41), np.linspace(frame.left, frame.right, 51)],
-    )
+    edges = [np.linspace(frame.low, frame.high, 41), np.linspace(frame.left, frame.right, 51)]
+    expected, _, _ = np.histogram2d(y, x, bins=edges)
     assert np.abs(counts - expected).sum() <= 4  # a sample on an edge may fall to either side
     levels = np.frombuffer(base64.b64decode(shade(counts)), dtype=np.uint8).reshape(40, 50)
     assert np.array_equal(levels > 0, counts > 0)
@@ -95,18 +87,17 @@ def test_every_sample_of_a_constant_force_is_counted_in_the_density() -> None:
     assert frame.counts([frame.places(np.zeros(5), np.full(5, 3.0))]).sum() == 5
 
 
-def test_samples_outside_the_frame_and_nan_are_not_counted() -> None:
+def test_samples_outside_the_frame_or_nan_are_not_counted_in_the_density() -> None:
     frame = Frame(0.0, 1.0, 0.0, 1.0, 10, 10)
     x = np.array([0.5, -0.01, 1.0, np.nan, 0.5, 0.5, np.inf, 0.99])
     y = np.array([0.5, 0.5, 0.5, 0.5, np.nan, -0.01, 0.5, 0.99])
     assert frame.counts([frame.places(x, y)]).sum() == 2
 
 
-def test_box_selects_samples_of_every_run(loaded_session: Session) -> None:
-    runs = loaded_session.on_bench().runs
-    box = (-0.02, 0.02, -20.0, 0.0)
-    result = views.brushed(loaded_session, None, {"box": box}, [r.name for r in runs], SIZE)
-    inside = [within(r.velocity_m_s, r.friction_n, box) for r in runs if r.friction_n is not None]
+def test_box_in_the_plane_selects_samples_of_every_shown_run(loaded: Session) -> None:
+    runs = loaded.on_bench().runs
+    result = views.brushed(loaded, None, {"box": BOX}, [r.name for r in runs], SIZE)
+    inside = [within(r.velocity_m_s, r.friction_n, BOX) for r in runs if r.friction_n is not None]
     assert result["samples"] == sum(int(mask.sum()) for mask in inside)
     assert result["rms_n"] is None
     for run, mask in zip(runs, inside, strict=True):
@@ -115,57 +106,51 @@ def test_box_selects_samples_of_every_run(loaded_session: Session) -> None:
             assert mask[np.searchsorted(run.time_s, last)]
 
 
-def test_density_of_a_selection_counts_only_the_selected_samples(loaded_session: Session) -> None:
-    box = (-0.02, 0.02, -20.0, 0.0)
-    run = loaded_session.on_bench().run("stopgo")
+def test_density_of_a_selection_counts_only_the_selected_samples(loaded: Session) -> None:
+    run = loaded.on_bench().run("stopgo")
     assert run.friction_n is not None
-    complete = views.plane(loaded_session, None, ["stopgo"], SIZE)
-    result = views.brushed(loaded_session, None, {"box": box}, ["stopgo"], SIZE)
-    mask = within(run.velocity_m_s, run.friction_n, box)
+    complete = views.plane(loaded, None, ["stopgo"], SIZE)
+    result = views.brushed(loaded, None, {"box": BOX}, ["stopgo"], SIZE)
+    mask = within(run.velocity_m_s, run.friction_n, BOX)
     frame = Frame(**complete["frame"])
-    assert result["selected"] == frame.picture(
-        [frame.places(run.velocity_m_s[mask], run.friction_n[mask])]
-    )
+    places = frame.places(run.velocity_m_s[mask], run.friction_n[mask])
+    assert result["selected"] == frame.picture([places])
     assert result["selected"] != complete["measured"]
 
 
-def test_time_span_selects_samples_of_its_run_only(loaded_session: Session) -> None:
+def test_time_span_selects_samples_of_its_run_only(loaded: Session) -> None:
     selection = {"run": "stopgo", "from_s": 2.0, "to_s": 3.0}
-    result = views.brushed(loaded_session, None, selection, ["stopgo"], SIZE)
+    result = views.brushed(loaded, None, selection, ["stopgo"], SIZE)
     assert list(result["by_run"]) == ["stopgo"]
     assert result["samples"] == 51
 
 
-def test_box_with_only_a_lower_speed_limit_selects_every_faster_sample(
-    loaded_session: Session,
-) -> None:
+def test_box_with_only_a_lower_speed_limit_selects_all_faster_samples(loaded: Session) -> None:
     selection = {"run": "stopgo", "box": [0.01, None, None, None]}
-    result = views.brushed(loaded_session, None, selection, ["stopgo"], SIZE)
-    run = loaded_session.on_bench().run("stopgo")
+    result = views.brushed(loaded, None, selection, ["stopgo"], SIZE)
+    run = loaded.on_bench().run("stopgo")
     assert list(result["by_run"]) == ["stopgo"]
     assert result["samples"] == int((run.velocity_m_s >= 0.01).sum())
     low, high = result["speeds_m_s"]
     assert low >= 0.01
     assert high == run.velocity_m_s.max()
     # Its cells lie in its row of the map, right of zero speed.
-    row = [r.name for r in loaded_session.on_bench().runs].index("stopgo")
+    row = [r.name for r in loaded.on_bench().runs].index("stopgo")
     assert {cell[0] for cell in result["cells"]} == {row}
     assert min(cell[1] for cell in result["cells"]) >= views.MAP_SPEEDS // 2
 
 
-def test_selection_by_a_mark_is_refused_if_there_is_no_model(loaded_session: Session) -> None:
+def test_selection_by_a_mark_is_refused_if_there_is_no_model(loaded: Session) -> None:
     with pytest.raises(InputError, match="no such model"):
-        views.brushed(loaded_session, None, {"mark": 0}, ["stopgo"], SIZE)
+        views.brushed(loaded, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
-def test_series_and_plane_contain_only_records_if_there_is_no_model(
-    loaded_session: Session,
-) -> None:
-    result = views.series(loaded_session, None, "stopgo", (None, None), 1000)
+def test_series_and_plane_have_only_records_if_there_is_no_model(loaded: Session) -> None:
+    result = views.series(loaded, None, "stopgo", (None, None), 1000)
     assert "model_n" not in result
-    run = loaded_session.on_bench().run("stopgo")
+    run = loaded.on_bench().run("stopgo")
     assert result["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
-    picture = views.plane(loaded_session, None, ["stopgo"], SIZE)
+    picture = views.plane(loaded, None, ["stopgo"], SIZE)
     assert "model" not in picture
 
 

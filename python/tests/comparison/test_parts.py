@@ -111,7 +111,7 @@ def test_effect_force_excludes_the_fit_of_free_parameters(
             assert part == pytest.approx(reference, abs=5e-3)
 
 
-def test_no_force_is_attributed_to_effects_that_the_first_model_has(full: Comparison) -> None:
+def test_effects_that_both_compared_models_have_get_no_share_of_the_force(full: Comparison) -> None:
     without_effects = compare(model_of([]), [p.run for p in full.campaign.prepared])
     assert made_of(full, without_effects) == made_of(full, full) == {}
 

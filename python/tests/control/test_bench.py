@@ -98,7 +98,9 @@ def test_simulated_runs_are_equal_if_and_only_if_their_noise_seeds_are() -> None
 
 @pytest.mark.parametrize("factor", [0.5, 1.0, 4.0])
 @pytest.mark.parametrize("counts", [0.0, 0.7])
-def test_encoder_noise_with_rounding_scales_by_a_factor(factor: float, counts: float) -> None:
+def test_scaled_noise_multiplies_encoder_variance_including_rounding(
+    factor: float, counts: float
+) -> None:
     """Rounding to whole counts has the variance 1/12 (Widrow), which no encoder falls below."""
     bench = with_noise(replace(THESIS_BENCH, encoder_noise_counts=counts), factor)
     assert bench.input_noise_v == pytest.approx(0.005 * factor)

@@ -34,7 +34,9 @@ def square_outcomes() -> dict[str, Outcome]:
     ("worst", "verdict"),
     [(0.94, "help"), (HELP, "neutral"), (HARM, "neutral"), (1.03, "harm")],
 )
-def test_robustness_verdict_is_that_of_the_largest_ratio(worst: float, verdict: str) -> None:
+def test_robustness_verdict_follows_from_the_largest_error_ratio_of_all_tasks(
+    worst: float, verdict: str
+) -> None:
     assert (HELP, HARM) == (0.95, 1.02)
     for ratios in ((0.1, worst), (worst, 0.1)):
         outcome = Outcome("", dict(zip("ab", ratios, strict=True)))

@@ -126,7 +126,7 @@ def _offset_runs(offset_n: float) -> list[Run]:
     return four_runs(lambda t, v, a: coulomb(t, v, a) + offset_n, noise_n=0.1)
 
 
-def test_evidence_is_the_likelihood_gain_times_its_share_less_the_threshold() -> None:
+def test_evidence_is_likelihood_gain_times_independent_share_less_threshold() -> None:
     """A mass that only one run has: its score varies far more than in white noise."""
     candidates = coulomb_candidates(linear_runs("mass in one run"))
     simple, rich = candidates.converge(()), candidates.converge(("inertia_leak",))

@@ -46,7 +46,7 @@ def test_effects_and_rms_error_of_the_last_step_are_those_of_the_final_fit(name:
 
 
 @pytest.mark.parametrize("name", MISSING)
-def test_each_added_effect_reduces_fit_error_and_held_out_error(name: str) -> None:
+def test_each_effect_added_to_a_golden_diagnosis_reduces_both_errors(name: str) -> None:
     steps = golden(name).steps
     assert steps[0].effects == ()
     assert len(steps) == 1 + len(GOLDEN[name].effects)

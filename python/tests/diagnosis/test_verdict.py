@@ -30,7 +30,7 @@ STRONG = DEFAULT.weak + 1.0
         (1, 1, True, "unexplained"),
     ],
 )
-def test_verdict_follows_from_effects_alternatives_and_residual_structure(
+def test_verdict_for_each_case_of_effects_alternatives_and_structure(
     effects: int, alternatives: int, remains: bool, expected: str
 ) -> None:
     assert verdict(effects=effects, alternatives=alternatives, remains=remains) == expected

@@ -66,7 +66,7 @@ def test_readme_example_identifies_presliding_and_saves_the_model(capsys: Captur
     assert Model.load("model.toml").effects == ("presliding",)
 
 
-def test_example_of_the_control_page_prints_a_value_below_one_tenth(capsys: Capture) -> None:
+def test_example_of_the_control_page_prints_an_error_ratio_below_one_tenth(capsys: Capture) -> None:
     exec(compile(python_of("docs/control.md"), "docs/control.md", "exec"), {})
     assert 0.0 < float(capsys.readouterr().out) < 0.1
 

@@ -47,7 +47,9 @@ def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit(
 
 
 @pytest.mark.parametrize(("counts", "found"), [(1.4, True), (1.6, False)])
-def test_path_of_a_rest_stays_within_one_and_a_half_counts(counts: float, found: bool) -> None:
+def test_standstill_is_a_rest_only_if_its_path_stays_within_1_5_counts(
+    counts: float, found: bool
+) -> None:
     time_s, path, speed = stop(38, hum=1e-4)
     path[79:] += counts * COUNT_M
     assert rests.still_samples(time_s, path, speed, COUNT_M)[70:90].any() == found

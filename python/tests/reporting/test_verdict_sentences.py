@@ -182,7 +182,7 @@ def test_chosen_law_is_named_with_the_laws_that_predict_as_well() -> None:
     assert without_ties.endswith("The data chose the law coulomb.")
 
 
-def test_simpler_law_is_named_with_both_errors_unless_laws_were_compared() -> None:
+def test_verdict_sentence_names_a_simpler_law_unless_laws_were_compared() -> None:
     diagnosis = diagnosis_by_hand("missing")
     simpler = LawTried("stribeck", 4, 0.5432, False)
     sentence = words.verdict_sentence(replace(diagnosis, simpler_law=simpler))

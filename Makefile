@@ -88,6 +88,7 @@ test: $(TOOLS)
 
 # What takes minutes: statistical studies, long simulations, all seeds.
 test-extended: $(TOOLS)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
 	cargo test --release -p jbf-core --test control_tracking --test endless -- --ignored --nocapture
 	cargo test --release -p jbf-core --features serde --test serde_state
 	cargo test --release -p jbf-predict
@@ -134,6 +135,7 @@ bits-table:
 
 # 30 faults in physics, likelihood, estimation and verdict, inserted one at a time; ONLY=WORDS.
 faults: $(TOOLS)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
 	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),30)
 
 # Random mutants, SAMPLE of each ROOM (package) by SEED; fails where a smaller share than LEAST is noticed.

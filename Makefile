@@ -18,6 +18,7 @@ SANITIZED := $(or $(CARGO_TARGET_DIR),target)/sanitized
 MADE := $(VENV)/.made
 BUILT := $(VENV)/.built
 TOOLS := $(VENV)/.tools
+MUTANTS := $(VENV)/.mutants
 
 # A stamp without its extension or its command is stale.
 ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
@@ -60,6 +61,11 @@ help:
 
 venv: $(TOOLS)
 
+# cosmic-ray makes the mutants and applies the faults; no other target needs it.
+$(MUTANTS): | $(TOOLS)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
+	@touch $@
+
 # Little optimised, without wide instructions, and only what changed: then .venv/bin/jbf and
 # .venv/bin/python -m pytest by hand. Deletes .built, so that any other target builds the release.
 quick: $(MADE)
@@ -87,8 +93,7 @@ test: $(TOOLS)
 	$(VENV)/bin/python -m pytest -n auto --dist worksteal
 
 # What takes minutes: statistical studies, long simulations, all seeds.
-test-extended: $(TOOLS)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
+test-extended: $(TOOLS) $(MUTANTS)
 	cargo test --release -p jbf-core --test control_tracking --test endless -- --ignored --nocapture
 	cargo test --release -p jbf-core --features serde --test serde_state
 	cargo test --release -p jbf-predict
@@ -134,13 +139,11 @@ bits-table:
 	cargo run --quiet --release -p jbf-trace --example table -- --write crates/jbf-trace/src/table.rs
 
 # 30 faults in physics, likelihood, estimation and verdict, inserted one at a time; ONLY=WORDS.
-faults: $(TOOLS)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
+faults: $(TOOLS) $(MUTANTS)
 	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),30)
 
 # Random mutants, SAMPLE of each ROOM (package) by SEED; fails where a smaller share than LEAST is noticed.
-mutation: $(TOOLS)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check 'cosmic-ray>=8.4'
+mutation: $(TOOLS) $(MUTANTS)
 	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
 		--seed $(or $(SEED),1) --budget $(or $(BUDGET),60) --least $(or $(LEAST),0.58)
 

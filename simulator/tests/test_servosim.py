@@ -1,0 +1,85 @@
+"""The servo drives: laws of motion, and parameters by least squares with the true motion."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import servosim
+from servosim.campaign import draw
+from servosim.plant import Plant, run
+
+SEEDS = range(1, 25)
+
+
+def test_drive_without_gravity_slides_to_a_stop_after_its_kinetic_energy_is_lost() -> None:
+    """With next to no viscous friction a drive of speed v stops after J v^2 / (2 F_c)."""
+    plant = Plant(0.5, 0.8, 1e-4, 0.0, False)
+    push = 2.0
+    pushed = 500
+    motion = run(plant, lambda tick, x, v: push if tick < pushed else 0.0, 1e-3, 2000, 0.0)
+    speed = (push - plant.coulomb) / plant.inertia * pushed * 1e-3
+    way = 0.5 * speed * pushed * 1e-3 + 0.5 * plant.inertia * speed**2 / plant.coulomb
+    assert motion.position[-1] == pytest.approx(way, rel=1e-3)
+    assert motion.velocity[-1] == 0.0
+
+
+def test_drive_sticks_under_a_torque_below_its_friction_and_breaks_away_above() -> None:
+    plant = Plant(0.5, 0.8, 0.1, 0.0, False)
+    motion = run(plant, lambda tick, x, v: 0.79 if tick < 100 else 0.81, 1e-3, 300, 0.2)
+    position, _, acceleration, _ = motion.at(np.array([0.05, 0.1005]))
+    assert position[0] == 0.2
+    assert acceleration[1] == pytest.approx(0.01 / 0.5, rel=1e-3)
+
+
+def test_viscous_drive_approaches_its_speed_exponentially() -> None:
+    plant = Plant(0.5, 0.8, 2.0, 0.0, False)
+    motion = run(plant, lambda tick, x, v: 2.8, 1e-3, 1000, 0.0)
+    t = np.linspace(0.0, 0.999, 50)
+    _, velocity, acceleration, _ = motion.at(t)
+    np.testing.assert_allclose(velocity, 1.0 - np.exp(-4.0 * t), atol=1e-5)
+    np.testing.assert_allclose(acceleration, 4.0 * np.exp(-4.0 * t), atol=1e-4)
+
+
+def moving_samples(campaign: servosim.Campaign) -> tuple[Any, Any]:
+    """Regressors by the true motion, and recorded forces."""
+    plant, rows, forces = campaign.drawn.plant, [], []
+    for r in campaign.records:
+        columns = [np.sign(r.true_velocity), r.true_velocity, r.true_acceleration]
+        if plant.gravity:
+            columns.append(np.sin(r.position) if plant.swings else np.ones(len(r.force)))
+        kept = np.abs(r.true_velocity) > 1e-3 * campaign.drawn.demand.top
+        rows.append(np.column_stack(columns)[kept])
+        forces.append(r.force[kept])
+    return np.concatenate(rows), np.concatenate(forces)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_parameters_follow_from_the_true_motion_where_the_force_is_on_time(seed: int) -> None:
+    if draw(seed).logger.force_late:
+        return
+    campaign = servosim.simulate(seed)
+    plant = campaign.drawn.plant
+    rows, forces = moving_samples(campaign)
+    found, _, rank, _ = np.linalg.lstsq(rows, forces, rcond=None)
+    assert rank == rows.shape[1]
+    left = forces - rows @ found
+    sd = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * (left @ left) / len(left))
+    true = [plant.coulomb, plant.viscous, plant.inertia, plant.gravity][:rank]
+    # Counts of the position, and pieces of constant weight, next to the noise.
+    share = np.abs(rows).max(axis=0) / np.std(forces)
+    assert np.all(np.abs(found - true) * share < 4.5 * sd * share + 0.005)
+
+
+def test_seeds_draw_every_kind_of_motion_stamps_and_channels() -> None:
+    drawn = [draw(seed) for seed in range(200)]
+    assert len({d.kind for d in drawn}) == 6
+    assert len({d.logger.stamps for d in drawn}) == 5
+    assert len({d.logger.speed for d in drawn}) == 4
+    assert len({d.logger.force for d in drawn}) == 3
+    assert {d.rotary for d in drawn} == {True, False}
+
+
+def test_stamps_of_every_logger_increase() -> None:
+    for seed in SEEDS:
+        for r in servosim.simulate(seed).records:
+            assert np.all(np.diff(r.time_s) > 0.0)

@@ -15,6 +15,7 @@ __all__ = [
     "BatchRig",
     "Chain",
     "Motion",
+    "SmoothedMotion",
     "__version__",
     "control_constants",
     "control_gains",
@@ -24,11 +25,13 @@ __all__ = [
     "film_integrals",
     "first_order_filter",
     "laws",
+    "motion_log_likelihood",
     "read_force",
     "steady_friction",
     "thesis_bearing",
     "trajectories",
     "transition_eccentricity",
+    "whiten_motion_errors",
 ]
 
 __version__: str
@@ -165,6 +168,46 @@ def steady_friction(
     bearing: BearingSizes | None,
     load_n: float | None,
 ) -> _Array: ...
+
+@final
+class SmoothedMotion:
+    def __new__(
+        cls,
+        time: _Array,
+        position: _Array,
+        position_variance: _Array,
+        velocity: _Array,
+        velocity_variance: _Array,
+        jerk: _Array,
+        velocity_delay: float = 0.0,
+    ) -> Self: ...
+    @property
+    def mean(self) -> _Array: ...
+    @property
+    def covariance(self) -> _Array: ...
+    @property
+    def gain(self) -> _Array: ...
+    @property
+    def disturbance(self) -> _Array: ...
+    @property
+    def log_likelihood(self) -> float: ...
+
+def motion_log_likelihood(
+    time: _Array,
+    position: _Array,
+    position_variance: _Array,
+    velocity: _Array,
+    velocity_variance: _Array,
+    jerk: _Array,
+    velocity_delay: float = 0.0,
+) -> float: ...
+def whiten_motion_errors(
+    posterior: _Array,
+    gain: _Array,
+    sensitivity: _Array,
+    variance: _Array,
+    columns: _Array,
+) -> tuple[_Array, float]: ...
 def first_order_filter(now: tuple[float, float], before: float, values: _Array) -> _Array: ...
 def read_force(
     effects: Sequence[tuple[str, Sequence[float]]], time_s: _Array, force_n: _Array

@@ -20,6 +20,7 @@ from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.put_back import put_back
+from jbf.estimation.refine import with_motion_errors
 from jbf.estimation.solution import Solution
 from jbf.estimation.spread import spread
 from jbf.estimation.uncertainty import correlations, parameter_values
@@ -205,7 +206,8 @@ def fit(
     given = named_values(start, known)
     check_film(campaign, law, clock, {**given, **problem.fixed})
     try:
-        solution = best_weighting(problem, minimum(problem, [given]))
+        problem, solution = with_motion_errors(problem, minimum(problem, [given]))
+        solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.renew(math.inf)
         values = problem.best.values

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from scipy import ndimage, special
 
 from jbf.estimation.lateness import fine_motion, instants_of
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
 from jbf.estimation.solution import Solution
@@ -24,9 +25,9 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 DELAY = "time_delay.tau_s"
-Clocks = Literal["by run", "one", "one, delay"]
-"""By which clocks forces were read: by one of each run's own, or by one that was started with each,
-where the instrument may delay them all besides."""
+Clocks = Literal["by run", "shared", "one", "one, delay"]
+"""By which clocks forces were read: by one of each run's own, with one delay in all runs, or by one
+that was started with each run, where the instrument may delay them all besides."""
 LINEAR_S = 8e-3
 """A force changes as its slope says over a shift of so much; no sample nearer a reversal tells
 it."""
@@ -113,6 +114,20 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     return LatenessStep(np.where(told, late, 0.0), of_late[np.ix_(told, told)], told)
 
 
+def delay_step(problem: Problem, solution: Solution) -> tuple[float, float]:
+    """A step of Gauss and Newton in a delay of the force that all runs share, and all parameters.
+
+    Returns
+    -------
+    tuple[float, float]
+        By how much later the forces are than they are compared, s, and its standard error, s;
+        infinite where the runs do not tell it.
+    """
+    late, of_late = _step(problem, solution, list(range(len(problem.open))), "shared")
+    sd = float(np.sqrt(max(of_late[0, 0], 0.0)))
+    return (float(late[0]), sd) if sd > 0.0 else (0.0, np.inf)
+
+
 def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False) -> DriftStep:
     """A step of Gauss and Newton in the drift of one clock that was started with each run, and all
     parameters of the model.
@@ -129,12 +144,24 @@ def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False)
     return DriftStep(float(late[0]), float(of_late[0, 0])) if told else DriftStep(0.0, np.inf)
 
 
+def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
+    """Derivative of the prediction of a run by a delay of the force, shape (n,)."""
+    instants = instants_of(prepared)
+    force = problem.chain.predict(values, [fine_motion(prepared)])[0]
+    return np.asarray(-np.interp(prepared.run.time_s, instants, np.gradient(force, instants)))
+
+
 def _step(
     problem: Problem, solution: Solution, own: Sequence[int], clocks: Clocks
 ) -> tuple[Array, Array]:
     """The step in what clocks say of lateness, beside these parameters, and its covariance."""
     width = len(own)
-    later = {"by run": len(problem.campaign.prepared), "one": 1, "one, delay": 2}[clocks]
+    later = {
+        "by run": len(problem.campaign.prepared),
+        "shared": 1,
+        "one": 1,
+        "one, delay": 2,
+    }[clocks]
     rows, right, samples = [], [], 0
     for i, (r, j, count) in enumerate(_rows(problem, solution, own, clocks)):
         wide = np.zeros((len(r), width + later))
@@ -168,12 +195,11 @@ def _rows(
     lateness as clocks say it, in few rows; and how many samples there were."""
     samples = solution.samples
     for i, p in enumerate(problem.campaign.prepared):
-        instants = instants_of(p)
-        force = problem.chain.predict(solution.values, [fine_motion(p)])[0]
-        slope = -np.interp(p.run.time_s, instants, np.gradient(force, instants))
+        slope = delay_slope(problem, solution.values, p)
         since_start = p.run.time_s - p.run.time_s[0]
         later = {
             "by run": [slope],
+            "shared": [slope],
             "one": [slope * since_start],
             "one, delay": [slope * since_start, slope],
         }[clocks]

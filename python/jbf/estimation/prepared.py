@@ -83,6 +83,8 @@ class Prepared:
         run = as_read(run_on(rig, run))
         require(run, "friction_n", "a comparison with the model")
         instants, motion = imposed_as_read(rig, run)
+        if motion.clock_s is not None:
+            run = replace(run, time_s=frozen(motion.clock_s))
         recorded = None
         own = own_clock(run)
         if run.read:
@@ -103,7 +105,14 @@ class Prepared:
             steps = find_steps(run, of_readings.usable, drawn=True)
             found = (*examined.findings, *of_readings.findings, *steps)
             examined = Examined(found, of_readings.usable)
-        if np.all(motion.resting) or not np.any(motion.sign_known):
+        if not np.all(motion.resting) and not np.any(motion.sign_known):
+            raise InputError(
+                file=run.path or run.name,
+                column="velocity_m_s",
+                problem="of no sample is it known which way the motion goes",
+                mend="leave this run out, or record a smoother speed",
+            )
+        if np.all(motion.resting):
             raise InputError(
                 file=run.path or run.name,
                 problem=f"{run.quantities.mover} never moves",

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
 
@@ -44,6 +45,8 @@ class Samples:
     level
         How much smaller than here the noise is where it is least, 0 to 1, shape (n,): a part of
         `weight`, whose rest is of jumps and of heavy tails. None where the noise is even.
+    motion
+        Errors of the motion in the residuals; None where they are neglected.
     """
 
     runs: tuple[str, ...]
@@ -52,12 +55,13 @@ class Samples:
     weight: tuple[Array, ...]
     between: BetweenRuns | None = None
     level: tuple[Array, ...] | None = None
+    motion: ErrorsInMotion | None = None
 
     @classmethod
     def of(cls, prepared: Iterable[Prepared]) -> Samples:
         """Those at which the runs tell the sign of the friction, and a reading that can be used."""
         prepared = tuple(prepared)
-        counted = tuple(p.motion.sign_known & p.examined.usable for p in prepared)
+        counted = tuple(p.motion.sign_known & p.examined.usable & ~held(p) for p in prepared)
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),
@@ -81,6 +85,7 @@ class Samples:
             tuple(self.weight[i] for i in which),
             None if self.between is None else self.between.only(which),
             None if self.level is None else tuple(self.level[i] for i in which),
+            None if self.motion is None else self.motion.only(which),
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:
@@ -142,6 +147,8 @@ class Samples:
 
         A sample without weight is a gap: a zero there drives nothing.
         """
+        if self.motion is not None:
+            return self.motion.stacked(residuals, jacobian, self.weight, which)
         r, j = [], []
         for i in range(len(residuals)) if which is None else which:
             w, step = self.weight[i], self.steps_s[i]
@@ -158,7 +165,7 @@ class Samples:
 
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
         """`n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
-        if self.between is not None:
+        if self.between is not None or self.motion is not None:
             empty = [np.zeros((len(r), 0)) for r in residuals]
             r, _ = self.stacked(residuals, empty, noise)
             return len(r) * float(np.log(max(float(r @ r), 1e-300) / max(len(r), 1)))
@@ -199,6 +206,17 @@ class Samples:
             noise.innovations(r * (c * s), step) * c
             for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)
         ]
+
+
+def held(prepared: Prepared) -> Mask:
+    """Samples at rest of a machine that its drive holds, shape (n,).
+
+    At rest the friction balances any force up to the breakaway level, so the motion does not
+    determine it. A bearing's shaft is not held: its friction at rest is that of the law.
+    """
+    if prepared.rig.bearing is not None:
+        return np.zeros(len(prepared.run), dtype=bool)
+    return prepared.motion.resting
 
 
 def least_weights(a: Samples, b: Samples) -> Samples:

@@ -159,7 +159,8 @@ def imposed_as_read(rig: Rig, run: Run) -> tuple[Array, ImposedMotion]:
     there = of_motion(run.read)
     if there is not None:
         run = run.select(there)
-    return run.time_s, impose(run, rig.radius_m)
+    motion = impose(run, rig.radius_m)
+    return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
 
 def core_motion(

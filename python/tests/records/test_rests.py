@@ -144,26 +144,3 @@ def test_uncertain_speed_at_a_rest_is_zeroed_if_opposite_to_a_certain_one() -> N
     without_rest = np.array([-0.1, 0.5, -0.1])
     rests.without_swings(mask("000"), without_rest, mask("010"))
     assert without_rest.tolist() == [-0.1, 0.5, -0.1]
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "half_step", "place"),
-    [
-        ((0.4, -1.0), (0.0, 0.0), 1.0, 0.9 + 0.4**2 / 2.0),
-        ((0.0, 0.0), (0.6, 2.0), 1.0, 1.3 - 0.6**2 / 4.0),
-        ((0.4, -1.0), (0.6, 2.0), 1.0, 0.5 * (0.98 + 1.21)),
-        ((-0.4, 1.0), (-0.6, -2.0), 1.0, 0.5 * (0.82 + 1.39)),
-        ((0.4, 0.0), (0.6, 0.0), 1.0, 1.0),  # a constant speed has no extrapolated stop
-        ((0.0, 0.0), (0.6, 2.0), 0.05, 1.05),  # within half a count of the recorded position
-        ((-2.0, 1.0), (0.0, 0.0), 0.01, 0.99),
-    ],
-)
-def test_rest_position_is_the_mean_of_the_extrapolated_stop_and_start(
-    before: Any, after: Any, half_step: float, place: float
-) -> None:
-    """A motion of speed v and deceleration a stops after v^2 / 2a."""
-    path = np.array([0.9, 1.0, 1.0, 1.0, 1.0, 1.3, 2.0])
-    v, a = np.zeros(7), np.zeros(7)
-    (v[0], a[0]), (v[5], a[5]) = before, after
-    rests.place_rests(mask("0111100"), path, v, a, half_step)
-    np.testing.assert_allclose(path, [0.9, place, place, place, place, 1.3, 2.0])

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf.records.lagrange import weights_at_zero
-from jbf.records.motion.agreement import contradiction_of, disagreement_of
+from jbf.records.motion.agreement import contradiction_of
 from jbf.records.motion.first_stroke import begins_in_a_hum
-from jbf.records.motion.roughness import encoder_step, local_noise, noise_of, step_of
-from known_motions import path_of, places, quantised, speed_of, white
+from jbf.records.motion.roughness import encoder_step, local_noise, noise_of, quantum_of, step_of
+from known_motions import path_of, places, quantised, white
 
 STEP_S = 0.01
 TIME_S: Any = STEP_S * np.arange(400)
@@ -50,23 +50,32 @@ def test_encoder_step_is_the_smallest_change_above_rounding_and_noise() -> None:
     assert encoder_step(path + white(400, 3, 1e-4)) == 0.0
 
 
-def test_disagreement_of_path_and_speed_is_the_speed_error_beyond_path_noise() -> None:
-    path, speed = path_of(TIME_S), speed_of(TIME_S)
-    assert disagreement_of(TIME_S, path, speed, 0.0, 1e-9) < 1e-4
-    disagreement = disagreement_of(TIME_S, path, speed + 1e-3, 0.0, 1e-9)
-    assert disagreement == pytest.approx(1e-3 / 0.6745, rel=0.05)
+@pytest.mark.parametrize("step", [1e-4, 1e-3])
+def test_quantum_is_the_step_of_a_rounded_signal_of_any_speed(step: float) -> None:
+    for turns in (0.01, 1.0, 20.0):
+        path = quantised(turns * path_of(TIME_S), step)
+        expected = step if np.ptp(path) > 15.0 * step else 0.0
+        assert quantum_of(path) == pytest.approx(expected)
+        assert quantum_of(np.round(path + 7.0, 9)) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(("times", "found"), [(1.49, False), (1.51, True)])
-def test_path_and_speed_agree_up_to_1_5_times_the_gap_of_noise(times: float, found: bool) -> None:
-    """Var(gap) = 2 var(path) + dt^2 var(speed) / 2."""
-    still, gap = np.zeros(400), 1e-3 * STEP_S / 0.6745
-    sd_path = gap / times / np.sqrt(2.0)
-    expected = np.sqrt(gap**2 - 2.0 * sd_path**2) / STEP_S if found else 0.0
-    assert disagreement_of(TIME_S, still, still + 1e-3, sd_path, 0.0) == pytest.approx(expected)
-    sd_speed = gap / times / np.sqrt(0.5) / STEP_S
-    by_speed = disagreement_of(TIME_S, still, still + 1e-3, 0.0, sd_speed)
-    assert by_speed == pytest.approx(gap / STEP_S if found else 0.0)
+def test_signal_of_noise_of_set_levels_or_of_exact_ramps_has_no_quantum() -> None:
+    assert quantum_of(path_of(TIME_S)) == 0.0
+    assert quantum_of(white(400, 3, 1.0)) == 0.0
+    assert quantum_of(np.where(np.arange(400) % 50 < 25, 0.1, -0.1)) == 0.0
+    ramps = 0.01 * np.abs(np.mod(np.arange(400), 80) - 40)
+    assert quantum_of(ramps) == 0.0
+    assert quantum_of(np.cumsum(ramps)) == 0.0
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+def test_noise_at_uneven_instants_does_not_depend_on_a_parabola(power: int) -> None:
+    random = np.random.default_rng(4)
+    time_s = np.cumsum(random.uniform(0.2, 1.8, 4000))
+    signal = white(4000, 6, 0.3) + 5.0 * time_s**power
+    assert noise_of(signal, time_s) == pytest.approx(0.3, rel=0.05)
+    even = white(4000, 7, 0.3)
+    assert noise_of(even, np.arange(4000.0)) == pytest.approx(noise_of(even))
 
 
 def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: float = 0.0) -> Any:

@@ -1,93 +1,190 @@
-"""Local polynomials through path and speed, against exact polynomials and least squares."""
+"""The smoothed motion against known motions: coverage, stamps, delays and invariances."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from jbf.records.motion.smoothing import HALF_WIDTHS, local_fit, smooth
-from known_motions import integrated, white
+from jbf.records.motion.even_clock import even_clock
+from jbf.records.motion.readings import Readings
+from jbf.records.motion.smoothing import smooth
+from known_motions import Array, quantised
 
-SAMPLES = 41
-EVEN_S: Any = 0.02 * np.arange(SAMPLES)
-UNEVEN_S: Any = EVEN_S + 0.004 * np.sin(7.0 * np.arange(SAMPLES))
-TIMES = pytest.mark.parametrize("time_s", [EVEN_S, UNEVEN_S], ids=["even", "uneven"])
-
-
-def cubic(t: Any) -> tuple[Any, Any, Any]:
-    """A path, its speed and its acceleration."""
-    return (2.0 + 0.3 * t - 1.5 * t**2 + 4.0 * t**3, 0.3 - 3.0 * t + 12.0 * t**2, -3.0 + 24.0 * t)
+STEP_S, FINE = 0.005, 10
+COUNT = 2.0 * np.pi / 4096.0
+NOISE = 0.02
 
 
-@pytest.mark.parametrize("half", HALF_WIDTHS)
-@TIMES
-def test_cubic_path_is_fitted_exactly_at_all_samples_and_both_ends(half: int, time_s: Any) -> None:
-    path, speed, acceleration = cubic(time_s)
-    for sd in (1e-3, np.full(SAMPLES, 1e-3)):
-        fit = local_fit(time_s, path, speed, 1e-4, sd, half)
-        np.testing.assert_allclose(fit[0], path, atol=1e-9)
-        np.testing.assert_allclose(fit[1], speed, atol=1e-7)
-        np.testing.assert_allclose(fit[2], acceleration, atol=1e-5)
+def driven(acceleration: Array) -> tuple[Array, Array, Array]:
+    """Position, velocity and acceleration at the samples of an acceleration on a finer grid."""
+    h = STEP_S / FINE
+    velocity = np.concatenate(([0.0], np.cumsum(0.5 * h * (acceleration[1:] + acceleration[:-1]))))
+    position = np.concatenate(([0.0], np.cumsum(0.5 * h * (velocity[1:] + velocity[:-1]))))
+    return position[::FINE], velocity[::FINE], acceleration[::FINE]
 
 
-def least_squares(
-    time_s: Any, path: Any, speed: Any, i: int, half: int, sd_path: float, sd_speed: Any
-) -> tuple[Any, Any]:
-    """Coefficients at a sample and their covariance by weighted least squares.
-
-    The polynomial is a cubic for windows of less than four samples on each side, else a quintic.
-    """
-    order = 3 if half < 4 else 5
-    width = min(2 * half + 1, len(time_s))
-    first = min(max(i - width // 2, 0), len(time_s) - width)
-    window = slice(first, first + width)
-    t, k = time_s[window] - time_s[i], np.arange(order + 1)
-    sd = np.broadcast_to(sd_speed, len(time_s))[window]
-    slopes = k * t[:, None] ** np.maximum(k - 1, 0)
-    rows = np.vstack((t[:, None] ** k / sd_path, slopes / sd[:, None]))
-    target = np.concatenate(((path[window] - path[i]) / sd_path, speed[window] / sd))
-    return np.linalg.lstsq(rows, target, rcond=None)[0], np.linalg.inv(rows.T @ rows)
-
-
-@pytest.mark.parametrize("half", [1, 2, 4, 8])
-@TIMES
-def test_local_fit_of_noisy_samples_equals_weighted_least_squares(half: int, time_s: Any) -> None:
-    path, speed, _ = cubic(time_s)
-    path = path + white(SAMPLES, half, 2e-4)
-    speed = speed + white(SAMPLES, half + 10, 1e-3)
-    for sd in (1e-3, np.where(np.arange(SAMPLES) < 20, 1e-3, 5e-3)):
-        fit = local_fit(time_s, path, speed, 2e-4, sd, half)
-        for i in (0, 1, half, 20, SAMPLES - half - 1, SAMPLES - 1):
-            best, covariance = least_squares(time_s, path, speed, i, half, 2e-4, sd)
-            expected = (path[i] + best[0], best[1], 2.0 * best[2])
-            assert [part[i] for part in fit[:3]] == pytest.approx(expected, rel=1e-5)
-            errors = np.sqrt(covariance[1, 1]), 2.0 * np.sqrt(covariance[2, 2])
-            assert (fit[3][i], fit[4][i]) == pytest.approx(errors, rel=1e-5)
+def motion_of(kind: str, samples: int = 3000) -> tuple[Array, Array, Array]:
+    """A motion of 15 s: smooth, with corners of the velocity, or with random accelerations."""
+    t = np.arange(samples * FINE) * STEP_S / FINE
+    if kind == "sine":
+        return driven(4.0 * np.cos(2.0 * t))
+    if kind == "trapezoids":
+        phase = np.mod(t, 3.0)
+        up, down = phase < 0.4, (phase > 1.0) & (phase < 1.4)
+        return driven(np.where(up, 5.0, 0.0) - np.where(down, 10.0, 0.0) + 5.0 * (phase > 2.6))
+    if kind == "saturated steps":
+        # A drive at its limit, either way, and a velocity loop that settles.
+        level = np.where(np.mod(t, 2.0) < 1.0, 1.5, -1.5)
+        velocity, acceleration = 0.0, np.empty(len(t))
+        for k, target in enumerate(level):
+            acceleration[k] = np.clip(40.0 * (target - velocity), -12.0, 12.0)
+            velocity += acceleration[k] * STEP_S / FINE
+        return driven(acceleration)
+    random = np.random.default_rng(5)
+    knots = random.normal(0.0, 4.0, samples // 40 + 2)
+    return driven(np.interp(t, 0.2 * np.arange(len(knots)), knots))
 
 
-def test_record_shorter_than_the_window_is_fitted_as_one_window() -> None:
-    path, speed, acceleration = cubic(EVEN_S[:5])
-    found = local_fit(EVEN_S[:5], path, speed, 1e-4, 1e-3, 8)
-    np.testing.assert_allclose(found[1], speed, atol=1e-6)
-    np.testing.assert_allclose(found[2], acceleration, atol=1e-4)
-    path, speed, _ = cubic(EVEN_S[:3])
-    shortest = local_fit(EVEN_S[:3], path, speed, 1e-4, 1e-3, 1)
-    for value, expected in zip(smooth(EVEN_S[:3], path, speed, 1e-4, 1e-3), shortest, strict=False):
-        np.testing.assert_allclose(value, expected)
+def readings_of(position: Array, velocity: Array, seed: int = 1) -> Readings:
+    """An encoder and a tachometer that read a motion."""
+    n = len(position)
+    noisy = velocity + np.random.default_rng(seed).normal(0.0, NOISE, n)
+    return Readings(
+        STEP_S * np.arange(n),
+        quantised(position, COUNT),
+        noisy,
+        COUNT**2 / 12.0,
+        1e-12,
+        np.ones(n),
+        np.ones(n),
+    )
 
 
-def test_smooth_motion_is_fitted_with_the_widest_smoothing_window() -> None:
-    path, speed, acceleration = cubic(EVEN_S)
-    _, found, slope, error = smooth(EVEN_S, path, speed, 2e-4, 1e-3)
-    np.testing.assert_allclose(found, speed, atol=1e-7)
-    np.testing.assert_allclose(slope, acceleration, atol=1e-5)
-    np.testing.assert_allclose(error, local_fit(EVEN_S, path, speed, 2e-4, 1e-3, 16)[3])
+KINDS = ["sine", "trapezoids", "saturated steps", "hand-guided"]
 
 
-def test_smoothing_window_is_narrower_at_a_corner_of_the_speed() -> None:
-    corner = 0.5 * np.abs(EVEN_S - 0.4)
-    _, found, slope, error = smooth(EVEN_S, integrated(corner, 0.02), corner, 1e-6, 1e-5)
-    assert abs(found[20]) < 0.01
-    np.testing.assert_allclose(found[:17], corner[:17], atol=1e-6)
-    np.testing.assert_allclose(slope[2:15], -0.5, atol=1e-3)
-    np.testing.assert_allclose(slope[26:-2], 0.5, atol=1e-3)
-    assert error[20] > 2.0 * error[8]
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("channels", ["position and velocity", "position", "velocity"])
+def test_intervals_of_two_standard_errors_cover_the_true_motion(kind: str, channels: str) -> None:
+    position, velocity, acceleration = motion_of(kind)
+    readings = readings_of(position, velocity)
+    missing = np.full(len(position), np.nan)
+    if channels == "position":
+        readings = replace(readings, velocity=missing)
+    if channels == "velocity":
+        readings = replace(readings, position=missing)
+    motion = smooth(readings)
+    for column, true in ((1, velocity), (2, acceleration)):
+        sd = np.sqrt(motion.covariance[:, column, column])
+        off = np.abs(motion.mean[:, column] - true)
+        assert np.mean(off < 2.0 * sd) > 0.92
+        assert np.sqrt(np.mean(off**2)) < 1.5 * np.sqrt(np.mean(sd**2))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_smoothed_velocity_is_closer_to_the_truth_than_its_reading(kind: str) -> None:
+    position, velocity, _ = motion_of(kind)
+    motion = smooth(readings_of(position, velocity))
+    errors = motion.errors
+    assert np.std(motion.mean[:, 1] - velocity) < 0.4 * NOISE
+    assert np.sqrt(errors.velocity) == pytest.approx(NOISE, rel=0.1)
+    assert np.sqrt(errors.position) == pytest.approx(COUNT / np.sqrt(12.0), rel=0.1)
+
+
+@pytest.mark.parametrize("jitter_s", [5e-5, 5e-4, 1.5e-3])
+def test_jitter_of_the_stamps_of_an_even_clock_does_not_change_the_motion(jitter_s: float) -> None:
+    position, velocity, acceleration = motion_of("hand-guided")
+    readings = readings_of(position, velocity)
+    random = np.random.default_rng(7)
+    stamps = np.sort(readings.time_s + random.normal(0.0, jitter_s, len(velocity)))
+    jittered = replace(readings, time_s=stamps)
+    motion = smooth(jittered, even_clock(stamps))
+    expected = smooth(readings)
+    error = np.std(expected.mean[:, 2] - acceleration)
+    assert np.std(motion.mean[:, 2] - acceleration) < 1.3 * error
+
+
+def test_samples_read_off_even_stamps_have_errors_that_grow_with_the_speed() -> None:
+    """The stamps are even, the instants are not: the position is off by speed times jitter."""
+    t = np.arange(30_000) * STEP_S / FINE
+    random = np.random.default_rng(9)
+    instants = STEP_S * np.arange(3000) + random.normal(0.0, 2e-4, 3000)
+    position = np.interp(instants, t, 10.0 * (1.0 - np.cos(1.0 * t)))
+    velocity = np.interp(instants, t, 10.0 * np.sin(1.0 * t))
+    errors = smooth(readings_of(position, velocity)).errors
+    assert np.sqrt(errors.stamp) == pytest.approx(2e-4, rel=0.1)
+
+
+@pytest.mark.parametrize("loop_s", [0.0103, 0.0047])
+def test_stamps_in_whole_milliseconds_are_taken_from_an_even_clock(loop_s: float) -> None:
+    true = 3.0 + loop_s * np.arange(2000)
+    even = even_clock(np.floor(1e3 * true) / 1e3)
+    assert even is not None
+    # A clock may be late as a whole: only its steps matter.
+    np.testing.assert_allclose(np.diff(even), loop_s, rtol=1e-4)
+
+
+def test_even_clock_allows_missing_samples_and_refuses_a_changing_rate() -> None:
+    random = np.random.default_rng(2)
+    stamps = np.delete(0.01 * np.arange(500) + random.normal(0.0, 1e-4, 500), [50, 51, 300])
+    even = even_clock(stamps)
+    assert even is not None
+    np.testing.assert_allclose(even, stamps, atol=6e-4)
+    assert even_clock(np.cumsum(np.linspace(0.01, 0.02, 500))) is None
+    assert even_clock(0.01 * np.arange(500)) is None
+
+
+@pytest.mark.parametrize("delay", [-0.5, 0.0, 0.3, 1.0])
+@pytest.mark.parametrize("kind", KINDS)
+def test_delay_of_the_velocity_is_recovered_in_samples(kind: str, delay: float) -> None:
+    position, velocity, acceleration = motion_of(kind)
+    at = np.arange(len(velocity)) - delay
+    late = np.interp(at, np.arange(len(velocity)), velocity)
+    motion = smooth(readings_of(position, late))
+    errors = motion.errors
+    assert errors.velocity_delay_s == pytest.approx(delay * STEP_S, abs=0.05 * STEP_S)
+    sd = np.sqrt(motion.covariance[:, 2, 2])
+    assert np.median(np.abs(motion.mean[:, 2] - acceleration) / sd) < 1.0
+
+
+def test_motion_does_not_depend_on_the_unit_the_zero_or_the_direction_of_time() -> None:
+    position, velocity, _ = motion_of("trapezoids", 1000)
+    readings = readings_of(position, velocity)
+    motion = smooth(readings)
+
+    def velocity_of(**changes: Any) -> Array:
+        return np.asarray(smooth(replace(readings, **changes)).mean[:, 1])
+
+    scale = 1e3
+    np.testing.assert_allclose(
+        velocity_of(
+            position=scale * readings.position,
+            velocity=scale * readings.velocity,
+            position_floor=scale**2 * readings.position_floor,
+            velocity_floor=scale**2 * readings.velocity_floor,
+        )
+        / scale,
+        motion.mean[:, 1],
+        atol=1e-3 * NOISE,
+    )
+    np.testing.assert_allclose(
+        velocity_of(position=readings.position + 50.0), motion.mean[:, 1], atol=1e-3 * NOISE
+    )
+    back = velocity_of(position=readings.position[::-1], velocity=-readings.velocity[::-1])
+    np.testing.assert_allclose(-back[::-1], motion.mean[:, 1], atol=0.02 * NOISE)
+
+
+def test_long_record_is_smoothed_with_errors_of_its_middle() -> None:
+    position, velocity, _ = motion_of("hand-guided", 24_000)
+    motion = smooth(readings_of(position, velocity))
+    errors = motion.errors
+    assert np.sqrt(errors.velocity) == pytest.approx(NOISE, rel=0.05)
+    sd = np.sqrt(motion.covariance[:, 1, 1])
+    assert np.mean(np.abs(motion.mean[:, 1] - velocity) < 2.0 * sd) > 0.92
+
+
+def test_record_of_one_to_five_samples_gives_a_finite_motion() -> None:
+    position, velocity, _ = motion_of("sine", 20)
+    for n in range(1, 6):
+        motion = smooth(readings_of(position[:n], velocity[:n]))
+        assert np.isfinite(motion.mean).all()

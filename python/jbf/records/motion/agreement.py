@@ -15,20 +15,6 @@ RARE = 0.01
 """Largest share of the samples that may be contradictions."""
 
 
-def disagreement_of(
-    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
-) -> float:
-    """Error that the speeds must have beyond their noise to disagree so with the path, m/s."""
-    dt = np.diff(time)
-    gap = np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt
-    step = float(np.median(dt))
-    seen = float(np.median(np.abs(gap)) / 0.6745)
-    expected = np.sqrt(2.0 * sd_path**2 + 0.5 * (sd_speed * step) ** 2)
-    if seen <= 1.5 * expected:
-        return 0.0
-    return float(np.sqrt(seen**2 - 2.0 * sd_path**2) / step)
-
-
 def contradiction_of(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
 ) -> Array:

@@ -20,7 +20,7 @@ from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from jbf.records.motion.lateness import earlier, late_speed
 from jbf.records.motion.position import recorded_position
-from jbf.records.motion.roughness import step_of
+from jbf.records.motion.roughness import quantum_of, step_of
 from jbf.records.motion.speed_zero import speed_zero
 from jbf.records.motion.units import wrong_unit
 from jbf.records.run import Run
@@ -95,7 +95,7 @@ def believed(run: Run, radius_m: float | None) -> Believed:
         speed, odd = mend_speed(name, time, speed, None, said.speed)
         speed, loose, ends = mend_speed_ends(name, time, speed, None, said.speed)
         return Believed(None, 0.0, speed, True, _there(odd, *ends, stamps), loose)
-    step = step_of(position.path_m)
+    step = quantum_of(position.path_m) or step_of(position.path_m)
     position, astray = mend_position(name, time, position)
     position, loose, ends = mend_path_ends(name, time, position)
     if not run.speed_recorded:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.roughness import noise_of
+from jbf.records.motion.roughness import noise_of, quantum_of
 
 Array = npt.NDArray[np.float64]
 
@@ -22,21 +22,20 @@ TO = 0.05
 """A speed is the difference where it is so near to it, as a share of its own coarse step."""
 COARSE = 3.0
 """A difference that is smoother than so many times that is as good as a measured speed."""
-DIGITS = 1e-12
-"""Counts differ by more than this share of the path; less is rounding."""
 
 
 def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
     """A finding where a speed is a difference of the path; None where it was measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
-    step = _count(path)
+    step = quantum_of(path)
     moving = np.abs(speed) > 0.02 * float(np.max(np.abs(speed), initial=0.0))
     usual = float(np.median(np.diff(time)))
     for span in SPANS:
         difference = (path[span:] - path[:-span]) / (time[span:] - time[:-span])
         tolerance = TO * step / (span * usual)
-        if noise_of(difference) < COARSE * tolerance:
+        middle = moving[span // 2 : span // 2 + len(difference)]
+        if noise_of(difference[middle]) < COARSE * tolerance:
             continue
         # Looking back, and to both sides.
         for after in sorted({0, span // 2}):
@@ -56,14 +55,6 @@ def _finding(name: str, span: int, late_s: float) -> Finding:
         words += f", {1e3 * late_s:.3g} ms late"
     done = "left aside; the path alone tells the motion"
     return Finding("coarse_speed", "velocity_m_s", name, float(span), "samples", done, words)
-
-
-def _count(path: Array) -> float:
-    """What a path counts in, m: the smallest change of its change; nearly nothing of a path that
-    knows no counts. (The smallest change itself is many counts where the shaft is never slow.)"""
-    bends = np.abs(np.diff(path, 2))
-    bends = bends[bends > DIGITS * float(np.ptp(path))]
-    return float(np.min(bends)) if len(bends) else 0.0
 
 
 def centred_speed(time: Array, path: Array) -> Array:

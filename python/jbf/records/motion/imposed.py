@@ -20,20 +20,22 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.agreement import contradiction_of, disagreement_of
-from jbf.records.motion.believed import NOT_AS_RECORDED, believed
+from jbf.records.motion.agreement import contradiction_of
+from jbf.records.motion.believed import NOT_AS_RECORDED, Believed, believed
+from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.readings import AT_REST, Readings
 from jbf.records.motion.rests import (
     backward_beside_rest,
-    place_rests,
     rest_edges,
     resting_samples,
     still_samples,
+    sure_rests,
     unsure_beside_rest,
     without_swings,
 )
-from jbf.records.motion.roughness import UNEVEN, local_noise, noise_of
-from jbf.records.motion.smoothing import smooth
+from jbf.records.motion.roughness import local_noise, noise_of, quantum_of
+from jbf.records.motion.smoothing import Smoothed, smooth
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -41,8 +43,47 @@ Mask = npt.NDArray[np.bool_]
 
 SIGN_SIGMA = 4.0
 """A speed closer to zero than this many standard errors has no sign to rely on."""
+EXACT = 1e-6
+"""Smallest standard error of a reading: of a velocity, relative to the largest one; of a position,
+relative to the largest displacement in one step."""
+WORTH = 0.1
+"""Smallest delay of the velocity that is reported, samples."""
+AT_REST_SIGMA = 3.0
+"""Standard errors within which a speed is zero next to a rest."""
 GONE = 3.0
 """A path that has gone so many standard errors from a rest tells which way: one count has."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionErrors:
+    """Joint errors of position, velocity and acceleration at n instants: a Markov chain.
+
+    Attributes
+    ----------
+    covariance
+        Covariance at each instant, shape (n, 3, 3), in powers of m (or rad) and s.
+    gain
+        Regression of the errors at an instant on those at the next one, shape (n - 1, 3, 3).
+    arm_m
+        Metres of path for a radian of the angle; 1 where the path is the angle.
+    velocity_delay_s
+        How late the velocity was read relative to the position, s.
+    smoothed
+        The posterior that they were taken from.
+    """
+
+    covariance: Array
+    gain: Array
+    arm_m: float
+    velocity_delay_s: float = 0.0
+
+    smoothed: Smoothed | None = None
+
+    def at(self, instants_s: Array) -> tuple[Array, MotionErrors]:
+        """Position, velocity and acceleration at other instants, shape (n, 3), and their errors."""
+        assert self.smoothed is not None
+        mean, covariance, gain = self.smoothed.at(instants_s)
+        return mean, replace(self, covariance=covariance, gain=gain)
 
 
 @dataclass(frozen=True)
@@ -62,6 +103,11 @@ class ImposedMotion:
         records of path and speed contradict one another.
     findings
         What the recording did to path and speed, and what was done about it.
+    errors
+        Joint errors of the motion; None where they are not known.
+    clock_s
+        Instants of the even clock that the stamps were read from, s; None where the stamps are
+        taken as they are.
     """
 
     velocity_m_s: Array
@@ -71,6 +117,8 @@ class ImposedMotion:
     resting: Mask
     sign_known: Mask
     findings: tuple[Finding, ...] = ()
+    errors: MotionErrors | None = None
+    clock_s: Array | None = None
 
     @property
     def aside(self) -> set[str]:
@@ -114,16 +162,24 @@ class ImposedMotion:
         between = np.abs(u - 0.5) < 0.5
         at_sample = np.where(u < 0.5, self.sign_known[k], self.sign_known[k + 1])
         known = np.where(between, known & (rest | ~corner), at_sample)
+        angle, errors = np.interp(instants_s, time_s, self.angle_rad), self.errors
+        if errors is not None and errors.smoothed is not None:
+            mean, errors = errors.at(np.clip(instants_s, time_s[0], time_s[-1]))
+            at_samples = corner | (u == 0.0) | (u == 1.0)
+            velocity = np.where(at_samples, velocity, mean[:, 1])
+            acceleration = np.where(at_samples, acceleration, mean[:, 2])
+            angle = np.where(at_samples, angle, mean[:, 0] / errors.arm_m)
         return replace(
             self,
             velocity_m_s=np.where(rest, 0.0, velocity),
             acceleration_m_s2=np.where(rest, 0.0, acceleration),
-            angle_rad=np.interp(instants_s, time_s, self.angle_rad),
+            angle_rad=angle,
             velocity_error_m_s=np.maximum(
                 self.velocity_error_m_s[k], self.velocity_error_m_s[k + 1]
             ),
             resting=rest,
             sign_known=known.astype(bool),
+            errors=errors,
         )
 
 
@@ -145,51 +201,34 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
     if path is not None:
         rest |= still_samples(time, path, speed, step, records.hum)
-    moving = ~rest
-    if path is None:
-        steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
-        path, sd_path = np.concatenate(([0.0], np.cumsum(steps))), 1e3
-    else:
-        sd_path, hum = step / np.sqrt(12.0), noise_of(path[moving])
-        # Where samples are finer than any encoder's, the smallest change on record is chance.
-        if hum > UNEVEN * sd_path:
-            sd_path = hum
-        sd_path = max(sd_path, 1e-9 * float(np.ptp(path)), 1e-15)
-    top = float(np.max(np.abs(speed))) if n else 0.0
-    sd_speed = noise_of(speed[moving]) if moving.any() else 0.0
-    sd_speed = max(sd_speed, 1e-7 * top, 1e-15)
-    beyond = disagreement_of(time, path, speed, sd_path, sd_speed) if n > 1 else 0.0
-    # A speed made of the path tells nothing besides.
-    usual = max(sd_speed, beyond) if records.speed_measured else 1e3 * max(top, sd_speed)
-
+    readings = _readings(records, time, rest)
     contradiction = np.zeros(n)
-    if n > 1 and records.speed_measured:
-        contradiction = contradiction_of(time, path, speed, sd_path, usual)
-
-    velocity, acceleration = np.where(rest, 0.0, speed), np.zeros(n)
-    smooth_path, error = path.copy(), np.zeros(n)
-    edges = np.diff(np.concatenate(([0], moving.astype(np.int8), [0])))
-    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        part = slice(first, end)
-        if end - first < 3:
-            error[part] = max(sd_speed, beyond)
-            continue
-        local = local_noise(speed[part]) if records.speed_measured else usual
-        sd: Array | float = usual
-        if isinstance(local, np.ndarray):
-            sd = np.maximum(local, usual)
-        if contradiction[part].any():
-            # A position was read; a speed was made from positions, and the making has its ends.
-            sd = np.maximum(sd, contradiction[part])
-        smooth_path[part], velocity[part], acceleration[part], error[part] = smooth(
-            time[part], path[part], speed[part], sd_path, sd
+    if n > 1 and path is not None and records.speed_measured:
+        sd_path, sd_speed = (
+            max(noise_of(signal[~rest], time[~rest]), float(np.sqrt(floor)))
+            for signal, floor in (
+                (path, readings.position_floor),
+                (speed, readings.velocity_floor),
+            )
         )
-    place_rests(rest, smooth_path, velocity, acceleration, 0.5 * sd_path * np.sqrt(12.0))
+        contradiction = contradiction_of(time, path, speed, sd_path, sd_speed)
+        readings = replace(
+            readings, velocity_shape=np.hypot(readings.velocity_shape, contradiction / sd_speed)
+        )
+    # Where channels have clocks of their own, the force's stamps are others.
+    even_s = None if run.read else even_clock(time)
+    smoothed = smooth(readings, even_s)
+    errors = smoothed.errors
+    smooth_path = smoothed.mean[:, 0]
+    sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
+    rest &= sure_rests(rest) | (np.abs(smoothed.mean[:, 1]) <= AT_REST_SIGMA * sd)
+    velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:].T)
+    error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_beside_rest(rest, time, velocity, acceleration) & ~records.loose
-    if records.path is not None and not records.speed_measured:
-        sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * sd_path)
+    if path is not None and not records.speed_measured:
+        sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * np.sqrt(errors.position))
     without_swings(rest, velocity, sign_known)
     # A contact that bends begins bent where the run begins in motion: noise is none.
     if n and begins_in_a_hum(time, velocity):
@@ -207,5 +246,53 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         error,
         rest,
         sign_known,
-        records.findings,
+        (*records.findings, *_late(run, errors.velocity_delay_s)),
+        MotionErrors(
+            smoothed.covariance,
+            smoothed.gain,
+            radius_m or records.arm_m,
+            errors.velocity_delay_s,
+            smoothed,
+        ),
+        None if smoothed.readings.time_s is readings.time_s else smoothed.readings.time_s,
+    )
+
+
+def _late(run: Run, delay_s: float) -> list[Finding]:
+    """A finding where the velocity was read on another clock than the position."""
+    if abs(delay_s) < WORTH * float(np.median(np.diff(run.time_s))):
+        return []
+    way = "later" if delay_s > 0.0 else "earlier"
+    words = f"the speed is {1e3 * abs(delay_s):.3g} ms {way} than the path"
+    return [Finding("late_speed", "velocity_m_s", run.name, delay_s, "s", "corrected", words)]
+
+
+def _readings(records: Believed, time: Array, rest: Mask) -> Readings:
+    """The readings of a motion, with the smallest errors that they can have."""
+    n, path, speed = len(time), records.path, records.speed
+    sure = sure_rests(rest)
+    position, velocity = np.full(n, np.nan), np.where(sure, 0.0, np.nan)
+    top, position_step = float(np.max(np.abs(speed), initial=0.0)), 0.0
+    way = top * float(np.median(np.diff(time))) if n > 1 else top
+    position_shape: Array = np.ones(n)
+    if path is not None:
+        position, position_step = path, quantum_of(path)
+        # The readings of a rest are one reading.
+        edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
+        for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+            position_shape[first:end] = np.sqrt(end - first)
+    velocity_step, velocity_shape = 0.0, np.ones(n)
+    if records.speed_measured:
+        velocity, velocity_step = np.where(sure, 0.0, speed), quantum_of(speed[~rest])
+        local, usual = local_noise(speed[~rest]), noise_of(speed[~rest])
+        if usual > 0.0:
+            velocity_shape[~rest] = local / usual
+    return Readings(
+        time,
+        position,
+        velocity,
+        max(position_step**2 / 12.0, (EXACT * way) ** 2, 1e-30),
+        max(velocity_step**2 / 12.0, (EXACT * top) ** 2, 1e-30),
+        position_shape,
+        np.where(sure, AT_REST, velocity_shape),
     )

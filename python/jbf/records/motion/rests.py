@@ -90,6 +90,22 @@ def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: fl
     return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
 
 
+def sure_rests(rest: Mask) -> Mask:
+    """The inner part of each rest: at its ends the motion may be less than a count.
+
+    Ends at the first or the last sample are not shortened.
+    """
+    sure: Mask = rest.copy()
+    edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
+    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        margin = min(int(end - first) // 3, STILL_SAMPLES)
+        if first > 0:
+            sure[first : first + margin] = False
+        if end < len(rest):
+            sure[end - margin : end] = False
+    return sure
+
+
 def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array) -> Mask:
     """True at the first and the last samples of each rest that motion precedes or follows.
 
@@ -166,24 +182,3 @@ def without_swings(rest: Mask, velocity_m_s: Array, sign_known: Mask) -> None:
         if end < len(rest):
             stop = v[sure[-1] + 1 :]
             stop[stop * v[sure[-1]] < 0.0] = 0.0
-
-
-def place_rests(
-    rest: Mask, path: Array, velocity: Array, acceleration: Array, half_step: float
-) -> None:
-    """Place each rest where the motions on either side end and begin, in `path`.
-
-    An encoder shows a rest to the nearest step; a stiff drive makes a force of the remainder.
-    The motion before says where it came to a stop, the one after where it started from.
-    """
-    edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
-    for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        guesses = []
-        for neighbour, way in ((first - 1, 1.0), (end, -1.0)):
-            if 0 <= neighbour < len(path) and acceleration[neighbour] != 0.0:
-                v, a = velocity[neighbour], acceleration[neighbour]
-                guesses.append(path[neighbour] + way * 0.5 * v * abs(v) / abs(a))
-        if guesses:
-            recorded = path[first]
-            placed = np.clip(np.mean(guesses), recorded - half_step, recorded + half_step)
-            path[first:end] = placed

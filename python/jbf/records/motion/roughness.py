@@ -9,19 +9,45 @@ Array = npt.NDArray[np.float64]
 
 UNEVEN = 3.0
 """Noise so many times its usual size is uneven: locally it counts as it is."""
+DIGITS = 1e-7
+"""Changes by less than this share of a signal's range are rounding: of a file's digits."""
+LEVELS = 10
+"""Different values that a signal in steps has at least."""
+ALTERNATING, VARIOUS = 0.1, 6
+"""Rounding makes bends that change their sign at least so often, or at least so many sizes."""
+PARTS = 6
+"""Parts of the smallest change that are tried as a step."""
+WHOLE, MOSTLY = 0.05, 0.9
+"""Most changes of a signal that was recorded in steps are so near to a whole number of them."""
 UNEVEN_SAMPLES = 101
 """Samples over which local noise is taken."""
 
 
-def noise_of(signal: Array) -> float:
+def noise_of(signal: Array, time_s: Array | None = None) -> float:
     """Standard deviation of white noise on a smooth signal, from its third differences.
 
     Robust: half of the samples may do anything.
+
+    Parameters
+    ----------
+    time_s
+        Instants of the samples, s, increasing; None if they are even. Divided differences, over
+        the root of the sum of their weights' squares, allow for uneven ones.
     """
     if len(signal) < 8:
         return 0.0
-    third = np.diff(signal, 3)
-    return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0))
+    if time_s is None:
+        third = np.diff(signal, 3) / np.sqrt(20.0)
+    else:
+        t = np.stack([time_s[k : len(time_s) - 3 + k] for k in range(4)])
+        gap = t[:, None, :] - t[None, :, :]
+        gap[np.arange(4), np.arange(4)] = 1.0
+        weight = 1.0 / np.where(gap == 0.0, np.nan, gap).prod(axis=1)
+        weight /= np.sqrt(np.sum(weight**2, axis=0))
+        values = np.stack([signal[k : len(signal) - 3 + k] for k in range(4)])
+        third = np.sum(weight * (values - values[0]), axis=0)
+        third = third[np.isfinite(third)]
+    return float(np.median(np.abs(third)) / 0.6745) if len(third) else 0.0
 
 
 def local_noise(signal: Array) -> Array | float:
@@ -42,6 +68,31 @@ def step_of(angle: Array) -> float:
     steps = np.abs(np.diff(angle))
     steps = steps[steps > 1e-12]
     return float(np.min(steps)) if len(steps) else 0.0
+
+
+def quantum_of(signal: Array) -> float:
+    """The step in which a signal was recorded: its changes are multiples of it; zero without one.
+
+    The smallest change alone may be many steps, where the signal is never slow. A signal with few
+    different values is one of set levels, not a coarse one.
+    """
+    if len(np.unique(signal)) < LEVELS:
+        return 0.0
+    bends = np.diff(signal, 2)
+    bends = bends[np.abs(bends) > DIGITS * float(np.ptp(signal))]
+    if len(bends) < LEVELS:
+        return 0.0
+    alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > ALTERNATING
+    bends = np.abs(bends)
+    # In a short record the smallest change of the change may itself be a few steps.
+    for part in range(1, PARTS + 1):
+        step = float(np.min(bends)) / part
+        steps = np.diff(signal) / step
+        if np.mean(np.abs(steps - np.rint(steps)) < WHOLE) > MOSTLY:
+            # Ramps and parabolas without noise have a few bends of one sign each.
+            various = len(np.unique(np.rint(bends / step))) >= VARIOUS
+            return step if alternating or various else 0.0
+    return 0.0
 
 
 def encoder_step(path: Array) -> float:

@@ -1,137 +1,336 @@
-"""Local polynomials through path and speed at once, over windows as long as the data allow.
+"""Fixed-interval smoothing of position and velocity with estimated reading errors.
 
-Windows grow while the speeds they give agree within their errors (the intersection of confidence
-intervals, Goldenshluger & Nemirovski 1997): a sine is smoothed over many samples, the corner of a
-trapezoid over few.
+The jerk is Student-t noise: large in the few steps with a corner, small elsewhere. A t distribution
+is a normal one with a random variance, so each step has an own intensity q c_k. The scale q, the
+variances of the readings and the c_k maximise the likelihood by expectation-maximisation (EM); the
+filter and the smoother are `jbf._core.SmoothedMotion`.
+
+References
+----------
+Bar-Shalom, Li & Kirubarajan (2001), section 6.2 (Wiener-process acceleration); Shumway & Stoffer
+(1982) (EM for state-space models); Lange, Little & Taylor (1989) (EM for the t distribution).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 import numpy.typing as npt
 
+from jbf._core import SmoothedMotion
+from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
+from jbf.records.motion.roughness import noise_of
+
 Array = npt.NDArray[np.float64]
 
-HALF_WIDTHS = (1, 2, 4, 8, 16)
-"""Half widths of the windows tried, in samples."""
-AGREEMENT = 2.0
-"""How many standard errors the intervals of two windows may span and still agree."""
+JERK_FREEDOM = 2.0
+"""Degrees of freedom of the jerk's t distribution: with few, corners are sharp."""
+GAUSSIAN_PASSES, ROBUST_PASSES = 6, 24
+"""EM passes with a normal jerk, for a start, and with a t distribution."""
+SETTLED = 0.01
+"""EM ends where no parameter changes by more than this share in a pass."""
+SHORTEST = 4
+"""Samples below which nothing is estimated: the motion is a parabola through them."""
+LONGEST = 20_000
+"""Samples from which the parameters are estimated, in the middle of a longer record."""
+DECADES = 14
+"""Range of jerk intensities searched, decades below the one that follows every reading."""
+DELAY_GAIN = 10.0
+"""Log-likelihood gain that a delay of the velocity must have."""
+START_FACTORS = (1.0, 10.0, 100.0)
+"""Factors of the velocity's error, next to its roughness, from which the estimation may start."""
+STAMP_ERRORS = (0.01, 0.05, 0.2)
+"""Standard errors of the instants that are tried, in samples."""
+SPAN = 5
+"""Samples over which a first guess of the speed is averaged."""
+STAMP_GAIN = 10.0
+"""Log-likelihood gain that an error of the instants, or an even clock, must have."""
+LONGEST_DELAY = 1.5
+"""Largest delay of the velocity that is searched, samples."""
 
 
-def local_fit(
-    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float, half: int
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Fit a polynomial path to path and speed in windows of `2 half + 1` samples.
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """The posterior of a motion; n instants.
 
-    Returns path, speed, acceleration and the standard errors of the speed and of the acceleration
-    at each sample.
+    Attributes
+    ----------
+    readings, errors
+        What it was estimated from, and the estimated errors.
+    corners
+        Factor of the jerk's intensity in each step, shape (n - 1,).
+    speed
+        Speed at each sample, for the effect of the stamps' errors, shape (n,).
+    mean, covariance
+        Position, velocity and acceleration, shape (n, 3), and their covariance, shape (n, 3, 3).
+    gain
+        Gains of the posterior as a Markov chain backward in time, shape (n - 1, 3, 3).
     """
-    n = len(time)
-    width = min(2 * half + 1, n)
-    # A long window sees more of a bend: give it more terms than a short one can carry.
-    order = 3 if half < 4 else 5
-    if isinstance(sd_speed, np.ndarray) or not _even(time):
-        return _windows(np.arange(n), time, path, speed, sd_path, sd_speed, width, order)
-    # The windows of evenly spaced samples are one, but for those at the ends.
-    ends = np.r_[: min(half, n), max(n - half, half) : n]
-    found = [np.empty(n) for _ in range(5)]
-    for whole, part in zip(
-        found,
-        _windows(ends, time, path, speed, sd_path, sd_speed, width, order),
-        strict=True,
-    ):
-        whole[ends] = part
-    if n > 2 * half:
-        inside = slice(half, n - half)
-        step_s = float(np.median(np.diff(time)))
-        t = np.arange(-half, width - half, dtype=np.float64) * step_s
-        scale = float(t[-1])
-        sd = np.array([[sd_speed]], dtype=np.float64)
-        design = _design(t[None, :] / scale, order, scale, sd_path, sd)[0]
-        inverse = np.linalg.pinv(design.T @ design, hermitian=True)
-        weights = design @ inverse
-        for_path, for_speed = weights[:width] / sd_path, weights[width:] / sd_speed
-        level = path - path[n // 2]
-        terms = [
-            np.correlate(level, for_path[:, k])
-            - np.sum(for_path[:, k]) * level[inside]
-            + np.correlate(speed, for_speed[:, k])
-            for k in range(3)
-        ]
-        found[0][inside] = terms[0] + path[inside]
-        found[1][inside] = terms[1] / scale
-        found[2][inside] = 2.0 * terms[2] / scale**2
-        found[3][inside] = np.sqrt(max(float(inverse[1, 1]), 0.0)) / scale
-        found[4][inside] = 2.0 * np.sqrt(max(float(inverse[2, 2]), 0.0)) / scale**2
-    return found[0], found[1], found[2], found[3], found[4]
 
+    readings: Readings
+    errors: ReadingErrors
+    corners: Array
+    speed: Array
+    mean: Array
+    covariance: Array
+    gain: Array
 
-def _windows(
-    which: npt.NDArray[np.intp],
-    time: Array,
-    path: Array,
-    speed: Array,
-    sd_path: float,
-    sd_speed: Array | float,
-    width: int,
-    order: int,
-) -> tuple[Array, Array, Array, Array, Array]:
-    """`_local_fit` at the samples `which`, each in a window of its own."""
-    first = np.clip(which - width // 2, 0, len(time) - width)
-    index = first[:, None] + np.arange(width)[None, :]
-    t = time[index] - time[which, None]
-    scale = max(float(np.max(np.abs(t), initial=0.0)), 1e-30)
-    sd = sd_speed[index] if isinstance(sd_speed, np.ndarray) else np.full((1, 1), sd_speed)
-    design = _design(t / scale, order, scale, sd_path, sd)
-    target = np.concatenate([(path[index] - path[which, None]) / sd_path, speed[index] / sd], 1)
-    inverse = np.linalg.pinv(np.einsum("nij,nik->njk", design, design), hermitian=True)
-    right = np.einsum("nij,ni->nj", design, target)
-    coefficients = np.einsum("njk,nk->nj", inverse, right)
-    return (
-        coefficients[:, 0] + path[which],
-        coefficients[:, 1] / scale,
-        2.0 * coefficients[:, 2] / scale**2,
-        np.sqrt(np.maximum(inverse[:, 1, 1], 0.0)) / scale,
-        2.0 * np.sqrt(np.maximum(inverse[:, 2, 2], 0.0)) / scale**2,
-    )
+    @classmethod
+    def of(
+        cls, readings: Readings, errors: ReadingErrors, corners: Array, speed: Array
+    ) -> Smoothed:
+        """The posterior for given errors."""
+        found = readings.smoothed(errors, corners, speed)
+        return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
 
+    def at(self, instants_s: Array) -> tuple[Array, Array, Array]:
+        """Mean, covariance and gain at other instants, s, not decreasing and within the motion."""
+        time = self.readings.time_s
+        whole, where = np.unique(np.concatenate([time, instants_s]), return_inverse=True)
+        sample, asked = where[: len(time)], where[len(time) :]
 
-def _even(time: Array) -> bool:
-    """True where the samples are evenly spaced, but for rounding."""
-    steps = np.diff(time)
-    return bool(np.ptp(steps) <= 1e-6 * np.median(steps))
+        def spread(values: Array, missing: float) -> Array:
+            found = np.full(len(whole), missing)
+            found[sample] = values
+            return found
 
-
-def _design(u: Array, order: int, scale: float, sd_path: float, sd: Array) -> Array:
-    """Powers of scaled times for path and speed, each over its error, (n, 2 width, order + 1)."""
-    powers = np.stack([u**k for k in range(order + 1)], axis=-1)
-    slopes = np.stack([k * u ** max(k - 1, 0) for k in range(order + 1)], axis=-1) / scale
-    return np.concatenate([powers / sd_path, slopes / sd[..., None]], axis=1)
-
-
-def smooth(
-    time: Array, path: Array, speed: Array, sd_path: float, sd_speed: Array | float
-) -> tuple[Array, Array, Array, Array]:
-    """Path, speed, acceleration and standard error of the speed in one stretch of motion."""
-    best: tuple[Array, ...] | None = None
-    # Of speed and of acceleration: where a force sets in, only the latter has a corner.
-    low = np.full((2, len(time)), -np.inf)
-    high = np.full((2, len(time)), np.inf)
-    growing = np.ones(len(time), dtype=bool)
-    for half in HALF_WIDTHS:
-        if best is not None and 2 * half + 1 > len(time):
-            break
-        fit = local_fit(time, path, speed, sd_path, sd_speed, half)
-        value, error = np.stack(fit[1:3]), AGREEMENT * np.stack(fit[3:5])
-        low = np.maximum(low, value - error)
-        high = np.minimum(high, value + error)
-        growing &= (low <= high).all(axis=0)
-        best = (
-            fit
-            if best is None
-            else tuple(np.where(growing, new, old) for new, old in zip(fit, best, strict=True))
+        readings = replace(
+            self.readings,
+            time_s=whole,
+            position=spread(self.readings.position, np.nan),
+            velocity=spread(self.readings.velocity, np.nan),
+            position_shape=spread(self.readings.position_shape, 1.0),
+            velocity_shape=spread(self.readings.velocity_shape, 1.0),
         )
-        if not growing.any():
+        step = np.clip(np.searchsorted(time, whole[:-1], "right") - 1, 0, len(time) - 2)
+        found = readings.smoothed(self.errors, self.corners[step], spread(self.speed, 0.0))
+        return found.mean[asked], found.covariance[asked], _composed(found.gain, asked)
+
+
+def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
+    """Gains from each chosen instant to the next chosen one."""
+    first, last = chosen[:-1], chosen[1:]
+    found: Array = np.broadcast_to(np.eye(3), (len(first), 3, 3)).copy()
+    for further in range(int(np.max(last - first, initial=0))):
+        reached = first + further < last
+        found[reached] = found[reached] @ gain[(first + further)[reached]]
+    return found
+
+
+def smooth(readings: Readings, even_s: Array | None = None) -> Smoothed:
+    """Estimate the errors of the readings by maximum likelihood, and smooth the motion.
+
+    Parameters
+    ----------
+    even_s
+        Instants of an even clock that the stamps may have been read from, s.
+    """
+    n = len(readings.time_s)
+    if n < SHORTEST:
+        errors = replace(_start(readings), jerk=0.0)
+        return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
+    first = max((n - LONGEST) // 2, 0)
+    part = slice(first, first + LONGEST)
+    few = readings.part(part)
+    start = _likeliest_start(few)
+    if np.isfinite(few.position).any():
+        few, start, evened = _likeliest_stamps(few, start, None if even_s is None else even_s[part])
+        if evened and even_s is not None:
+            readings = replace(readings, time_s=even_s)
+    errors, corners = _estimated(few, start)
+    if np.isfinite(few.position).any() and np.isfinite(few.velocity).any():
+        errors, corners = _delayed(few, errors, corners)
+    speed = np.zeros(n)
+    if n > len(few.time_s):
+        corners = np.ones(n - 1)
+        for _ in range(GAUSSIAN_PASSES):
+            motion = readings.smoothed(errors, corners, speed)
+            speed = motion.mean[:, 1]
+            corners = _corners(motion.disturbance / errors.jerk)
+    else:
+        speed = readings.smoothed(errors, corners, speed).mean[:, 1]
+    return Smoothed.of(readings, errors, _located_to_a_step(corners), speed)
+
+
+def _likeliest_start(readings: Readings) -> ReadingErrors:
+    """Variances by the roughness of the readings, or larger ones where these are likelier.
+
+    The roughness is that of most samples: where a machine mostly rests, its readings are noisier
+    than that in motion.
+    """
+    start = _start(readings)
+    tried = [
+        _likeliest_jerk(readings, replace(start, velocity=factor**2 * start.velocity))
+        for factor in (START_FACTORS if np.isfinite(readings.velocity).any() else (1.0,))
+    ]
+    return max(tried, key=lambda errors: _likelihood(readings, errors))
+
+
+def _start(readings: Readings) -> ReadingErrors:
+    """Variances by the roughness of the readings."""
+    noise = []
+    for signal, shape, floor in (
+        (readings.position, readings.position_shape, readings.position_floor),
+        (readings.velocity, readings.velocity_shape, readings.velocity_floor),
+    ):
+        seen = np.isfinite(signal) & (shape > AT_REST)
+        noise.append(max(noise_of(signal[seen], readings.time_s[seen]) ** 2, floor))
+    return ReadingErrors(noise[0], noise[1], 0.0, 1.0)
+
+
+def _likeliest_jerk(readings: Readings, errors: ReadingErrors) -> ReadingErrors:
+    """The same errors with the jerk that is likeliest if it is normal and the same everywhere."""
+    step = float(np.median(np.diff(readings.time_s)))
+    ones, speed = np.ones(len(readings.time_s) - 1), _speed(readings)
+    top = float(np.nanmax(np.abs(readings.velocity), initial=0.0))
+    seen = readings.position[np.isfinite(readings.position)]
+    reach = float(np.ptp(seen)) if len(seen) else 0.0
+    with np.errstate(divide="ignore"):
+        most = np.log((top**2 + (reach / step) ** 2) / step**3)
+
+    def cost(log_jerk: float) -> float:
+        tried = replace(errors, jerk=float(np.exp(log_jerk)))
+        return -readings.log_likelihood(tried, ones, speed)
+
+    if not np.isfinite(most):
+        return errors
+    grid = most - np.log(10.0) * np.arange(0.0, DECADES, 1.5)
+    costs = [cost(g) for g in grid]
+    best = int(np.argmin(costs))
+    low, high = grid[min(best + 1, len(grid) - 1)], grid[max(best - 1, 0)]
+    from scipy.optimize import minimize_scalar  # half a second to import
+
+    found = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.5})
+    return replace(errors, jerk=float(np.exp(found.x)))
+
+
+def _likeliest_stamps(
+    readings: Readings, errors: ReadingErrors, even_s: Array | None
+) -> tuple[Readings, ReadingErrors, bool]:
+    """Readings at their stamps or on an even clock, with or without an error of the instants."""
+    best = (_likelihood(readings, errors), readings, errors, False)
+    step = float(np.median(np.diff(readings.time_s)))
+    clocks = [(readings, False)]
+    if even_s is not None:
+        clocks.append((replace(readings, time_s=even_s), True))
+    for share in (0.0, *STAMP_ERRORS):
+        for clock, evened in clocks:
+            if share == 0.0 and not evened:
+                continue
+            tried = _likeliest_jerk(clock, replace(errors, stamp=(share * step) ** 2))
+            likelihood = _likelihood(clock, tried)
+            # An even clock has no parameter more; an error of the instants has one.
+            if likelihood > best[0] + (STAMP_GAIN if share > 0.0 else 0.0):
+                best = (likelihood, clock, tried, evened)
+    return best[1:]
+
+
+def _speed(readings: Readings) -> Array:
+    """A first guess of the speed, for the effect of the stamps' errors."""
+    if np.isfinite(readings.velocity).all():
+        return readings.velocity
+    time = readings.time_s
+    step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
+    slope = np.nan_to_num(np.gradient(readings.position, step))
+    return np.convolve(slope, np.ones(SPAN) / SPAN, "same")
+
+
+def _likelihood(readings: Readings, errors: ReadingErrors) -> float:
+    """Log likelihood with a jerk of one intensity."""
+    ones = np.ones(len(readings.time_s) - 1)
+    return readings.log_likelihood(errors, ones, _speed(readings))
+
+
+def _delayed(
+    readings: Readings, errors: ReadingErrors, corners: Array
+) -> tuple[ReadingErrors, Array]:
+    """Errors and corners with the delay of the velocity that is likeliest."""
+    speed = readings.smoothed(errors, corners, _speed(readings)).mean[:, 1]
+    longest = LONGEST_DELAY * float(np.median(np.diff(readings.time_s)))
+
+    def cost(delay_s: float) -> float:
+        tried = replace(errors, velocity_delay_s=delay_s)
+        return -readings.log_likelihood(tried, corners, speed)
+
+    from scipy.optimize import minimize_scalar
+
+    found = minimize_scalar(cost, bounds=(-longest, longest), method="bounded")
+    if cost(0.0) - found.fun < DELAY_GAIN:
+        return errors, corners
+    delayed = replace(errors, velocity_delay_s=float(found.x))
+    return _estimated(readings, delayed, corners)
+
+
+def _estimated(
+    readings: Readings, errors: ReadingErrors, corners: Array | None = None
+) -> tuple[ReadingErrors, Array]:
+    """Errors and corners by EM from a start."""
+    if corners is None:
+        corners = np.ones(len(readings.time_s) - 1)
+    speed = np.zeros(len(readings.time_s))
+    for k in range(GAUSSIAN_PASSES + ROBUST_PASSES):
+        motion = readings.smoothed(errors, corners, speed)
+        speed = motion.mean[:, 1]
+        if k >= GAUSSIAN_PASSES:
+            corners = _corners(motion.disturbance / errors.jerk)
+        previous, errors = errors, _maximised(readings, errors, corners, motion)
+        change = np.log([errors.jerk, errors.position, errors.velocity]) - np.log(
+            [previous.jerk, previous.position, previous.velocity]
+        )
+        if k > GAUSSIAN_PASSES + 2 and np.max(np.abs(change)) < SETTLED:
             break
-    assert best is not None
-    return best[0], best[1], best[2], best[3]
+    return errors, corners
+
+
+def _corners(square: Array) -> Array:
+    """Expected factor of each step's jerk intensity, from its squared disturbance in units of q."""
+    square = np.where(np.isfinite(square), square, 3.0)
+    factor: Array = (JERK_FREEDOM + square) / (JERK_FREEDOM + 3.0)
+    return factor
+
+
+def _located_to_a_step(corners: Array) -> Array:
+    """Factors that allow each corner in the steps before and after its own, too.
+
+    The expectation of one step does not know that the neighbour would explain the readings nearly
+    as well: without this, the acceleration at the sample between has too small an error.
+    """
+    padded = np.pad(corners, 1, mode="edge")
+    found: Array = np.maximum(np.maximum(padded[:-2], padded[2:]), corners)
+    return found
+
+
+def _maximised(
+    readings: Readings, errors: ReadingErrors, corners: Array, motion: SmoothedMotion
+) -> ReadingErrors:
+    """The M step: variances that maximise the expected likelihood."""
+    square = motion.disturbance / corners
+    jerk = float(np.nanmean(square)) / 3.0
+    mean, covariance = motion.mean, motion.covariance
+    position, stamp = errors.position, errors.stamp
+    seen = np.isfinite(readings.position)
+    if seen.any():
+        misfit = (readings.position - mean[:, 0]) ** 2 + covariance[:, 0, 0]
+        by_stamp = errors.stamp * mean[:, 1] ** 2
+        own = errors.position * readings.position_shape**2
+        total = own + by_stamp
+        # The expected squares of the two errors that make up each misfit.
+        excess = (misfit - total) / total**2
+        weight = seen / readings.position_shape**2
+        stamp = errors.stamp * float(1.0 + np.average(by_stamp * excess, weights=weight))
+        position = errors.position * float(1.0 + np.average(own * excess, weights=weight))
+    velocity = errors.velocity
+    seen = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
+    if seen.any():
+        d = errors.velocity_delay_s
+        misfit = (readings.velocity - mean[:, 1] + d * mean[:, 2]) ** 2
+        misfit += covariance[:, 1, 1] - 2.0 * d * covariance[:, 1, 2] + d**2 * covariance[:, 2, 2]
+        velocity = float(np.mean(misfit[seen] / readings.velocity_shape[seen] ** 2))
+    return replace(
+        errors,
+        position=max(position, readings.position_floor),
+        velocity=max(velocity, readings.velocity_floor),
+        stamp=stamp,
+        jerk=max(jerk, 1e-300),
+    )

@@ -1,0 +1,77 @@
+//! Residuals that contain errors of the motion, made independent.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::model::{symmetric, Update};
+
+/// Whiten columns of residuals `r[k] = e[k] + s[k] (x[k] - mean[k])` in place, with independent
+/// `e[k] ~ N(0, variance[k])` and x the motion of a posterior.
+///
+/// # Arguments
+/// * `posterior`, `gain`: covariances and gains of the motion, see [`crate::Smoothed`].
+/// * `sensitivity`: s, derivatives of the residual by position, velocity and acceleration, (n, 3).
+/// * `variance`: of e, (n,); a sample with an infinite one does not count and becomes zero.
+/// * `columns`: n rows of `width` values, for instance the residual and its derivatives by
+///   parameters; each column is filtered in the same way.
+///
+/// Returns the logarithm of the determinant of the covariance of the samples that count.
+///
+/// # Algorithm
+/// The posterior is a Markov chain backward in time; a Kalman filter along it, from the last sample
+/// to the first, has independent innovations.
+pub fn whiten(
+    posterior: &[[[f64; 3]; 3]],
+    gain: &[[[f64; 3]; 3]],
+    sensitivity: &[[f64; 3]],
+    variance: &[f64],
+    width: usize,
+    columns: &mut [f64],
+) -> f64 {
+    let n = posterior
+        .len()
+        .min(gain.len() + 1)
+        .min(sensitivity.len())
+        .min(variance.len());
+    if n == 0 || width == 0 || columns.len() < n * width {
+        return 0.0;
+    }
+    // States in units of their standard errors: the three differ by many powers of ten.
+    let scale: Vec<Vector3<f64>> = (0..n)
+        .map(|k| {
+            Vector3::from_fn(|i, _| posterior[k][i][i])
+                .map(|v| if v > 0.0 { v.sqrt() } else { 1.0 })
+        })
+        .collect();
+    let scaled =
+        |k: usize| Matrix3::from_fn(|i, j| posterior[k][i][j] / (scale[k][i] * scale[k][j]));
+    let mut covariance = scaled(n - 1);
+    let mut means = vec![Vector3::zeros(); width];
+    let mut log_determinant = 0.0;
+    for k in (0..n).rev() {
+        if k + 1 < n {
+            let back = Matrix3::from_fn(|i, j| gain[k][i][j] * scale[k + 1][j] / scale[k][i]);
+            // Covariance of x[k] given x[k+1], plus what is not known of x[k+1].
+            covariance =
+                symmetric(&(scaled(k) + back * (covariance - scaled(k + 1)) * back.transpose()));
+            for mean in &mut means {
+                *mean = back * *mean;
+            }
+        }
+        let values = &mut columns[k * width..(k + 1) * width];
+        if !variance[k].is_finite() {
+            values.fill(0.0);
+            continue;
+        }
+        let row = Vector3::from_fn(|i, _| sensitivity[k][i] * scale[k][i]);
+        let update = Update::new(&row, variance[k], &covariance);
+        let standard = update.variance.sqrt();
+        for (value, mean) in values.iter_mut().zip(&mut means) {
+            let innovation = *value - row.dot(mean);
+            *mean += update.gain * innovation;
+            *value = innovation / standard;
+        }
+        covariance = update.posterior(&row, variance[k], &covariance);
+        log_determinant += update.variance.ln();
+    }
+    log_determinant
+}

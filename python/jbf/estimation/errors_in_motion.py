@@ -1,0 +1,114 @@
+"""Residuals that contain errors of the estimated motion.
+
+A residual is the noise of the reading plus the sensitivity of the model to the motion times the
+error of the motion. The errors of the motion are correlated in time, and their posterior is known:
+generalised least squares with this covariance gives unbiased parameters (the errors are of
+Berkson's kind, since the motion is a posterior mean) and standard errors that contain them.
+
+References
+----------
+Berkson (1950); Carroll, Ruppert, Stefanski & Crainiceanu, Measurement Error in Nonlinear Models
+(2006), chapter 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf._core import whiten_motion_errors
+from jbf.records.motion.imposed import MotionErrors
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorsInMotion:
+    """Errors of the motion in the residuals of some runs.
+
+    Attributes
+    ----------
+    errors
+        Errors of the motion of each run; None where they are not known.
+    sensitivity
+        Derivatives of the prediction by position, velocity and acceleration, one (n, 3) array a
+        run.
+    noise
+        Standard deviation of the readings, in the unit of the residuals.
+    by_delay
+        Derivative of the residual by a delay of the force that all runs share, one (n,) array a
+        run; None where the forces are not late. What a delay explains is projected out.
+    """
+
+    errors: tuple[MotionErrors | None, ...]
+    sensitivity: tuple[Array, ...]
+    noise: float
+    by_delay: tuple[Array, ...] | None = None
+
+    def only(self, which: Sequence[int]) -> ErrorsInMotion:
+        """The errors of some of the runs."""
+        return replace(
+            self,
+            errors=tuple(self.errors[i] for i in which),
+            sensitivity=tuple(self.sensitivity[i] for i in which),
+            by_delay=None if self.by_delay is None else tuple(self.by_delay[i] for i in which),
+        )
+
+    def stacked(
+        self,
+        residuals: Sequence[Array],
+        jacobian: Sequence[Array],
+        weights: Sequence[Array],
+        which: Sequence[int] | None = None,
+    ) -> tuple[Array, Array]:
+        """Independent residuals of standard deviation `noise` and their derivatives, of some runs.
+
+        Parameters
+        ----------
+        weights
+            Weight of each sample, 0 to 1; samples without weight are left out.
+        """
+        white = []
+        for i in range(len(residuals)) if which is None else which:
+            columns = [residuals[i], jacobian[i]]
+            if self.by_delay is not None:
+                columns.append(self.by_delay[i])
+            rows, _ = self._whitened(i, np.column_stack(columns), weights[i])
+            white.append(rows[weights[i] > 0.0])
+        whole = np.concatenate(white)
+        if self.by_delay is not None:
+            delay = whole[:, -1]
+            share = delay @ whole[:, :-1] / max(float(delay @ delay), 1e-300)
+            whole = whole[:, :-1] - np.outer(delay, share)
+        return whole[:, 0], whole[:, 1:]
+
+    def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
+        """Minus twice the log likelihood of the residuals, up to a constant."""
+        total = 0.0
+        for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
+            white, log_determinant = self._whitened(run, residual[:, None], weight)
+            total += float(np.sum(white**2)) / self.noise**2 + log_determinant
+        return total
+
+    def share(self, run: int) -> Array:
+        """Variance of the motion's contribution relative to the noise, shape (n,)."""
+        errors, sensitivity = self.errors[run], self.sensitivity[run]
+        if errors is None:
+            return np.zeros(len(sensitivity))
+        variance = np.einsum("ni,nij,nj->n", sensitivity, errors.covariance, sensitivity)
+        return np.asarray(variance / self.noise**2)
+
+    def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:
+        errors = self.errors[run]
+        with np.errstate(divide="ignore"):
+            variance = np.where(weight > 0.0, (self.noise / weight) ** 2, np.inf)
+        if errors is None:
+            keep = weight > 0.0
+            return columns * weight[:, None], float(np.sum(np.log(variance[keep])))
+        white, log_determinant = whiten_motion_errors(
+            errors.covariance, errors.gain, self.sensitivity[run], variance, columns
+        )
+        return self.noise * white, log_determinant

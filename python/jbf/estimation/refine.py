@@ -1,0 +1,174 @@
+"""Refine a fit for the errors of the estimated motion, by generalised least squares."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.joint_lateness import delay_slope, delay_step
+from jbf.estimation.noise import WHITE
+from jbf.estimation.prepared import Prepared
+from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
+from jbf.estimation.solution import Solution
+from jbf.models.late_reading import TAU
+from jbf.records.findings.finding import Finding
+from jbf.records.motion.imposed import ImposedMotion
+
+Array = npt.NDArray[np.float64]
+
+NEGLIGIBLE = 0.01
+"""Mean variance by the motion, relative to the noise's, below which the motion is exact enough."""
+ROUNDS = 8
+"""Rounds of sensitivities and fits,"""
+SETTLED = 0.01
+"""until the prediction changes by less than this share of the noise."""
+EVALUATIONS = 20
+"""Evaluations of each fit."""
+STEP = 0.5
+"""Step of the numerical derivatives by the motion, standard errors of the motion."""
+HUBER = 2.5
+"""Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
+DELAYED = 5.0
+"""A delay of the force that all runs share is corrected from so many standard errors on; where
+position and velocity were read on two clocks, always: the force's may be either."""
+LONGEST_DELAY = 2.0
+"""Longest delay of the force, samples."""
+
+
+def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """The solution by generalised least squares, and the problem with the force's delay corrected.
+
+    The same ones where the motion is exact enough and the force is not late.
+    """
+    if any(p.motion.errors is None for p in problem.campaign.prepared):
+        return problem, solution
+    first, late_s = problem, 0.0
+    for _ in range(ROUNDS):
+        motion = errors_in_motion(problem, solution)
+        step_s = _delay(first, problem, solution, motion, late_s)
+        if late_s == step_s == 0.0 and _mean_share(motion, solution.samples) < NEGLIGIBLE:
+            return problem, solution
+        if step_s != 0.0:
+            late_s += step_s
+            problem = _delayed(first, late_s)
+            values = solution.values
+            solution = problem.solution(values, problem.samples_at(values), WHITE)
+            motion = errors_in_motion(problem, solution)
+        before, solution = solution, _fitted(problem, solution, motion, late_s != 0.0)
+        apart = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
+        if solution.samples.rms(apart) < SETTLED * motion.noise:
+            break
+    return problem, solution
+
+
+def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
+    """Sensitivities at a solution, and the noise that is likeliest next to the motion's errors."""
+    prepared = problem.campaign.prepared
+    predicted = [p.friction_n - r for p, r in zip(prepared, solution.residuals, strict=True)]
+    sensitivity = [np.zeros((len(f), 3)) for f in predicted]
+    for axis in range(3):
+        moved, steps = zip(*(_moved(p, axis) for p in prepared), strict=True)
+        other = problem.chain.predict(solution.values, [p.core for p in moved])
+        for own, before, after, step in zip(sensitivity, predicted, other, steps, strict=True):
+            own[:, axis] = np.divide(after - before, step, where=step > 0.0, out=own[:, axis])
+    weights = solution.samples.weight
+    errors = tuple(p.motion.errors for p in prepared)
+    motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
+    most = max(solution.samples.rms(solution.residuals), 1e-300)
+
+    def deviance(log_noise: float) -> float:
+        tried = replace(motion, noise=float(np.exp(log_noise)))
+        return tried.deviance(solution.residuals, weights)
+
+    from scipy.optimize import minimize_scalar  # half a second to import
+
+    bounds = (np.log(most) - 7.0, np.log(most) + 0.5)
+    found = minimize_scalar(deviance, bounds=bounds, method="bounded", options={"xatol": 0.01})
+    return replace(motion, noise=float(np.exp(found.x)))
+
+
+def _mean_share(motion: ErrorsInMotion, samples: Samples) -> float:
+    """Mean variance by the motion at the samples that count, relative to the noise's."""
+    shares = [motion.share(i)[w > 0.0] for i, w in enumerate(samples.weight)]
+    return float(np.mean(np.concatenate(shares)))
+
+
+def _fitted(problem: Problem, near: Solution, motion: ErrorsInMotion, delayed: bool) -> Solution:
+    """A generalised least-squares fit near a solution, with Huber's weights."""
+    prepared, values = problem.campaign.prepared, near.values
+    if delayed:
+        slopes = tuple(delay_slope(problem, values, p) for p in prepared)
+        motion = replace(motion, by_delay=slopes)
+    plain, weights = problem.samples_at(values), []
+    for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
+        sd = motion.noise * np.sqrt(1.0 + motion.share(i))
+        off = np.maximum(np.abs(residual) / sd, 1e-300)
+        weights.append(weight * np.sqrt(np.minimum(1.0, HUBER / off)))
+    samples = replace(plain, weight=tuple(weights), motion=motion)
+    found = search(problem, samples, values, WHITE, EVALUATIONS)
+    end = problem.wrapped(found.values)
+    return problem.solution(end, samples, WHITE, found.converged, found.message)
+
+
+def _delay(
+    first: Problem, problem: Problem, solution: Solution, motion: ErrorsInMotion, late_s: float
+) -> float:
+    """By how much later the forces are, s; zero where that is not significant or too much."""
+    if TAU in problem.names:
+        return 0.0
+    white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
+    step_s, sd_s = delay_step(problem, white)
+    clocks = [p.motion.errors for p in first.campaign.prepared]
+    several = any(errors is not None and errors.velocity_delay_s != 0.0 for errors in clocks)
+    if late_s == 0.0 and not several and abs(step_s) < DELAYED * sd_s:
+        return 0.0
+    most_s = LONGEST_DELAY * min(p.step_s for p in first.campaign.prepared)
+    if not np.isfinite(sd_s) or abs(late_s + step_s) > most_s:
+        return 0.0
+    return step_s if abs(step_s) > SETTLED * sd_s else 0.0
+
+
+def _delayed(first: Problem, late_s: float) -> Problem:
+    """The problem with its forces compared so much earlier."""
+    prepared = tuple(p.shifted(late_s, 0.0) for p in first.campaign.prepared)
+    names = ", ".join(p.run.name for p in prepared)
+    way = "late" if late_s > 0.0 else "early"
+    words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion in all runs"
+    finding = Finding("late_channel", "friction_n", names, late_s, "s", "shifted", words)
+    again = copy(first)
+    again.campaign = replace(
+        first.campaign, prepared=prepared, samples=Samples.of(prepared)
+    ).with_findings([finding])
+    for cached in ("searched", "thinned"):
+        again.__dict__.pop(cached, None)
+    return again
+
+
+def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
+    """A run whose motion is off by a share of a standard error in one of its components, and by how
+    much, in powers of m (or rad) and s, shape (n,)."""
+
+    def off(motion: ImposedMotion) -> tuple[ImposedMotion, Array]:
+        errors = motion.errors
+        assert errors is not None
+        step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))
+        step = np.where(motion.resting, 0.0, step)
+        if axis == 0:
+            moved = replace(motion, angle_rad=motion.angle_rad + step / errors.arm_m)
+        elif axis == 1:
+            moved = replace(motion, velocity_m_s=motion.velocity_m_s + step)
+        else:
+            moved = replace(motion, acceleration_m_s2=motion.acceleration_m_s2 + step)
+        return moved, step
+
+    recorded = prepared.recorded
+    if recorded is not None:
+        recorded = (recorded[0], off(recorded[1])[0])
+    moved, step = off(prepared.motion)
+    return replace(prepared, motion=moved, recorded=recorded), step

@@ -1,0 +1,34 @@
+"""The even clock that time stamps with jitter may have been read from."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+LONGEST_RESIDUAL, USUAL_RESIDUAL = 10.0, 1.0
+"""Distances from an even clock of the latest stamp and of nine in ten of them, samples."""
+
+
+def even_clock(time_s: Array) -> Array | None:
+    """Instants of the even clock that the stamps may have been read from, s.
+
+    None where the stamps are even, or far from an even clock. Missing samples are allowed.
+    """
+    steps = np.diff(time_s)
+    if len(steps) < 2:
+        return None
+    usual = float(np.median(steps))
+    if usual <= 0.0 or np.ptp(steps) <= 1e-6 * usual:
+        return None
+    counted = np.concatenate(([0.0], np.cumsum(np.rint(steps / usual))))
+    clocks = [
+        np.polynomial.Polynomial.fit(index, time_s, 1)(index)
+        for index in (np.arange(len(time_s), dtype=float), counted)
+        if np.all(np.diff(index) > 0.0)
+    ]
+    nearest = min(clocks, key=lambda clock: float(np.mean(np.abs(time_s - clock))))
+    residual = np.abs(time_s - nearest) / usual
+    far = np.max(residual) > LONGEST_RESIDUAL or np.quantile(residual, 0.9) > USUAL_RESIDUAL
+    return None if far else np.asarray(nearest)

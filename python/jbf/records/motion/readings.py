@@ -1,0 +1,113 @@
+"""Readings of a motion and their errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf._core import SmoothedMotion, motion_log_likelihood
+
+Array = npt.NDArray[np.float64]
+
+AT_REST = 1e-3
+"""Relative standard error of a velocity that is zero because the shaft is at rest."""
+
+
+@dataclass(frozen=True)
+class ReadingErrors:
+    """Errors of the readings of a motion, and the scale of its jerk.
+
+    Attributes
+    ----------
+    position, velocity
+        Variances, m^2 and (m/s)^2 (radians for a rotary motion).
+    stamp
+        Variance of the time stamps, s^2: adds `v^2 stamp` to the position's variance.
+    jerk
+        Intensity of the jerk, (m/s^3)^2 s.
+    velocity_delay_s
+        How late the velocity was read relative to the position, s.
+    """
+
+    position: float
+    velocity: float
+    stamp: float
+    jerk: float
+    velocity_delay_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Readings:
+    """The readings of a motion; all arrays of shape (n,).
+
+    Attributes
+    ----------
+    time_s
+        Instants, s, not decreasing.
+    position, velocity
+        Readings, m and m/s. NaN where there is none.
+    position_floor, velocity_floor
+        Smallest variances that the readings can have, of an encoder's or a digit's step.
+    position_shape, velocity_shape
+        Relative standard errors of the samples; of velocities `AT_REST` at rest.
+    """
+
+    time_s: Array
+    position: Array
+    velocity: Array
+    position_floor: float
+    velocity_floor: float
+    position_shape: Array
+    velocity_shape: Array
+
+    def part(self, part: slice) -> Readings:
+        """The readings of some of the samples."""
+        return replace(
+            self,
+            time_s=self.time_s[part],
+            position=self.position[part],
+            velocity=self.velocity[part],
+            position_shape=self.position_shape[part],
+            velocity_shape=self.velocity_shape[part],
+        )
+
+    def smoothed(self, errors: ReadingErrors, corners: Array, speed: Array) -> SmoothedMotion:
+        """Posterior of the motion for given errors.
+
+        Parameters
+        ----------
+        corners
+            Factor of the jerk's intensity in each step, shape (n - 1,).
+        speed
+            A velocity at each sample, for the effect of the stamps' errors.
+        """
+        return SmoothedMotion(*self._arguments(errors, corners, speed))
+
+    def log_likelihood(self, errors: ReadingErrors, corners: Array, speed: Array) -> float:
+        """Log likelihood of the readings; arguments as of :meth:`smoothed`."""
+        return motion_log_likelihood(*self._arguments(errors, corners, speed))
+
+    def _arguments(
+        self, errors: ReadingErrors, corners: Array, speed: Array
+    ) -> tuple[Array, Array, Array, Array, Array, Array, float]:
+        position, velocity = self.variances(errors, speed)
+        return (
+            np.ascontiguousarray(self.time_s),
+            np.ascontiguousarray(self.position),
+            position,
+            np.ascontiguousarray(self.velocity),
+            velocity,
+            errors.jerk * corners,
+            errors.velocity_delay_s,
+        )
+
+    def variances(self, errors: ReadingErrors, speed: Array) -> tuple[Array, Array]:
+        """Variances of position and velocity at each sample; infinite where there is no reading."""
+        position = errors.position * self.position_shape**2 + errors.stamp * speed**2
+        velocity = errors.velocity * self.velocity_shape**2
+        return (
+            np.where(np.isfinite(self.position), position, np.inf),
+            np.where(np.isfinite(self.velocity), velocity, np.inf),
+        )

@@ -1,0 +1,87 @@
+"""Fits that allow for the errors of the motion and for a delay of the force."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from jbf import Rig, Run, fit
+from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.records.motion.imposed import impose
+
+STEP_S = 0.004
+INERTIA, COULOMB, VISCOUS = 0.05, 0.4, 0.1
+NOISE = 0.02
+
+
+def drive(seed: int, late_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -> Run:
+    """A drive that follows trapezoids of random heights, recorded by an encoder alone."""
+    random = np.random.default_rng(seed)
+    fine = 1e-4 * np.arange(120_000)
+    corners = np.cumsum(random.uniform(0.15, 0.5, 60))
+    heights = np.repeat(random.uniform(1.0, 5.0, 30) * (-1.0) ** np.arange(30), 2)
+    velocity = np.interp(fine, corners, heights, left=0.0)
+    velocity[fine < corners[0]] = heights[0]
+    position = 1e-4 * np.cumsum(velocity)
+    acceleration = np.gradient(velocity, 1e-4)
+    torque = COULOMB * np.sign(velocity) + VISCOUS * velocity + INERTIA * acceleration
+    time_s = 0.01 + STEP_S * np.arange(2900)
+    force = np.interp(time_s - late_s, fine, torque) + random.normal(0.0, NOISE, len(time_s))
+    counted = np.round(np.interp(time_s, fine, position) / count) * count
+    return Run.from_arrays(time_s, None, force, position_m=counted, name=f"seed_{seed}")
+
+
+TRUE = {"F_c_n": COULOMB, "F_v_n_s_m": VISCOUS, "inertia_leak.m_e_kg": INERTIA}
+
+
+def errors_of(runs: list[Run]) -> dict[str, float]:
+    """Errors of the fitted parameters, in standard errors."""
+    found = fit(Rig(), runs, ["inertia_leak"], law="coulomb")
+    parameters = {name: found.parameters[name] for name in TRUE}
+    return {n: (p.value - TRUE[n]) / (p.stderr or np.nan) for n, p in parameters.items()}
+
+
+def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -> None:
+    errors = np.array([list(errors_of([drive(seed)]).values()) for seed in range(12)])
+    assert np.max(np.abs(errors)) < 4.0
+    assert np.sqrt(np.mean(errors**2)) < 1.6
+
+
+@pytest.mark.parametrize("delay", [-0.7, 0.4, 1.2])
+def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) -> None:
+    """In samples."""
+    runs = [drive(seed, delay * STEP_S) for seed in (21, 22)]
+    found = fit(Rig(), runs, ["inertia_leak"], law="coulomb")
+    late = [finding for finding in found.findings if finding.kind == "late_channel"]
+    assert [f.size for f in late] == [pytest.approx(delay * STEP_S, abs=0.05 * STEP_S)]
+    assert late[0].run == "seed_21, seed_22"
+    for name, true in TRUE.items():
+        assert found.parameters[name].value == pytest.approx(true, rel=0.02)
+
+
+def test_force_on_time_has_no_finding_of_a_delay() -> None:
+    found = fit(Rig(), [drive(31), drive(32)], ["inertia_leak"], law="coulomb")
+    assert "late_channel" not in {finding.kind for finding in found.findings}
+
+
+def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posterior() -> None:
+    """Residuals of noise and of motion errors that are drawn backward along the Markov chain."""
+    motion = impose(drive(3), None)
+    errors: Any = motion.errors
+    n = len(errors.covariance)
+    sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
+    random = np.random.default_rng(1)
+    residual = np.empty(n)
+    state = random.multivariate_normal(np.zeros(3), errors.covariance[-1], method="svd")
+    for k in range(n - 1, -1, -1):
+        if k < n - 1:
+            gain = errors.gain[k]
+            left = errors.covariance[k] - gain @ errors.covariance[k + 1] @ gain.T
+            state = gain @ state + random.multivariate_normal(np.zeros(3), left, method="svd")
+        residual[k] = sensitivity[k] @ state + random.normal(0.0, NOISE)
+    model = ErrorsInMotion((errors,), (sensitivity,), NOISE)
+    weight = np.where(np.arange(n) % 7 == 0, 0.0, 1.0)
+    white, _ = model.stacked([residual], [np.ones((n, 1))], [weight])
+    assert len(white) == np.count_nonzero(weight)
+    assert np.std(white) == pytest.approx(NOISE, rel=0.05)
+    assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.06
+    assert np.std(residual) > 1.1 * NOISE

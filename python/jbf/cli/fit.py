@@ -40,6 +40,13 @@ def add(commands: Commands) -> None:
         help="hold a parameter at a value, SI units; may be repeated",
     )
     parser.add_argument(
+        "--start",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="start the search of a parameter at a value, SI units; may be repeated",
+    )
+    parser.add_argument(
         "--bootstrap",
         metavar="N",
         type=int,
@@ -61,7 +68,8 @@ def run(arguments: argparse.Namespace) -> int:
     outputs.check(wanted, outputs.read_by(arguments))
     effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
     check_applies(arguments.law, effects)
-    fixed = _fixed(arguments.fix, arguments.law, effects)
+    fixed = _values("--fix", arguments.fix, arguments.law, effects)
+    start = _values("--start", arguments.start, arguments.law, effects)
     rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
     outputs.check(wanted, [run.path for run in runs if run.path])
     runs, held = hold_out.split(runs, arguments)
@@ -75,7 +83,15 @@ def run(arguments: argparse.Namespace) -> int:
         check_repeats(repeats, "--bootstrap")
     try:
         with shown("fitting") as report:
-            fitted = fit(rig, runs, effects, law=arguments.law, clock=arguments.clock, fixed=fixed)
+            fitted = fit(
+                rig,
+                runs,
+                effects,
+                law=arguments.law,
+                clock=arguments.clock,
+                start=start,
+                fixed=fixed,
+            )
             if repeats is not None:
                 fitted = _repeated(fitted, runs, repeats, report)
     except Stopped as stop:
@@ -98,13 +114,13 @@ def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None)
         raise Stopped(fitted) from None
 
 
-def _fixed(items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:
-    """`NAME=VALUE` items as full names and numbers."""
+def _values(option: str, items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:
+    """`NAME=VALUE` items of an option as full names and numbers."""
     known = parameters_of(law, effects)
     found: dict[str, float] = {}
     for item in items:
         name, equals, text = item.partition("=")
-        place = f"--fix {item}"
+        place = f"{option} {item}"
         if not equals:
             raise InputError(file=place, problem="has no value", mend="write NAME=VALUE")
         try:
@@ -118,7 +134,7 @@ def _fixed(items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, fl
                 file=place, problem=f"{quoted(text)} is not a number", mend="write NAME=VALUE"
             ) from None
         if full in found:
-            raise InputError(file=place, problem=f"{full} is fixed twice", mend="fix it once")
+            raise InputError(file=place, problem=f"{full} is given twice", mend="give it once")
         page = known[full]
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(

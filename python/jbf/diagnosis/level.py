@@ -16,6 +16,7 @@ description of a machine is wrong.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -236,14 +237,24 @@ def _explained(ways: Array, target: Array) -> Array:
     return found
 
 
+def _on_the_same_samples(directions: list[Directions]) -> list[Directions]:
+    """Those of the largest group of directions with the same number of samples.
+
+    A candidate that sets samples aside cannot be tested against the residual of the others.
+    """
+    counts = Counter(len(d.ways) for d in directions)
+    usual = max(counts, key=lambda count: (counts[count], count), default=0)
+    return [d for d in directions if len(d.ways) == usual]
+
+
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     """The level at which turned signs of the residual give no more names than it allows.
 
     Of the residual that is taken away first which any of the candidates could explain: that is
     what is asked for. Candidates that have no direction (one that moves the instants of jumps shows
-    nothing at its null) keep their share of the level.
+    nothing at its null), or one on other samples, keep their share of the level.
     """
-    told = [d for d in directions if d.ways.size]
+    told = _on_the_same_samples([d for d in directions if d.ways.size])
     if not told:
         return level
     every = np.column_stack([d.ways for d in told])

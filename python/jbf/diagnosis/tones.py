@@ -78,8 +78,14 @@ def _words(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
 
 
 def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:
-    """Frequency and amplitude of the sine that fits best near a spectral line."""
+    """Frequency and amplitude of the sine that fits best near a spectral line.
+
+    Below half a line's width, and less than that from the Nyquist frequency, a sine cannot be told
+    from a constant or from its alias.
+    """
+    nyquist = 0.5 / float(np.median(np.diff(time)))
     grid = near + width * np.linspace(-1.0, 1.0, 41)
+    grid = np.clip(grid, 0.5 * width, nyquist - 0.5 * width)
     t, y = time[counted], r[counted]
     best, amplitude, gain = near, 0.0, -1.0
     for f in grid:

@@ -16,7 +16,7 @@ from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.exact_delay import exact_delay
 from jbf.estimation.film_rate import check_film
-from jbf.estimation.minimum import minimum
+from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.put_back import put_back
@@ -206,7 +206,8 @@ def fit(
     given = named_values(start, known)
     check_film(campaign, law, clock, {**given, **problem.fixed})
     try:
-        problem, solution = with_motion_errors(problem, minimum(problem, [given]))
+        solution = not_above_nested(problem, minimum(problem, [given]))
+        problem, solution = with_motion_errors(problem, solution)
         solution = best_weighting(problem, solution)
     except (KeyboardInterrupt, Unfinished) as stop:
         campaign.work.renew(math.inf)

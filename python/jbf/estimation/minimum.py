@@ -79,6 +79,10 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
     return near
 
 
+NESTED_EVALUATIONS = 30
+"""Evaluations of a fit of the law without its effects."""
+
+
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
     """Approach, settle, and look for a higher peak."""
     if find_law(problem.law).has_film:
@@ -93,3 +97,35 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
             method="trf",
         )
     return search_peaks(problem, settle(problem, near))
+
+
+def not_above_nested(problem: Problem, solution: Solution) -> Solution:
+    """The solution, or a better one from the optimum of the law without its effects.
+
+    A model with effects contains the law: with the effects at their nulls it predicts the same, so
+    a search that ends above the law's own optimum stopped in a local one.
+    """
+    if not problem.effects:
+        return solution
+    fixed = {name: value for name, value in problem.fixed.items() if "." not in name}
+    law = Problem(problem.campaign, problem.law, problem.clock, (), fixed)
+    if not law.open:
+        return solution
+    nested = settle(law, approach(law, [{}], NESTED_EVALUATIONS)).values
+    start = solution.values.copy()
+    for i, (name, page) in enumerate(problem.parameters.items()):
+        if name in problem.fixed:
+            continue
+        if name in law.names:
+            start[i] = nested[law.names.index(name)]
+        elif page.null is not None:
+            start[i] = np.clip(page.null, page.lower, page.upper)
+        else:
+            start[i] = page.starts[0]
+    samples = solution.samples
+    if problem.square(start, samples) >= problem.square(solution.values, samples):
+        return solution
+    end = search(problem, samples, start, solution.noise, MAX_EVALUATIONS)
+    found = problem.solution(problem.wrapped(end.values), samples, solution.noise, False)
+    better = problem.square(found.values, samples) < problem.square(solution.values, samples)
+    return settle(problem, found) if better else solution

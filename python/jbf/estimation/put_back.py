@@ -25,6 +25,8 @@ SAME_IN_NOISE = 1e-4
 """Predictions are the same where they differ by no more than this share of the residual,"""
 SAME_IN_FRICTION = 1e-9
 """or of the friction itself."""
+SLIDING = {"F_s_n": "F_c_n"}
+"""The breakaway force of a law, and the sliding one that it is without a peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
 """How much of the way back is tried: where the start itself predicts otherwise, part of the way may
 still leave a number less wild."""
@@ -52,7 +54,7 @@ class PutBack:
 def put_back(
     problem: Problem, solution: Solution, spread: Spread, start: Mapping[str, float]
 ) -> PutBack:
-    """Idle effects to their null, and what never moved towards its null or its start.
+    """Idle effects to their null, and what never moved towards where it changes nothing.
 
     Parameters
     ----------
@@ -66,7 +68,7 @@ def put_back(
         if spread.moved[k] or name in found.notes:
             continue
         page, value = problem.parameters[name], float(found.values[i])
-        home = start.get(name, page.starts[0] if page.null is None else page.null)
+        home = start.get(name, _home(problem, name, found.values))
         note = f"flat here: these runs tell only that it is not {home:.3g}"
         for share in SHARES:
             there = found.values.copy()
@@ -102,6 +104,17 @@ def _idle_to_null(
             notes = dict.fromkeys((problem.names[i] for i in own), NO_EFFECT)
             found = PutBack(there, residuals, {**found.notes, **notes})
     return found
+
+
+def _home(problem: Problem, name: str, values: Array) -> float:
+    """The value at which a parameter changes nothing, or where it started.
+
+    A breakaway force without evidence of a peak is the sliding one.
+    """
+    page, sliding = problem.parameters[name], SLIDING.get(name)
+    if sliding in problem.parameters:
+        return float(np.clip(values[problem.names.index(sliding)], page.lower, page.upper))
+    return page.starts[0] if page.null is None else page.null
 
 
 def _on_the_way(page: Parameter, value: float, home: float, share: float) -> float:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.joint_lateness import delay_slope, delay_step
 from jbf.estimation.noise import WHITE
@@ -32,11 +34,14 @@ EVALUATIONS = 20
 """Evaluations of each fit."""
 STEP = 0.5
 """Step of the numerical derivatives by the motion, standard errors of the motion."""
+ROUGHER = 4.0
+"""Factor of the jerk's intensity with which the effect of the smoothing is looked at."""
 HUBER = 2.5
 """Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
 DELAYED = 5.0
-"""A delay of the force that all runs share is corrected from so many standard errors on; where
-position and velocity were read on two clocks, always: the force's may be either."""
+"""A delay of the force that all runs share is corrected from so many standard errors on."""
+UNCERTAIN = 9.0
+"""Difference of the deviance up to which the clock of the force is not known."""
 LONGEST_DELAY = 2.0
 """Longest delay of the force, samples."""
 
@@ -44,27 +49,104 @@ LONGEST_DELAY = 2.0
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """The solution by generalised least squares, and the problem with the force's delay corrected.
 
-    The same ones where the motion is exact enough and the force is not late.
+    The same ones where the motion is exact enough and the force is not late. Where position and
+    velocity were read on two clocks, the force was read on either: both are tried.
     """
-    if any(p.motion.errors is None for p in problem.campaign.prepared):
+    motions = [p.motion.errors for p in problem.campaign.prepared]
+    errors = [e for e in motions if e is not None]
+    if len(errors) < len(motions):
         return problem, solution
-    first, late_s = problem, 0.0
+    between_s = float(np.median([e.velocity_delay_s for e in errors]))
+    clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
+    ends = [_settled(problem, solution, clock_s) for clock_s in clocks]
+    best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
+    if best.solution.samples.motion is None:
+        return best.problem, best.solution
+    changes = [_with_smoothing(best)]
+    for other in ends:
+        # What the records do not tell is part of the parameters' errors.
+        if other is not best and other.deviance - best.deviance < UNCERTAIN:
+            values = best.problem.encode(best.solution.values)
+            changes.append(best.problem.encode(other.solution.values) - values)
+    change = np.sqrt(np.sum(np.square(changes), axis=0))
+    return best.problem, replace(best.solution, smoothing=change)
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """A generalised least-squares fit with the force on one clock.
+
+    Attributes
+    ----------
+    first, problem
+        The problem as it was, and with the force's delay corrected.
+    delayed
+        Whether a delay of the force was estimated.
+    """
+
+    first: Problem
+    problem: Problem
+    solution: Solution
+    delayed: bool
+
+    @cached_property
+    def deviance(self) -> float:
+        """Minus twice the log likelihood, as of the samples of the whole campaign."""
+        solution = self.solution
+        every = self.first.samples_at(solution.values)
+        motion = errors_in_motion(self.problem, solution)
+        own = motion.deviance(solution.residuals, solution.samples.weight)
+        counts = [sum(map(np.count_nonzero, s.weight)) for s in (every, solution.samples)]
+        return own * counts[0] / max(counts[1], 1)
+
+
+def _settled(first: Problem, solution: Solution, clock_s: float) -> _End:
+    """Rounds of fits with the force on a clock, or later where that is significant."""
+    problem, late_s = first, clock_s
+    if clock_s != 0.0:
+        problem = _delayed(first, late_s)
+        solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
         motion = errors_in_motion(problem, solution)
-        step_s = _delay(first, problem, solution, motion, late_s)
+        step_s = _delay(first, problem, solution, motion, late_s, clock_s)
         if late_s == step_s == 0.0 and _mean_share(motion, solution.samples) < NEGLIGIBLE:
-            return problem, solution
+            break
         if step_s != 0.0:
             late_s += step_s
             problem = _delayed(first, late_s)
             values = solution.values
             solution = problem.solution(values, problem.samples_at(values), WHITE)
             motion = errors_in_motion(problem, solution)
-        before, solution = solution, _fitted(problem, solution, motion, late_s != 0.0)
+        before, solution = solution, _fitted(problem, solution, motion, late_s != clock_s)
         apart = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(apart) < SETTLED * motion.noise:
             break
-    return problem, solution
+    return _End(first, problem, solution, late_s != clock_s)
+
+
+def _with_smoothing(end: _End) -> Array:
+    """Change of each search variable where the motion is smoothed less, shape (k,)."""
+    problem, solution = end.problem, end.solution
+    prepared = []
+    for p in problem.campaign.prepared:
+        motion = p.motion.rougher(p.run.time_s, ROUGHER)
+        recorded = p.recorded
+        if recorded is not None:
+            recorded = (recorded[0], recorded[1].rougher(recorded[0], ROUGHER))
+        prepared.append(replace(p, motion=motion, recorded=recorded))
+    other = _with(problem, replace(problem.campaign, prepared=tuple(prepared)))
+    near = other.solution(solution.values, solution.samples, WHITE)
+    near = _fitted(other, near, errors_in_motion(other, near), end.delayed)
+    return problem.encode(near.values) - problem.encode(solution.values)
+
+
+def _with(problem: Problem, campaign: Campaign) -> Problem:
+    """The problem of another campaign."""
+    again = copy(problem)
+    again.campaign = campaign
+    for cached in ("searched", "thinned"):
+        again.__dict__.pop(cached, None)
+    return again
 
 
 def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
@@ -117,16 +199,19 @@ def _fitted(problem: Problem, near: Solution, motion: ErrorsInMotion, delayed: b
 
 
 def _delay(
-    first: Problem, problem: Problem, solution: Solution, motion: ErrorsInMotion, late_s: float
+    first: Problem,
+    problem: Problem,
+    solution: Solution,
+    motion: ErrorsInMotion,
+    late_s: float,
+    clock_s: float,
 ) -> float:
     """By how much later the forces are, s; zero where that is not significant or too much."""
     if TAU in problem.names:
         return 0.0
     white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
     step_s, sd_s = delay_step(problem, white)
-    clocks = [p.motion.errors for p in first.campaign.prepared]
-    several = any(errors is not None and errors.velocity_delay_s != 0.0 for errors in clocks)
-    if late_s == 0.0 and not several and abs(step_s) < DELAYED * sd_s:
+    if late_s == clock_s and abs(step_s) < DELAYED * sd_s:
         return 0.0
     most_s = LONGEST_DELAY * min(p.step_s for p in first.campaign.prepared)
     if not np.isfinite(sd_s) or abs(late_s + step_s) > most_s:
@@ -141,13 +226,8 @@ def _delayed(first: Problem, late_s: float) -> Problem:
     way = "late" if late_s > 0.0 else "early"
     words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion in all runs"
     finding = Finding("late_channel", "friction_n", names, late_s, "s", "shifted", words)
-    again = copy(first)
-    again.campaign = replace(
-        first.campaign, prepared=prepared, samples=Samples.of(prepared)
-    ).with_findings([finding])
-    for cached in ("searched", "thinned"):
-        again.__dict__.pop(cached, None)
-    return again
+    campaign = replace(first.campaign, prepared=prepared, samples=Samples.of(prepared))
+    return _with(first, campaign.with_findings([finding]))
 
 
 def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:

@@ -33,6 +33,9 @@ class Solution:
     samples
         Those that the model at these values leaves: fewer than the campaign's where an effect moves
         the instants of jumps.
+    smoothing
+        Change of each search variable with a motion that is smoothed less, shape (k,): a part of
+        the parameters' errors. None where the errors of the motion are neglected.
     """
 
     effects: tuple[str, ...]
@@ -44,6 +47,7 @@ class Solution:
     converged: bool
     message: str
     samples: Samples
+    smoothing: Array | None = None
 
     @property
     def free(self) -> int:

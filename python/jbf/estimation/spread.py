@@ -33,7 +33,8 @@ class Spread:
         Standard deviation in the search's variable, shape (k,), by the curvature; nan of one that
         never moved.
     inflation
-        By how much the residual's long-run variance makes it larger, shape (k,), at least one.
+        By how much the residual's long-run variance and the smoothing of the motion make it larger,
+        shape (k,), at least one.
     scale
         Change of the parameter with the search's variable, shape (k,).
     correlation
@@ -80,6 +81,9 @@ def spread(problem: Problem, solution: Solution) -> Spread:
     inflation = np.ones(free)
     if moved.any():
         inflation[moved] = _inflation(solution, covariance[np.ix_(moved, moved)], moved)
+    if solution.smoothing is not None:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            inflation = np.hypot(inflation, np.nan_to_num(solution.smoothing / sd))
     return Spread(sd, inflation, change, correlation, moved, separate)
 
 

@@ -310,3 +310,11 @@ def test_alternative_below_the_least_weight_of_the_policy_is_not_reported() -> N
     dropped = diagnosis_with("lag", least_weight=1.02 * weight)
     assert (dropped.verdict, len(dropped.effects)) == ("missing", 1)
     assert dropped.alternatives == {dropped.effects[0]: ()}
+
+
+def test_candidate_on_fewer_samples_counts_as_one_without_a_direction() -> None:
+    one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
+    fewer = _one_direction(np.full(3, 0.577), np.array([1.0, 1.0, -1.0]), [0, 2])
+    level = Level(false_alarms=0.01, candidates=3, chance=1.0)
+    expected = calibrated(level, [one, one])
+    assert calibrated(level, [one, fewer, one]).chance == pytest.approx(expected.chance)

@@ -129,3 +129,12 @@ def test_tones_within_two_percent_are_reported_as_one(apart_hz: float, tones: in
     (found,) = tones_in(*signals)
     expected = [(5.0 + 0.5 * apart_hz, 1.5)] if tones == 1 else [(5.0, 1.0), (5.0 + apart_hz, 2.0)]
     assert np.array(pairs_in(found)) == pytest.approx(np.array(expected), abs=0.006)
+
+
+def test_tone_is_reported_below_the_nyquist_frequency_with_a_bounded_amplitude() -> None:
+    n = 1500
+    signal = flat_spectrum(n, {n // 2 - 1: 4000.0})
+    (tone,) = tones_in(signal)
+    ((frequency_hz, amplitude),) = pairs_in(tone)
+    assert frequency_hz < 0.5 / STEP_S
+    assert amplitude < 3.0 * np.max(np.abs(signal))

@@ -236,6 +236,8 @@ def test_random_effects_give_the_cost_and_determinant_of_a_correlated_normal(noi
         # Differences within the errors.
         ([-0.5, 0.5], [1.0] * 2, 0.0, 0.5),
         ([2.5] * 4, [1.0, 2.0, 3.0, 4.0], 0.0, 0.0),
+        # One run has all of the precision.
+        ([1.0, 5.0], [3.0, 0.0], 0.0, 0.0),
     ],
 )
 def test_spread_between_runs_is_that_of_dersimonian_and_laird_or_zero_if_small(

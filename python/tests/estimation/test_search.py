@@ -10,7 +10,7 @@ from coulomb_problems import coulomb_problem, values_of
 from jbf import Rig, Run
 from jbf.estimation.approach import LIKELY, MANY, Approach, approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.minimum import settle
+from jbf.estimation.minimum import not_above_nested, settle
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.search import Visited, search
@@ -155,3 +155,14 @@ def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
     starts = (np.log([6.0, 10.0, v_s, 20.0]) for v_s in (0.003, 0.01, 0.03, 0.1))
     least = 2.0 * min(optimize.least_squares(residual, start).cost for start in starts)
     assert problem.square(approach(problem, [{}], 60).values) <= least * (1.0 + 1e-5)
+
+
+def test_fit_with_an_effect_is_never_worse_than_the_law_alone() -> None:
+    campaign = with_mass()
+    problem = Problem(campaign, "coulomb", "journal", ("inertia_leak",))
+    law = bare_solution(campaign)
+    bad = problem.starts({"F_c_n": 500.0, "inertia_leak.m_e_kg": 80.0})[0]
+    stuck = problem.solution(bad, campaign.samples, WHITE)
+    found = not_above_nested(problem, stuck)
+    assert found.rms_n <= law.rms_n
+    assert not_above_nested(problem, found) is found

@@ -64,13 +64,6 @@ def test_wrong_unit_or_sign_of_speed_or_path_is_corrected(path: float, speed: fl
     assert np.std(motion.velocity_m_s - speed_of(TIME_S)) < 1e-4
 
 
-def test_speed_delayed_by_a_third_of_a_sample_is_shifted_back() -> None:
-    records = believed(run_of(speed_of(TIME_S - 0.3 * STEP_S)), None)
-    assert [finding.kind for finding in records.findings] == ["late_speed"]
-    assert records.speed_measured
-    np.testing.assert_allclose(records.speed[5:-5], speed_of(TIME_S)[5:-5], atol=3e-4)
-
-
 def test_speed_delayed_by_three_samples_is_replaced_by_the_path_derivative() -> None:
     records = believed(run_of(speed_of(TIME_S - 3.0 * STEP_S)), None)
     assert [finding.kind for finding in records.findings] == ["filtered_speed"]

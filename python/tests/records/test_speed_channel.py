@@ -8,7 +8,7 @@ from jbf import Run
 from jbf.records.motion.compared import compared
 from jbf.records.motion.derived_speed import derived_speed
 from jbf.records.motion.imposed import impose
-from jbf.records.motion.lateness import earlier, late_speed
+from jbf.records.motion.lateness import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
 
@@ -18,16 +18,24 @@ COUNTED_M = quantised(PATH_M, COUNT_M)
 ALTERNATING = np.where(np.arange(800) % 2, -1.0, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("delay_steps", "kind"),
-    [(0.2, "late_speed"), (0.39, "late_speed"), (0.45, "filtered_speed"), (3.0, "filtered_speed")],
-)
-def test_speed_delay_is_recovered_and_classified_by_size(delay_steps: float, kind: str) -> None:
-    """Up to 0.4 samples the speed is shifted; beyond, the path alone is used."""
+@pytest.mark.parametrize("delay_steps", [1.6, 3.0])
+def test_delay_of_a_filtered_speed_is_recovered(delay_steps: float) -> None:
     delay_s = delay_steps * STEP_S
-    finding: Any = late_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
-    assert (finding.kind, finding.channel, finding.unit) == (kind, "velocity_m_s", "s")
+    finding: Any = filtered_speed("a", TIME_S, PATH_M, speed_of(TIME_S - delay_s))
+    assert (finding.kind, finding.channel, finding.unit) == ("filtered_speed", "velocity_m_s", "s")
     assert finding.size == pytest.approx(delay_s, rel=0.03)
+
+
+@pytest.mark.parametrize("delay_steps", [-0.9, 0.0, 0.3, 1.2])
+def test_delay_of_up_to_one_and_a_half_samples_is_corrected_in_the_motion(
+    delay_steps: float,
+) -> None:
+    speed = speed_of(TIME_S - delay_steps * STEP_S) + white(len(TIME_S), 5, 5e-3)
+    motion = impose(Run.from_arrays(TIME_S, speed, position_m=PATH_M), None)
+    sizes = [f.size for f in motion.findings if f.kind == "late_speed"]
+    assert len(sizes) == (delay_steps != 0.0)
+    assert sizes == [pytest.approx(delay_steps * STEP_S, rel=0.1)] * len(sizes)
+    np.testing.assert_allclose(motion.velocity_m_s[5:-5], speed_of(TIME_S)[5:-5], atol=1e-2)
 
 
 def estimated_delay(speed: Array) -> tuple[float, float]:
@@ -48,11 +56,11 @@ def estimated_delay(speed: Array) -> tuple[float, float]:
 
 def test_speed_delay_is_reported_from_six_jackknife_standard_errors_on() -> None:
     decisions = set()
-    for delay_steps in np.arange(0.1, 1.3, 0.1):
+    for delay_steps in np.arange(1.3, 2.5, 0.1):
         speed = speed_of(TIME_S - delay_steps * STEP_S) + white(len(TIME_S), 2, 0.01)
         delay_s, error_s = estimated_delay(speed)
-        finding = late_speed("a", TIME_S, PATH_M, speed)
-        expected = delay_s >= max(6.0 * error_s, 0.1 * STEP_S)
+        finding = filtered_speed("a", TIME_S, PATH_M, speed)
+        expected = delay_s >= max(6.0 * error_s, 1.5 * STEP_S)
         assert (finding is not None) == expected
         assert finding is None or finding.size == pytest.approx(delay_s, rel=1e-6)
         decisions.add(expected)
@@ -62,12 +70,7 @@ def test_speed_delay_is_reported_from_six_jackknife_standard_errors_on() -> None
 def test_delay_of_an_exponentially_decaying_speed_is_not_reported() -> None:
     """A delayed exponential equals a scaled one, so that the delay is not identifiable."""
     decaying = np.exp(-0.5 * TIME_S)
-    assert late_speed("a", TIME_S, -2.0 * decaying, 1.1 * decaying) is None
-
-
-def test_correction_of_a_delayed_speed_preserves_its_zeros_at_rests() -> None:
-    speed = np.array([0.0, 0.0, 1.0, 2.0, 0.0, 0.0])
-    assert earlier(np.arange(6.0), speed, 0.25).tolist() == [0.0, 0.0, 1.25, 1.5, 0.0, 0.0]
+    assert filtered_speed("a", TIME_S, -2.0 * decaying, 1.1 * decaying) is None
 
 
 def backward_difference(path: Array, span: int) -> Array:

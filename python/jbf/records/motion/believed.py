@@ -18,7 +18,7 @@ from jbf.records.motion.glitches import (
 )
 from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
-from jbf.records.motion.lateness import earlier, late_speed
+from jbf.records.motion.lateness import filtered_speed
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.roughness import quantum_of, step_of
 from jbf.records.motion.speed_zero import speed_zero
@@ -109,11 +109,9 @@ def believed(run: Run, radius_m: float | None) -> Believed:
     elif unit is not None:
         position, step = position.along(position.path_m / unit.factor), step / abs(unit.factor)
     path = position.path_m
-    aside = derived_speed(name, time, path, speed) or late_speed(name, time, path, speed)
+    aside = derived_speed(name, time, path, speed) or filtered_speed(name, time, path, speed)
     odd = held = None
-    measured = aside is None or aside.kind == "late_speed"
-    if aside is not None and measured:
-        speed = earlier(time, speed, aside.size)
+    measured = aside is None
     if measured:
         speed, odd = mend_speed(name, time, speed, path, said.speed)
         speed, off, more = mend_speed_ends(name, time, speed, path, said.speed)

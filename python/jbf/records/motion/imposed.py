@@ -125,6 +125,26 @@ class ImposedMotion:
         """Columns that were left aside as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
+    def rougher(self, time_s: Array, factor: float) -> ImposedMotion:
+        """The motion smoothed less: with a jerk of so many times the intensity.
+
+        Parameters
+        ----------
+        time_s
+            The instants of this motion, s.
+        """
+        if self.errors is None or self.errors.smoothed is None:
+            return self
+        smoothed = self.errors.smoothed.rougher(factor)
+        mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
+        return replace(
+            self,
+            velocity_m_s=np.where(self.resting, 0.0, mean[:, 1]),
+            acceleration_m_s2=np.where(self.resting, 0.0, mean[:, 2]),
+            angle_rad=mean[:, 0] / errors.arm_m,
+            errors=errors,
+        )
+
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
         """The motion at other instants within it: on cubics through speed and acceleration.
 

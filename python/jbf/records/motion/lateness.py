@@ -16,19 +16,16 @@ Array = npt.NDArray[np.float64]
 
 SURE = 6.0
 """Standard errors by which a speed must be late,"""
-A_SAMPLE = 0.1
-"""and share of a sample: less does not show."""
 ALIKE = 0.9
 """Correlation of speed and acceleration above which (a speed that dies out) late is but smaller."""
-WITHIN = 0.4
-"""Share of a sample up to which a late speed is shifted: what a filter so short does to a start or
-a stop is over within the sample. A longer one has a shape, too."""
+WITHIN = 1.5
+"""Samples up to which the smoother corrects a late speed. A longer filter has a shape, too."""
 STRETCHES = 12
 """Parts of the record that are left out in turn, for the error."""
 
 
-def late_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """A finding where the recorded speed is clearly later than the path."""
+def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
+    """A finding where the speed is later than the path by more than the smoother corrects."""
     sharpest = min(
         (_lateness(c) for c in compared(time, path, speed)),
         key=lambda found: found[1],
@@ -36,21 +33,11 @@ def late_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | N
     )
     late_s, error_s = sharpest
     step_s = float(np.median(np.diff(time)))
-    if late_s < max(SURE * error_s, A_SAMPLE * step_s):
+    if late_s < max(SURE * error_s, WITHIN * step_s):
         return None
     words = f"the speed is {1e3 * late_s:.3g} ms later than the path: filtered, or looking back"
-    if late_s <= WITHIN * step_s:
-        return Finding("late_speed", "velocity_m_s", name, late_s, "s", "shifted", words)
     done = "left aside; the path alone tells the motion"
     return Finding("filtered_speed", "velocity_m_s", name, late_s, "s", done, words)
-
-
-def earlier(time: Array, speed: Array, late_s: float) -> Array:
-    """A speed that was late, at the instants of its stamps."""
-    shifted: Array = np.interp(time + late_s, time, speed)
-    # Zeros are what a rest is known by.
-    shifted[speed == 0.0] = 0.0
-    return shifted
 
 
 def _lateness(c: Compared) -> tuple[float, float]:

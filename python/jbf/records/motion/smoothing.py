@@ -32,14 +32,24 @@ SETTLED = 0.01
 """EM ends where no parameter changes by more than this share in a pass."""
 SHORTEST = 4
 """Samples below which nothing is estimated: the motion is a parabola through them."""
-LONGEST = 20_000
-"""Samples from which the parameters are estimated, in the middle of a longer record."""
-DECADES = 14
-"""Range of jerk intensities searched, decades below the one that follows every reading."""
+CHOSEN, LONGEST = 3_000, 8_000
+"""Samples of a longer record from which the start and the clock are chosen, and from which the
+parameters are estimated: those in which the motion goes furthest."""
+LONG_PASSES = 12
+"""Passes for the corners of such a record."""
+DECADES, GRID = 14.0, 2.0
+"""Range of jerk intensities searched below the one that follows every reading, and the steps of a
+first look, decades."""
+NARROW = 2.0
+"""Range around a known jerk, decades."""
 DELAY_GAIN = 10.0
 """Log-likelihood gain that a delay of the velocity must have."""
 START_FACTORS = (1.0, 10.0, 100.0)
 """Factors of the velocity's error, next to its roughness, from which the estimation may start."""
+DELAY_ROUNDS, SAME_DELAY = 4, 0.01
+"""Rounds of the search of the delay, until it changes by less than so many samples."""
+HIDDEN = 0.01
+"""Share of the velocity's variance that is tried next to it while the delay is searched."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 SPAN = 5
@@ -83,6 +93,11 @@ class Smoothed:
         """The posterior for given errors."""
         found = readings.smoothed(errors, corners, speed)
         return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
+
+    def rougher(self, factor: float) -> Smoothed:
+        """The same with a jerk of so many times the intensity."""
+        errors = replace(self.errors, jerk=factor * self.errors.jerk)
+        return Smoothed.of(self.readings, errors, self.corners, self.speed)
 
     def at(self, instants_s: Array) -> tuple[Array, Array, Array]:
         """Mean, covariance and gain at other instants, s, not decreasing and within the motion."""
@@ -130,21 +145,22 @@ def smooth(readings: Readings, even_s: Array | None = None) -> Smoothed:
     if n < SHORTEST:
         errors = replace(_start(readings), jerk=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
-    first = max((n - LONGEST) // 2, 0)
-    part = slice(first, first + LONGEST)
+    part = _busiest(readings, CHOSEN)
     few = readings.part(part)
     start = _likeliest_start(few)
     if np.isfinite(few.position).any():
-        few, start, evened = _likeliest_stamps(few, start, None if even_s is None else even_s[part])
+        clock = None if even_s is None else even_s[part]
+        start, evened = _likeliest_stamps(few, start, clock)
         if evened and even_s is not None:
             readings = replace(readings, time_s=even_s)
+    few = readings.part(_busiest(readings, LONGEST))
     errors, corners = _estimated(few, start)
     if np.isfinite(few.position).any() and np.isfinite(few.velocity).any():
         errors, corners = _delayed(few, errors, corners)
     speed = np.zeros(n)
     if n > len(few.time_s):
         corners = np.ones(n - 1)
-        for _ in range(GAUSSIAN_PASSES):
+        for _ in range(LONG_PASSES):
             motion = readings.smoothed(errors, corners, speed)
             speed = motion.mean[:, 1]
             corners = _corners(motion.disturbance / errors.jerk)
@@ -179,26 +195,36 @@ def _start(readings: Readings) -> ReadingErrors:
     return ReadingErrors(noise[0], noise[1], 0.0, 1.0)
 
 
-def _likeliest_jerk(readings: Readings, errors: ReadingErrors) -> ReadingErrors:
-    """The same errors with the jerk that is likeliest if it is normal and the same everywhere."""
-    step = float(np.median(np.diff(readings.time_s)))
+def _likeliest_jerk(
+    readings: Readings, errors: ReadingErrors, decades: float | None = None
+) -> ReadingErrors:
+    """The same errors with the jerk that is likeliest if it is normal and the same everywhere.
+
+    Parameters
+    ----------
+    decades
+        How far around the errors' own jerk it is searched; everywhere if not given.
+    """
     ones, speed = np.ones(len(readings.time_s) - 1), _speed(readings)
-    top = float(np.nanmax(np.abs(readings.velocity), initial=0.0))
-    seen = readings.position[np.isfinite(readings.position)]
-    reach = float(np.ptp(seen)) if len(seen) else 0.0
-    with np.errstate(divide="ignore"):
-        most = np.log((top**2 + (reach / step) ** 2) / step**3)
 
     def cost(log_jerk: float) -> float:
         tried = replace(errors, jerk=float(np.exp(log_jerk)))
         return -readings.log_likelihood(tried, ones, speed)
 
-    if not np.isfinite(most):
-        return errors
-    grid = most - np.log(10.0) * np.arange(0.0, DECADES, 1.5)
-    costs = [cost(g) for g in grid]
-    best = int(np.argmin(costs))
-    low, high = grid[min(best + 1, len(grid) - 1)], grid[max(best - 1, 0)]
+    if decades is not None:
+        middle = float(np.log(errors.jerk))
+        low, high = middle - decades * np.log(10.0), middle + decades * np.log(10.0)
+    else:
+        step = float(np.median(np.diff(readings.time_s)))
+        top = float(np.nanmax(np.abs(readings.velocity), initial=0.0))
+        seen = readings.position[np.isfinite(readings.position)]
+        reach = float(np.ptp(seen)) if len(seen) else 0.0
+        most = (top**2 + (reach / step) ** 2) / step**3
+        if most <= 0.0 or not np.isfinite(most):
+            return errors
+        grid = np.log(most) - np.log(10.0) * np.arange(0.0, DECADES, GRID)
+        best = int(np.argmin([cost(g) for g in grid]))
+        low, high = grid[min(best + 1, len(grid) - 1)], grid[max(best - 1, 0)]
     from scipy.optimize import minimize_scalar  # half a second to import
 
     found = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.5})
@@ -207,9 +233,9 @@ def _likeliest_jerk(readings: Readings, errors: ReadingErrors) -> ReadingErrors:
 
 def _likeliest_stamps(
     readings: Readings, errors: ReadingErrors, even_s: Array | None
-) -> tuple[Readings, ReadingErrors, bool]:
-    """Readings at their stamps or on an even clock, with or without an error of the instants."""
-    best = (_likelihood(readings, errors), readings, errors, False)
+) -> tuple[ReadingErrors, bool]:
+    """Errors with or without one of the instants, and whether these are those of the even clock."""
+    best = (_likelihood(readings, errors), errors, False)
     step = float(np.median(np.diff(readings.time_s)))
     clocks = [(readings, False)]
     if even_s is not None:
@@ -218,12 +244,27 @@ def _likeliest_stamps(
         for clock, evened in clocks:
             if share == 0.0 and not evened:
                 continue
-            tried = _likeliest_jerk(clock, replace(errors, stamp=(share * step) ** 2))
+            tried = replace(errors, stamp=(share * step) ** 2)
+            tried = _likeliest_jerk(clock, tried, NARROW)
             likelihood = _likelihood(clock, tried)
             # An even clock has no parameter more; an error of the instants has one.
             if likelihood > best[0] + (STAMP_GAIN if share > 0.0 else 0.0):
-                best = (likelihood, clock, tried, evened)
+                best = (likelihood, tried, evened)
     return best[1:]
+
+
+def _busiest(readings: Readings, longest: int) -> slice:
+    """So many samples in a row, or all, in which the motion goes furthest."""
+    n = len(readings.time_s)
+    if n <= longest:
+        return slice(0, n)
+    gone = np.abs(np.diff(np.nan_to_num(readings.position), prepend=0.0))
+    gone[0] = 0.0
+    if not gone.any():
+        gone = np.abs(np.nan_to_num(readings.velocity))
+    total = np.concatenate(([0.0], np.cumsum(gone)))
+    first = int(np.argmax(total[longest:] - total[:-longest]))
+    return slice(first, first + longest)
 
 
 def _speed(readings: Readings) -> Array:
@@ -246,20 +287,33 @@ def _delayed(
     readings: Readings, errors: ReadingErrors, corners: Array
 ) -> tuple[ReadingErrors, Array]:
     """Errors and corners with the delay of the velocity that is likeliest."""
+    usual = float(np.median(np.diff(readings.time_s)))
+    for _ in range(DELAY_ROUNDS):
+        before = errors.velocity_delay_s
+        delay_s, gain = _likeliest_delay(readings, errors, corners, LONGEST_DELAY * usual)
+        if gain < DELAY_GAIN or abs(delay_s - before) < SAME_DELAY * usual:
+            break
+        delayed = replace(errors, velocity_delay_s=delay_s)
+        errors, corners = _estimated(readings, delayed, corners)
+    return errors, corners
+
+
+def _likeliest_delay(
+    readings: Readings, errors: ReadingErrors, corners: Array, longest_s: float
+) -> tuple[float, float]:
+    """The likeliest delay of the velocity, s, and its gain in the log likelihood."""
+    from scipy.optimize import minimize_scalar
+
     speed = readings.smoothed(errors, corners, _speed(readings)).mean[:, 1]
-    longest = LONGEST_DELAY * float(np.median(np.diff(readings.time_s)))
 
     def cost(delay_s: float) -> float:
         tried = replace(errors, velocity_delay_s=delay_s)
-        return -readings.log_likelihood(tried, corners, speed)
+        # The velocity's error without a delay would hide one.
+        least = replace(tried, velocity=max(HIDDEN * errors.velocity, readings.velocity_floor))
+        return -max(readings.log_likelihood(e, corners, speed) for e in (tried, least))
 
-    from scipy.optimize import minimize_scalar
-
-    found = minimize_scalar(cost, bounds=(-longest, longest), method="bounded")
-    if cost(0.0) - found.fun < DELAY_GAIN:
-        return errors, corners
-    delayed = replace(errors, velocity_delay_s=float(found.x))
-    return _estimated(readings, delayed, corners)
+    found = minimize_scalar(cost, bounds=(-longest_s, longest_s), method="bounded")
+    return float(found.x), cost(errors.velocity_delay_s) - float(found.fun)
 
 
 def _estimated(

@@ -41,7 +41,7 @@ class Comparison(Result):
     Attributes
     ----------
     samples
-        Those that count: where the sign of the motion is known.
+        Those that count: in motion, where its sign is known.
     rms_n
         Root mean square of record minus prediction over the samples that count, N.
     noise_n
@@ -127,8 +127,8 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
 def compare(model: Model, runs: Sequence[Run]) -> Comparison:
     """Compare a model with recorded runs.
 
-    Samples at which the sign of the motion cannot be known (within a few of a reversal) count
-    neither for the model nor against it.
+    Samples at rest, and those at which the sign of the motion cannot be known (within a few of a
+    reversal), count neither for the model nor against it.
 
     Raises
     ------

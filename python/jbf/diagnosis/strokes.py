@@ -74,7 +74,7 @@ def stroke_of(p: Prepared) -> Strokes:
     """The number of the stroke that a sample is in, -1 where it is not known to move: strokes end
     where the motion turns round."""
     motion = p.motion
-    moving = np.flatnonzero(motion.sign_known & ~motion.resting)
+    moving = np.flatnonzero(p.slides)
     found = np.full(len(motion.velocity_m_s), -1, dtype=np.intp)
     if len(moving):
         sign = np.sign(motion.velocity_m_s[moving])

@@ -204,7 +204,7 @@ def _rows(
             "one, delay": [slope * since_start, slope],
         }[clocks]
         apart = int(np.ceil(LINEAR_S / p.step_s))
-        far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=apart)
+        far = ~ndimage.binary_dilation(~p.slides, iterations=apart)
         own = samples.only([i]).within([far])
         derivatives = np.column_stack([solution.jacobian[i][:, by], *later])
         r, j = own.stacked([solution.residuals[i]], [derivatives], solution.noise)

@@ -144,7 +144,7 @@ def _scans(
         kept = samples.counted[i]
         if reach > 0.0:
             width = int(np.ceil(reach / p.step_s))
-            kept = kept & ~ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
+            kept = kept & ~ndimage.binary_dilation(~p.slides, iterations=width)
         rows = []
         for late in grid:
             shifted = np.interp(p.run.time_s - late, instants, force)

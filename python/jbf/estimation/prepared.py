@@ -28,10 +28,21 @@ from jbf.records.rig import Rig
 from jbf.records.run import Run, require, run_on
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 
 FINER = 1.5
 """A motion read so many times as often as the force tells more than at the force's instants."""
+
+
+def slides(motion: ImposedMotion) -> Mask:
+    """Return where friction has a known direction, shape (n,).
+
+    At rest friction is any force up to the breakaway level in either direction: it balances
+    whatever the drive holds. Such a sample has no residual, and neither has one near a reversal.
+    """
+    sliding: Mask = motion.sign_known & ~motion.resting
+    return sliding
 
 
 @dataclass(frozen=True)
@@ -133,6 +144,11 @@ class Prepared:
             run = replace(run, load_n=frozen(steady_load(run.load_n)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
+
+    @property
+    def slides(self) -> Mask:
+        """True where friction has a known direction (:func:`slides`), shape (n,)."""
+        return slides(self.motion)
 
     @property
     def readings_n(self) -> Array:

@@ -2,8 +2,10 @@
 its likelihood, its score tests and every test of what remains.
 
 A record does not tell the sign of the friction within a few samples of a reversal, nor anything
-where its path and its speed contradict one another: those samples count nowhere. A model may set
-more of them aside (`jumps`). A fit gives each sample its weight; a test looks at those that count.
+where its path and its speed contradict one another: those samples count nowhere. At rest friction
+balances whatever the drive holds, up to the breakaway level: a law predicts no value there, and
+those samples do not count either. A model may set more of them aside (`jumps`). A fit gives each
+sample its weight; a test looks at those that count.
 """
 
 from __future__ import annotations
@@ -59,9 +61,9 @@ class Samples:
 
     @classmethod
     def of(cls, prepared: Iterable[Prepared]) -> Samples:
-        """Those at which the runs tell the sign of the friction, and a reading that can be used."""
+        """Select the samples that slide in a known direction and have a usable reading."""
         prepared = tuple(prepared)
-        counted = tuple(p.motion.sign_known & p.examined.usable & ~held(p) for p in prepared)
+        counted = tuple(p.slides & p.examined.usable for p in prepared)
         return cls(
             tuple(p.run.name for p in prepared),
             tuple(p.step_s for p in prepared),
@@ -206,17 +208,6 @@ class Samples:
             noise.innovations(r * (c * s), step) * c
             for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)
         ]
-
-
-def held(prepared: Prepared) -> Mask:
-    """Samples at rest of a machine that its drive holds, shape (n,).
-
-    At rest the friction balances any force up to the breakaway level, so the motion does not
-    determine it. A bearing's shaft is not held: its friction at rest is that of the law.
-    """
-    if prepared.rig.bearing is not None:
-        return np.zeros(len(prepared.run), dtype=bool)
-    return prepared.motion.resting
 
 
 def least_weights(a: Samples, b: Samples) -> Samples:

@@ -97,7 +97,7 @@ def _moving(p: Prepared, counted: Mask) -> Mask:
     """Samples in motion: a hum near zero speed has neither a direction nor a way."""
     speed = np.abs(p.motion.velocity_m_s)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
-    found: Mask = counted & ~p.motion.resting & (speed > HUM * top)
+    found: Mask = counted & (speed > HUM * top)
     return found
 
 

@@ -162,13 +162,15 @@ def test_power_is_reported_for_effects_that_are_not_in_the_model() -> None:
     assert offset == next(p for p in found if p.effect == "sensor_offset")
 
 
-def test_rests_of_a_held_drive_do_not_make_presliding_detectable_at_any_stiffness() -> None:
-    """At rest a drive may hold any force up to the breakaway level: it tells no deflection."""
+def test_presliding_is_not_detectable_at_any_stiffness_from_rests() -> None:
+    """Friction at rest balances any force, as a contact of any stiffness does."""
     t = np.arange(0.0, 20.0, 0.02)
     moving = np.mod(t, 6.0) > 2.0
     records = [coulomb_run(t, 0.1 * np.sin((0.6 + 0.2 * k) * t) * moving, seed=k) for k in range(3)]
     found = power(coulomb_candidates(records), (), ["presliding", "inertia_leak"])
     assert {p.effect: p.always for p in found} == {"presliding": False, "inertia_leak": False}
+    (presliding, _) = found
+    assert presliding.found_80 is not None
 
 
 def test_diagnosis_reports_power_only_if_no_structure_is_unexplained() -> None:

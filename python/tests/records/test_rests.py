@@ -46,6 +46,33 @@ def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit(
         assert places(rests.still_samples(*record, hum=1e-3)) == list(range(60, 100))
 
 
+@pytest.mark.parametrize(("samples", "found"), [(160, True), (60, False)])
+def test_rest_under_a_noisy_speed_is_as_long_as_its_counts_resolve_a_slow_speed(
+    samples: int, found: bool
+) -> None:
+    """1.5 counts in 60 samples of 1 ms are 2.5 mm/s, in 160 samples 0.9 mm/s; the limit is
+    0.5 percent of 0.4 m/s."""
+    time_s: Any = 1e-3 * np.arange(400)
+    first, end = 200 - samples // 2, 200 + samples // 2
+    resting = (time_s >= 1e-3 * first) & (time_s < 1e-3 * end)
+    true = np.where(resting, 0.0, 0.4)
+    speed = true + 0.02 * np.random.default_rng(2).standard_normal(400)
+    path = quantised(np.cumsum(true) * 1e-3, COUNT_M)
+    rest = rests.still_samples(time_s, path, speed, COUNT_M)
+    assert rest.any() == found
+    if found:
+        np.testing.assert_array_equal(rest, resting)
+
+
+def test_slow_motion_under_a_noisy_speed_is_not_a_rest() -> None:
+    """At 4 mm/s a count of 0.1 mm lasts 25 samples of 1 ms; the noise is five times the speed."""
+    time_s: Any = 1e-3 * np.arange(800)
+    true = np.where(time_s < 0.1, 0.4, 0.004)
+    speed = true + 0.02 * np.random.default_rng(3).standard_normal(800)
+    path = quantised(np.cumsum(true) * 1e-3, COUNT_M)
+    assert not rests.still_samples(time_s, path, speed, COUNT_M).any()
+
+
 @pytest.mark.parametrize(("counts", "found"), [(1.4, True), (1.6, False)])
 def test_standstill_is_a_rest_only_if_its_path_stays_within_1_5_counts(
     counts: float, found: bool

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
+
+from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -16,6 +20,8 @@ STILL_STEPS = 1.5
 """How far an encoder may seem to go meanwhile, in its steps,"""
 STILL_SHARE = 5e-3
 """and the largest hum of a rest, as a share of the top speed."""
+HUM_ERRORS = 5.0
+"""Standard deviations of the recorded speed's noise that a hum of a rest stays within."""
 STANDS_OUT = 9.0
 """Times the usual speed of a rest (six standard deviations of its hum) that are none."""
 LONGER = 2.0
@@ -36,8 +42,11 @@ def resting_samples(velocity_m_s: Array) -> Mask:
 def still_samples(
     time_s: Array, path: Array, velocity_m_s: Array, step: float, hum: float = 0.0
 ) -> Mask:
-    """True in stretches of at least `STILL_SAMPLES` in which the encoder stays within its step
-    and the speed within `STILL_SHARE` of its top: a rest whose recorded speed is not quite zero.
+    """Select rests whose recorded speed is not quite zero, shape (n,).
+
+    In a rest of at least `STILL_SAMPLES` the encoder stays within its step and the speed within
+    `STILL_SHARE` of its top. A speed whose noise is larger than that tells nothing of a rest: then
+    the encoder must stay within its step for so long that the mean speed is as small.
 
     Not in slow reversals, which an encoder does not resolve either.
 
@@ -52,15 +61,12 @@ def still_samples(
     """
     n = len(path)
     top = float(np.max(np.abs(velocity_m_s), initial=0.0))
-    slow = np.abs(velocity_m_s) <= max(STILL_SHARE * top, hum)
-    if n < STILL_SAMPLES or not slow.any():
-        return np.zeros(n, dtype=bool)
-    windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
-    calm = np.lib.stride_tricks.sliding_window_view(slow, STILL_SAMPLES)
-    begins = (np.ptp(windows, axis=1) <= STILL_STEPS * step) & calm.all(axis=1)
-    ends = np.concatenate((np.zeros(STILL_SAMPLES), begins.astype(float)))
-    covered = np.cumsum(np.concatenate((begins, np.zeros(STILL_SAMPLES)))) - np.cumsum(ends)
-    resting: Mask = covered[:n] > 0.5
+    limit, noise = max(STILL_SHARE * top, hum), HUM_ERRORS * noise_of(velocity_m_s)
+    resting = _within_a_step(path, np.abs(velocity_m_s) <= limit, step, STILL_SAMPLES)
+    if noise > limit > 0.0:
+        longest = STILL_STEPS * step / (limit * float(np.median(np.diff(time_s))))
+        samples = max(STILL_SAMPLES, int(np.ceil(min(longest, n))) + 1)
+        resting |= _within_a_step(path, np.abs(velocity_m_s) <= noise, step, samples)
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         if _reverses(time_s, velocity_m_s, int(first), int(end), step):
@@ -72,6 +78,33 @@ def still_samples(
         resting[first : first + calm_at[0]] = False
         resting[first + calm_at[-1] + 1 : end] = False
     return resting
+
+
+def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
+    """True in stretches of so many slow samples in which the path stays within its step."""
+    n = len(path)
+    if n < samples or not slow.any():
+        return np.zeros(n, dtype=bool)
+    begins = (_ptp(path, samples) <= STILL_STEPS * step) & (_ptp(~slow, samples) == 0)
+    begins &= slow[: len(begins)]
+    ends = np.concatenate((np.zeros(samples), begins.astype(float)))
+    covered = np.cumsum(np.concatenate((begins, np.zeros(samples)))) - np.cumsum(ends)
+    within: Mask = covered[:n] > 0.5
+    return within
+
+
+def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
+    """Range of values in each window of so many samples, shape (n - samples + 1,)."""
+    low: Array = values.astype(float)
+    high = low
+    width = 1
+    while width < samples:
+        # A window is two narrower ones that may overlap.
+        shift = min(width, samples - width)
+        low, high = np.minimum(low[:-shift], low[shift:]), np.maximum(high[:-shift], high[shift:])
+        width += shift
+    span: Array = high - low
+    return span
 
 
 def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:

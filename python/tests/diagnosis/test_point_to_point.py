@@ -1,0 +1,16 @@
+"""Diagnosis of an axis that a position controller holds between moves."""
+
+from jbf import Rig, diagnose
+from point_to_point import TRUTH, point_to_point
+
+
+def test_force_held_between_moves_makes_no_effect_and_no_residual_structure() -> None:
+    runs = point_to_point([6, 7], duration_s=12.0)
+    found = diagnose(Rig(), runs, law="coulomb")
+    assert (found.verdict, found.effects) == ("missing", ("inertia_leak",)), found.summary()
+    assert not found.unexplained
+    assert found.steps[-1].holdout_rms_n < 1.05 * 0.3
+    for name, true in TRUTH.items():
+        parameter = found.model.parameters[name]
+        assert parameter.stderr is not None
+        assert abs(parameter.value - true) < 3.0 * parameter.stderr, name

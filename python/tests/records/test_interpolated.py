@@ -228,6 +228,40 @@ def test_smooth_linear_and_quantised_forces_have_no_interpolated_readings(omega:
     assert [find_native(TIME_S, record) for record in records] == [None] * len(records)
 
 
+@pytest.mark.parametrize("noise", [0.05, 1.0, 3.0, *extended([0.2, 0.5, 20.0])])
+@pytest.mark.parametrize("rate_hz", [500.0, 1003.7, *extended([200.0, 2000.0, 5000.0])])
+@pytest.mark.parametrize("stamps", ["microseconds", "uneven"])
+def test_quantised_force_of_a_smooth_drive_has_no_interpolated_samples(
+    noise: float, rate_hz: float, stamps: str
+) -> None:
+    """A converter makes equal readings and equal increments; time stamps are rounded as well."""
+    step_n, random = 0.1 / 7.0, np.random.default_rng(int(rate_hz))
+    time_s: Any = np.arange(8000) / rate_hz
+    if stamps == "uneven":
+        time_s = time_s + 1e-3 / rate_hz * random.uniform(-1.0, 1.0, len(time_s))
+    else:
+        time_s = np.round(time_s, 6)
+    speed = np.sin(4.0 * time_s) + 0.5 * np.sin(9.2 * time_s + 1.0)
+    filtered = np.convolve(random.standard_normal(len(time_s)), np.full(4, 0.5), "same")
+    force = 2.0 * np.tanh(speed / 0.01) + 1.1 * speed + noise * step_n * filtered
+    read = np.round(quantised(force, step_n), 5)
+    assert find_native(time_s, read) is None
+    assert find_filled_in(time_s, read) is None
+
+
+@pytest.mark.parametrize("ratio", [5, 10])
+@pytest.mark.parametrize("digits", [4, 15])
+def test_force_read_at_uneven_instants_and_interpolated_has_samples_on_lines(
+    ratio: int, digits: int
+) -> None:
+    random = np.random.default_rng(ratio)
+    ticks_s = 0.02 * (np.cumsum(random.uniform(0.5, 1.5, 3000 // ratio + 200)) * ratio - 3 * ratio)
+    drawn = np.interp(TIME_S, ticks_s, reversing_force(ticks_s, 3))
+    native: Any = find_filled_in(TIME_S, np.round(drawn, digits))
+    # The samples on both sides of a reading remain.
+    assert len(native.time_s) == pytest.approx(2 * len(TIME_S) / ratio, rel=0.1)
+
+
 @pytest.mark.parametrize("uneven", [False, True])
 def test_single_interpolated_samples_are_removed_from_a_noisy_force(uneven: bool) -> None:
     random = np.random.default_rng(3)

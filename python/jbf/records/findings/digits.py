@@ -7,6 +7,11 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
+FEWEST_GAPS = 8
+"""Gaps between levels that show a converter's step,"""
+MOST_STEPS = 20.0
+"""and the widest of them, in steps: of a wider one, an error of the step would be most."""
+
 
 def last_digit(values: Array) -> float:
     """The last decimal digit that samples are written with; of binary numbers their rounding."""
@@ -19,3 +24,24 @@ def last_digit(values: Array) -> float:
         if np.max(np.abs(scaled - np.round(scaled))) < 1e-6:
             return float(10.0**place)
     return 1e-9 * top
+
+
+def resolution(values: Array) -> float:
+    """Return the least difference that samples can have: the step of a converter, or a digit.
+
+    Notes
+    -----
+    The levels of a converter are whole steps apart, to the last digit. All other values differ by
+    as little as a digit once there are enough of them.
+    """
+    digit = last_digit(values)
+    apart = np.diff(np.unique(values))
+    apart = apart[apart > 0.5 * digit]
+    if len(apart) < FEWEST_GAPS:
+        return digit
+    least = float(np.min(apart))
+    step = float(np.mean(apart[apart < 1.5 * least]))
+    near = apart[apart < MOST_STEPS * step]
+    error = np.abs(near - step * np.round(near / step))
+    on_levels = len(near) >= FEWEST_GAPS and bool(np.all(error <= digit * (1.0 + near / step)))
+    return max(step, digit) if on_levels else digit

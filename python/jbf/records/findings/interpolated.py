@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.findings.digits import last_digit
+from jbf.records.findings.digits import last_digit, resolution
 from jbf.records.findings.polygon import lefts, polygon, sharpened
 from jbf.records.findings.steps import step_of
 
@@ -126,7 +126,7 @@ def _noise(values: Array, rounding: float) -> float:
 
 def _exact(values: Array, noise: float) -> float:
     """What a polygon may leave: next to nothing, or what rounding to the last digit does."""
-    digits = DIGITS * last_digit(values) / np.sqrt(12.0)
+    digits = DIGITS * resolution(values) / np.sqrt(12.0)
     return float(max(EXACT * noise, min(digits, NEARLY * noise)))
 
 

@@ -75,11 +75,14 @@ def words(model: Model, told: dict[str, Any]) -> str:
     """The same for people."""
     if not told:
         return ""
+    from jbf.reporting.words import against_noise
+
     found = told["hold_out"]
     unit = model.rig.quantities.force
+    ratio = against_noise(found["rms_n"], found["noise_n"] or 0.0)
     runs = ", ".join(f"{run['run']} {run['rms_n']:.3g}" for run in found["runs"])
     return (
         f"\n\nHeld out ({count_of(len(found['runs']), 'run')}, used for nothing else): RMS "
-        f"{found['rms_n']:.4g} {unit}, {found['rms_n'] / found['noise_n']:.3g} times their noise"
+        f"{found['rms_n']:.4g} {unit}, {ratio}"
         f"\n  {runs}"
     )

@@ -45,7 +45,7 @@ class Comparison(Result):
     rms_n
         Root mean square of record minus prediction over the samples that count, N.
     noise_n
-        Noise floor of the record, from the data alone, N.
+        Noise floor of the record, from the data alone, N; zero where it is not known.
     failures
         Axes along which the residual has a pattern, strongest first.
     predictions, residuals
@@ -72,7 +72,7 @@ class Comparison(Result):
         return {
             **self.model.told_units(),
             "rms_n": self.rms_n,
-            "noise_n": self.noise_n,
+            "noise_n": self.noise_n or None,
             "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],
             "failures": [f.to_dict() for f in self.failures],
             "findings": [f.to_dict() for f in self.findings],

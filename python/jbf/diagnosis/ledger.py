@@ -45,8 +45,8 @@ class Step:
     """The model after one addition (the first: the bare law).
 
     `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs that each had no part
-    in the fit that predicts them; `noise_n` the noise floor; all N. `trials` are the candidates
-    that competed for the next place.
+    in the fit that predicts them; `noise_n` the noise floor, zero where it is not known; all N.
+    `trials` are the candidates that competed for the next place.
     """
 
     effects: tuple[str, ...]
@@ -61,7 +61,7 @@ class Step:
             "effects": list(self.effects),
             "rms_n": self.rms_n,
             "holdout_rms_n": self.holdout_rms_n,
-            "noise_n": self.noise_n,
+            "noise_n": self.noise_n or None,
             "tried": [t.to_dict() for t in self.trials],
         }
 

@@ -19,11 +19,18 @@ Mask = npt.NDArray[np.bool_]
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     """Standard deviation of the noise on the friction record, N, from the data alone.
 
+    Runs whose force is a command, or was filtered, show none of it. Zero where no run does: the
+    floor is not known then.
+
     The white part comes from third differences of the record, and is at least what a converter's
     steps leave (Widrow 1956): in coarse ones most readings are those before them. A coloured part
     hides from differences; it shows where the same motion comes again a period later and where the
     shaft rests, so the larger of the estimates stands where it is clearly larger.
     """
+    noisy = [i for i, p in enumerate(prepared) if p.has_noise]
+    if not noisy:
+        return 0.0
+    prepared, samples = [prepared[i] for i in noisy], samples.only(noisy)
     floor, seen = _white(prepared, samples), _seen(prepared, samples)
     if seen is None:
         return floor

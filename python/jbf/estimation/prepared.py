@@ -22,6 +22,7 @@ from jbf.records.findings.own_clock import own_clock
 from jbf.records.findings.pushing import find_pushing
 from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import find_slow_temperature
+from jbf.records.findings.smooth_force import find_smooth_force
 from jbf.records.findings.steps import find_steps
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
@@ -65,6 +66,11 @@ class Prepared:
     def converter_step_n(self) -> float:
         """The step of the run's converter, N; zero where it is none to speak of."""
         return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
+
+    @property
+    def has_noise(self) -> bool:
+        """False where the force is a command, or was filtered: its noise is not on record."""
+        return all(f.kind != "smooth_force" for f in self.examined.findings)
 
     @property
     def drawn_at_hz(self) -> float:
@@ -134,6 +140,7 @@ class Prepared:
             *own,
             *motion.findings,
             *find_pushing(run, motion, examined.usable),
+            *_without_noise(run, slides(motion) & examined.usable, examined),
             *find_noisy_load(run.name, run.load_n),
             *find_slow_temperature(run),
         )
@@ -212,3 +219,10 @@ class Prepared:
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""
         return {name: value for name, value in vars(self).items() if name != "core"}
+
+
+def _without_noise(run: Run, sliding: Mask, examined: Examined) -> list[Finding]:
+    """A finding where the force shows no noise: the steps of a converter are noise."""
+    if any(f.kind == "steps" for f in examined.findings):
+        return []
+    return find_smooth_force(run, sliding)

@@ -10,7 +10,14 @@ from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.power_text import level_words, power_lines
 from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, where_lines
-from jbf.reporting.words import BARE, law_words, number, times, verdict_sentence
+from jbf.reporting.words import (
+    BARE,
+    against_noise,
+    law_words,
+    noise_words,
+    number,
+    verdict_sentence,
+)
 
 
 def _trial_lines(diagnosis: Diagnosis) -> list[str]:
@@ -72,11 +79,12 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"    {count_of(len(campaign.prepared), 'run')} of {duration:.0f} s in all, "
         f"{count_of(samples, 'sample')} "
         f"where the sign of the motion is known",
-        f"    noise floor {number(bare.noise_n)} {unit}, estimated from the records alone",
+        f"    noise floor {noise_words(bare.noise_n, unit)}"
+        + (", estimated from the records alone" if bare.noise_n > 0.0 else ""),
         "",
         f"The {BARE} ({law_words(model, ', ')})",
         f"    misses by {number(bare.rms_n)} {unit} RMS, "
-        f"{times(bare.rms_n, bare.noise_n)} the noise"
+        f"{against_noise(bare.rms_n, bare.noise_n)}"
         + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
     ]
     lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]

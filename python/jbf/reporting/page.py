@@ -15,7 +15,7 @@ from jbf import _core
 from jbf.importing.ledger import ledgers_beside
 from jbf.records.counts import count_of
 from jbf.reporting.import_text import provenance_rows
-from jbf.reporting.words import number
+from jbf.reporting.words import noise_words
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
@@ -71,5 +71,6 @@ def measurement(comparison: Comparison, noise_n: float) -> str:
     return (
         f"{count_of(len(runs), 'run')} of {duration:.0f} s in all, "
         f"{count_of(comparison.samples.count, 'sample')} "
-        f"where the sign of the motion is known, noise floor {number(noise_n)} {unit}"
+        f"where the sign of the motion is known, "
+        f"noise floor {noise_words(noise_n, unit)}"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from textwrap import wrap
 
 from jbf.diagnosis.decoys import rate_below
 from jbf.diagnosis.level import Level
@@ -15,12 +16,18 @@ from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import power_rows
 from jbf.reporting.words import law_words, number
 
+WIDEST = 100
+"""Characters in a line of a table."""
+
 
 def power_lines(power: Iterable[Power], model: Model) -> list[str]:
     """A line an effect, under a head."""
     head = ("effect", "found from", "of friction", "alone from", "else it could be")
     rows = power_rows(power, model.law, model.rig.quantities)
-    return columns([head, *rows], "<<>><", 4)
+    lines = columns([head, *rows], "<<>><", 4)
+    # Further names stand below the first.
+    below = " " * lines[0].index(head[-1])
+    return [part for line in lines for part in wrap(line, WIDEST, subsequent_indent=below)]
 
 
 def level_words(level: Level) -> str:

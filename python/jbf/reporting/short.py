@@ -13,7 +13,7 @@ from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.counts import count_of
 from jbf.reporting.tables import shown_names
-from jbf.reporting.words import number, times, value_and_error
+from jbf.reporting.words import against_noise, number, value_and_error
 
 LONGEST = 120
 """Of a list that would grow with a model; a line has two of them at most."""
@@ -78,7 +78,7 @@ def short_comparison(comparison: Comparison) -> str:
     unit = comparison.model.rig.quantities.force
     return (
         f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
-        f"RMS {number(rms)} {unit}, {times(rms, noise)} the noise of {number(noise)} {unit};\n    "
+        f"RMS {number(rms)} {unit}, {against_noise(rms, noise, unit)};\n    "
         + (f"fails along {where})" if where else "no pattern along any axis)")
     )
 
@@ -91,5 +91,5 @@ def short_diagnosis(diagnosis: Diagnosis) -> str:
     added = f": {effects}" if effects else ""
     return (
         f"Diagnosis({diagnosis.verdict}{added};\n    held out {number(last.holdout_rms_n)} {unit}, "
-        f"{times(last.holdout_rms_n, last.noise_n)} the noise of {number(last.noise_n)} {unit})"
+        f"{against_noise(last.holdout_rms_n, last.noise_n, unit)})"
     )

@@ -10,7 +10,7 @@ import numpy as np
 from jbf.models.parameter_units import shown
 from jbf.records.counts import count_of
 from jbf.records.quantities import OF_BEARING, Quantities
-from jbf.reporting.words import number, percent, step_name, value_and_error
+from jbf.reporting.words import UNKNOWN, number, percent, step_name, value_and_error
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
@@ -76,7 +76,7 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
             step_name(diagnosis, i),
             number(s.rms_n),
             number(s.holdout_rms_n),
-            number(s.noise_n),
+            number(s.noise_n) if s.noise_n > 0.0 else UNKNOWN,
             ratio(s.holdout_rms_n, s.noise_n),
         )
         for i, s in enumerate(diagnosis.steps)

@@ -40,18 +40,36 @@ def law_and_effects(model: Model) -> str:
     return " + ".join([law_words(model), *model.effects])
 
 
+UNKNOWN = "not known"
+
+
+def noise_words(noise_n: float, unit: str) -> str:
+    """A noise floor with its unit; words where it is not known (zero)."""
+    return f"{number(noise_n)} {unit}" if noise_n > 0.0 else UNKNOWN
+
+
 def times(error_n: float, noise_n: float) -> str:
     """An error as a multiple of the noise: `1.29 times`."""
     return f"{error_n / noise_n:.2f} times" if noise_n > 0.0 else "above"
+
+
+def against_noise(error_n: float, noise_n: float, unit: str = "") -> str:
+    """An error as a multiple of the noise: `1.29 times the noise of 0.5 N`, without a unit less."""
+    if not noise_n > 0.0:
+        return f"where the noise is {UNKNOWN}"
+    size = f" of {number(noise_n)} {unit}" if unit else ""
+    return f"{times(error_n, noise_n)} the noise{size}"
 
 
 def comparison_sentence(comparison: Comparison) -> str:
     """How far a model is from its runs, and how that compares with the noise."""
     rms, noise = comparison.rms_n, comparison.noise_n
     unit = comparison.model.rig.quantities.force
+    if not noise > 0.0:
+        return f"RMS {number(rms)} {unit}, {against_noise(rms, noise)}"
     return (
-        f"RMS {number(rms)} {unit} against a noise floor of {number(noise)} {unit}: "
-        f"{times(rms, noise)} the noise"
+        f"RMS {number(rms)} {unit} against a noise floor of {noise_words(noise, unit)}: "
+        f"{against_noise(rms, noise)}"
     )
 
 
@@ -127,10 +145,8 @@ def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
 def _found(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
-    reached = (
-        f"{number(last.holdout_rms_n)} {unit}, {times(last.holdout_rms_n, last.noise_n)} "
-        f"the noise of {number(last.noise_n)} {unit}"
-    )
+    held_out_n = last.holdout_rms_n
+    reached = f"{number(held_out_n)} {unit}, {against_noise(held_out_n, last.noise_n, unit)}"
     added = listed(diagnosis.effects)
     fall = f"the held-out error falls from {number(first.holdout_rms_n)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":

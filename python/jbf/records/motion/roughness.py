@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -34,20 +36,27 @@ def noise_of(signal: Array, time_s: Array | None = None) -> float:
         Instants of the samples, s, increasing; None if they are even. Divided differences, over
         the root of the sum of their weights' squares, allow for uneven ones.
     """
+    if time_s is None:
+        return white_noise(signal, 3)
     if len(signal) < 8:
         return 0.0
-    if time_s is None:
-        third = np.diff(signal, 3) / np.sqrt(20.0)
-    else:
-        t = np.stack([time_s[k : len(time_s) - 3 + k] for k in range(4)])
-        gap = t[:, None, :] - t[None, :, :]
-        gap[np.arange(4), np.arange(4)] = 1.0
-        weight = 1.0 / np.where(gap == 0.0, np.nan, gap).prod(axis=1)
-        weight /= np.sqrt(np.sum(weight**2, axis=0))
-        values = np.stack([signal[k : len(signal) - 3 + k] for k in range(4)])
-        third = np.sum(weight * (values - values[0]), axis=0)
-        third = third[np.isfinite(third)]
+    t = np.stack([time_s[k : len(time_s) - 3 + k] for k in range(4)])
+    gap = t[:, None, :] - t[None, :, :]
+    gap[np.arange(4), np.arange(4)] = 1.0
+    weight = 1.0 / np.where(gap == 0.0, np.nan, gap).prod(axis=1)
+    weight /= np.sqrt(np.sum(weight**2, axis=0))
+    values = np.stack([signal[k : len(signal) - 3 + k] for k in range(4)])
+    third = np.sum(weight * (values - values[0]), axis=0)
+    third = third[np.isfinite(third)]
     return float(np.median(np.abs(third)) / 0.6745) if len(third) else 0.0
+
+
+def white_noise(signal: Array, order: int) -> float:
+    """Standard deviation of white noise on a smooth signal, from its differences of an order."""
+    if len(signal) < 8:
+        return 0.0
+    change = np.abs(np.diff(signal, order))
+    return float(np.median(change) / 0.6745 / np.sqrt(math.comb(2 * order, order)))
 
 
 def local_noise(signal: Array) -> Array | float:

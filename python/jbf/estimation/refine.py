@@ -34,7 +34,7 @@ EVALUATIONS = 20
 """Evaluations of each fit."""
 STEP = 0.5
 """Step of the numerical derivatives by the motion, standard errors of the motion."""
-ROUGHER = 4.0
+ROUGHER = 10.0
 """Factor of the jerk's intensity with which the effect of the smoothing is looked at."""
 HUBER = 2.5
 """Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.readings import Readings
-from jbf.records.motion.smoothing import smooth
+from jbf.records.motion.smoothing import is_even, smooth
 from known_motions import Array, quantised
 
 STEP_S, FINE = 0.005, 10
@@ -98,7 +98,11 @@ def test_jitter_of_the_stamps_of_an_even_clock_does_not_change_the_motion(jitter
     random = np.random.default_rng(7)
     stamps = np.sort(readings.time_s + random.normal(0.0, jitter_s, len(velocity)))
     jittered = replace(readings, time_s=stamps)
-    motion = smooth(jittered, even_clock(stamps))
+    even = even_clock(stamps)
+    assert even is not None
+    if jitter_s > 1e-4:
+        assert is_even(jittered, even)
+    motion = smooth(replace(jittered, time_s=even))
     expected = smooth(readings)
     error = np.std(expected.mean[:, 2] - acceleration)
     assert np.std(motion.mean[:, 2] - acceleration) < 1.3 * error
@@ -113,6 +117,17 @@ def test_samples_read_off_even_stamps_have_errors_that_grow_with_the_speed() -> 
     velocity = np.interp(instants, t, 10.0 * np.sin(1.0 * t))
     errors = smooth(readings_of(position, velocity)).errors
     assert np.sqrt(errors.stamp) == pytest.approx(2e-4, rel=0.1)
+
+
+def test_samples_at_uneven_instants_with_true_stamps_are_not_on_an_even_clock() -> None:
+    t = np.arange(30_000) * STEP_S / FINE
+    random = np.random.default_rng(11)
+    instants = STEP_S * np.arange(3000) + random.uniform(-1e-3, 1e-3, 3000)
+    position = np.interp(instants, t, 10.0 * (1.0 - np.cos(1.0 * t)))
+    readings = replace(readings_of(position, 0.0 * position), time_s=instants)
+    even = even_clock(instants)
+    assert even is not None
+    assert not is_even(replace(readings, velocity=np.full(3000, np.nan)), even)
 
 
 @pytest.mark.parametrize("loop_s", [0.0103, 0.0047])

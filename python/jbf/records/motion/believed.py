@@ -74,15 +74,21 @@ class Believed:
     hum: float = 0.0
 
 
-def believed(run: Run, radius_m: float | None) -> Believed:
+def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) -> Believed:
     """Examine the records of a run's motion.
+
+    Parameters
+    ----------
+    stamps_s
+        The stamps as recorded, s, where the run's instants are those of an even clock.
 
     Glitches go first, for they hide the rest; what a channel is worth as a whole is asked before
     its single samples.
     """
     name, time, speed = run.name, run.time_s, run.velocity_m_s
+    stamps_s = time if stamps_s is None else stamps_s
     said = run.quantities
-    stamps = uneven_stamps(name, time)
+    stamps = uneven_stamps(name, stamps_s)
     position = recorded_position(run, radius_m)
     if position is None:
         if not run.speed_recorded:
@@ -102,14 +108,22 @@ def believed(run: Run, radius_m: float | None) -> Believed:
         found = _there(astray, *ends, stamps)
         alone = _path_alone(name, time, position.path_m, step, found, loose, said.speed)
         return replace(alone, arm_m=position.arm_m)
-    speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
-    unit = wrong_unit(name, time, position, speed, said)
-    if unit is not None and unit.of_speed:
-        speed, hum = speed * unit.factor, hum * abs(unit.factor)
-    elif unit is not None:
-        position, step = position.along(position.path_m / unit.factor), step / abs(unit.factor)
+    zero = unit = None
+    hum = 0.0
+    # A difference of the positions has no unit or zero of its own that could be wrong.
+    aside = derived_speed(name, stamps_s, position.path_m, speed)
+    if aside is None:
+        speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
+        unit = wrong_unit(name, time, position, speed, said)
+        if unit is not None and unit.of_speed:
+            speed, hum = speed * unit.factor, hum * abs(unit.factor)
+        elif unit is not None:
+            position = position.along(position.path_m / unit.factor)
+            step = step / abs(unit.factor)
+        aside = derived_speed(name, stamps_s, position.path_m, speed) or filtered_speed(
+            name, time, position.path_m, speed
+        )
     path = position.path_m
-    aside = derived_speed(name, time, path, speed) or filtered_speed(name, time, path, speed)
     odd = held = None
     measured = aside is None
     if measured:

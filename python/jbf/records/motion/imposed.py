@@ -19,11 +19,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of
 from jbf.records.motion.believed import NOT_AS_RECORDED, Believed, believed
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.position import recorded_position
 from jbf.records.motion.readings import AT_REST, Readings
 from jbf.records.motion.rests import (
     backward_beside_rest,
@@ -35,7 +37,7 @@ from jbf.records.motion.rests import (
     without_swings,
 )
 from jbf.records.motion.roughness import local_noise, noise_of, quantum_of
-from jbf.records.motion.smoothing import Smoothed, smooth
+from jbf.records.motion.smoothing import Smoothed, is_even, smooth
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -215,7 +217,11 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
         nothing of the speed.
     """
-    records = believed(run, radius_m)
+    clock_s = _clock(run, radius_m)
+    stamps_s = run.time_s
+    if clock_s is not None:
+        run = replace(run, time_s=frozen(clock_s))
+    records = believed(run, radius_m, stamps_s)
     time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
     rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
@@ -235,9 +241,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         readings = replace(
             readings, velocity_shape=np.hypot(readings.velocity_shape, contradiction / sd_speed)
         )
-    # Where channels have clocks of their own, the force's stamps are others.
-    even_s = None if run.read else even_clock(time)
-    smoothed = smooth(readings, even_s)
+    smoothed = smooth(readings)
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
@@ -274,8 +278,25 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
             errors.velocity_delay_s,
             smoothed,
         ),
-        None if smoothed.readings.time_s is readings.time_s else smoothed.readings.time_s,
+        clock_s,
     )
+
+
+def _clock(run: Run, radius_m: float | None) -> Array | None:
+    """The even clock that the stamps were read from, s; None where they are taken as they are."""
+    # Where channels have clocks of their own, the force's stamps are others.
+    even_s = None if run.read else even_clock(run.time_s)
+    if even_s is None:
+        return None
+    position = recorded_position(run, radius_m)
+    n, missing = len(even_s), np.full(len(even_s), np.nan)
+    if position is None and not run.speed_recorded:
+        return None
+    signal = run.velocity_m_s if position is None else position.path_m
+    floor = max(quantum_of(signal) ** 2 / 12.0, (EXACT * float(np.ptp(signal)) / n) ** 2, 1e-30)
+    path, speed = (missing, signal) if position is None else (signal, missing)
+    readings = Readings(run.time_s, path, speed, floor, floor, np.ones(n), np.ones(n))
+    return even_s if is_even(readings, even_s) else None
 
 
 def _late(run: Run, delay_s: float) -> list[Finding]:

@@ -55,7 +55,7 @@ STAMP_ERRORS = (0.01, 0.05, 0.2)
 SPAN = 5
 """Samples over which a first guess of the speed is averaged."""
 STAMP_GAIN = 10.0
-"""Log-likelihood gain that an error of the instants, or an even clock, must have."""
+"""Log-likelihood gain that an error of the instants must have."""
 LONGEST_DELAY = 1.5
 """Largest delay of the velocity that is searched, samples."""
 
@@ -133,26 +133,22 @@ def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
     return found
 
 
-def smooth(readings: Readings, even_s: Array | None = None) -> Smoothed:
-    """Estimate the errors of the readings by maximum likelihood, and smooth the motion.
+def is_even(readings: Readings, even_s: Array) -> bool:
+    """Whether readings are likelier at the instants of an even clock, s, than at their stamps."""
+    part = _busiest(readings, CHOSEN)
+    few = readings.part(part)
+    _, by_stamps = _likeliest_stamps(few)
+    _, by_clock = _likeliest_stamps(replace(few, time_s=even_s[part]))
+    return by_clock > by_stamps
 
-    Parameters
-    ----------
-    even_s
-        Instants of an even clock that the stamps may have been read from, s.
-    """
+
+def smooth(readings: Readings) -> Smoothed:
+    """Estimate the errors of the readings by maximum likelihood, and smooth the motion."""
     n = len(readings.time_s)
     if n < SHORTEST:
         errors = replace(_start(readings), jerk=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
-    part = _busiest(readings, CHOSEN)
-    few = readings.part(part)
-    start = _likeliest_start(few)
-    if np.isfinite(few.position).any():
-        clock = None if even_s is None else even_s[part]
-        start, evened = _likeliest_stamps(few, start, clock)
-        if evened and even_s is not None:
-            readings = replace(readings, time_s=even_s)
+    start, _ = _likeliest_stamps(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
     errors, corners = _estimated(few, start)
     if np.isfinite(few.position).any() and np.isfinite(few.velocity).any():
@@ -231,26 +227,18 @@ def _likeliest_jerk(
     return replace(errors, jerk=float(np.exp(found.x)))
 
 
-def _likeliest_stamps(
-    readings: Readings, errors: ReadingErrors, even_s: Array | None
-) -> tuple[ReadingErrors, bool]:
-    """Errors with or without one of the instants, and whether these are those of the even clock."""
-    best = (_likelihood(readings, errors), errors, False)
+def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
+    """Errors with or without one of the instants, and their log likelihood less its price."""
     step = float(np.median(np.diff(readings.time_s)))
-    clocks = [(readings, False)]
-    if even_s is not None:
-        clocks.append((replace(readings, time_s=even_s), True))
-    for share in (0.0, *STAMP_ERRORS):
-        for clock, evened in clocks:
-            if share == 0.0 and not evened:
-                continue
-            tried = replace(errors, stamp=(share * step) ** 2)
-            tried = _likeliest_jerk(clock, tried, NARROW)
-            likelihood = _likelihood(clock, tried)
-            # An even clock has no parameter more; an error of the instants has one.
-            if likelihood > best[0] + (STAMP_GAIN if share > 0.0 else 0.0):
-                best = (likelihood, tried, evened)
-    return best[1:]
+    start = _likeliest_start(readings)
+    found = start, _likelihood(readings, start)
+    for share in STAMP_ERRORS if np.isfinite(readings.position).any() else ():
+        tried = replace(start, stamp=(share * step) ** 2)
+        tried = _likeliest_jerk(readings, tried, NARROW)
+        likelihood = _likelihood(readings, tried) - STAMP_GAIN
+        if likelihood > found[1]:
+            found = tried, likelihood
+    return found
 
 
 def _busiest(readings: Readings, longest: int) -> slice:

@@ -26,6 +26,8 @@ Array = npt.NDArray[np.float64]
 
 NEGLIGIBLE = 0.01
 """Mean variance by the motion, relative to the noise's, below which the motion is exact enough."""
+EXACT = 1e-3
+"""The same, below which a late force is a fault of the model and not of the clocks."""
 ROUNDS = 8
 """Rounds of sensitivities and fits,"""
 SETTLED = 0.01
@@ -108,8 +110,11 @@ def _settled(first: Problem, solution: Solution, clock_s: float) -> _End:
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
         motion = errors_in_motion(problem, solution)
+        share = _mean_share(motion, solution.samples)
+        if late_s == 0.0 and share < EXACT:
+            break
         step_s = _delay(first, problem, solution, motion, late_s, clock_s)
-        if late_s == step_s == 0.0 and _mean_share(motion, solution.samples) < NEGLIGIBLE:
+        if late_s == step_s == 0.0 and share < NEGLIGIBLE:
             break
         if step_s != 0.0:
             late_s += step_s

@@ -41,7 +41,7 @@ ROUGHER = 10.0
 HUBER = 2.5
 """Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
 DELAYED = 5.0
-"""A delay of the force that all runs share is corrected from so many standard errors on."""
+"""Standard errors from which a delay of the force common to all runs is corrected."""
 UNCERTAIN = 9.0
 """Difference of the deviance up to which the clock of the force is not known."""
 LONGEST_DELAY = 2.0

@@ -128,7 +128,7 @@ class ImposedMotion:
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def rougher(self, time_s: Array, factor: float) -> ImposedMotion:
-        """The motion smoothed less: with a jerk of so many times the intensity.
+        """Motion smoothed less, with the jerk intensity multiplied by a factor.
 
         Parameters
         ----------

@@ -16,7 +16,7 @@ DIGITS = 1e-7
 LEVELS = 10
 """Different values that a signal in steps has at least."""
 ALTERNATING, VARIOUS = 0.1, 6
-"""Rounding makes bends that change their sign at least so often, or at least so many sizes."""
+"""Least share of sign changes, or least number of sizes, of the second differences of rounding."""
 PARTS = 6
 """Parts of the smallest change that are tried as a step."""
 WHOLE, MOSTLY = 0.05, 0.9

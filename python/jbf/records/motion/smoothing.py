@@ -47,7 +47,7 @@ DELAY_GAIN = 10.0
 START_FACTORS = (1.0, 10.0, 100.0)
 """Factors of the velocity's error, next to its roughness, from which the estimation may start."""
 DELAY_ROUNDS, SAME_DELAY = 4, 0.01
-"""Rounds of the search of the delay, until it changes by less than so many samples."""
+"""Largest number of searches of the delay, and the change that ends them, samples."""
 HIDDEN = 0.01
 """Share of the velocity's variance that is tried next to it while the delay is searched."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
@@ -95,7 +95,7 @@ class Smoothed:
         return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
 
     def rougher(self, factor: float) -> Smoothed:
-        """The same with a jerk of so many times the intensity."""
+        """Posterior of the same readings with the jerk intensity multiplied by a factor."""
         errors = replace(self.errors, jerk=factor * self.errors.jerk)
         return Smoothed.of(self.readings, errors, self.corners, self.speed)
 

@@ -15,6 +15,7 @@ __all__ = [
     "BatchRig",
     "Chain",
     "Motion",
+    "MotionReadings",
     "SmoothedMotion",
     "__version__",
     "control_constants",
@@ -25,7 +26,6 @@ __all__ = [
     "film_integrals",
     "first_order_filter",
     "laws",
-    "motion_log_likelihood",
     "read_force",
     "steady_friction",
     "thesis_bearing",
@@ -170,7 +170,7 @@ def steady_friction(
 ) -> _Array: ...
 
 @final
-class SmoothedMotion:
+class MotionReadings:
     def __new__(
         cls,
         time: _Array,
@@ -178,9 +178,14 @@ class SmoothedMotion:
         position_variance: _Array,
         velocity: _Array,
         velocity_variance: _Array,
-        jerk: _Array,
-        velocity_delay: float = 0.0,
+        intensity: _Array,
+        order: int,
+        velocity_delay: float,
     ) -> Self: ...
+    def log_likelihood(self) -> float: ...
+    def smoothed(self) -> SmoothedMotion: ...
+
+class SmoothedMotion:
     @property
     def mean(self) -> _Array: ...
     @property
@@ -192,15 +197,6 @@ class SmoothedMotion:
     @property
     def log_likelihood(self) -> float: ...
 
-def motion_log_likelihood(
-    time: _Array,
-    position: _Array,
-    position_variance: _Array,
-    velocity: _Array,
-    velocity_variance: _Array,
-    jerk: _Array,
-    velocity_delay: float = 0.0,
-) -> float: ...
 def whiten_motion_errors(
     posterior: _Array,
     gain: _Array,

@@ -123,6 +123,7 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
         parameters=parameters,
         correlations=table[:size, :size],
         rms_n=0.525,
+        noise_floor_n=0.5,
         noise=replace(fitted.noise, colour=0.25, memory_s=0.15),
         samples=1001,
         converged=True,

@@ -93,12 +93,16 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
 }
 
 /// The longest inner step, s, of [`predict`]: at most `max_step_s`, shorter where the film or an effect
-/// asks for it. Runs of one record with equal inner steps come to the same instants.
+/// asks for it; infinite, which is one step a sample, where law and effects have no memory. Runs of one
+/// record with equal inner steps come to the same instants.
 pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
     max_step_s: f64,
 ) -> f64 {
+    if !L::HAS_MEMORY && !chain.effects.remembers() {
+        return f64::INFINITY;
+    }
     let enough_s = step_s(record) / L::ENOUGH_STEPS;
     let law_s = film_step_s(chain, record)
         .max(SHORTEST_FILM_STEP_S)

@@ -178,6 +178,49 @@ fn the_cost_of_a_run_is_its_inner_steps() {
     }
 }
 
+/// How many steps a law of the catalogue takes along a record, and its readings (N).
+struct Counted<'a>(Record<'a>);
+
+impl Visitor<f64> for Counted<'_> {
+    type Output = (f64, Vec<f64>);
+
+    fn visit<L: Named<f64>>(self, law: L) -> Self::Output {
+        let chain = chain_round(law, &[]);
+        let mut out = Vec::new();
+        predict(&chain, &self.0, 0.02, |_, reading| out.push(reading));
+        (inner_steps(&chain, &self.0, 0.02), out)
+    }
+}
+
+/// A law without memory takes one step a sample, and reads the same where there are many between.
+#[test]
+fn laws_without_memory_take_one_step_a_sample() {
+    let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
+    for name in ["coulomb", "stribeck"] {
+        let info = CATALOGUE.iter().find(|law| law.name == name);
+        let values: Vec<f64> = info
+            .expect("known")
+            .parameters
+            .iter()
+            .map(|p| p.starts[0])
+            .collect();
+        let along = |columns: &Columns| {
+            let visitor = Counted(columns.record());
+            with_law(name, None, None, &values, Clock::Journal, visitor).expect("sound")
+        };
+        let (steps, slow) = along(&Columns::of(&motion, 2.0, 101));
+        let (_, dense) = along(&Columns::of(&motion, 0.02, 10_001));
+        assert_eq!(steps, 101.0, "{name}");
+        for (k, reading) in slow.iter().enumerate().skip(1) {
+            let other = dense[100 * k];
+            assert!(
+                (reading - other).abs() < 1e-9 * other.abs().max(1.0),
+                "{name} {k}"
+            );
+        }
+    }
+}
+
 /// A law of the catalogue, with its starting values, along a record: its inner step (s), and its
 /// readings (N).
 struct Along<'a>(Record<'a>, f64);

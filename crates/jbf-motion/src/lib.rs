@@ -1,11 +1,14 @@
 //! Fixed-interval smoothing of a recorded motion.
 //!
-//! The state is x = (p, v, a): position, velocity, acceleration. Between samples the jerk is white
-//! noise of intensity q (a Wiener-process acceleration), which may differ from step to step:
+//! The state x of a motion of order N is the position and its first N - 1 derivatives. Its N-th
+//! derivative is white noise of intensity q, which may differ from step to step:
 //!
 //! ```text
 //! x[k+1] = F(h) x[k] + w[k],   w[k] ~ N(0, q[k] Q(h)),   h = t[k+1] - t[k] >= 0
 //! ```
+//!
+//! Of order 3 the jerk is noise: accelerations jump where q is large. Of order 4 the snap is noise:
+//! the acceleration is smooth.
 //!
 //! [`smooth`] returns the posterior mean and covariance of the state at each sample, the log
 //! likelihood of the measurements and the squared disturbances that an expectation-maximisation step
@@ -13,7 +16,7 @@
 //! into independent ones.
 //!
 //! Sources: Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*
-//! (2001), section 6.2 (model); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989),
+//! (2001), section 6.2 (order 3); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989),
 //! Durbin & Koopman, *Time Series Analysis by State Space Methods* (2012), section 4.5
 //! (disturbances).
 

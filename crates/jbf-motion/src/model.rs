@@ -1,34 +1,92 @@
-//! Transition and process noise of a Wiener-process acceleration.
+//! Transition and process noise of a motion of which one derivative is white noise.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{SMatrix, SVector};
 
-/// Transition over a step of `h`.
-pub(crate) fn transition(h: f64) -> Matrix3<f64> {
-    Matrix3::new(1.0, h, 0.5 * h * h, 0.0, 1.0, h, 0.0, 0.0, 1.0)
+/// A state: the position and its first N - 1 derivatives.
+pub(crate) type State<const N: usize> = SVector<f64, N>;
+/// A covariance or a transition of states.
+pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// How a state moves over a step.
+pub(crate) struct Transition<const N: usize> {
+    /// Length of the step.
+    pub h: f64,
+    /// `h^i / i!`: the transition is `F[i][j] = powers[j - i]`, with zeros below the diagonal.
+    powers: [f64; N],
+    /// Covariance of the disturbance, with noise of unit intensity.
+    pub noise: Square<N>,
 }
 
-/// Covariance of the disturbance over a step of `h` with a jerk of unit intensity.
-pub(crate) fn process_noise(h: f64) -> Matrix3<f64> {
-    let (h2, h3) = (h * h, h * h * h);
-    let (pp, pv, pa) = (h2 * h3 / 20.0, h2 * h2 / 8.0, h3 / 6.0);
-    Matrix3::new(pp, pv, pa, pv, h3 / 3.0, h2 / 2.0, pa, h2 / 2.0, h)
+impl<const N: usize> Transition<N> {
+    pub(crate) fn over(h: f64) -> Self {
+        let mut powers = [1.0; N];
+        for i in 1..N {
+            powers[i] = powers[i - 1] * h / i as f64;
+        }
+        let noise = Square::from_fn(|i, j| {
+            let (a, b) = (N - 1 - i, N - 1 - j);
+            powers[a] * powers[b] * h / (a + b + 1) as f64
+        });
+        Self { h, powers, noise }
+    }
+
+    /// `F`.
+    pub(crate) fn matrix(&self) -> Square<N> {
+        Square::from_fn(|i, j| if j < i { 0.0 } else { self.powers[j - i] })
+    }
+
+    /// `F M F'` of a symmetric M.
+    pub(crate) fn carried(&self, m: &Square<N>) -> Square<N> {
+        symmetric(&self.columns(&self.columns(m).transpose()))
+    }
+
+    /// `F' M F` of a symmetric M.
+    pub(crate) fn carried_back(&self, m: &Square<N>) -> Square<N> {
+        symmetric(&self.columns_back(&self.columns_back(m).transpose()))
+    }
+
+    /// `M F'`.
+    fn columns(&self, m: &Square<N>) -> Square<N> {
+        let mut moved = *m;
+        for i in 0..N {
+            for j in i + 1..N {
+                let further = m.column(j) * self.powers[j - i];
+                let mut column = moved.column_mut(i);
+                column += further;
+            }
+        }
+        moved
+    }
+
+    /// `M F`.
+    fn columns_back(&self, m: &Square<N>) -> Square<N> {
+        let mut moved = *m;
+        for i in 0..N {
+            for j in 0..i {
+                let further = m.column(j) * self.powers[i - j];
+                let mut column = moved.column_mut(i);
+                column += further;
+            }
+        }
+        moved
+    }
 }
 
 /// The symmetric part of a matrix: rounding makes a covariance slightly asymmetric.
-pub(crate) fn symmetric(m: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn symmetric<const N: usize>(m: &Square<N>) -> Square<N> {
     (m + m.transpose()) * 0.5
 }
 
 /// How one scalar measurement `y = row x + e`, `e ~ N(0, variance)`, updates a state estimate.
-pub(crate) struct Update {
+pub(crate) struct Update<const N: usize> {
     /// Variance of the innovation `y - row mean`.
     pub variance: f64,
     /// Kalman gain.
-    pub gain: Vector3<f64>,
+    pub gain: State<N>,
 }
 
-impl Update {
-    pub(crate) fn new(row: &Vector3<f64>, variance: f64, covariance: &Matrix3<f64>) -> Self {
+impl<const N: usize> Update<N> {
+    pub(crate) fn new(row: &State<N>, variance: f64, covariance: &Square<N>) -> Self {
         let pc = covariance * row;
         let total = row.dot(&pc) + variance;
         Self {
@@ -40,13 +98,13 @@ impl Update {
     /// The covariance after the measurement, in Joseph's form: it stays positive semidefinite.
     pub(crate) fn posterior(
         &self,
-        row: &Vector3<f64>,
+        row: &State<N>,
         variance: f64,
-        covariance: &Matrix3<f64>,
-    ) -> Matrix3<f64> {
-        let left = Matrix3::identity() - self.gain * row.transpose();
-        symmetric(
-            &(left * covariance * left.transpose() + self.gain * self.gain.transpose() * variance),
-        )
+        covariance: &Square<N>,
+    ) -> Square<N> {
+        // (I - K row') C (I - K row')' + K K' variance, by changes of rank one.
+        let half = covariance - self.gain * (covariance * row).transpose();
+        let own = self.gain * variance - half * row;
+        symmetric(&(half + own * self.gain.transpose()))
     }
 }

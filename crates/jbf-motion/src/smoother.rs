@@ -1,8 +1,6 @@
 //! Kalman filter, Rauch-Tung-Striebel smoother and disturbance smoother of a motion.
 
-use nalgebra::{Matrix3, Vector3};
-
-use crate::model::{process_noise, symmetric, transition, Update};
+use crate::model::{symmetric, Square, State, Transition, Update};
 
 /// What was recorded of a motion, at n instants. A reading with an infinite variance is missing.
 #[derive(Clone, Copy, Debug)]
@@ -21,96 +19,95 @@ pub struct Readings<'a> {
     pub velocity_delay: f64,
 }
 
-/// The posterior of a motion; in SI units, or radians in place of metres.
+/// The posterior of a motion of order N; in SI units, or radians in place of metres.
 #[derive(Clone, Debug, Default)]
-pub struct Smoothed {
-    /// Position, velocity and acceleration at each instant.
-    pub mean: Vec<[f64; 3]>,
+pub struct Smoothed<const N: usize> {
+    /// Position, velocity, acceleration and further derivatives at each instant.
+    pub mean: Vec<[f64; N]>,
     /// Their covariance, by rows.
-    pub covariance: Vec<[[f64; 3]; 3]>,
+    pub covariance: Vec<[[f64; N]; N]>,
     /// Gains of the posterior as a Markov chain backward in time, n - 1 matrices by rows:
     /// `E[x[k] | x[k+1]] = mean[k] + gain[k] (x[k+1] - mean[k+1])`.
-    pub gain: Vec<[[f64; 3]; 3]>,
-    /// Expected square `E[w' Q(h)^-1 w]` of the disturbance of each step for a jerk of unit
-    /// intensity; 3 q where the readings do not tell. NaN where the step is zero.
+    pub gain: Vec<[[f64; N]; N]>,
+    /// Expected square `E[w' Q(h)^-1 w]` of the disturbance of each step for noise of unit
+    /// intensity; N q where the readings do not tell. NaN where the step is zero.
     pub disturbance: Vec<f64>,
     /// Logarithm of the likelihood of the readings.
     pub log_likelihood: f64,
 }
 
-/// Smooth a motion.
+/// Relative errors of a variance that are tried for rounding.
+const ROUNDING: [f64; 5] = [0.0, 1e-15, 1e-14, 1e-13, 1e-12];
+
+/// Smooth a motion of order N: its N-th derivative is white noise.
 ///
 /// # Arguments
-/// * `jerk`: intensity of the jerk in each of the n - 1 steps, (m/s^3)^2 s.
+/// * `intensity`: of the noise in each of the n - 1 steps, (m/s^N)^2 s.
 ///
 /// Slices of other lengths are read as far as the shortest.
 ///
 /// # Algorithm
 /// Readings of one instant are processed one after the other. Inside, time is counted in median
-/// steps, so that the three components of the state are of similar size.
-pub fn smooth(readings: &Readings, jerk: &[f64]) -> Smoothed {
+/// steps, so that the components of the state are of similar size.
+pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothed<N> {
     let (mut predicted, mut filtered, mut updates) = (Vec::new(), Vec::new(), Vec::new());
-    let passed = filter(readings, jerk, |before, both, after| {
-        predicted.push(before);
+    let passed = filter::<N>(readings, intensity, |before, both, after| {
+        predicted.push(before.1);
         updates.push(both);
         filtered.push(after);
     });
-    let (n, unit, rows, log_likelihood) = (
-        filtered.len(),
-        passed.unit,
-        passed.rows,
-        passed.log_likelihood,
-    );
+    let n = filtered.len();
     if n == 0 {
         return Smoothed::default();
     }
-    let step = |k: usize| scaled_step(readings, jerk, k, unit);
     let mut out = Smoothed {
-        mean: vec![[0.0; 3]; n],
-        covariance: vec![[[0.0; 3]; 3]; n],
-        gain: vec![[[0.0; 3]; 3]; n - 1],
+        mean: vec![[0.0; N]; n],
+        covariance: vec![[[0.0; N]; N]; n],
+        gain: vec![[[0.0; N]; N]; n - 1],
         disturbance: vec![f64::NAN; n - 1],
-        log_likelihood,
+        log_likelihood: passed.log_likelihood,
     };
-    let scale = Vector3::new(1.0, 1.0 / unit, 1.0 / (unit * unit));
-    let (mut after, mut spread) = filtered[n - 1];
-    store(&mut out, n - 1, &after, &spread, &scale);
-    let (mut r, mut big) = (Vector3::zeros(), Matrix3::zeros());
+    let clock = passed.clock;
+    let scale = State::from_fn(|i, _| clock.unit.powi(-(i as i32)));
+    let (last, mut spread) = filtered[n - 1];
+    store(&mut out, n - 1, &last, &spread, &scale);
+    let (mut r, mut big) = (State::<N>::zeros(), Square::<N>::zeros());
+    let mut step = Transition::over(0.0);
     for k in (0..n - 1).rev() {
-        let (h, q) = step(k);
-        let f = transition(h);
-        for (row, update) in rows.iter().zip(&updates[k + 1]).rev() {
+        let q = intensity[k] * clock.intensity;
+        clock.step(readings, k, &mut step);
+        let f = step.matrix();
+        for (row, update) in passed.rows.iter().zip(&updates[k + 1]).rev() {
             if let Some((update, innovation)) = update {
-                let l = Matrix3::identity() - update.gain * row.transpose();
-                r = row * (innovation / update.variance) + l.transpose() * r;
-                big = row * row.transpose() / update.variance + l.transpose() * big * l;
+                // With L = I - K row': r <- row e / S + L' r, N <- row row' / S + L' N L.
+                r += row * (innovation / update.variance - update.gain.dot(&r));
+                let of_gain = big * update.gain;
+                let own = update.variance.recip() + update.gain.dot(&of_gain);
+                let cross = row * of_gain.transpose();
+                big += row * row.transpose() * own - cross - cross.transpose();
             }
         }
-        if h > 0.0 {
+        if step.h > 0.0 {
             // E[w' Q^-1 w] for w ~ N(q Q r, q Q - q Q N q Q).
-            let noise = process_noise(h);
-            let square = q * q * (r.dot(&(noise * r)) - (noise * big).trace()) + 3.0 * q;
-            out.disturbance[k] = square.max(0.0) / unit.powi(5);
+            let noise = step.noise;
+            let square = q * q * (r.dot(&(noise * r)) - noise.dot(&big)) + N as f64 * q;
+            out.disturbance[k] = square.max(0.0) / clock.intensity;
         }
         r = f.transpose() * r;
-        big = symmetric(&(f.transpose() * big * f));
+        big = step.carried_back(&big);
 
         let (own, own_spread) = filtered[k];
-        let (ahead, ahead_spread) = predicted[k + 1];
-        let gain = match ahead_spread.cholesky() {
-            Some(factor) => factor.solve(&(f * own_spread)).transpose(),
-            None => Matrix3::zeros(),
-        };
-        let left = Matrix3::identity() - gain * f;
-        let mean = own + gain * (after - ahead);
+        let gain = divided(&(f * own_spread), &predicted[k + 1]).transpose();
+        let left = Square::identity() - gain * f;
         spread = symmetric(
             &(left * own_spread * left.transpose()
-                + gain * (spread + process_noise(h) * q) * gain.transpose()),
+                + gain * (spread + step.noise * q) * gain.transpose()),
         );
-        after = mean;
+        // Without a division: this one is exact where the covariances are nearly singular.
+        let after = own + own_spread * r;
         store(&mut out, k, &after, &spread, &scale);
-        for i in 0..3 {
-            for j in 0..3 {
+        for i in 0..N {
+            for j in 0..N {
                 out.gain[k][i][j] = gain[(i, j)] * scale[i] / scale[j];
             }
         }
@@ -118,58 +115,94 @@ pub fn smooth(readings: &Readings, jerk: &[f64]) -> Smoothed {
     out
 }
 
-/// Logarithm of the likelihood of the readings, as [`smooth`] returns it, by the filter alone.
-pub fn log_likelihood(readings: &Readings, jerk: &[f64]) -> f64 {
-    filter(readings, jerk, |_, _, _| ()).log_likelihood
+/// `P^-1 M` for a covariance P; where it is singular to working precision, with variances that are
+/// larger by a rounding error.
+fn divided<const N: usize>(m: &Square<N>, p: &Square<N>) -> Square<N> {
+    let mut larger = *p;
+    for share in ROUNDING {
+        for i in 0..N {
+            larger[(i, i)] = p[(i, i)] * (1.0 + share);
+        }
+        if let Some(factor) = larger.cholesky() {
+            return factor.solve(m);
+        }
+    }
+    Square::zeros()
 }
 
-type State = (Vector3<f64>, Matrix3<f64>);
-type Updates = [Option<(Update, f64)>; 2];
+/// Logarithm of the likelihood of the readings, as [`smooth`] returns it, by the filter alone.
+pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) -> f64 {
+    filter::<N>(readings, intensity, |_, _, _| ()).log_likelihood
+}
+
+type Estimate<const N: usize> = (State<N>, Square<N>);
+type Updates<const N: usize> = [Option<(Update<N>, f64)>; 2];
+
+/// Time in units of the median step.
+#[derive(Clone, Copy)]
+struct Clock {
+    /// The median step, s.
+    unit: f64,
+    /// Factor of the noise's intensity.
+    intensity: f64,
+}
+
+impl Clock {
+    fn new(time: &[f64], order: usize) -> Self {
+        let unit = median_step(time);
+        let intensity = unit.powi(2 * order as i32 - 1);
+        Self { unit, intensity }
+    }
+
+    /// Make a transition that over the step from one instant to the next.
+    fn step<const N: usize>(&self, readings: &Readings, k: usize, step: &mut Transition<N>) {
+        let h = (readings.time[k + 1] - readings.time[k]).max(0.0) / self.unit;
+        if h != step.h {
+            *step = Transition::over(h);
+        }
+    }
+}
 
 /// What the filter passes on besides its states.
-struct Passed {
-    unit: f64,
-    rows: [Vector3<f64>; 2],
+struct Passed<const N: usize> {
+    clock: Clock,
+    rows: [State<N>; 2],
     log_likelihood: f64,
-}
-
-/// Length of a step and intensity of its jerk, in units of the median step.
-fn scaled_step(readings: &Readings, jerk: &[f64], k: usize, unit: f64) -> (f64, f64) {
-    let h = (readings.time[k + 1] - readings.time[k]).max(0.0) / unit;
-    (h, jerk[k] * unit.powi(5))
 }
 
 /// Kalman filter; calls `visit` at each instant with the predicted state, the updates by the
 /// readings and the filtered state.
-fn filter(
+fn filter<const N: usize>(
     readings: &Readings,
-    jerk: &[f64],
-    mut visit: impl FnMut(State, Updates, State),
-) -> Passed {
+    intensity: &[f64],
+    mut visit: impl FnMut(Estimate<N>, Updates<N>, Estimate<N>),
+) -> Passed<N> {
     let n = [
         readings.time.len(),
         readings.position.len(),
         readings.position_variance.len(),
         readings.velocity.len(),
         readings.velocity_variance.len(),
-        jerk.len() + 1,
+        intensity.len() + 1,
     ]
     .into_iter()
     .min()
     .unwrap_or(0);
-    let unit = median_step(&readings.time[..n]);
-    let rows = [
-        Vector3::new(1.0, 0.0, 0.0),
-        Vector3::new(0.0, 1.0, -readings.velocity_delay / unit),
+    let clock = Clock::new(&readings.time[..n], N);
+    let unit = clock.unit;
+    let rows: [State<N>; 2] = [
+        State::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 }),
+        late_velocity(readings.velocity_delay / unit),
     ];
     let mut log_likelihood = 0.0;
-    let (mut mean, mut covariance) = diffuse(readings, n, unit);
+    let (mut mean, mut covariance): Estimate<N> = diffuse(readings, n, unit);
+    let mut step = Transition::over(0.0);
     for k in 0..n {
         if k > 0 {
-            let (h, q) = scaled_step(readings, jerk, k - 1, unit);
-            let f = transition(h);
-            mean = f * mean;
-            covariance = symmetric(&(f * covariance * f.transpose() + process_noise(h) * q));
+            clock.step(readings, k - 1, &mut step);
+            mean = step.matrix() * mean;
+            covariance =
+                step.carried(&covariance) + step.noise * (intensity[k - 1] * clock.intensity);
         }
         let before = (mean, covariance);
         let pair = [
@@ -199,30 +232,41 @@ fn filter(
         visit(before, both, (mean, covariance));
     }
     Passed {
-        unit,
+        clock,
         rows,
         log_likelihood,
     }
 }
 
-fn store(
-    out: &mut Smoothed,
+/// The velocity of so long ago, as a linear function of the state.
+fn late_velocity<const N: usize>(delay: f64) -> State<N> {
+    let mut row = State::zeros();
+    let mut term = 1.0;
+    for i in 1..N {
+        row[i] = term;
+        term *= -delay / i as f64;
+    }
+    row
+}
+
+fn store<const N: usize>(
+    out: &mut Smoothed<N>,
     k: usize,
-    mean: &Vector3<f64>,
-    covariance: &Matrix3<f64>,
-    scale: &Vector3<f64>,
+    mean: &State<N>,
+    covariance: &Square<N>,
+    scale: &State<N>,
 ) {
-    for i in 0..3 {
+    for i in 0..N {
         out.mean[k][i] = mean[i] * scale[i];
-        for j in 0..3 {
+        for j in 0..N {
             out.covariance[k][i][j] = covariance[(i, j)] * scale[i] * scale[j];
         }
     }
 }
 
 /// A start that tells next to nothing: position near the first reading, any velocity up to the
-/// largest one on record and any acceleration up to that velocity in one step.
-fn diffuse(readings: &Readings, n: usize, unit: f64) -> (Vector3<f64>, Matrix3<f64>) {
+/// largest one on record, and further derivatives up to that velocity in one step.
+fn diffuse<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Estimate<N> {
     let seen =
         |k: &usize| readings.position_variance[*k].is_finite() && readings.position[*k].is_finite();
     let (mut first, mut noise, mut top) = (0.0, 0.0, 0.0_f64);
@@ -247,10 +291,9 @@ fn diffuse(readings: &Readings, n: usize, unit: f64) -> (Vector3<f64>, Matrix3<f
         }
     }
     top = 10.0 * top.max(noise.sqrt()).max(f64::MIN_POSITIVE.sqrt());
-    (
-        Vector3::new(first, 0.0, 0.0),
-        Matrix3::from_diagonal(&Vector3::new(1e4 * noise, top * top, top * top)),
-    )
+    let (mut mean, mut variance) = (State::zeros(), State::from_element(top * top));
+    (mean[0], variance[0]) = (first, 1e4 * noise);
+    (mean, Square::from_diagonal(&variance))
 }
 
 /// The median of the positive steps, s; 1 without any.

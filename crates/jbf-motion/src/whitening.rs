@@ -1,8 +1,6 @@
 //! Residuals that contain errors of the motion, made independent.
 
-use nalgebra::{Matrix3, Vector3};
-
-use crate::model::{symmetric, Update};
+use crate::model::{symmetric, Square, State, Update};
 
 /// Whiten columns of residuals `r[k] = e[k] + s[k] (x[k] - mean[k])` in place, with independent
 /// `e[k] ~ N(0, variance[k])` and x the motion of a posterior.
@@ -19,9 +17,9 @@ use crate::model::{symmetric, Update};
 /// # Algorithm
 /// The posterior is a Markov chain backward in time; a Kalman filter along it, from the last sample
 /// to the first, has independent innovations.
-pub fn whiten(
-    posterior: &[[[f64; 3]; 3]],
-    gain: &[[[f64; 3]; 3]],
+pub fn whiten<const N: usize>(
+    posterior: &[[[f64; N]; N]],
+    gain: &[[[f64; N]; N]],
     sensitivity: &[[f64; 3]],
     variance: &[f64],
     width: usize,
@@ -35,21 +33,21 @@ pub fn whiten(
     if n == 0 || width == 0 || columns.len() < n * width {
         return 0.0;
     }
-    // States in units of their standard errors: the three differ by many powers of ten.
-    let scale: Vec<Vector3<f64>> = (0..n)
+    // States in units of their standard errors: they differ by many powers of ten.
+    let scale: Vec<State<N>> = (0..n)
         .map(|k| {
-            Vector3::from_fn(|i, _| posterior[k][i][i])
+            State::<N>::from_fn(|i, _| posterior[k][i][i])
                 .map(|v| if v > 0.0 { v.sqrt() } else { 1.0 })
         })
         .collect();
     let scaled =
-        |k: usize| Matrix3::from_fn(|i, j| posterior[k][i][j] / (scale[k][i] * scale[k][j]));
+        |k: usize| Square::from_fn(|i, j| posterior[k][i][j] / (scale[k][i] * scale[k][j]));
     let mut covariance = scaled(n - 1);
-    let mut means = vec![Vector3::zeros(); width];
+    let mut means = vec![State::zeros(); width];
     let mut log_determinant = 0.0;
     for k in (0..n).rev() {
         if k + 1 < n {
-            let back = Matrix3::from_fn(|i, j| gain[k][i][j] * scale[k + 1][j] / scale[k][i]);
+            let back = Square::<N>::from_fn(|i, j| gain[k][i][j] * scale[k + 1][j] / scale[k][i]);
             // Covariance of x[k] given x[k+1], plus what is not known of x[k+1].
             covariance =
                 symmetric(&(scaled(k) + back * (covariance - scaled(k + 1)) * back.transpose()));
@@ -62,7 +60,7 @@ pub fn whiten(
             values.fill(0.0);
             continue;
         }
-        let row = Vector3::from_fn(|i, _| sensitivity[k][i] * scale[k][i]);
+        let row = State::from_fn(|i, _| sensitivity[k].get(i).map_or(0.0, |s| s * scale[k][i]));
         let update = Update::new(&row, variance[k], &covariance);
         let standard = update.variance.sqrt();
         for (value, mean) in values.iter_mut().zip(&mut means) {

@@ -1,9 +1,9 @@
 //! The smoother and the whitening against dense linear algebra, and their invariances.
 
 use jbf_motion::{smooth, whiten, Readings, Smoothed};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, DVector, SMatrix};
 
-const N: usize = 9;
+const SAMPLES: usize = 9;
 const INF: f64 = f64::INFINITY;
 
 /// Uneven instants, one of them repeated, and readings of which some are missing.
@@ -13,7 +13,7 @@ struct Record {
     position_variance: Vec<f64>,
     velocity: Vec<f64>,
     velocity_variance: Vec<f64>,
-    jerk: Vec<f64>,
+    intensity: Vec<f64>,
     delay: f64,
 }
 
@@ -21,19 +21,19 @@ impl Record {
     fn new() -> Self {
         let noise = [0.3, -1.1, 0.7, 0.2, -0.4, 1.3, -0.9, 0.1, 0.5];
         let time: Vec<f64> = vec![0.0, 0.1, 0.25, 0.3, 0.3, 0.45, 0.5, 0.65, 0.7];
-        let position = (0..N)
+        let position = (0..SAMPLES)
             .map(|k| (3.0 * time[k]).sin() + 1e-3 * noise[k])
             .collect();
-        let velocity = (0..N)
-            .map(|k| 3.0 * (3.0 * time[k]).cos() + 1e-2 * noise[N - 1 - k])
+        let velocity = (0..SAMPLES)
+            .map(|k| 3.0 * (3.0 * time[k]).cos() + 1e-2 * noise[SAMPLES - 1 - k])
             .collect();
         let mut record = Self {
             time,
             position,
-            position_variance: vec![1e-6; N],
+            position_variance: vec![1e-6; SAMPLES],
             velocity,
-            velocity_variance: vec![1e-4; N],
-            jerk: vec![50.0, 80.0, 5.0, 5.0, 2000.0, 60.0, 30.0, 10.0],
+            velocity_variance: vec![1e-4; SAMPLES],
+            intensity: vec![50.0, 80.0, 5.0, 5.0, 2000.0, 60.0, 30.0, 10.0],
             delay: 0.02,
         };
         record.position_variance[2] = INF;
@@ -42,7 +42,7 @@ impl Record {
         record
     }
 
-    fn smooth(&self) -> Smoothed {
+    fn smooth<const N: usize>(&self) -> Smoothed<N> {
         smooth(
             &Readings {
                 time: &self.time,
@@ -52,50 +52,53 @@ impl Record {
                 velocity_variance: &self.velocity_variance,
                 velocity_delay: self.delay,
             },
-            &self.jerk,
+            &self.intensity,
         )
     }
 }
 
 /// Posterior mean and covariance of all states by dense normal equations with a flat prior.
-fn dense(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
-    let mut information = DMatrix::zeros(3 * N, 3 * N);
-    let mut right = DVector::zeros(3 * N);
+fn dense<const N: usize>(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
+    let mut information = DMatrix::zeros(N * SAMPLES, N * SAMPLES);
+    let mut right = DVector::zeros(N * SAMPLES);
     let mut add = |row: DVector<f64>, value: f64, variance: f64| {
         if variance.is_finite() {
             information += &row * row.transpose() / variance;
             right += row * (value / variance);
         }
     };
-    for k in 0..N {
-        let mut row = DVector::zeros(3 * N);
-        row[3 * k] = 1.0;
+    for k in 0..SAMPLES {
+        let mut row = DVector::zeros(N * SAMPLES);
+        row[N * k] = 1.0;
         add(row, record.position[k], record.position_variance[k]);
-        let mut row = DVector::zeros(3 * N);
-        row[3 * k + 1] = 1.0;
-        row[3 * k + 2] = -record.delay;
+        let mut row = DVector::zeros(N * SAMPLES);
+        row[N * k + 1] = 1.0;
+        row[N * k + 2] = -record.delay;
+        if N > 3 {
+            row[N * k + 3] = record.delay.powi(2) / 2.0;
+        }
         add(row, record.velocity[k], record.velocity_variance[k]);
     }
-    for k in 0..N - 1 {
+    for k in 0..SAMPLES - 1 {
         let h = record.time[k + 1] - record.time[k];
-        let f = Matrix3::new(1.0, h, h * h / 2.0, 0.0, 1.0, h, 0.0, 0.0, 1.0);
-        // The covariance of the triple integral of white noise, by its definition.
-        let moment = |i: i32, j: i32| {
-            let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
-            h.powi(i + j + 1) / (f64::from(i + j + 1) * factorial(i) * factorial(j))
-        };
-        let q = Matrix3::from_fn(|i, j| moment(2 - i as i32, 2 - j as i32)) * record.jerk[k];
+        let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
+        let power = |n: usize| h.powi(n as i32) / factorial(n);
+        let f = SMatrix::<f64, N, N>::from_fn(|i, j| if j < i { 0.0 } else { power(j - i) });
+        // The covariance of the repeated integrals of white noise, by its definition.
+        let moment = |i: usize, j: usize| power(i) * power(j) * h / (i + j + 1) as f64;
+        let q = SMatrix::<f64, N, N>::from_fn(|i, j| moment(N - 1 - i, N - 1 - j))
+            * record.intensity[k];
         let inverse = if h > 0.0 {
             q.try_inverse().expect("a step")
         } else {
-            Matrix3::identity() * 1e10
+            SMatrix::identity() * 1e10
         };
-        let mut difference = DMatrix::zeros(3, 3 * N);
-        difference.view_mut((0, 3 * k), (3, 3)).copy_from(&(-f));
+        let mut difference = DMatrix::zeros(N, N * SAMPLES);
+        difference.view_mut((0, N * k), (N, N)).copy_from(&(-f));
         difference
-            .view_mut((0, 3 * k + 3), (3, 3))
-            .copy_from(&Matrix3::identity());
-        let w = DMatrix::from_fn(3, 3, |i, j| inverse[(i, j)]);
+            .view_mut((0, N * (k + 1)), (N, N))
+            .copy_from(&SMatrix::<f64, N, N>::identity());
+        let w = DMatrix::from_fn(N, N, |i, j| inverse[(i, j)]);
         information += difference.transpose() * w * difference;
     }
     let covariance = information.try_inverse().expect("enough readings");
@@ -104,135 +107,192 @@ fn dense(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
 
 #[test]
 fn posterior_equals_dense_least_squares_for_uneven_steps_and_missing_readings() {
-    let record = Record::new();
-    let found = record.smooth();
-    let (mean, covariance) = dense(&record);
-    for k in 0..N {
-        for i in 0..3 {
-            let sd = covariance[(3 * k + i, 3 * k + i)].sqrt();
-            let off = found.mean[k][i] - mean[3 * k + i];
-            assert!(off.abs() < 2e-3 * sd, "{k} {i}: {off} of {sd}");
-            for j in 0..3 {
-                let other = covariance[(3 * k + j, 3 * k + j)].sqrt();
-                let off = found.covariance[k][i][j] - covariance[(3 * k + i, 3 * k + j)];
-                assert!(off.abs() < 2e-3 * sd * other, "{k} {i} {j}");
+    fn of_order<const N: usize>() {
+        let record = Record::new();
+        let found = record.smooth::<N>();
+        let (mean, covariance) = dense::<N>(&record);
+        for k in 0..SAMPLES {
+            for i in 0..N {
+                let sd = covariance[(N * k + i, N * k + i)].sqrt();
+                let off = found.mean[k][i] - mean[N * k + i];
+                assert!(off.abs() < 2e-3 * sd, "{k} {i}: {off} of {sd}");
+                for j in 0..N {
+                    let other = covariance[(N * k + j, N * k + j)].sqrt();
+                    let off = found.covariance[k][i][j] - covariance[(N * k + i, N * k + j)];
+                    assert!(off.abs() < 2e-3 * sd * other, "{k} {i} {j}");
+                }
             }
         }
     }
+    of_order::<3>();
+    of_order::<4>();
 }
 
 #[test]
-fn disturbance_is_the_derivative_of_the_likelihood_by_the_jerk() {
-    let record = Record::new();
-    let found = record.smooth();
-    for k in (0..N - 1).filter(|k| record.time[k + 1] > record.time[*k]) {
-        let likelihood = |factor: f64| {
-            let mut other = Record::new();
-            other.jerk[k] *= factor;
-            other.smooth().log_likelihood
-        };
-        let slope = (likelihood(1.001) - likelihood(0.999)) / 0.002;
-        let expected = 0.5 * (found.disturbance[k] / record.jerk[k] - 3.0);
-        assert!(
-            (slope - expected).abs() < 1e-4 * (1.0 + expected.abs()),
-            "{k}"
-        );
+fn disturbance_is_the_derivative_of_the_likelihood_by_the_intensity() {
+    fn of_order<const N: usize>() {
+        let record = Record::new();
+        let found = record.smooth::<N>();
+        for k in (0..SAMPLES - 1).filter(|k| record.time[k + 1] > record.time[*k]) {
+            let likelihood = |factor: f64| {
+                let mut other = Record::new();
+                other.intensity[k] *= factor;
+                other.smooth::<N>().log_likelihood
+            };
+            let slope = (likelihood(1.001) - likelihood(0.999)) / 0.002;
+            let expected = 0.5 * (found.disturbance[k] / record.intensity[k] - N as f64);
+            assert!(
+                (slope - expected).abs() < 1e-4 * (1.0 + expected.abs()),
+                "{k}"
+            );
+        }
+        assert!(found.disturbance[3].is_nan());
     }
-    assert!(found.disturbance[3].is_nan());
+    of_order::<3>();
+    of_order::<4>();
 }
 
 #[test]
 fn whitened_columns_have_the_scalar_products_of_the_dense_covariance() {
-    let record = Record::new();
-    let found = record.smooth();
-    let (_, covariance) = dense(&record);
-    let sensitivity: Vec<[f64; 3]> = (0..N).map(|k| [0.2, -0.5 + 0.1 * k as f64, 0.3]).collect();
-    let mut variance = vec![1e-3; N];
-    variance[4] = INF;
-    let kept: Vec<usize> = (0..N).filter(|k| *k != 4).collect();
-    let rows = DMatrix::from_fn(N, 3 * N, |k, j| {
-        if j / 3 == k {
-            sensitivity[k][j % 3]
-        } else {
-            0.0
-        }
-    });
-    let full = &rows * covariance * rows.transpose() + DMatrix::identity(N, N) * 1e-3;
-    let part = full.select_rows(&kept).select_columns(&kept);
-    let columns = DMatrix::from_fn(N, 2, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
-    let mut flat: Vec<f64> = columns.transpose().iter().copied().collect();
-    let log_determinant = whiten(
-        &found.covariance,
-        &found.gain,
-        &sensitivity,
-        &variance,
-        2,
-        &mut flat,
-    );
-    let white = DMatrix::from_row_slice(N, 2, &flat);
-    let few = columns.select_rows(&kept);
-    let expected = few.transpose() * part.clone().try_inverse().expect("regular") * &few;
-    assert!((white.transpose() * &white - &expected).norm() < 1e-3 * expected.norm());
-    assert!((log_determinant - part.determinant().ln()).abs() < 1e-3);
-    assert!(white.row(4).iter().all(|value| *value == 0.0));
+    fn of_order<const N: usize>() {
+        let record = Record::new();
+        let found = record.smooth::<N>();
+        let (_, covariance) = dense::<N>(&record);
+        let sensitivity: Vec<[f64; 3]> = (0..SAMPLES)
+            .map(|k| [0.2, -0.5 + 0.1 * k as f64, 0.3])
+            .collect();
+        let mut variance = vec![1e-3; SAMPLES];
+        variance[4] = INF;
+        let kept: Vec<usize> = (0..SAMPLES).filter(|k| *k != 4).collect();
+        let rows = DMatrix::from_fn(SAMPLES, N * SAMPLES, |k, j| {
+            if j / N == k {
+                *sensitivity[k].get(j % N).unwrap_or(&0.0)
+            } else {
+                0.0
+            }
+        });
+        let full =
+            &rows * covariance * rows.transpose() + DMatrix::identity(SAMPLES, SAMPLES) * 1e-3;
+        let part = full.select_rows(&kept).select_columns(&kept);
+        let columns = DMatrix::from_fn(SAMPLES, 2, |k, j| (1.3 * k as f64 + 2.0 * j as f64).sin());
+        let mut flat: Vec<f64> = columns.transpose().iter().copied().collect();
+        let log_determinant = whiten(
+            &found.covariance,
+            &found.gain,
+            &sensitivity,
+            &variance,
+            2,
+            &mut flat,
+        );
+        let white = DMatrix::from_row_slice(SAMPLES, 2, &flat);
+        let few = columns.select_rows(&kept);
+        let expected = few.transpose() * part.clone().try_inverse().expect("regular") * &few;
+        assert!((white.transpose() * &white - &expected).norm() < 1e-3 * expected.norm());
+        assert!((log_determinant - part.determinant().ln()).abs() < 1e-3);
+        assert!(white.row(4).iter().all(|value| *value == 0.0));
+    }
+    of_order::<3>();
+    of_order::<4>();
 }
 
 #[test]
 fn motion_backward_in_time_has_the_same_posterior_with_negative_speeds() {
-    let record = Record::new();
-    let mut back = Record::new();
-    back.time = record.time.iter().rev().map(|t| 0.7 - t).collect();
-    back.position.reverse();
-    back.position_variance.reverse();
-    back.velocity = record.velocity.iter().rev().map(|v| -v).collect();
-    back.velocity_variance.reverse();
-    back.jerk.reverse();
-    back.delay = -record.delay;
-    let (one, other) = (record.smooth(), back.smooth());
-    for k in 0..N {
-        let (a, b) = (one.mean[k], other.mean[N - 1 - k]);
-        for (i, sign) in [1.0, -1.0, 1.0].into_iter().enumerate() {
-            let sd = one.covariance[k][i][i].sqrt();
-            assert!((a[i] - sign * b[i]).abs() < 2e-3 * sd);
+    fn of_order<const N: usize>() {
+        let record = Record::new();
+        let mut back = Record::new();
+        back.time = record.time.iter().rev().map(|t| 0.7 - t).collect();
+        back.position.reverse();
+        back.position_variance.reverse();
+        back.velocity = record.velocity.iter().rev().map(|v| -v).collect();
+        back.velocity_variance.reverse();
+        back.intensity.reverse();
+        back.delay = -record.delay;
+        let (one, other) = (record.smooth::<N>(), back.smooth::<N>());
+        for k in 0..SAMPLES {
+            let (a, b) = (one.mean[k], other.mean[SAMPLES - 1 - k]);
+            for (i, sign) in [1.0, -1.0, 1.0, -1.0].into_iter().take(N).enumerate() {
+                let sd = one.covariance[k][i][i].sqrt();
+                assert!((a[i] - sign * b[i]).abs() < 2e-3 * sd);
+            }
         }
     }
+    of_order::<3>();
+    of_order::<4>();
 }
 
 #[test]
 fn posterior_in_milliseconds_is_the_same_motion() {
-    let record = Record::new();
-    let mut fine = Record::new();
-    let per = 1e3_f64;
-    fine.time.iter_mut().for_each(|t| *t *= per);
-    fine.velocity.iter_mut().for_each(|v| *v /= per);
-    fine.velocity_variance
-        .iter_mut()
-        .for_each(|v| *v /= per * per);
-    fine.jerk.iter_mut().for_each(|q| *q /= per.powi(5));
-    fine.delay *= per;
-    let (one, other) = (record.smooth(), fine.smooth());
-    for k in 0..N {
-        for i in 0..3 {
-            let value = other.mean[k][i] * per.powi(i as i32);
-            assert!((value - one.mean[k][i]).abs() < 1e-9 * one.mean[k][i].abs().max(1.0));
+    fn of_order<const N: usize>() {
+        let record = Record::new();
+        let mut fine = Record::new();
+        let per = 1e3_f64;
+        fine.time.iter_mut().for_each(|t| *t *= per);
+        fine.velocity.iter_mut().for_each(|v| *v /= per);
+        fine.velocity_variance
+            .iter_mut()
+            .for_each(|v| *v /= per * per);
+        fine.intensity
+            .iter_mut()
+            .for_each(|q| *q /= per.powi(2 * N as i32 - 1));
+        fine.delay *= per;
+        let (one, other) = (record.smooth::<N>(), fine.smooth::<N>());
+        for k in 0..SAMPLES {
+            for i in 0..N {
+                let value = other.mean[k][i] * per.powi(i as i32);
+                let sd = one.covariance[k][i][i].sqrt();
+                assert!((value - one.mean[k][i]).abs() < 1e-6 * sd, "{k} {i}");
+            }
         }
     }
+    of_order::<3>();
+    of_order::<4>();
 }
 
 #[test]
 fn one_reading_and_no_reading_give_a_finite_motion() {
-    for variance in [1e-4, INF] {
-        let one = smooth(
+    fn of_order<const N: usize>() {
+        for variance in [1e-4, INF] {
+            let one = smooth::<N>(
+                &Readings {
+                    time: &[0.0],
+                    position: &[2.0],
+                    position_variance: &[variance],
+                    velocity: &[f64::NAN],
+                    velocity_variance: &[INF],
+                    velocity_delay: 0.0,
+                },
+                &[],
+            );
+            assert!(one.mean[0].iter().all(|value| value.is_finite()));
+        }
+    }
+    of_order::<3>();
+    of_order::<4>();
+}
+
+#[test]
+fn exact_velocities_with_fine_steps_between_them_give_the_motion_between() {
+    fn of_order<const N: usize>() {
+        let n = 401;
+        let time: Vec<f64> = (0..n).map(|k| 0.0025 * k as f64).collect();
+        let velocity: Vec<f64> = time.iter().map(|t| 0.1 + 0.03 * (3.0 * t).sin()).collect();
+        let read = |k: usize| k % 8 == 0;
+        let variance: Vec<f64> = (0..n).map(|k| if read(k) { 1e-14 } else { INF }).collect();
+        let found: Smoothed<N> = smooth(
             &Readings {
-                time: &[0.0],
-                position: &[2.0],
-                position_variance: &[variance],
-                velocity: &[f64::NAN],
-                velocity_variance: &[INF],
+                time: &time,
+                position: &vec![f64::NAN; n],
+                position_variance: &vec![INF; n],
+                velocity: &velocity,
+                velocity_variance: &variance,
                 velocity_delay: 0.0,
             },
-            &[],
+            &vec![1e-2; n - 1],
         );
-        assert!(one.mean[0].iter().all(|value| value.is_finite()));
+        for (k, mean) in found.mean.iter().enumerate() {
+            assert!((mean[1] - velocity[k]).abs() < 1e-4, "{N} {k}");
+        }
     }
+    of_order::<3>();
+    of_order::<4>();
 }

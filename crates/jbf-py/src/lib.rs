@@ -29,6 +29,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<motion::Motion>()?;
     m.add_class::<chain::Chain>()?;
     m.add_class::<batch::BatchRig>()?;
+    m.add_class::<recorded_motion::MotionReadings>()?;
     m.add_class::<recorded_motion::SmoothedMotion>()?;
     m.add_function(wrap_pyfunction!(catalogue::effects, m)?)?;
     m.add_function(wrap_pyfunction!(catalogue::laws, m)?)?;
@@ -37,7 +38,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(curves::steady_friction, m)?)?;
     m.add_function(wrap_pyfunction!(filter::first_order_filter, m)?)?;
     m.add_function(wrap_pyfunction!(instrument::read_force, m)?)?;
-    m.add_function(wrap_pyfunction!(recorded_motion::motion_log_likelihood, m)?)?;
     m.add_function(wrap_pyfunction!(recorded_motion::whiten_motion_errors, m)?)?;
     m.add_function(wrap_pyfunction!(trajectory::trajectories, m)?)?;
     m.add_function(wrap_pyfunction!(control::constants::thesis_bearing, m)?)?;

@@ -96,7 +96,8 @@ def run(arguments: argparse.Namespace) -> int:
     except Stopped as stop:
         raise outputs.keep(stop, arguments.out) from None
     except Unfinished as end:
-        raise outputs.keep_unfinished(end, arguments.out) from None
+        kept = outputs.keep_unfinished(end, arguments.out, arguments.json, arguments.report)
+        raise kept from None
     told = hold_out.left(diagnosis.model, held)
     if arguments.json:
         texts[arguments.json] = json_text(diagnosis.to_dict() | told)

@@ -155,11 +155,33 @@ def keep(stop: Stopped, out: str | None) -> Kept:
     return Kept(f"{told}, written to {'standard output' if out == STDOUT else out}, not finished")
 
 
-def keep_unfinished(end: Unfinished, out: str | None) -> Unfinished:
-    """Write the best model so far where the whole would have been; the error that says so."""
+def keep_unfinished(
+    end: Unfinished, out: str | None, json: str | None = None, report: str | None = None
+) -> Unfinished:
+    """Write what is known where the whole would have been; the error that says so.
+
+    Parameters
+    ----------
+    out, json, report
+        What `--out`, `--json` and `--report` name, if anything: the best model so far, the error
+        and that fit, and its report.
+    """
+    texts = {}
+    if json is not None:
+        from jbf.reporting.json import json_text
+
+        known = {"verdict": None, "unfinished": str(end)}
+        texts[json] = json_text({**known, "fit": None if end.fit is None else end.fit.to_dict()})
     if end.fit is not None and out is not None:
-        write({out: end.fit.model.to_toml()})
-        end.problem += f", written to {'standard output' if out == STDOUT else out}"
+        texts[out] = end.fit.model.to_toml()
+    if end.fit is not None and report is not None:
+        from jbf.reporting.fit_page import fit_page
+
+        texts[report] = fit_page(end.fit)
+    write(texts)
+    if texts:
+        names = ["standard output" if path == STDOUT else path for path in texts]
+        end.problem += f", written to {', '.join(names)}"
     return end
 
 

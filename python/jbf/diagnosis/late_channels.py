@@ -15,10 +15,10 @@ from jbf.diagnosis.shifted import (
     EVALUATIONS,
     Names,
     Shifted,
-    beside_its_motion,
     by_one_clock,
     jointly,
     moved,
+    possible_clocks,
     refitted,
     without_delay,
 )
@@ -192,7 +192,7 @@ def _shifted(
         if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
             # In the middle they are on time by now.
             later_s = late_s
-        if not beside_its_motion(first, later_s, drifted):
+        if not possible_clocks(first, later_s, drifted):
             break
         late_s, drift = later_s, drifted
         campaign = moved(first, late_s, drift)
@@ -231,7 +231,7 @@ def _all_alike(problem: Problem, found: Shifted) -> Shifted:
     values = search(late, samples, start, found.solution.noise, EVALUATIONS).values
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
     late_s = found.late_s + shared_s
-    if not beside_its_motion(problem, late_s, 0.0):
+    if not possible_clocks(problem, late_s, 0.0):
         return found
     campaign = moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))

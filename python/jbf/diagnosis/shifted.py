@@ -24,7 +24,9 @@ Names = tuple[str, ...]
 DELAY = "time_delay"
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
-MOST_LATE = 0.5
+LARGEST_DRIFT = 2e-3
+"""Largest relative drift between two clocks; between those of two quartz crystals it is 1e-4."""
+MOST_LATE = 0.1
 """Share of a run that its force may be late by."""
 STEPS = 10
 """Steps of Gauss and Newton in the lateness of the runs and the model together, at most,"""
@@ -47,10 +49,13 @@ class Shifted:
         return self.problem.campaign
 
 
-def beside_its_motion(problem: Problem, late_s: Array, drift: float) -> bool:
-    """Whether of each run most would still be compared with a motion: a lateness of whole runs is
-    none, it is what slopes of a force that does not follow the motion make of noise."""
-    return all(
+def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
+    """Whether the clocks of a logger can be so far apart.
+
+    A larger delay or drift is what the slopes of a force that does not follow the motion make of
+    noise, or of the error of a wrong model.
+    """
+    return abs(drift) <= LARGEST_DRIFT and all(
         abs(late) + 0.5 * abs(drift) * p.run.duration_s <= MOST_LATE * p.run.duration_s
         for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
     )
@@ -118,7 +123,7 @@ def jointly(first: Problem, start: Shifted) -> Shifted:
         late_s = now.late_s + later_s
         late_s[~step.told] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
-        if apart_s > RANGES[0][0] or not beside_its_motion(first, late_s, start.drift):
+        if apart_s > RANGES[0][0] or not possible_clocks(first, late_s, start.drift):
             # What a run alone lacks (a mass) may look like a lateness, of any size.
             return start
         campaign = moved(first, late_s, start.drift)
@@ -147,7 +152,7 @@ def by_one_clock(first: Problem, start: Shifted) -> Shifted:
             continue
         drift = now.drift + float(np.clip(step.drift, -most, most))
         late_s = 0.5 * drift * lasts_s
-        if not beside_its_motion(first, late_s, drift):
+        if not possible_clocks(first, late_s, drift):
             return start
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
         campaign = moved(first, late_s, drift)

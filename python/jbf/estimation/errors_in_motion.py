@@ -98,7 +98,8 @@ class ErrorsInMotion:
         errors, sensitivity = self.errors[run], self.sensitivity[run]
         if errors is None:
             return np.zeros(len(sensitivity))
-        variance = np.einsum("ni,nij,nj->n", sensitivity, errors.covariance, sensitivity)
+        covariance = errors.covariance[:, :3, :3]
+        variance = np.einsum("ni,nij,nj->n", sensitivity, covariance, sensitivity)
         return np.asarray(variance / self.noise**2)
 
     def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:

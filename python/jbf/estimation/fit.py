@@ -18,6 +18,7 @@ from jbf.estimation.exact_delay import exact_delay
 from jbf.estimation.film_rate import check_film
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
+from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.put_back import put_back
 from jbf.estimation.refine import with_motion_errors
@@ -64,6 +65,9 @@ class Fit(Estimates):
         Names of the parameters that were not fitted.
     findings
         What the recording did to the runs, and what was done about it.
+    noise_floor_n
+        Standard deviation of the noise on the record by the record alone, N; None where it cannot
+        be told.
     """
 
     model: Model
@@ -78,6 +82,7 @@ class Fit(Estimates):
     doubtful: tuple[str, ...] = ()
     fixed: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    noise_floor_n: float | None = None
 
     def __post_init__(self) -> None:
         told = sum(not p.held for p in self.parameters.values())
@@ -95,6 +100,7 @@ class Fit(Estimates):
             "law": self.model.law,
             "effects": list(self.model.effects),
             "rms_n": self.rms_n,
+            "noise_floor_n": self.noise_floor_n,
             "samples": self.samples,
             "converged": self.converged,
             "message": self.message,
@@ -153,6 +159,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),
         findings=campaign.findings,
+        noise_floor_n=noise_floor(campaign.prepared, solution.samples) or None,
     )
 
 

@@ -51,7 +51,8 @@ def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
         values, added = _dithered(p)
         # Steps that are coarse beside the noise are repeated, and leave no less for that.
         squares.append(max(noise_of(values[counted]) ** 2 - added, added))
-    return float(np.sqrt(np.average(squares, weights=[int(c.sum()) for c in samples.counted])))
+    counts = [int(c.sum()) for c in samples.counted]
+    return float(np.sqrt(np.average(squares, weights=counts))) if any(counts) else 0.0
 
 
 def _dithered(p: Prepared) -> tuple[Array, float]:

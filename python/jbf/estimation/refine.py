@@ -37,7 +37,7 @@ EVALUATIONS = 20
 STEP = 0.5
 """Step of the numerical derivatives by the motion, standard errors of the motion."""
 ROUGHER = 10.0
-"""Factor of the jerk's intensity with which the effect of the smoothing is looked at."""
+"""Factor of the noise's intensity with which the effect of the smoothing is looked at."""
 HUBER = 2.5
 """Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
 DELAYED = 5.0

@@ -22,6 +22,8 @@ from jbf.records.findings.slow_temperature import recorded_temperature
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
 """What a search first takes a load cell to be off by, as a share of the largest force."""
+LATEST = 0.1
+"""Longest delay or lag that is searched, as a share of the shortest run."""
 FASTEST_FILM = 5.0
 """A search looks for transition speeds up to so many times the fastest on record."""
 
@@ -128,6 +130,15 @@ def _within_the_way(page: Parameter, campaign: Campaign) -> Parameter:
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
+def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
+    """A time as the records bound it: a delay by a share of the shortest run, and any other one by
+    the longest run, for what is slower than the record leaves no trace in it."""
+    durations = [p.run.duration_s for p in campaign.prepared]
+    most = LATEST * min(durations) if page.start == "lateness" else max(durations)
+    upper = min(page.upper, most)
+    return replace(page, upper=upper) if upper > page.lower else page
+
+
 def _inside(page: Parameter, starts: Starts) -> Parameter:
     """The page with these starting values, brought within its bounds; as it is without any."""
     inside = (float(np.clip(x, page.lower, page.upper)) for x in starts)
@@ -160,5 +171,7 @@ def with_starts(
             page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))
         if page.start in RULES_BESIDE_THE_CATALOGUE:
             page = _inside(page, RULES_BESIDE_THE_CATALOGUE[page.start](page, campaign))
+        if page.unit == "s":
+            page = _inside(_within_the_record(page, campaign), page.starts)
         found[name] = page
     return found

@@ -13,6 +13,8 @@ from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import law_words, number
 
 MOST_CORRELATIONS = 10
+ABOVE = 1.25
+"""Ratio of a residual to the noise of the records from which the report says that it is larger."""
 
 
 def noise_words(noise: Noise) -> str:
@@ -28,6 +30,17 @@ def lines_of_parameters(fit: Fit) -> list[str]:
     return parameter_lines(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
+def noise_floor_words(fit: Fit) -> str:
+    """The noise of the records, and how many times as large the residual is."""
+    if fit.noise_floor_n is None:
+        return "not known"
+    ratio = fit.rms_n / fit.noise_floor_n
+    return (
+        f"{number(fit.noise_floor_n)} {fit.model.rig.quantities.force} "
+        f"(the residual is {number(ratio)} times that)"
+    )
+
+
 def fit_report(fit: Fit) -> str:
     """Statistics, parameters with errors, and the strongest correlations."""
     model = fit.model
@@ -37,6 +50,7 @@ def fit_report(fit: Fit) -> str:
         ("runs", str(len(fit.residuals))),
         ("samples", str(fit.samples)),
         ("RMS of the residual", f"{number(fit.rms_n)} {model.rig.quantities.force}"),
+        ("noise of the records", noise_floor_words(fit)),
         ("noise in the residual", noise_words(fit.noise)),
         ("search", "converged" if fit.converged else f"not converged: {fit.message}"),
     ]
@@ -49,6 +63,14 @@ def fit_report(fit: Fit) -> str:
             "note: ",
             f"of {names} the likelihood is no parabola within these errors, so they may be far "
             "too small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.",
+            4,
+        )
+    if fit.noise_floor_n is not None and fit.rms_n > ABOVE * fit.noise_floor_n:
+        lines += hanging(
+            "note: ",
+            "the residual is larger than the noise of the records: the model lacks an effect "
+            "(`jbf diagnose` looks for it), or the search ended in a local minimum "
+            "(`--start NAME=VALUE` begins elsewhere).",
             4,
         )
     pairs = correlation_pairs(fit)

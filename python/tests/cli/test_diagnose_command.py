@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from input_checks import Capture
 from jbf.cli import main
+from jbf.estimation import work
 
 LAW = ["--law", "coulomb"]
 NOISE_N = 0.1
@@ -37,6 +38,25 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert level["false_alarms"] == 0.01
     assert level["blocks"] > 0
     assert level["chance"] <= 0.01 / level["candidates"]
+
+
+def test_diagnosis_that_exceeds_its_budget_writes_what_is_known(
+    slide: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(work, "ANY_STEPS", 3e6)
+    monkeypatch.setattr(work, "STEPS_A_SAMPLE", 0.0)
+    model, page, out = tmp_path / "m.toml", tmp_path / "d.html", tmp_path / "d.json"
+    options = ["--out", str(model), "--report", str(page), "--json", str(out)]
+    assert main(["diagnose", str(slide), *LAW, *options]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert all(str(path) in message for path in (model, page, out))
+    result = json.loads(out.read_text())
+    assert result["verdict"] is None
+    assert "no answer from these runs" in result["unfinished"]
+    assert result["fit"]["parameters"]["F_c_n"]["value"] == pytest.approx(5.0, rel=0.05)
+    assert jbf.Model.load(model).law == "coulomb"
+    assert "F_c" in page.read_text()
 
 
 @pytest.mark.extended

@@ -236,6 +236,17 @@ def test_stroke_is_the_median_distance_between_reversals(lengths_m: Any, stroke_
     assert sizes_of(strokes(*lengths_m)).stroke_m == pytest.approx(stroke_m, rel=0.03)
 
 
+@pytest.mark.parametrize(("start", "most_s"), [("lateness", 0.4), ("run_time", 16.0)])
+def test_times_are_bounded_by_the_durations_of_the_runs(start: str, most_s: float) -> None:
+    runs = []
+    for name, samples in (("short", 200), ("long", 800)):
+        t, v = TIME[:samples], SPEED[:samples]
+        runs.append(Run.from_arrays(t, v, np.sign(v) + v, name=name))
+    upper = started(page(start, unit="s"), *runs).upper
+    assert upper == pytest.approx(most_s, rel=0.01)
+    assert started(page(start, unit="m"), *runs).upper == 1e3
+
+
 def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -> None:
     t = np.arange(0.0, 40.0, STEP_S)
     half = t < 20.0

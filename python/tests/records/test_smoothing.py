@@ -203,3 +203,18 @@ def test_record_of_one_to_five_samples_gives_a_finite_motion() -> None:
     for n in range(1, 6):
         motion = smooth(readings_of(position[:n], velocity[:n]))
         assert np.isfinite(motion.mean).all()
+
+
+@pytest.mark.parametrize(("kind", "order"), [("sine", 4), ("trapezoids", 3)])
+def test_acceleration_is_smooth_in_a_sine_and_jumps_in_a_trapezoid(kind: str, order: int) -> None:
+    position, velocity, acceleration = motion_of(kind)
+    # A fine encoder: with a coarse one both models leave the same.
+    readings = replace(
+        readings_of(position, velocity),
+        position=quantised(position, 1e-3 * COUNT),
+        position_floor=(1e-3 * COUNT) ** 2 / 12.0,
+    )
+    motion = smooth(readings)
+    assert motion.errors.order == order
+    usual = np.median(np.abs(motion.mean[:, 2] - acceleration))
+    assert usual < 1e-3 * np.max(np.abs(acceleration))

@@ -87,6 +87,16 @@ def test_speed_from_backward_differences_is_recognised_with_half_a_span_delay(sp
     assert f"{0.5 * span * 1e3 * STEP_S:.3g} ms late" in finding.words
 
 
+def test_difference_over_messages_that_arrive_together_is_recognised() -> None:
+    """Stamps of arrival: a message that waits for the one before makes a huge difference."""
+    stamps = TIME_S.copy()
+    stamps[100:700:60] = stamps[101:701:60] - 1e-5
+    speed = np.concatenate(([0.0], np.diff(COUNTED_M) / np.diff(stamps)))
+    assert np.max(np.abs(speed)) > 50.0 * np.quantile(np.abs(speed), 0.95)
+    finding: Any = derived_speed("a", stamps, COUNTED_M, speed)
+    assert finding.kind == "coarse_speed"
+
+
 @pytest.mark.parametrize("span", [2, 8])
 def test_speed_from_central_differences_is_recognised_without_a_delay(span: int) -> None:
     speed, half = np.zeros(len(TIME_S)), span // 2

@@ -45,6 +45,7 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
     expected = {"law": "coulomb", "effects": "sensor_offset", "runs": "2", "samples": "1001"}
     expected |= {"RMS of the residual": "0.525 N", "search": "converged"}
+    expected["noise of the records"] = "0.500 N (the residual is 1.05 times that)"
     expected["noise in the residual"] = "coloured, share 0.25, memory 0.15 s"
     assert statistics == {name: f"= {value}" for name, value in expected.items()}
     assert section(report, "[[Parameters]]") == [
@@ -56,6 +57,23 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     strong, weak = section(report, "[[Correlations]]")
     assert strong == ["C(F_c_n, F_v_n_s_m)", "= -0.900"]
     assert weak == ["C(F_c_n, sensor_offset.b_n)", "= +0.450"]
+
+
+@pytest.mark.parametrize(
+    ("noise_n", "words", "larger"),
+    [
+        (0.5, "= 0.500 N (the residual is 1.05 times that)", False),
+        (0.105, "= 0.105 N (the residual is 5.00 times that)", True),
+        (None, "= not known", False),
+    ],
+)
+def test_fit_report_compares_the_residual_with_the_noise_of_the_records(
+    noise_n: float | None, words: str, larger: bool
+) -> None:
+    report = replace(fit_by_hand(), noise_floor_n=noise_n).summary()
+    statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
+    assert statistics["noise of the records"] == words
+    assert ("larger than the noise of the records" in " ".join(report.split())) == larger
 
 
 def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:

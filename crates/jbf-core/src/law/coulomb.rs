@@ -53,6 +53,8 @@ impl<T: Real> Law<T> for Coulomb<T> {
     /// True while the journal has been at rest for a whole step.
     type State = bool;
 
+    const HAS_MEMORY: bool = false;
+
     in_newtons!();
 
     fn start(&self, _load_n: T) -> bool {

@@ -40,6 +40,10 @@ pub trait Law<T: Real> {
     /// What the law remembers.
     type State: Copy + Send + 'static;
 
+    /// False where friction at a sample depends on the last step before it alone, however long that
+    /// step is.
+    const HAS_MEMORY: bool = core::mem::size_of::<Self::State>() > 0;
+
     /// True where the law bends before it slides: [`Law::bend`] then takes the place of the
     /// sign of the motion.
     const HAS_BRISTLE: bool = false;

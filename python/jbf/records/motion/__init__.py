@@ -1,5 +1,6 @@
 """The imposed motion: from a recorded speed and path to the motion that a model is driven with.
 
-`imposed` is the recipe; `roughness` the noise on a signal, `rests` where the shaft stands still,
-`agreement` whether speed and path tell the same, `smoothing` local polynomials through both.
+`imposed` calls the steps in their order: what of the records can be believed (`believed`), where
+the shaft rests (`rests`), the readings and their errors (`readings`), and the fixed-interval
+smoother (`smoothing`, `em`). `docs/motion.md` describes the model.
 """

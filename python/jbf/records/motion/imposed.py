@@ -1,11 +1,8 @@
 """From a recorded motion to the motion that was imposed.
 
-A recorded speed carries noise and a recorded angle carries the encoder's steps; the
-friction law needs the speed, its sign and its slope. Both records see the same motion, so a
-short polynomial is fitted to both at once round each sample, over the longest window that
-the data allow: windows grow while the speeds they give agree within their errors (the
-intersection of confidence intervals, Goldenshluger & Nemirovski 1997). So a sine is smoothed
-over many samples and the corner of a trapezoid over few.
+A recorded speed carries noise and a recorded angle the encoder's steps; a friction law needs the
+speed, its sign and the acceleration. Both records are readings of one motion, which a
+fixed-interval smoother estimates with its errors (`smoothing`).
 
 Records of real machines are less tidy than an encoder and a noise: positions finer than any step,
 speeds that a filter made from positions and that disagree with them, noise that comes and goes,
@@ -58,14 +55,15 @@ GONE = 3.0
 
 @dataclass(frozen=True, eq=False)
 class MotionErrors:
-    """Joint errors of position, velocity and acceleration at n instants: a Markov chain.
+    """Joint errors of the position and its derivatives at n instants: a Markov chain.
 
     Attributes
     ----------
     covariance
-        Covariance at each instant, shape (n, 3, 3), in powers of m (or rad) and s.
+        Covariance at each instant, shape (n, N, N), in powers of m (or rad) and s; N is 3, up to
+        the acceleration, or 4.
     gain
-        Regression of the errors at an instant on those at the next one, shape (n - 1, 3, 3).
+        Regression of the errors at an instant on those at the next one, shape (n - 1, N, N).
     arm_m
         Metres of path for a radian of the angle; 1 where the path is the angle.
     velocity_delay_s
@@ -82,7 +80,7 @@ class MotionErrors:
     smoothed: Smoothed | None = None
 
     def at(self, instants_s: Array) -> tuple[Array, MotionErrors]:
-        """Position, velocity and acceleration at other instants, shape (n, 3), and their errors."""
+        """Position and derivatives at other instants, shape (n, N), and their errors."""
         assert self.smoothed is not None
         mean, covariance, gain = self.smoothed.at(instants_s)
         return mean, replace(self, covariance=covariance, gain=gain)
@@ -128,7 +126,7 @@ class ImposedMotion:
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def rougher(self, time_s: Array, factor: float) -> ImposedMotion:
-        """Motion smoothed less, with the jerk intensity multiplied by a factor.
+        """Motion smoothed less, as one that is driven with so many times the intensity.
 
         Parameters
         ----------
@@ -246,7 +244,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
     rest &= sure_rests(rest) | (np.abs(smoothed.mean[:, 1]) <= AT_REST_SIGMA * sd)
-    velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:].T)
+    velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:3].T)
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)

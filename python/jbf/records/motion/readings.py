@@ -7,17 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf._core import SmoothedMotion, motion_log_likelihood
+from jbf._core import MotionReadings, SmoothedMotion
 
 Array = npt.NDArray[np.float64]
 
+SPAN = 5
+"""Samples over which a first guess of the speed is averaged."""
 AT_REST = 1e-3
 """Relative standard error of a velocity that is zero because the shaft is at rest."""
 
 
 @dataclass(frozen=True)
 class ReadingErrors:
-    """Errors of the readings of a motion, and the scale of its jerk.
+    """Errors of the readings of a motion, and the noise that drives it.
 
     Attributes
     ----------
@@ -25,8 +27,10 @@ class ReadingErrors:
         Variances, m^2 and (m/s)^2 (radians for a rotary motion).
     stamp
         Variance of the time stamps, s^2: adds `v^2 stamp` to the position's variance.
-    jerk
-        Intensity of the jerk, (m/s^3)^2 s.
+    intensity
+        Intensity of the noise that drives the motion, (m/s^3)^2 s or (m/s^4)^2 s.
+    order
+        Which derivative of the position is noise: the third, the jerk, or the fourth, the snap.
     velocity_delay_s
         How late the velocity was read relative to the position, s.
     """
@@ -34,7 +38,8 @@ class ReadingErrors:
     position: float
     velocity: float
     stamp: float
-    jerk: float
+    intensity: float
+    order: int = 3
     velocity_delay_s: float = 0.0
 
 
@@ -73,33 +78,41 @@ class Readings:
             velocity_shape=self.velocity_shape[part],
         )
 
+    def first_speed(self) -> Array:
+        """A first guess of the speed, for the effect of the stamps' errors, shape (n,)."""
+        if np.isfinite(self.velocity).all():
+            return self.velocity
+        time = self.time_s
+        step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
+        slope = np.nan_to_num(np.gradient(self.position, step))
+        return np.convolve(slope, np.ones(SPAN) / SPAN, "same")
+
     def smoothed(self, errors: ReadingErrors, corners: Array, speed: Array) -> SmoothedMotion:
         """Posterior of the motion for given errors.
 
         Parameters
         ----------
         corners
-            Factor of the jerk's intensity in each step, shape (n - 1,).
+            Factor of the noise's intensity in each step, shape (n - 1,).
         speed
             A velocity at each sample, for the effect of the stamps' errors.
         """
-        return SmoothedMotion(*self._arguments(errors, corners, speed))
+        return self._with(errors, corners, speed).smoothed()
 
     def log_likelihood(self, errors: ReadingErrors, corners: Array, speed: Array) -> float:
         """Log likelihood of the readings; arguments as of :meth:`smoothed`."""
-        return motion_log_likelihood(*self._arguments(errors, corners, speed))
+        return self._with(errors, corners, speed).log_likelihood()
 
-    def _arguments(
-        self, errors: ReadingErrors, corners: Array, speed: Array
-    ) -> tuple[Array, Array, Array, Array, Array, Array, float]:
+    def _with(self, errors: ReadingErrors, corners: Array, speed: Array) -> MotionReadings:
         position, velocity = self.variances(errors, speed)
-        return (
-            np.ascontiguousarray(self.time_s),
-            np.ascontiguousarray(self.position),
+        return MotionReadings(
+            self.time_s,
+            self.position,
             position,
-            np.ascontiguousarray(self.velocity),
+            self.velocity,
             velocity,
-            errors.jerk * corners,
+            errors.intensity * corners,
+            errors.order,
             errors.velocity_delay_s,
         )
 

@@ -1,14 +1,13 @@
 """Fixed-interval smoothing of position and velocity with estimated reading errors.
 
-The jerk is Student-t noise: large in the few steps with a corner, small elsewhere. A t distribution
-is a normal one with a random variance, so each step has an own intensity q c_k. The scale q, the
-variances of the readings and the c_k maximise the likelihood by expectation-maximisation (EM); the
-filter and the smoother are `jbf._core.SmoothedMotion`.
+The jerk or the snap of the motion is Student-t noise: large in the few steps with a corner, small
+elsewhere. With a random jerk the acceleration jumps at a corner; with a random snap it is smooth.
+The likelier model is taken. `em` estimates the errors of the readings from a start that is searched
+here; the filter and the smoother are `jbf._core.MotionReadings`.
 
 References
 ----------
-Bar-Shalom, Li & Kirubarajan (2001), section 6.2 (Wiener-process acceleration); Shumway & Stoffer
-(1982) (EM for state-space models); Lange, Little & Taylor (1989) (EM for the t distribution).
+Bar-Shalom, Li & Kirubarajan (2001), section 6.2 (Wiener-process acceleration).
 """
 
 from __future__ import annotations
@@ -18,30 +17,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf._core import SmoothedMotion
+from jbf.records.motion.em import corners_of, estimated, evidence
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
 
-JERK_FREEDOM = 2.0
-"""Degrees of freedom of the jerk's t distribution: with few, corners are sharp."""
-GAUSSIAN_PASSES, ROBUST_PASSES = 6, 24
-"""EM passes with a normal jerk, for a start, and with a t distribution."""
-SETTLED = 0.01
-"""EM ends where no parameter changes by more than this share in a pass."""
+JERK, SNAP = 3, 4
+"""Orders of the derivative of the position that is noise."""
 SHORTEST = 4
 """Samples below which nothing is estimated: the motion is a parabola through them."""
 CHOSEN, LONGEST = 3_000, 8_000
 """Samples of a longer record from which the start and the clock are chosen, and from which the
 parameters are estimated: those in which the motion goes furthest."""
+TRIED, TRIED_PASSES = 1_500, 12
+"""Samples of a record from which its order is chosen, and robust passes until then."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
-DECADES, GRID = 14.0, 2.0
-"""Range of jerk intensities searched below the one that follows every reading, and the steps of a
-first look, decades."""
+GRID, STIFFEST = 2.0 * np.log(10.0), 16
+"""Steps of the intensity's logarithm in a first search, and the most of them."""
 NARROW = 2.0
-"""Range around a known jerk, decades."""
+"""Range around a known intensity, decades."""
 DELAY_GAIN = 10.0
 """Log-likelihood gain that a delay of the velocity must have."""
 START_FACTORS = (1.0, 10.0, 100.0)
@@ -52,8 +48,6 @@ HIDDEN = 0.01
 """Share of the velocity's variance that is tried next to it while the delay is searched."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
-SPAN = 5
-"""Samples over which a first guess of the speed is averaged."""
 STAMP_GAIN = 10.0
 """Log-likelihood gain that an error of the instants must have."""
 LONGEST_DELAY = 1.5
@@ -69,13 +63,14 @@ class Smoothed:
     readings, errors
         What it was estimated from, and the estimated errors.
     corners
-        Factor of the jerk's intensity in each step, shape (n - 1,).
+        Factor of the noise's intensity in each step, shape (n - 1,).
     speed
         Speed at each sample, for the effect of the stamps' errors, shape (n,).
     mean, covariance
-        Position, velocity and acceleration, shape (n, 3), and their covariance, shape (n, 3, 3).
+        Position and its first N - 1 derivatives, shape (n, N), and their covariance, shape
+        (n, N, N), where the N-th derivative is noise.
     gain
-        Gains of the posterior as a Markov chain backward in time, shape (n - 1, 3, 3).
+        Gains of the posterior as a Markov chain backward in time, shape (n - 1, N, N).
     """
 
     readings: Readings
@@ -95,8 +90,8 @@ class Smoothed:
         return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
 
     def rougher(self, factor: float) -> Smoothed:
-        """Posterior of the same readings with the jerk intensity multiplied by a factor."""
-        errors = replace(self.errors, jerk=factor * self.errors.jerk)
+        """Posterior of the same readings with the noise's intensity multiplied by a factor."""
+        errors = replace(self.errors, intensity=factor * self.errors.intensity)
         return Smoothed.of(self.readings, errors, self.corners, self.speed)
 
     def at(self, instants_s: Array) -> tuple[Array, Array, Array]:
@@ -126,7 +121,8 @@ class Smoothed:
 def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
     """Gains from each chosen instant to the next chosen one."""
     first, last = chosen[:-1], chosen[1:]
-    found: Array = np.broadcast_to(np.eye(3), (len(first), 3, 3)).copy()
+    one = np.eye(gain.shape[1])
+    found: Array = np.broadcast_to(one, (len(first), *one.shape)).copy()
     for further in range(int(np.max(last - first, initial=0))):
         reached = first + further < last
         found[reached] = found[reached] @ gain[(first + further)[reached]]
@@ -146,11 +142,11 @@ def smooth(readings: Readings) -> Smoothed:
     """Estimate the errors of the readings by maximum likelihood, and smooth the motion."""
     n = len(readings.time_s)
     if n < SHORTEST:
-        errors = replace(_start(readings), jerk=0.0)
+        errors = replace(_start(readings), intensity=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
-    start, _ = _likeliest_stamps(readings.part(_busiest(readings, CHOSEN)))
+    start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    errors, corners = _estimated(few, start)
+    errors, corners = estimated(few, start)
     if np.isfinite(few.position).any() and np.isfinite(few.velocity).any():
         errors, corners = _delayed(few, errors, corners)
     speed = np.zeros(n)
@@ -159,7 +155,7 @@ def smooth(readings: Readings) -> Smoothed:
         for _ in range(LONG_PASSES):
             motion = readings.smoothed(errors, corners, speed)
             speed = motion.mean[:, 1]
-            corners = _corners(motion.disturbance / errors.jerk)
+            corners = corners_of(errors, motion)
     else:
         speed = readings.smoothed(errors, corners, speed).mean[:, 1]
     return Smoothed.of(readings, errors, _located_to_a_step(corners), speed)
@@ -173,7 +169,7 @@ def _likeliest_start(readings: Readings) -> ReadingErrors:
     """
     start = _start(readings)
     tried = [
-        _likeliest_jerk(readings, replace(start, velocity=factor**2 * start.velocity))
+        _likeliest_intensity(readings, replace(start, velocity=factor**2 * start.velocity))
         for factor in (START_FACTORS if np.isfinite(readings.velocity).any() else (1.0,))
     ]
     return max(tried, key=lambda errors: _likelihood(readings, errors))
@@ -191,40 +187,53 @@ def _start(readings: Readings) -> ReadingErrors:
     return ReadingErrors(noise[0], noise[1], 0.0, 1.0)
 
 
-def _likeliest_jerk(
+def _of_likeliest_order(readings: Readings) -> ReadingErrors:
+    """Errors from which the estimation starts, with the likelier of the two orders."""
+    start, _ = _likeliest_stamps(readings)
+    few = readings.part(_busiest(readings, TRIED))
+    # The velocity of a rest is no reading.
+    few = replace(few, velocity=np.where(few.velocity_shape > AT_REST, few.velocity, np.nan))
+    starts = [_likeliest_intensity(few, replace(start, order=order)) for order in (JERK, SNAP)]
+    return max(starts, key=lambda e: evidence(few, *estimated(few, e, passes=TRIED_PASSES)))
+
+
+def _likeliest_intensity(
     readings: Readings, errors: ReadingErrors, decades: float | None = None
 ) -> ReadingErrors:
-    """The same errors with the jerk that is likeliest if it is normal and the same everywhere.
+    """The same errors with the intensity that is likeliest for normal noise, the same everywhere.
 
     Parameters
     ----------
     decades
-        How far around the errors' own jerk it is searched; everywhere if not given.
+        How far around the errors' own intensity it is searched; everywhere if not given.
     """
-    ones, speed = np.ones(len(readings.time_s) - 1), _speed(readings)
+    ones, speed = np.ones(len(readings.time_s) - 1), readings.first_speed()
 
-    def cost(log_jerk: float) -> float:
-        tried = replace(errors, jerk=float(np.exp(log_jerk)))
+    def cost(log_intensity: float) -> float:
+        tried = replace(errors, intensity=float(np.exp(log_intensity)))
         return -readings.log_likelihood(tried, ones, speed)
 
     if decades is not None:
-        middle = float(np.log(errors.jerk))
+        middle = float(np.log(errors.intensity))
         low, high = middle - decades * np.log(10.0), middle + decades * np.log(10.0)
     else:
-        step = float(np.median(np.diff(readings.time_s)))
-        top = float(np.nanmax(np.abs(readings.velocity), initial=0.0))
-        seen = readings.position[np.isfinite(readings.position)]
-        reach = float(np.ptp(seen)) if len(seen) else 0.0
-        most = (top**2 + (reach / step) ** 2) / step**3
+        step, top = float(np.median(np.diff(readings.time_s))), float(np.max(np.abs(speed)))
+        most = top**2 / step ** (2 * errors.order - 3)
         if most <= 0.0 or not np.isfinite(most):
             return errors
-        grid = np.log(most) - np.log(10.0) * np.arange(0.0, DECADES, GRID)
-        best = int(np.argmin([cost(g) for g in grid]))
-        low, high = grid[min(best + 1, len(grid) - 1)], grid[max(best - 1, 0)]
+        # From a motion that follows every reading on to smoother ones.
+        grid, costs = [float(np.log(most))], []
+        for _ in range(STIFFEST):
+            costs.append(cost(grid[-1]))
+            if len(costs) > 2 and costs[-3] < min(costs[-2:]):
+                break
+            grid.append(grid[-1] - GRID)
+        best = int(np.argmin(costs))
+        low, high = grid[best] - GRID, grid[max(best - 1, 0)]
     from scipy.optimize import minimize_scalar  # half a second to import
 
     found = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.5})
-    return replace(errors, jerk=float(np.exp(found.x)))
+    return replace(errors, intensity=float(np.exp(found.x)))
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
@@ -234,7 +243,7 @@ def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
     found = start, _likelihood(readings, start)
     for share in STAMP_ERRORS if np.isfinite(readings.position).any() else ():
         tried = replace(start, stamp=(share * step) ** 2)
-        tried = _likeliest_jerk(readings, tried, NARROW)
+        tried = _likeliest_intensity(readings, tried, NARROW)
         likelihood = _likelihood(readings, tried) - STAMP_GAIN
         if likelihood > found[1]:
             found = tried, likelihood
@@ -255,20 +264,10 @@ def _busiest(readings: Readings, longest: int) -> slice:
     return slice(first, first + longest)
 
 
-def _speed(readings: Readings) -> Array:
-    """A first guess of the speed, for the effect of the stamps' errors."""
-    if np.isfinite(readings.velocity).all():
-        return readings.velocity
-    time = readings.time_s
-    step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
-    slope = np.nan_to_num(np.gradient(readings.position, step))
-    return np.convolve(slope, np.ones(SPAN) / SPAN, "same")
-
-
 def _likelihood(readings: Readings, errors: ReadingErrors) -> float:
-    """Log likelihood with a jerk of one intensity."""
+    """Log likelihood with noise of one intensity."""
     ones = np.ones(len(readings.time_s) - 1)
-    return readings.log_likelihood(errors, ones, _speed(readings))
+    return readings.log_likelihood(errors, ones, readings.first_speed())
 
 
 def _delayed(
@@ -279,10 +278,12 @@ def _delayed(
     for _ in range(DELAY_ROUNDS):
         before = errors.velocity_delay_s
         delay_s, gain = _likeliest_delay(readings, errors, corners, LONGEST_DELAY * usual)
-        if gain < DELAY_GAIN or abs(delay_s - before) < SAME_DELAY * usual:
+        if before == 0.0 and gain < DELAY_GAIN:
+            break
+        if abs(delay_s - before) < SAME_DELAY * usual:
             break
         delayed = replace(errors, velocity_delay_s=delay_s)
-        errors, corners = _estimated(readings, delayed, corners)
+        errors, corners = estimated(readings, delayed, corners)
     return errors, corners
 
 
@@ -292,7 +293,7 @@ def _likeliest_delay(
     """The likeliest delay of the velocity, s, and its gain in the log likelihood."""
     from scipy.optimize import minimize_scalar
 
-    speed = readings.smoothed(errors, corners, _speed(readings)).mean[:, 1]
+    speed = readings.smoothed(errors, corners, readings.first_speed()).mean[:, 1]
 
     def cost(delay_s: float) -> float:
         tried = replace(errors, velocity_delay_s=delay_s)
@@ -304,34 +305,6 @@ def _likeliest_delay(
     return float(found.x), cost(errors.velocity_delay_s) - float(found.fun)
 
 
-def _estimated(
-    readings: Readings, errors: ReadingErrors, corners: Array | None = None
-) -> tuple[ReadingErrors, Array]:
-    """Errors and corners by EM from a start."""
-    if corners is None:
-        corners = np.ones(len(readings.time_s) - 1)
-    speed = np.zeros(len(readings.time_s))
-    for k in range(GAUSSIAN_PASSES + ROBUST_PASSES):
-        motion = readings.smoothed(errors, corners, speed)
-        speed = motion.mean[:, 1]
-        if k >= GAUSSIAN_PASSES:
-            corners = _corners(motion.disturbance / errors.jerk)
-        previous, errors = errors, _maximised(readings, errors, corners, motion)
-        change = np.log([errors.jerk, errors.position, errors.velocity]) - np.log(
-            [previous.jerk, previous.position, previous.velocity]
-        )
-        if k > GAUSSIAN_PASSES + 2 and np.max(np.abs(change)) < SETTLED:
-            break
-    return errors, corners
-
-
-def _corners(square: Array) -> Array:
-    """Expected factor of each step's jerk intensity, from its squared disturbance in units of q."""
-    square = np.where(np.isfinite(square), square, 3.0)
-    factor: Array = (JERK_FREEDOM + square) / (JERK_FREEDOM + 3.0)
-    return factor
-
-
 def _located_to_a_step(corners: Array) -> Array:
     """Factors that allow each corner in the steps before and after its own, too.
 
@@ -341,38 +314,3 @@ def _located_to_a_step(corners: Array) -> Array:
     padded = np.pad(corners, 1, mode="edge")
     found: Array = np.maximum(np.maximum(padded[:-2], padded[2:]), corners)
     return found
-
-
-def _maximised(
-    readings: Readings, errors: ReadingErrors, corners: Array, motion: SmoothedMotion
-) -> ReadingErrors:
-    """The M step: variances that maximise the expected likelihood."""
-    square = motion.disturbance / corners
-    jerk = float(np.nanmean(square)) / 3.0
-    mean, covariance = motion.mean, motion.covariance
-    position, stamp = errors.position, errors.stamp
-    seen = np.isfinite(readings.position)
-    if seen.any():
-        misfit = (readings.position - mean[:, 0]) ** 2 + covariance[:, 0, 0]
-        by_stamp = errors.stamp * mean[:, 1] ** 2
-        own = errors.position * readings.position_shape**2
-        total = own + by_stamp
-        # The expected squares of the two errors that make up each misfit.
-        excess = (misfit - total) / total**2
-        weight = seen / readings.position_shape**2
-        stamp = errors.stamp * float(1.0 + np.average(by_stamp * excess, weights=weight))
-        position = errors.position * float(1.0 + np.average(own * excess, weights=weight))
-    velocity = errors.velocity
-    seen = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
-    if seen.any():
-        d = errors.velocity_delay_s
-        misfit = (readings.velocity - mean[:, 1] + d * mean[:, 2]) ** 2
-        misfit += covariance[:, 1, 1] - 2.0 * d * covariance[:, 1, 2] + d**2 * covariance[:, 2, 2]
-        velocity = float(np.mean(misfit[seen] / readings.velocity_shape[seen] ** 2))
-    return replace(
-        errors,
-        position=max(position, readings.position_floor),
-        velocity=max(velocity, readings.velocity_floor),
-        stamp=stamp,
-        jerk=max(jerk, 1e-300),
-    )

@@ -25,6 +25,7 @@ from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_run import copies, repeated
 from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.roughness import noise_of
+from jbf.records.motion.same_logger import further_starts
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -223,10 +224,15 @@ def _span(load: Array) -> float:
 
 
 def _each(rig: Rig, runs: Sequence[Run]) -> list[Prepared]:
-    """The runs, each looked at anew where others tell at what rate their logger read the force."""
+    """The runs, each looked at anew where the others tell of their logger: at what rate it read the
+    force, or other errors of the motion's readings."""
     found = [Prepared.of(rig, run) for run in runs]
     rates = {i: rate for i, p in enumerate(found) if (rate := p.drawn_at_hz) > 0.0}
-    if not rates or len(rates) == len(runs):
-        return found
-    period_s = 1.0 / float(np.median(list(rates.values())))
-    return [p if i in rates else Prepared.of(rig, runs[i], period_s) for i, p in enumerate(found)]
+    period_s = 1.0 / float(np.median(list(rates.values()))) if rates else None
+    periods = [None if i in rates else period_s for i in range(len(runs))]
+    errors = [p.motion.errors for p in found]
+    like = further_starts([e.smoothed for e in errors if e is not None and e.smoothed is not None])
+    return [
+        Prepared.of(rig, run, period_s, like) if like or period_s is not None else p
+        for p, run, period_s in zip(found, runs, periods, strict=True)
+    ]

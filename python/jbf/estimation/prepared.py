@@ -25,6 +25,7 @@ from jbf.records.findings.slow_temperature import find_slow_temperature
 from jbf.records.findings.smooth_force import find_smooth_force
 from jbf.records.findings.steps import find_steps
 from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.readings import ReadingErrors
 from jbf.records.rig import Rig
 from jbf.records.run import Run, require, run_on
 
@@ -84,13 +85,21 @@ class Prepared:
         return self.recorded or (self.run.time_s, self.motion)
 
     @classmethod
-    def of(cls, rig: Rig, run: Run, period_s: float | None = None) -> Prepared:
+    def of(
+        cls,
+        rig: Rig,
+        run: Run,
+        period_s: float | None = None,
+        like: Sequence[ReadingErrors] = (),
+    ) -> Prepared:
         """Estimate the motion of a run.
 
         Parameters
         ----------
         period_s
             At which other runs of the same logger read the force, where that is known.
+        like
+            Errors of the readings of other runs of the same logger.
 
         Raises
         ------
@@ -99,7 +108,7 @@ class Prepared:
         """
         run = as_read(run_on(rig, run))
         require(run, "friction_n", "a comparison with the model")
-        instants, motion = imposed_as_read(rig, run)
+        instants, motion = imposed_as_read(rig, run, like)
         if motion.clock_s is not None:
             run = replace(run, time_s=frozen(motion.clock_s))
         recorded = None

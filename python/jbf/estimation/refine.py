@@ -61,6 +61,12 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
     ends = [_settled(problem, solution, clock_s) for clock_s in clocks]
+    # The steps in a delay may lead away from the minimum.
+    ends += [
+        _settled(problem, solution, c, delays=False)
+        for c, e in zip(clocks, ends, strict=True)
+        if e.delayed
+    ]
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
     if best.solution.samples.motion is None:
         return best.problem, best.solution
@@ -102,8 +108,8 @@ class _End:
         return own * counts[0] / max(counts[1], 1)
 
 
-def _settled(first: Problem, solution: Solution, clock_s: float) -> _End:
-    """Rounds of fits with the force on a clock, or later where that is significant."""
+def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
+    """Rounds of fits with the force on a clock or, with delays, later where that is significant."""
     problem, late_s = first, clock_s
     if clock_s != 0.0:
         problem = _delayed(first, late_s)
@@ -113,7 +119,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float) -> _End:
         share = _mean_share(motion, solution.samples)
         if late_s == 0.0 and share < EXACT:
             break
-        step_s = _delay(first, problem, solution, motion, late_s, clock_s)
+        step_s = _delay(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
         if late_s == step_s == 0.0 and share < NEGLIGIBLE:
             break
         if step_s != 0.0:

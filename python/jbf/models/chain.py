@@ -30,6 +30,7 @@ from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import recorded_temperature
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.imposed import ImposedMotion, impose
+from jbf.records.motion.readings import ReadingErrors
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run, run_on
@@ -152,14 +153,16 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
     return motion if len(instants) == len(run) else motion.at(instants, run.time_s)
 
 
-def imposed_as_read(rig: Rig, run: Run) -> tuple[Array, ImposedMotion]:
+def imposed_as_read(
+    rig: Rig, run: Run, like: Sequence[ReadingErrors] = ()
+) -> tuple[Array, ImposedMotion]:
     """The motion, and the instants at which it was read, s: those of a clock of its own, where it
-    has one."""
+    has one; `like` as of :func:`jbf.records.motion.imposed.impose`."""
     run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
     if there is not None:
         run = run.select(there)
-    motion = impose(run, rig.radius_m)
+    motion = impose(run, rig.radius_m, like)
     return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
 

@@ -43,7 +43,7 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
 def test_diagnosis_that_exceeds_its_budget_writes_what_is_known(
     slide: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(work, "ANY_STEPS", 3e6)
+    monkeypatch.setattr(work, "ANY_STEPS", 1e6)
     monkeypatch.setattr(work, "STEPS_A_SAMPLE", 0.0)
     model, page, out = tmp_path / "m.toml", tmp_path / "d.html", tmp_path / "d.json"
     options = ["--out", str(model), "--report", str(page), "--json", str(out)]

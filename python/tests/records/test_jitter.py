@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jbf import Run
+from jbf.records.motion.imposed import impose
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from known_motions import integrated, path_of, quantised, speed_of, white
 
@@ -86,3 +88,15 @@ def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: f
     slow = max(unit * (0.1 * delay_s + slow_noise), floor)
     fast = unit * (delay_s + slow_noise)
     assert finding.size == pytest.approx(np.sqrt(fast**2 - slow**2), rel=1e-3)
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_finding_of_uneven_stamps_tells_which_instants_are_used(even: bool) -> None:
+    """Samples at even instants with stamps that are off, or at uneven instants with true stamps."""
+    stamped = stamps(3e-4, 1000)
+    read = STEP_S * np.arange(1000) if even else stamped
+    path = quantised(path_of(read), 1e-6)
+    motion = impose(Run.from_arrays(stamped, position_m=path), None)
+    (done,) = (f.done for f in motion.findings if f.kind == "jitter")
+    assert done == ("the instants of the even clock are used" if even else "taken as they are")
+    assert (motion.clock_s is not None) == even

@@ -64,7 +64,7 @@ def test_effect_that_causes_part_of_a_pattern_is_named_with_the_usual_causes() -
     card = failure_cards(diagnosis)[i]
     assert percentages(card.cause) == {"sensor_offset": 50.0}
     assert advice_on("direction").causes in card.cause
-    assert "from 2.0 to 1.00 N" in card.to_do
+    assert re.search(r"from 2\.0 to 1\.00? N", card.to_do)
     assert "stays" in card.to_do
 
 

@@ -86,9 +86,10 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
     its single samples.
     """
     name, time, speed = run.name, run.time_s, run.velocity_m_s
+    corrected = stamps_s is not None
     stamps_s = time if stamps_s is None else stamps_s
     said = run.quantities
-    stamps = uneven_stamps(name, stamps_s)
+    stamps = uneven_stamps(name, stamps_s, corrected=corrected)
     position = recorded_position(run, radius_m)
     if position is None:
         if not run.speed_recorded:

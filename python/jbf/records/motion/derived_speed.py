@@ -31,8 +31,10 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
     if len(time) < 4 * SPANS[-1]:
         return None
     step = quantum_of(path)
-    # Not of the largest one: messages that arrive at once make a difference without bounds.
-    moving = np.abs(speed) > 0.02 * float(np.quantile(np.abs(speed), USUAL))
+    # Over some samples: a slow difference is zero between two counts. And not of the largest one:
+    # messages that arrive at once make a difference without bounds.
+    local = np.convolve(np.abs(speed), np.ones(SPANS[-1]) / SPANS[-1], "same")
+    moving = local > 0.02 * float(np.quantile(np.abs(speed), USUAL))
     usual = float(np.median(np.diff(time)))
     for span in SPANS:
         difference = (path[span:] - path[:-span]) / (time[span:] - time[:-span])

@@ -11,6 +11,7 @@ rests in which the speed is a hum instead of zero. Each is looked for in the rec
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +24,7 @@ from jbf.records.motion.believed import NOT_AS_RECORDED, Believed, believed
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.position import recorded_position
-from jbf.records.motion.readings import AT_REST, Readings
+from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.rests import (
     backward_beside_rest,
     rest_edges,
@@ -203,7 +204,7 @@ class ImposedMotion:
         )
 
 
-def impose(run: Run, radius_m: float | None) -> ImposedMotion:
+def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ()) -> ImposedMotion:
     """Estimate the imposed motion of a run.
 
     Parameters
@@ -214,11 +215,14 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         Journal radius, m: turns the angle into a path. None where it is not known: a position
         then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
         nothing of the speed.
+    like
+        Errors of the readings of other runs of the same logger, from which the estimation may
+        start, too.
     """
     clock_s = _clock(run, radius_m)
-    stamps_s = run.time_s
+    stamps_s = None
     if clock_s is not None:
-        run = replace(run, time_s=frozen(clock_s))
+        stamps_s, run = run.time_s, replace(run, time_s=frozen(clock_s))
     records = believed(run, radius_m, stamps_s)
     time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
@@ -239,7 +243,7 @@ def impose(run: Run, radius_m: float | None) -> ImposedMotion:
         readings = replace(
             readings, velocity_shape=np.hypot(readings.velocity_shape, contradiction / sd_speed)
         )
-    smoothed = smooth(readings)
+    smoothed = smooth(readings, like)
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))

@@ -28,8 +28,14 @@ AGREE = 1.6
 """Jitter is one at all speeds, to this factor."""
 
 
-def uneven_stamps(name: str, time: Array) -> Finding | None:
-    """Stamps that are off an even clock: honest, so that nothing is to be done."""
+def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding | None:
+    """Stamps that are off an even clock.
+
+    Parameters
+    ----------
+    corrected
+        Whether the instants of the even clock are used in their place.
+    """
     steps = np.diff(time)
     usual = float(np.median(steps))
     near = np.abs(steps - usual) < EVEN * usual
@@ -41,7 +47,8 @@ def uneven_stamps(name: str, time: Array) -> Finding | None:
     if size < LEAST * usual:
         return None
     words = f"the stamps are off an even clock by {1e3 * size:.3g} ms RMS"
-    return Finding("jitter", "time_s", name, size, "s", "taken as they are", words)
+    done = "the instants of the even clock are used" if corrected else "taken as they are"
+    return Finding("jitter", "time_s", name, size, "s", done, words)
 
 
 def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:

@@ -12,6 +12,7 @@ Bar-Shalom, Li & Kirubarajan (2001), section 6.2 (Wiener-process acceleration).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,8 +35,10 @@ TRIED, TRIED_PASSES = 1_500, 12
 """Samples of a record from which its order is chosen, and robust passes until then."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
-GRID, STIFFEST = 2.0 * np.log(10.0), 16
+GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
 """Steps of the intensity's logarithm in a first search, and the most of them."""
+FLAT = 0.5
+"""Log-likelihood gain in two of these steps below which the search ends."""
 NARROW = 2.0
 """Range around a known intensity, decades."""
 DELAY_GAIN = 10.0
@@ -138,17 +141,22 @@ def is_even(readings: Readings, even_s: Array) -> bool:
     return by_clock > by_stamps
 
 
-def smooth(readings: Readings) -> Smoothed:
-    """Estimate the errors of the readings by maximum likelihood, and smooth the motion."""
+def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
+    """Estimate the errors of the readings by maximum likelihood, and smooth the motion.
+
+    Parameters
+    ----------
+    like
+        Errors from which the estimation may start, too: the likeliest end is taken.
+    """
     n = len(readings.time_s)
     if n < SHORTEST:
         errors = replace(_start(readings), intensity=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
     start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    errors, corners = estimated(few, start)
-    if np.isfinite(few.position).any() and np.isfinite(few.velocity).any():
-        errors, corners = _delayed(few, errors, corners)
+    ends = [_delayed(few, *estimated(few, tried)) for tried in (start, *like)]
+    errors, corners = max(ends, key=lambda end: evidence(few, *end)) if like else ends[0]
     speed = np.zeros(n)
     if n > len(few.time_s):
         corners = np.ones(n - 1)
@@ -221,14 +229,12 @@ def _likeliest_intensity(
         most = top**2 / step ** (2 * errors.order - 3)
         if most <= 0.0 or not np.isfinite(most):
             return errors
-        # From a motion that follows every reading on to smoother ones.
-        grid, costs = [float(np.log(most))], []
-        for _ in range(STIFFEST):
-            costs.append(cost(grid[-1]))
-            if len(costs) > 2 and costs[-3] < min(costs[-2:]):
-                break
-            grid.append(grid[-1] - GRID)
-        best = int(np.argmin(costs))
+        # From a motion that follows every reading on to smoother ones, until these gain nothing.
+        grid = np.log(most) - GRID * np.arange(SMOOTHEST)
+        costs = [cost(grid[0])]
+        while len(costs) < SMOOTHEST and (len(costs) < 3 or costs[-1] < costs[-3] - FLAT):
+            costs.append(cost(grid[len(costs)]))
+        best = int(np.argmax(np.array(costs) < min(costs) + FLAT))
         low, high = grid[best] - GRID, grid[max(best - 1, 0)]
     from scipy.optimize import minimize_scalar  # half a second to import
 
@@ -274,6 +280,8 @@ def _delayed(
     readings: Readings, errors: ReadingErrors, corners: Array
 ) -> tuple[ReadingErrors, Array]:
     """Errors and corners with the delay of the velocity that is likeliest."""
+    if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
+        return errors, corners
     usual = float(np.median(np.diff(readings.time_s)))
     for _ in range(DELAY_ROUNDS):
         before = errors.velocity_delay_s

@@ -67,19 +67,20 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
         disturbance: vec![f64::NAN; n - 1],
         log_likelihood: passed.log_likelihood,
     };
-    let clock = passed.clock;
-    let scale = State::from_fn(|i, _| clock.unit.powi(-(i as i32)));
+    let time = passed.scale;
+    let scale = State::from_fn(|i, _| time.unit.powi(-(i as i32)));
     let (last, mut spread) = filtered[n - 1];
     store(&mut out, n - 1, &last, &spread, &scale);
     let (mut r, mut big) = (State::<N>::zeros(), Square::<N>::zeros());
     let mut step = Transition::over(0.0);
     for k in (0..n - 1).rev() {
-        let q = intensity[k] * clock.intensity;
-        clock.step(readings, k, &mut step);
+        let q = intensity[k] * time.intensity;
+        time.step(readings, k, &mut step);
         let f = step.matrix();
         for (row, update) in passed.rows.iter().zip(&updates[k + 1]).rev() {
             if let Some((update, innovation)) = update {
-                // With L = I - K row': r <- row e / S + L' r, N <- row row' / S + L' N L.
+                // With L = I - K row': r <- row e / S + L' r, N_r <- row row' / S + L' N_r L, where
+                // `big` is N_r (Durbin & Koopman write N).
                 r += row * (innovation / update.variance - update.gain.dot(&r));
                 let of_gain = big * update.gain;
                 let own = update.variance.recip() + update.gain.dot(&of_gain);
@@ -88,16 +89,16 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
             }
         }
         if step.h > 0.0 {
-            // E[w' Q^-1 w] for w ~ N(q Q r, q Q - q Q N q Q).
+            // E[w' Q^-1 w] for w ~ N(q Q r, q Q - q Q N_r q Q).
             let noise = step.noise;
             let square = q * q * (r.dot(&(noise * r)) - noise.dot(&big)) + N as f64 * q;
-            out.disturbance[k] = square.max(0.0) / clock.intensity;
+            out.disturbance[k] = square.max(0.0) / time.intensity;
         }
         r = f.transpose() * r;
         big = step.carried_back(&big);
 
         let (own, own_spread) = filtered[k];
-        let gain = divided(&(f * own_spread), &predicted[k + 1]).transpose();
+        let gain = solve_covariance(&(f * own_spread), &predicted[k + 1]).transpose();
         let left = Square::identity() - gain * f;
         spread = symmetric(
             &(left * own_spread * left.transpose()
@@ -117,7 +118,7 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
 
 /// `P^-1 M` for a covariance P; where it is singular to working precision, with variances that are
 /// larger by a rounding error.
-fn divided<const N: usize>(m: &Square<N>, p: &Square<N>) -> Square<N> {
+fn solve_covariance<const N: usize>(m: &Square<N>, p: &Square<N>) -> Square<N> {
     let mut larger = *p;
     for share in ROUNDING {
         for i in 0..N {
@@ -140,21 +141,21 @@ type Updates<const N: usize> = [Option<(Update<N>, f64)>; 2];
 
 /// Time in units of the median step.
 #[derive(Clone, Copy)]
-struct Clock {
+struct TimeScale {
     /// The median step, s.
     unit: f64,
     /// Factor of the noise's intensity.
     intensity: f64,
 }
 
-impl Clock {
+impl TimeScale {
     fn new(time: &[f64], order: usize) -> Self {
         let unit = median_step(time);
         let intensity = unit.powi(2 * order as i32 - 1);
         Self { unit, intensity }
     }
 
-    /// Make a transition that over the step from one instant to the next.
+    /// Set `step` to the transition from instant k to k + 1.
     fn step<const N: usize>(&self, readings: &Readings, k: usize, step: &mut Transition<N>) {
         let h = (readings.time[k + 1] - readings.time[k]).max(0.0) / self.unit;
         if h != step.h {
@@ -163,9 +164,9 @@ impl Clock {
     }
 }
 
-/// What the filter passes on besides its states.
-struct Passed<const N: usize> {
-    clock: Clock,
+/// What the filter returns besides its states.
+struct FilterOutput<const N: usize> {
+    scale: TimeScale,
     rows: [State<N>; 2],
     log_likelihood: f64,
 }
@@ -176,7 +177,7 @@ fn filter<const N: usize>(
     readings: &Readings,
     intensity: &[f64],
     mut visit: impl FnMut(Estimate<N>, Updates<N>, Estimate<N>),
-) -> Passed<N> {
+) -> FilterOutput<N> {
     let n = [
         readings.time.len(),
         readings.position.len(),
@@ -188,21 +189,21 @@ fn filter<const N: usize>(
     .into_iter()
     .min()
     .unwrap_or(0);
-    let clock = Clock::new(&readings.time[..n], N);
-    let unit = clock.unit;
+    let scale = TimeScale::new(&readings.time[..n], N);
+    let unit = scale.unit;
     let rows: [State<N>; 2] = [
         State::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 }),
         late_velocity(readings.velocity_delay / unit),
     ];
     let mut log_likelihood = 0.0;
-    let (mut mean, mut covariance): Estimate<N> = diffuse(readings, n, unit);
+    let (mut mean, mut covariance): Estimate<N> = initial_state(readings, n, unit);
     let mut step = Transition::over(0.0);
     for k in 0..n {
         if k > 0 {
-            clock.step(readings, k - 1, &mut step);
+            scale.step(readings, k - 1, &mut step);
             mean = step.matrix() * mean;
             covariance =
-                step.carried(&covariance) + step.noise * (intensity[k - 1] * clock.intensity);
+                step.carried(&covariance) + step.noise * (intensity[k - 1] * scale.intensity);
         }
         let before = (mean, covariance);
         let pair = [
@@ -231,8 +232,8 @@ fn filter<const N: usize>(
         }
         visit(before, both, (mean, covariance));
     }
-    Passed {
-        clock,
+    FilterOutput {
+        scale,
         rows,
         log_likelihood,
     }
@@ -264,9 +265,9 @@ fn store<const N: usize>(
     }
 }
 
-/// A start that tells next to nothing: position near the first reading, any velocity up to the
-/// largest one on record, and further derivatives up to that velocity in one step.
-fn diffuse<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Estimate<N> {
+/// Weakly informative initial state: position near the first reading (zero without any), velocity
+/// up to the largest one on record, and further derivatives up to that velocity in one step.
+fn initial_state<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Estimate<N> {
     let seen =
         |k: &usize| readings.position_variance[*k].is_finite() && readings.position[*k].is_finite();
     let (mut first, mut noise, mut top) = (0.0, 0.0, 0.0_f64);

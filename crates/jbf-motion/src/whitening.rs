@@ -7,7 +7,7 @@ use crate::model::{symmetric, Square, State, Update};
 ///
 /// # Arguments
 /// * `posterior`, `gain`: covariances and gains of the motion, see [`crate::Smoothed`].
-/// * `sensitivity`: s, derivatives of the residual by position, velocity and acceleration, (n, 3).
+/// * `sensitivity`: s, derivatives of the prediction by position, velocity and acceleration, (n, 3).
 /// * `variance`: of e, (n,); a sample with an infinite one does not count and becomes zero.
 /// * `columns`: n rows of `width` values, for instance the residual and its derivatives by
 ///   parameters; each column is filtered in the same way.

@@ -41,10 +41,11 @@ impl MotionReadings {
 
 #[pymethods]
 impl MotionReadings {
-    /// A variance of infinity marks a missing reading.
+    /// Readings from arrays of n values, and n - 1 intensities. A variance of infinity marks a
+    /// missing reading.
     ///
     /// # Errors
-    /// Arrays of other lengths, or an order other than 3 or 4.
+    /// If the lengths differ, or the order is neither 3 nor 4.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(

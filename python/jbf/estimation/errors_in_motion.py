@@ -37,9 +37,9 @@ class ErrorsInMotion:
         Derivatives of the prediction by position, velocity and acceleration, one (n, 3) array a
         run.
     noise
-        Standard deviation of the readings, in the unit of the residuals.
+        Standard deviation of the force's noise, in the unit of the residuals.
     by_delay
-        Derivative of the residual by a delay of the force that all runs share, one (n,) array a
+        Derivative of the prediction by a delay of the force that all runs share, one (n,) array a
         run; None where the forces are not late. What a delay explains is projected out.
     """
 
@@ -93,8 +93,8 @@ class ErrorsInMotion:
             total += float(np.sum(white**2)) / self.noise**2 + log_determinant
         return total
 
-    def share(self, run: int) -> Array:
-        """Variance of the motion's contribution relative to the noise, shape (n,)."""
+    def variance_ratio(self, run: int) -> Array:
+        """Ratio of the variance by the motion's errors to the noise's, shape (n,)."""
         errors, sensitivity = self.errors[run], self.sensitivity[run]
         if errors is None:
             return np.zeros(len(sensitivity))

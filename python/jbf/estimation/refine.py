@@ -29,9 +29,9 @@ NEGLIGIBLE = 0.01
 EXACT = 1e-3
 """The same, below which a late force is a fault of the model and not of the clocks."""
 ROUNDS = 8
-"""Rounds of sensitivities and fits,"""
+"""Largest number of iterations of sensitivities and fits."""
 SETTLED = 0.01
-"""until the prediction changes by less than this share of the noise."""
+"""Change of the prediction, relative to the noise, at which the iteration stops."""
 EVALUATIONS = 20
 """Evaluations of each fit."""
 STEP = 0.5
@@ -72,7 +72,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
         return best.problem, best.solution
     changes = [_with_smoothing(best)]
     for other in ends:
-        # What the records do not tell is part of the parameters' errors.
+        # The difference between fits of similar likelihood is part of the standard errors.
         if other is not best and other.deviance - best.deviance < UNCERTAIN:
             values = best.problem.encode(best.solution.values)
             changes.append(best.problem.encode(other.solution.values) - values)
@@ -99,7 +99,7 @@ class _End:
 
     @cached_property
     def deviance(self) -> float:
-        """Minus twice the log likelihood, as of the samples of the whole campaign."""
+        """Minus twice the log likelihood, scaled to the samples before the force was shifted."""
         solution = self.solution
         every = self.first.samples_at(solution.values)
         motion = errors_in_motion(self.problem, solution)
@@ -109,7 +109,8 @@ class _End:
 
 
 def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
-    """Rounds of fits with the force on a clock or, with delays, later where that is significant."""
+    """Iterate the fit with the force late by `clock_s` and, with delays, by a significant delay
+    that all runs share."""
     problem, late_s = first, clock_s
     if clock_s != 0.0:
         problem = _delayed(first, late_s)
@@ -188,7 +189,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
 
 def _mean_share(motion: ErrorsInMotion, samples: Samples) -> float:
     """Mean variance by the motion at the samples that count, relative to the noise's."""
-    shares = [motion.share(i)[w > 0.0] for i, w in enumerate(samples.weight)]
+    shares = [motion.variance_ratio(i)[w > 0.0] for i, w in enumerate(samples.weight)]
     return float(np.mean(np.concatenate(shares)))
 
 
@@ -200,7 +201,7 @@ def _fitted(problem: Problem, near: Solution, motion: ErrorsInMotion, delayed: b
         motion = replace(motion, by_delay=slopes)
     plain, weights = problem.samples_at(values), []
     for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
-        sd = motion.noise * np.sqrt(1.0 + motion.share(i))
+        sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
         off = np.maximum(np.abs(residual) / sd, 1e-300)
         weights.append(weight * np.sqrt(np.minimum(1.0, HUBER / off)))
     samples = replace(plain, weight=tuple(weights), motion=motion)

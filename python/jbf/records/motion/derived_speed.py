@@ -1,7 +1,8 @@
 """A recorded speed that was made of the recorded path: a difference of counts over some samples.
 
-Such a speed tells nothing that the path does not, comes in coarse steps, and is late where the
-difference looks back. It is known by being that difference, to the digit.
+Such a speed is redundant, comes in coarse steps, and is late where the difference looks back. It is
+identified where it equals the difference within 5 % of its own step in 90 % of the samples in
+motion.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ Array = npt.NDArray[np.float64]
 SPANS = range(1, 13)
 """Differences over so many samples are looked for."""
 USUAL = 0.95
-"""Quantile of the speeds of which a few percent are motion."""
+"""Quantile that stands for the largest speed; a few percent of it are motion."""
 ALIKE = 0.9
 """Share of the samples in motion at which the speed must be the difference."""
 TO = 0.05

@@ -1,8 +1,8 @@
 """Errors of the readings of a motion, and its corners, by expectation-maximisation (EM).
 
-The noise that drives the motion follows a t distribution: a normal one with a random variance, so
-each step has an own intensity q c_k. The scale q, the variances of the readings and the c_k
-maximise the likelihood.
+The noise that drives the motion follows a t distribution: a normal one whose intensity q c_k in
+step k has an inverse gamma factor c_k. EM maximises the likelihood over the scale q and the
+variances of the readings; it is stopped before its end (`ROBUST_PASSES`).
 
 References
 ----------
@@ -25,10 +25,10 @@ Array = npt.NDArray[np.float64]
 FREEDOM = 2.0
 """Degrees of freedom of the noise's t distribution: with few, corners are sharp."""
 GAUSSIAN_PASSES, ROBUST_PASSES = 6, 24
-"""EM passes with normal noise, for a start, and with a t distribution. More of these go on to
-reduce the intensity between corners, and the errors of the motion become too small."""
+"""EM passes with normal noise, for a start, and with a t distribution. More of the latter reduce
+the intensity between corners further, and the standard errors of the motion become too small."""
 SETTLED = 0.01
-"""EM ends where no parameter changes by more than this share in a pass."""
+"""EM ends where intensity and variances change by less than this share in a pass."""
 
 
 def estimated(
@@ -37,7 +37,7 @@ def estimated(
     corners: Array | None = None,
     passes: int = ROBUST_PASSES,
 ) -> tuple[ReadingErrors, Array]:
-    """Errors and corners by EM from a start."""
+    """Estimate errors and intensity factors by EM from starting values."""
     if corners is None:
         corners = np.ones(len(readings.time_s) - 1)
     speed = np.zeros(len(readings.time_s))
@@ -56,7 +56,7 @@ def estimated(
 
 
 def corners_of(errors: ReadingErrors, motion: SmoothedMotion) -> Array:
-    """Expected factor of the intensity in each step, from the squares of the disturbances."""
+    """Factor of the intensity in each step: the reciprocal of the posterior mean of 1 / c_k."""
     square = motion.disturbance / errors.intensity
     square = np.where(np.isfinite(square), square, float(errors.order))
     factor: Array = (FREEDOM + square) / (FREEDOM + errors.order)
@@ -97,11 +97,14 @@ def _maximised(
     )
 
 
-def evidence(readings: Readings, errors: ReadingErrors, corners: Array) -> float:
-    """Lower bound of the log likelihood, whatever the intensity in each step is.
+def lower_bound(readings: Readings, errors: ReadingErrors, corners: Array) -> float:
+    """Variational lower bound of the log likelihood, marginal over the factors of all steps.
 
-    That of the expected intensities, less the divergence of their posteriors, which are inverse
-    gamma distributions, from their prior.
+    Notes
+    -----
+    With ``w = 1 / c`` the bound is ``log p(y | E w) + sum(N / 2 (E log w - log E w) - KL)``, where
+    KL is the Kullback-Leibler divergence of the posterior of w, a gamma distribution, from its
+    prior. It is exact as a bound at a fixed point of EM, and close to one before.
     """
     from scipy.special import digamma, gammaln  # half a second to import
 
@@ -109,8 +112,6 @@ def evidence(readings: Readings, errors: ReadingErrors, corners: Array) -> float
     motion = readings.smoothed(errors, corners, readings.first_speed())
     square = motion.disturbance / errors.intensity
     shape, rate = prior + 0.5 * order, prior + 0.5 * square[np.isfinite(square)]
-    # The expected logarithm of the precision, less the Kullback-Leibler divergence of two gamma
-    # distributions.
     gain = 0.5 * order * (digamma(shape) - np.log(shape)) - (shape - prior) * digamma(shape)
     gain += gammaln(shape) - gammaln(prior)
     each = gain - prior * np.log(rate / prior) - shape * (prior - rate) / rate

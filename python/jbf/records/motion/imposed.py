@@ -1,4 +1,4 @@
-"""From a recorded motion to the motion that was imposed.
+"""Estimate the motion from position and velocity records.
 
 A recorded speed carries noise and a recorded angle the encoder's steps; a friction law needs the
 speed, its sign and the acceleration. Both records are readings of one motion, which a
@@ -51,7 +51,7 @@ WORTH = 0.1
 AT_REST_SIGMA = 3.0
 """Standard errors within which a speed is zero next to a rest."""
 GONE = 3.0
-"""A path that has gone so many standard errors from a rest tells which way: one count has."""
+"""Displacement from a rest, in standard errors, from which its direction is known: a count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class MotionErrors:
     arm_m
         Metres of path for a radian of the angle; 1 where the path is the angle.
     velocity_delay_s
-        How late the velocity was read relative to the position, s.
+        Delay of the velocity relative to the position, s.
     smoothed
         The posterior that they were taken from.
     """
@@ -127,7 +127,7 @@ class ImposedMotion:
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def rougher(self, time_s: Array, factor: float) -> ImposedMotion:
-        """Motion smoothed less, as one that is driven with so many times the intensity.
+        """Posterior mean with the noise intensity multiplied by a factor.
 
         Parameters
         ----------
@@ -147,7 +147,10 @@ class ImposedMotion:
         )
 
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
-        """The motion at other instants within it: on cubics through speed and acceleration.
+        """The motion at other instants within it.
+
+        The posterior mean where it is known, else cubics through speed and acceleration; lines next
+        to a rest.
 
         Parameters
         ----------
@@ -256,9 +259,9 @@ def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ())
     if path is not None and not records.speed_measured:
         sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * np.sqrt(errors.position))
     without_swings(rest, velocity, sign_known)
-    # A contact that bends begins bent where the run begins in motion: noise is none.
+    # A run that begins in motion begins with a deflected contact. Noise at standstill is no motion:
+    # with an unknown sign models start at rest.
     if n and begins_in_a_hum(time, velocity):
-        # Models begin at rest there, whatever its force is.
         sign_known[0] = False
     if n and not sign_known[0]:
         velocity[0] = 0.0

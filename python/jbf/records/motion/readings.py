@@ -32,7 +32,8 @@ class ReadingErrors:
     order
         Which derivative of the position is noise: the third, the jerk, or the fourth, the snap.
     velocity_delay_s
-        How late the velocity was read relative to the position, s.
+        Delay of the velocity relative to the position, s: the value recorded at t is the velocity
+        at t minus this delay.
     """
 
     position: float
@@ -56,7 +57,8 @@ class Readings:
     position_floor, velocity_floor
         Smallest variances that the readings can have, of an encoder's or a digit's step.
     position_shape, velocity_shape
-        Relative standard errors of the samples; of velocities `AT_REST` at rest.
+        Relative standard errors of the samples: factors of those in `ReadingErrors`. A velocity
+        assigned at rest has the factor `AT_REST`.
     """
 
     time_s: Array

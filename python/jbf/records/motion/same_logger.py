@@ -1,7 +1,7 @@
-"""Runs of one logger have the same reading errors: where estimates differ, others are tried.
+"""Further starts for runs whose estimated reading errors differ from those of other runs.
 
-The likelihood of a run may have several maxima. The errors of the readings belong to the logger, so
-those that were estimated from other runs are further starts.
+The likelihood of a run may have several maxima. The reading errors are properties of the logger, so
+the estimates from other runs are further starts.
 """
 
 from __future__ import annotations
@@ -19,35 +19,38 @@ Array = npt.NDArray[np.float64]
 SAME = 10.0
 """Ratio of the largest variance to the smallest one up to which runs have the same errors."""
 SAME_DELAY = 0.1
-"""Difference of the velocity's delays up to which they are the same, samples."""
+"""Difference of the velocity's delays up to which runs have the same one, samples."""
 
 
 def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
-    """Errors from which the estimation of each of these motions may start; none where all runs have
-    the same errors.
+    """Starting values for the reading errors of each of these runs; none where all runs have the
+    same errors.
 
     Returns
     -------
     tuple of ReadingErrors
-        Those of the runs with the least, the median and the largest error of the velocity.
+        Errors of the runs with the smallest, the median and the largest value of the quantity that
+        differs most between the runs.
     """
-    sizes = np.array([_sizes(motion) for motion in motions])
-    if len(sizes) < 2 or len(motions[0].readings.time_s) < 2:
+    if len(motions) < 2 or min(len(motion.readings.time_s) for motion in motions) < 2:
         return ()
-    step_s = float(np.median(np.diff(motions[0].readings.time_s)))
-    delays = [motion.errors.velocity_delay_s for motion in motions]
-    spread = np.ptp(sizes, axis=0)
-    if np.max(spread) <= np.log(SAME) and np.ptp(delays) <= SAME_DELAY * step_s:
+    sizes = np.array([_relative_sizes(motion) for motion in motions])
+    seen = np.isfinite(sizes).all(axis=0)
+    spread = np.ptp(sizes[:, seen], axis=0)
+    if np.max(spread) <= 1.0:
         return ()
-    order = np.argsort(sizes[:, int(np.argmax(spread))])
+    order = np.argsort(sizes[:, seen][:, int(np.argmax(spread))], kind="stable")
     chosen = {int(order[0]), int(order[len(order) // 2]), int(order[-1])}
     return tuple(motions[i].errors for i in sorted(chosen))
 
 
-def _sizes(motion: Smoothed) -> Array:
-    """Logarithms of the variances of position and velocity; zero of one that was not read."""
+def _relative_sizes(motion: Smoothed) -> Array:
+    """Logarithms of the variances of position and velocity, and the velocity's delay, in units of
+    the differences up to which runs have the same ones; nan of a channel that was not recorded."""
     readings, errors = motion.readings, motion.errors
+    step_s = float(np.median(np.diff(readings.time_s)))
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
-    seen = [np.isfinite(readings.position).any(), velocity.any()]
-    sizes: Array = np.where(seen, np.log([errors.position, errors.velocity]), 0.0)
-    return sizes
+    seen = np.array([np.isfinite(readings.position).any(), velocity.any(), True])
+    logs = np.log([errors.position, errors.velocity]) / np.log(SAME)
+    sizes = np.append(logs, errors.velocity_delay_s / (SAME_DELAY * step_s))
+    return np.asarray(np.where(seen, sizes, np.nan))

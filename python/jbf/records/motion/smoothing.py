@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.em import corners_of, estimated, evidence
+from jbf.records.motion.em import corners_of, estimated, lower_bound
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.roughness import noise_of
 
@@ -44,11 +44,11 @@ NARROW = 2.0
 DELAY_GAIN = 10.0
 """Log-likelihood gain that a delay of the velocity must have."""
 START_FACTORS = (1.0, 10.0, 100.0)
-"""Factors of the velocity's error, next to its roughness, from which the estimation may start."""
+"""Factors applied to the velocity's standard deviation by third differences, for a start."""
 DELAY_ROUNDS, SAME_DELAY = 4, 0.01
 """Largest number of searches of the delay, and the change that ends them, samples."""
 HIDDEN = 0.01
-"""Share of the velocity's variance that is tried next to it while the delay is searched."""
+"""Share of the velocity's variance with which a delay is evaluated, too."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 STAMP_GAIN = 10.0
@@ -147,7 +147,7 @@ def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
     Parameters
     ----------
     like
-        Errors from which the estimation may start, too: the likeliest end is taken.
+        Additional starting values. The solution with the largest lower bound is returned.
     """
     n = len(readings.time_s)
     if n < SHORTEST:
@@ -156,7 +156,7 @@ def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
     start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
     ends = [_delayed(few, *estimated(few, tried)) for tried in (start, *like)]
-    errors, corners = max(ends, key=lambda end: evidence(few, *end)) if like else ends[0]
+    errors, corners = max(ends, key=lambda end: lower_bound(few, *end)) if like else ends[0]
     speed = np.zeros(n)
     if n > len(few.time_s):
         corners = np.ones(n - 1)
@@ -199,10 +199,10 @@ def _of_likeliest_order(readings: Readings) -> ReadingErrors:
     """Errors from which the estimation starts, with the likelier of the two orders."""
     start, _ = _likeliest_stamps(readings)
     few = readings.part(_busiest(readings, TRIED))
-    # The velocity of a rest is no reading.
+    # The zero velocities assigned at rest are no readings.
     few = replace(few, velocity=np.where(few.velocity_shape > AT_REST, few.velocity, np.nan))
     starts = [_likeliest_intensity(few, replace(start, order=order)) for order in (JERK, SNAP)]
-    return max(starts, key=lambda e: evidence(few, *estimated(few, e, passes=TRIED_PASSES)))
+    return max(starts, key=lambda e: lower_bound(few, *estimated(few, e, passes=TRIED_PASSES)))
 
 
 def _likeliest_intensity(
@@ -243,7 +243,7 @@ def _likeliest_intensity(
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Errors with or without one of the instants, and their log likelihood less its price."""
+    """Likeliest errors, with or without jitter of the stamps, and the penalised log likelihood."""
     step = float(np.median(np.diff(readings.time_s)))
     start = _likeliest_start(readings)
     found = start, _likelihood(readings, start)
@@ -257,7 +257,7 @@ def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
 
 
 def _busiest(readings: Readings, longest: int) -> slice:
-    """So many samples in a row, or all, in which the motion goes furthest."""
+    """Window of at most `longest` samples with the longest path."""
     n = len(readings.time_s)
     if n <= longest:
         return slice(0, n)
@@ -305,7 +305,7 @@ def _likeliest_delay(
 
     def cost(delay_s: float) -> float:
         tried = replace(errors, velocity_delay_s=delay_s)
-        # The velocity's error without a delay would hide one.
+        # A variance that was estimated without a delay includes the error from it.
         least = replace(tried, velocity=max(HIDDEN * errors.velocity, readings.velocity_floor))
         return -max(readings.log_likelihood(e, corners, speed) for e in (tried, least))
 

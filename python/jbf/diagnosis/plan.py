@@ -27,9 +27,10 @@ from jbf.diagnosis.strength import Strength, strength_of
 from jbf.errors import InputError
 from jbf.estimation.likelihood import effective_share
 from jbf.models.catalogue import find_effect
-from jbf.models.chain import core_motion, imposed
+from jbf.models.chain import core_motion
 from jbf.models.model import Model
 from jbf.records.arguments import of_kind
+from jbf.records.motion.known import known_motion
 from jbf.records.run import Run
 from jbf.records.toml_file import number
 from jbf.results import Result
@@ -169,7 +170,7 @@ def _told(
     """What a motion tells of the parameters and of each effect, (p + e, p + e)."""
     fitted = candidates.fitted(model.effects)
     problem, values = fitted.problem, fitted.found().values
-    motion = core_motion(model.rig, run, imposed(model.rig, run))
+    motion = core_motion(model.rig, run, known_motion(run, model.rig.radius_m))
     ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
     scale = np.where(problem.log, values, 1.0)[problem.open]
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]

@@ -16,9 +16,10 @@ from jbf.diagnosis.candidates import Candidates, Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
 from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import bounded
-from jbf.models.chain import core_load_n, core_motion, imposed
+from jbf.models.chain import core_load_n, core_motion
 from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
+from jbf.records.motion.known import known_motion
 from jbf.records.rig import Rig
 from jbf.records.run import Run, run_on
 
@@ -76,7 +77,7 @@ def motions(
     linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
     for excitation in excitations(limits, step_s, rig.quantities.speed):
         run = played(rig, excitation, step_s, linear=linear)
-        yield excitation, run, core_motion(rig, run, imposed(rig, run))
+        yield excitation, run, core_motion(rig, run, known_motion(run, rig.radius_m))
 
 
 def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:

@@ -1,0 +1,36 @@
+"""The motion of a run that is to be recorded: known as it was planned, with nothing to estimate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.run import Run
+
+
+def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
+    """The motion of a run whose speed is exact.
+
+    Parameters
+    ----------
+    run
+        A planned run with an angle or a position.
+    radius_m
+        Journal radius, m; None on a linear axis.
+    """
+    velocity = run.velocity_m_s
+    still = np.concatenate(([False], velocity == 0.0, [False]))
+    # A zero between two moving samples is a reversal or a bend.
+    resting = still[1:-1] & (still[:-2] | still[2:])
+    angle = run.angle_rad
+    if angle is None:
+        assert run.position_m is not None
+        angle = run.position_m / (radius_m or 1.0)
+    return ImposedMotion(
+        velocity_m_s=velocity,
+        acceleration_m_s2=np.gradient(velocity, run.time_s),
+        angle_rad=angle,
+        velocity_error_m_s=np.zeros(len(velocity)),
+        resting=resting,
+        sign_known=np.ones(len(velocity), dtype=bool),
+    )

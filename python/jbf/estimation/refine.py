@@ -77,7 +77,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
             values = best.problem.encode(best.solution.values)
             changes.append(best.problem.encode(other.solution.values) - values)
     change = np.sqrt(np.sum(np.square(changes), axis=0))
-    return best.problem, replace(best.solution, smoothing=change)
+    return best.problem, replace(best.solution, systematic=change)
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,9 +33,10 @@ class Solution:
     samples
         Those that the model at these values leaves: fewer than the campaign's where an effect moves
         the instants of jumps.
-    smoothing
-        Change of each search variable with a motion that is smoothed less, shape (k,): a part of
-        the parameters' errors. None where the errors of the motion are neglected.
+    systematic
+        Systematic error of each search variable, shape (k,): its change with a motion that is
+        smoothed less, and between fits of similar likelihood. None where the errors of the motion
+        are neglected.
     """
 
     effects: tuple[str, ...]
@@ -47,7 +48,7 @@ class Solution:
     converged: bool
     message: str
     samples: Samples
-    smoothing: Array | None = None
+    systematic: Array | None = None
 
     @property
     def free(self) -> int:

@@ -81,9 +81,9 @@ def spread(problem: Problem, solution: Solution) -> Spread:
     inflation = np.ones(free)
     if moved.any():
         inflation[moved] = _inflation(solution, covariance[np.ix_(moved, moved)], moved)
-    if solution.smoothing is not None:
+    if solution.systematic is not None:
         with np.errstate(invalid="ignore", divide="ignore"):
-            inflation = np.hypot(inflation, np.nan_to_num(solution.smoothing / sd))
+            inflation = np.hypot(inflation, np.nan_to_num(solution.systematic / sd))
     return Spread(sd, inflation, change, correlation, moved, separate)
 
 

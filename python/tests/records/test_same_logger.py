@@ -19,13 +19,14 @@ def with_errors(motion: Smoothed, **changed: float) -> Smoothed:
 
 
 def test_runs_with_the_same_errors_have_no_further_starts(trapezoids: Smoothed) -> None:
-    other = with_errors(trapezoids, velocity=3.0 * trapezoids.errors.velocity)
+    other = with_errors(trapezoids, velocity_variance=3.0 * trapezoids.errors.velocity_variance)
     assert further_starts([trapezoids]) == ()
     assert further_starts([trapezoids, other, other]) == ()
 
 
 @pytest.mark.parametrize(
-    "changed", [{"velocity": 1e-2}, {"position": 1e-3}, {"velocity_delay_s": 2e-3}]
+    "changed",
+    [{"velocity_variance": 1e-2}, {"position_variance": 1e-3}, {"velocity_delay_s": 2e-3}],
 )
 def test_errors_that_differ_between_runs_become_starts(
     trapezoids: Smoothed, changed: dict[str, float]
@@ -37,5 +38,5 @@ def test_errors_that_differ_between_runs_become_starts(
 
 def test_bad_start_does_not_change_the_solution(trapezoids: Smoothed) -> None:
     """A start with an exact velocity and a jerk that follows every reading."""
-    bad = replace(trapezoids.errors, velocity=1e-12, intensity=1e8)
+    bad = replace(trapezoids.errors, velocity_variance=1e-12, intensity=1e8)
     assert smooth(trapezoids.readings, [bad]).errors == trapezoids.errors

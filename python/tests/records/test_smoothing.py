@@ -37,8 +37,8 @@ def test_smoothed_velocity_is_closer_to_the_truth_than_its_reading(kind: str) ->
     motion = smooth(readings_of(position, velocity))
     errors = motion.errors
     assert np.std(motion.mean[:, 1] - velocity) < 0.4 * NOISE
-    assert np.sqrt(errors.velocity) == pytest.approx(NOISE, rel=0.1)
-    assert np.sqrt(errors.position) == pytest.approx(COUNT / np.sqrt(12.0), rel=0.1)
+    assert np.sqrt(errors.velocity_variance) == pytest.approx(NOISE, rel=0.1)
+    assert np.sqrt(errors.position_variance) == pytest.approx(COUNT / np.sqrt(12.0), rel=0.1)
 
 
 @pytest.mark.parametrize("jitter_s", [5e-5, 5e-4, 1.5e-3])
@@ -66,7 +66,7 @@ def test_samples_read_off_even_stamps_have_errors_that_grow_with_the_speed() -> 
     position = np.interp(instants, t, 10.0 * (1.0 - np.cos(1.0 * t)))
     velocity = np.interp(instants, t, 10.0 * np.sin(1.0 * t))
     errors = smooth(readings_of(position, velocity)).errors
-    assert np.sqrt(errors.stamp) == pytest.approx(2e-4, rel=0.1)
+    assert np.sqrt(errors.stamp_variance) == pytest.approx(2e-4, rel=0.1)
 
 
 def test_samples_at_uneven_instants_with_true_stamps_are_not_on_an_even_clock() -> None:
@@ -143,7 +143,7 @@ def test_long_record_is_smoothed_with_errors_of_its_middle() -> None:
     position, velocity, _ = motion_of("hand-guided", 24_000)
     motion = smooth(readings_of(position, velocity))
     errors = motion.errors
-    assert np.sqrt(errors.velocity) == pytest.approx(NOISE, rel=0.05)
+    assert np.sqrt(errors.velocity_variance) == pytest.approx(NOISE, rel=0.05)
     sd = np.sqrt(motion.covariance[:, 1, 1])
     assert np.mean(np.abs(motion.mean[:, 1] - velocity) < 2.0 * sd) > 0.92
 

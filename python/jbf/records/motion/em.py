@@ -47,9 +47,9 @@ def estimated(
         if k >= GAUSSIAN_PASSES:
             corners = corners_of(errors, motion)
         previous, errors = errors, _maximised(readings, errors, corners, motion)
-        change = np.log([errors.intensity, errors.position, errors.velocity]) - np.log(
-            [previous.intensity, previous.position, previous.velocity]
-        )
+        change = np.log(
+            [errors.intensity, errors.position_variance, errors.velocity_variance]
+        ) - np.log([previous.intensity, previous.position_variance, previous.velocity_variance])
         if k > GAUSSIAN_PASSES + 2 and np.max(np.abs(change)) < SETTLED:
             break
     return errors, corners
@@ -69,19 +69,19 @@ def _maximised(
     """The M step: variances that maximise the expected likelihood."""
     intensity = float(np.nanmean(motion.disturbance / corners)) / errors.order
     mean, covariance = motion.mean, motion.covariance
-    position, stamp = errors.position, errors.stamp
+    position, stamp = errors.position_variance, errors.stamp_variance
     seen = np.isfinite(readings.position)
     if seen.any():
         misfit = (readings.position - mean[:, 0]) ** 2 + covariance[:, 0, 0]
-        by_stamp = errors.stamp * mean[:, 1] ** 2
-        own = errors.position * readings.position_shape**2
+        by_stamp = errors.stamp_variance * mean[:, 1] ** 2
+        own = errors.position_variance * readings.position_shape**2
         total = own + by_stamp
         # The expected squares of the two errors that make up each misfit.
         excess = (misfit - total) / total**2
         weight = seen / readings.position_shape**2
-        stamp = errors.stamp * float(1.0 + np.average(by_stamp * excess, weights=weight))
-        position = errors.position * float(1.0 + np.average(own * excess, weights=weight))
-    velocity = errors.velocity
+        stamp = errors.stamp_variance * float(1.0 + np.average(by_stamp * excess, weights=weight))
+        position = errors.position_variance * float(1.0 + np.average(own * excess, weights=weight))
+    velocity = errors.velocity_variance
     seen = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
     if seen.any():
         late = -errors.velocity_delay_s
@@ -90,9 +90,9 @@ def _maximised(
         velocity = float(np.mean(misfit[seen] / readings.velocity_shape[seen] ** 2))
     return replace(
         errors,
-        position=max(position, readings.position_floor),
-        velocity=max(velocity, readings.velocity_floor),
-        stamp=stamp,
+        position_variance=max(position, readings.position_floor),
+        velocity_variance=max(velocity, readings.velocity_floor),
+        stamp_variance=stamp,
         intensity=max(intensity, 1e-300),
     )
 

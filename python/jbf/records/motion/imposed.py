@@ -257,7 +257,9 @@ def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ())
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
     sign_known &= ~backward_beside_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:
-        sign_known &= ~unsure_beside_rest(rest, path, velocity, GONE * np.sqrt(errors.position))
+        sign_known &= ~unsure_beside_rest(
+            rest, path, velocity, GONE * np.sqrt(errors.position_variance)
+        )
     without_swings(rest, velocity, sign_known)
     # A run that begins in motion begins with a deflected contact. Noise at standstill is no motion:
     # with an unknown sign models start at rest.

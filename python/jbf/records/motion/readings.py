@@ -23,10 +23,10 @@ class ReadingErrors:
 
     Attributes
     ----------
-    position, velocity
-        Variances, m^2 and (m/s)^2 (radians for a rotary motion).
-    stamp
-        Variance of the time stamps, s^2: adds `v^2 stamp` to the position's variance.
+    position_variance, velocity_variance
+        Variances of the readings, m^2 and (m/s)^2 (radians for a rotary motion).
+    stamp_variance
+        Variance of the time stamps, s^2: adds `v^2 stamp_variance` to the position's variance.
     intensity
         Intensity of the noise that drives the motion, (m/s^3)^2 s or (m/s^4)^2 s.
     order
@@ -36,9 +36,9 @@ class ReadingErrors:
         at t minus this delay.
     """
 
-    position: float
-    velocity: float
-    stamp: float
+    position_variance: float
+    velocity_variance: float
+    stamp_variance: float
     intensity: float
     order: int = 3
     velocity_delay_s: float = 0.0
@@ -120,8 +120,10 @@ class Readings:
 
     def variances(self, errors: ReadingErrors, speed: Array) -> tuple[Array, Array]:
         """Variances of position and velocity at each sample; infinite where there is no reading."""
-        position = errors.position * self.position_shape**2 + errors.stamp * speed**2
-        velocity = errors.velocity * self.velocity_shape**2
+        position = (
+            errors.position_variance * self.position_shape**2 + errors.stamp_variance * speed**2
+        )
+        velocity = errors.velocity_variance * self.velocity_shape**2
         return (
             np.where(np.isfinite(self.position), position, np.inf),
             np.where(np.isfinite(self.velocity), velocity, np.inf),

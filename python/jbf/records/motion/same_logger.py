@@ -51,6 +51,6 @@ def _relative_sizes(motion: Smoothed) -> Array:
     step_s = float(np.median(np.diff(readings.time_s)))
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
     seen = np.array([np.isfinite(readings.position).any(), velocity.any(), True])
-    logs = np.log([errors.position, errors.velocity]) / np.log(SAME)
+    logs = np.log([errors.position_variance, errors.velocity_variance]) / np.log(SAME)
     sizes = np.append(logs, errors.velocity_delay_s / (SAME_DELAY * step_s))
     return np.asarray(np.where(seen, sizes, np.nan))

@@ -51,6 +51,8 @@ HIDDEN = 0.01
 """Share of the velocity's variance with which a delay is evaluated, too."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
+START_GAIN = 10.0
+"""Gain of the lower bound that an additional starting value must have."""
 STAMP_GAIN = 10.0
 """Log-likelihood gain that an error of the instants must have."""
 LONGEST_DELAY = 1.5
@@ -147,7 +149,8 @@ def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
     Parameters
     ----------
     like
-        Additional starting values. The solution with the largest lower bound is returned.
+        Additional starting values. Of their solutions the one with the largest lower bound is
+        taken, if it gains `START_GAIN`.
     """
     n = len(readings.time_s)
     if n < SHORTEST:
@@ -155,8 +158,12 @@ def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
     start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    ends = [_delayed(few, *estimated(few, tried)) for tried in (start, *like)]
-    errors, corners = max(ends, key=lambda end: lower_bound(few, *end)) if like else ends[0]
+    errors, corners = _delayed(few, *estimated(few, start))
+    if like:
+        most = lower_bound(few, errors, corners) + START_GAIN
+        for end in (_delayed(few, *estimated(few, tried)) for tried in like):
+            if (bound := lower_bound(few, *end)) > most:
+                (errors, corners), most = end, bound
     speed = np.zeros(n)
     if n > len(few.time_s):
         corners = np.ones(n - 1)
@@ -177,7 +184,9 @@ def _likeliest_start(readings: Readings) -> ReadingErrors:
     """
     start = _start(readings)
     tried = [
-        _likeliest_intensity(readings, replace(start, velocity=factor**2 * start.velocity))
+        _likeliest_intensity(
+            readings, replace(start, velocity_variance=factor**2 * start.velocity_variance)
+        )
         for factor in (START_FACTORS if np.isfinite(readings.velocity).any() else (1.0,))
     ]
     return max(tried, key=lambda errors: _likelihood(readings, errors))
@@ -248,7 +257,7 @@ def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
     start = _likeliest_start(readings)
     found = start, _likelihood(readings, start)
     for share in STAMP_ERRORS if np.isfinite(readings.position).any() else ():
-        tried = replace(start, stamp=(share * step) ** 2)
+        tried = replace(start, stamp_variance=(share * step) ** 2)
         tried = _likeliest_intensity(readings, tried, NARROW)
         likelihood = _likelihood(readings, tried) - STAMP_GAIN
         if likelihood > found[1]:
@@ -306,7 +315,9 @@ def _likeliest_delay(
     def cost(delay_s: float) -> float:
         tried = replace(errors, velocity_delay_s=delay_s)
         # A variance that was estimated without a delay includes the error from it.
-        least = replace(tried, velocity=max(HIDDEN * errors.velocity, readings.velocity_floor))
+        least = replace(
+            tried, velocity_variance=max(HIDDEN * errors.velocity_variance, readings.velocity_floor)
+        )
         return -max(readings.log_likelihood(e, corners, speed) for e in (tried, least))
 
     found = minimize_scalar(cost, bounds=(-longest_s, longest_s), method="bounded")

@@ -31,7 +31,7 @@ SHORTEST = 4
 CHOSEN, LONGEST = 3_000, 8_000
 """Samples of a longer record from which the start and the clock are chosen, and from which the
 parameters are estimated: those in which the motion goes furthest."""
-TRIED, TRIED_PASSES = 1_500, 12
+TRIED, TRIED_PASSES = 1_500, 4
 """Samples of a record from which its order is chosen, and robust passes until then."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""

@@ -36,9 +36,6 @@ pub struct Smoothed<const N: usize> {
     pub log_likelihood: f64,
 }
 
-/// Relative errors of a variance that are tried for rounding.
-const ROUNDING: [f64; 5] = [0.0, 1e-15, 1e-14, 1e-13, 1e-12];
-
 /// Smooth a motion of order N: its N-th derivative is white noise.
 ///
 /// # Arguments
@@ -98,13 +95,17 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
         big = step.carried_back(&big);
 
         let (own, own_spread) = filtered[k];
-        let gain = solve_covariance(&(f * own_spread), &predicted[k + 1]).transpose();
+        // Next to nothing is known at the start of an exact record: its covariance is singular to
+        // working precision there, and without a gain stays that of the filter.
+        let gain = match predicted[k + 1].cholesky() {
+            Some(factor) => factor.solve(&(f * own_spread)).transpose(),
+            None => Square::zeros(),
+        };
         let left = Square::identity() - gain * f;
         spread = symmetric(
             &(left * own_spread * left.transpose()
                 + gain * (spread + step.noise * q) * gain.transpose()),
         );
-        // Without a division: this one is exact where the covariances are nearly singular.
         let after = own + own_spread * r;
         store(&mut out, k, &after, &spread, &scale);
         for i in 0..N {
@@ -114,21 +115,6 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
         }
     }
     out
-}
-
-/// `P^-1 M` for a covariance P; where it is singular to working precision, with variances that are
-/// larger by a rounding error.
-fn solve_covariance<const N: usize>(m: &Square<N>, p: &Square<N>) -> Square<N> {
-    let mut larger = *p;
-    for share in ROUNDING {
-        for i in 0..N {
-            larger[(i, i)] = p[(i, i)] * (1.0 + share);
-        }
-        if let Some(factor) = larger.cholesky() {
-            return factor.solve(m);
-        }
-    }
-    Square::zeros()
 }
 
 /// Logarithm of the likelihood of the readings, as [`smooth`] returns it, by the filter alone.

@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jbf.records.motion.em import corners_of, lower_bound
 from jbf.records.motion.even_clock import even_clock
+from jbf.records.motion.readings import ReadingErrors, Readings
 from jbf.records.motion.smoothing import is_even, smooth
 from known_motions import Array, quantised
 from read_motions import COUNT, FINE, NOISE, STEP_S, motion_of, readings_of
@@ -155,8 +157,10 @@ def test_record_of_one_to_five_samples_gives_a_finite_motion() -> None:
         assert np.isfinite(motion.mean).all()
 
 
-@pytest.mark.parametrize(("kind", "order"), [("sine", 4), ("trapezoids", 3)])
-def test_acceleration_is_smooth_in_a_sine_and_jumps_in_a_trapezoid(kind: str, order: int) -> None:
+@pytest.mark.parametrize(("kind", "order", "share"), [("sine", 4, 2e-4), ("trapezoids", 3, 1.5e-3)])
+def test_acceleration_is_smooth_in_a_sine_and_jumps_in_a_trapezoid(
+    kind: str, order: int, share: float
+) -> None:
     position, velocity, acceleration = motion_of(kind)
     # A fine encoder: with a coarse one both models leave the same.
     readings = replace(
@@ -167,4 +171,32 @@ def test_acceleration_is_smooth_in_a_sine_and_jumps_in_a_trapezoid(kind: str, or
     motion = smooth(readings)
     assert motion.errors.order == order
     usual = np.median(np.abs(motion.mean[:, 2] - acceleration))
-    assert usual < 1e-3 * np.max(np.abs(acceleration))
+    assert usual < share * np.max(np.abs(acceleration))
+
+
+@pytest.mark.parametrize("order", [3, 4])
+def test_lower_bound_is_just_below_the_likelihood_by_quadrature(order: int) -> None:
+    """Two steps: the likelihood is an integral over the precision factors w = 1 / c of both, which
+    have the density exp(-w)."""
+    three = Readings(
+        np.array([0.0, 0.1, 0.2]),
+        np.array([0.0, 0.011, 0.05]),
+        np.array([0.02, 0.21, 0.55]),
+        1e-8,
+        1e-8,
+        np.ones(3),
+        np.ones(3),
+    )
+    errors = ReadingErrors(1e-6, 1e-4, 0.0, 1e-1, order)
+    nodes, weights = np.polynomial.laguerre.laggauss(40)
+    logs = [
+        [three.log_likelihood(errors, 1.0 / np.array([a, b]), np.zeros(3)) for a in nodes]
+        for b in nodes
+    ]
+    largest = np.max(logs)
+    likelihood = largest + np.log(weights @ np.exp(logs - largest) @ weights)
+    corners = np.ones(2)
+    for _ in range(200):
+        corners = corners_of(errors, three.smoothed(errors, corners, np.zeros(3)))
+    bound = lower_bound(three, errors, corners)
+    assert likelihood - 1.0 < bound < likelihood

@@ -18,6 +18,7 @@ from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
+from jbf.estimation.starts import LATEST
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -26,8 +27,6 @@ EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 LARGEST_DRIFT = 2e-3
 """Largest relative drift between two clocks; between those of two quartz crystals it is 1e-4."""
-MOST_LATE = 0.1
-"""Share of a run that its force may be late by."""
 STEPS = 10
 """Steps of Gauss and Newton in the lateness of the runs and the model together, at most,"""
 SETTLED = 0.1
@@ -56,7 +55,7 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
     noise, or of the error of a wrong model.
     """
     return abs(drift) <= LARGEST_DRIFT and all(
-        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= MOST_LATE * p.run.duration_s
+        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= LATEST * p.run.duration_s
         for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
     )
 

@@ -1,7 +1,7 @@
 """Types of the extension module."""
 
 from collections.abc import Sequence
-from typing import Any, TypeAlias, TypedDict, final, type_check_only
+from typing import Any, Protocol, TypeAlias, TypedDict, final, type_check_only
 
 import numpy as np
 import numpy.typing as npt
@@ -169,21 +169,42 @@ def steady_friction(
     load_n: float | None,
 ) -> _Array: ...
 
+@type_check_only
+class _ReadingErrors(Protocol):
+    @property
+    def position_variance(self) -> float: ...
+    @property
+    def velocity_variance(self) -> float: ...
+    @property
+    def stamp_variance(self) -> float: ...
+    @property
+    def intensity(self) -> float: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def velocity_delay_s(self) -> float: ...
+
 @final
 class MotionReadings:
     def __new__(
         cls,
         time: _Array,
         position: _Array,
-        position_variance: _Array,
+        position_shape: _Array,
+        position_floor: float,
         velocity: _Array,
-        velocity_variance: _Array,
-        intensity: _Array,
-        order: int,
-        velocity_delay: float,
+        velocity_shape: _Array,
+        velocity_floor: float,
+        assigned: float,
     ) -> Self: ...
-    def log_likelihood(self) -> float: ...
-    def smoothed(self) -> SmoothedMotion: ...
+    def log_likelihood(self, errors: _ReadingErrors, corners: _Array, speed: _Array) -> float: ...
+    def lower_bound(self, errors: _ReadingErrors, corners: _Array, speed: _Array) -> float: ...
+    def smoothed(
+        self, errors: _ReadingErrors, corners: _Array, speed: _Array
+    ) -> SmoothedMotion: ...
+    def estimated(
+        self, errors: _ReadingErrors, corners: _Array, passes: tuple[int, int], fixed: bool
+    ) -> tuple[float, float, float, float, _Array]: ...
 
 @final
 class SmoothedMotion:
@@ -193,10 +214,6 @@ class SmoothedMotion:
     def covariance(self) -> _Array: ...
     @property
     def gain(self) -> _Array: ...
-    @property
-    def disturbance(self) -> _Array: ...
-    @property
-    def log_likelihood(self) -> float: ...
 
 def whiten_motion_errors(
     posterior: _Array,

@@ -10,19 +10,22 @@
 //! Of order 3 the jerk is noise: accelerations jump where q is large. Of order 4 the snap is noise:
 //! the acceleration is smooth.
 //!
-//! [`smooth`] returns the posterior mean and covariance of the state at each sample, the log
-//! likelihood of the measurements and the squared disturbances that an expectation-maximisation step
-//! for q needs. [`whiten`] turns residuals that contain a linear function of the motion's errors
-//! into independent ones.
+//! [`estimate`] finds the variances of the readings and the intensity of each step by
+//! expectation-maximisation. [`smooth`] returns the posterior mean and covariance of the state at
+//! each sample, the log likelihood of the readings and the squared disturbance of each step.
+//! [`whiten`] turns residuals that contain a linear function of the motion's errors into independent
+//! ones.
 //!
 //! Sources: Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*
 //! (2001), section 6.2 (order 3); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989),
 //! Durbin & Koopman, *Time Series Analysis by State Space Methods* (2012), section 4.5
 //! (disturbances).
 
+mod estimation;
 mod model;
 mod smoother;
 mod whitening;
 
+pub use estimation::{estimate, lower_bound, Passes, ReadingErrors, Record};
 pub use smoother::{log_likelihood, smooth, Readings, Smoothed};
 pub use whitening::whiten;

@@ -47,13 +47,9 @@ pub struct Smoothed<const N: usize> {
 /// Readings of one instant are processed one after the other. Inside, time is counted in median
 /// steps, so that the components of the state are of similar size.
 pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothed<N> {
-    let (mut predicted, mut filtered, mut updates) = (Vec::new(), Vec::new(), Vec::new());
-    let passed = filter::<N>(readings, intensity, |before, both, after| {
-        predicted.push(before.1);
-        updates.push(both);
-        filtered.push(after);
-    });
-    let n = filtered.len();
+    let mut forward = Forward::default();
+    forward.pass(readings, intensity);
+    let n = forward.filtered.len();
     if n == 0 {
         return Smoothed::default();
     }
@@ -62,58 +58,34 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
         covariance: vec![[[0.0; N]; N]; n],
         gain: vec![[[0.0; N]; N]; n - 1],
         disturbance: vec![f64::NAN; n - 1],
-        log_likelihood: passed.log_likelihood,
+        log_likelihood: forward.log_likelihood,
     };
-    let time = passed.scale;
-    let scale = State::from_fn(|i, _| time.unit.powi(-(i as i32)));
-    let (last, mut spread) = filtered[n - 1];
+    let scale = State::from_fn(|i, _| forward.time.unit.powi(-(i as i32)));
+    let (last, mut spread) = forward.filtered[n - 1];
     store(&mut out, n - 1, &last, &spread, &scale);
-    let (mut r, mut big) = (State::<N>::zeros(), Square::<N>::zeros());
-    let mut step = Transition::over(0.0);
-    for k in (0..n - 1).rev() {
-        let q = intensity[k] * time.intensity;
-        time.step(readings, k, &mut step);
+    forward.backward(readings, intensity, |k, step, adjoint, disturbance| {
+        out.disturbance[k] = disturbance;
+        let (own, own_spread) = forward.filtered[k];
         let f = step.matrix();
-        for (row, update) in passed.rows.iter().zip(&updates[k + 1]).rev() {
-            if let Some((update, innovation)) = update {
-                // With L = I - K row': r <- row e / S + L' r, N_r <- row row' / S + L' N_r L, where
-                // `big` is N_r (Durbin & Koopman write N).
-                r += row * (innovation / update.variance - update.gain.dot(&r));
-                let of_gain = big * update.gain;
-                let own = update.variance.recip() + update.gain.dot(&of_gain);
-                let cross = row * of_gain.transpose();
-                big += row * row.transpose() * own - cross - cross.transpose();
-            }
-        }
-        if step.h > 0.0 {
-            // E[w' Q^-1 w] for w ~ N(q Q r, q Q - q Q N_r q Q).
-            let noise = step.noise;
-            let square = q * q * (r.dot(&(noise * r)) - noise.dot(&big)) + N as f64 * q;
-            out.disturbance[k] = square.max(0.0) / time.intensity;
-        }
-        r = f.transpose() * r;
-        big = step.carried_back(&big);
-
-        let (own, own_spread) = filtered[k];
         // Next to nothing is known at the start of an exact record: its covariance is singular to
         // working precision there, and without a gain stays that of the filter.
-        let gain = match predicted[k + 1].cholesky() {
+        let gain = match forward.predicted[k + 1].cholesky() {
             Some(factor) => factor.solve(&(f * own_spread)).transpose(),
             None => Square::zeros(),
         };
         let left = Square::identity() - gain * f;
+        let noise = step.noise * (intensity[k] * forward.time.intensity);
         spread = symmetric(
-            &(left * own_spread * left.transpose()
-                + gain * (spread + step.noise * q) * gain.transpose()),
+            &(left * own_spread * left.transpose() + gain * (spread + noise) * gain.transpose()),
         );
-        let after = own + own_spread * r;
+        let after = own + own_spread * adjoint.state;
         store(&mut out, k, &after, &spread, &scale);
         for i in 0..N {
             for j in 0..N {
                 out.gain[k][i][j] = gain[(i, j)] * scale[i] / scale[j];
             }
         }
-    }
+    });
     out
 }
 
@@ -125,13 +97,97 @@ pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) ->
 type Estimate<const N: usize> = (State<N>, Square<N>);
 type Updates<const N: usize> = [Option<(Update<N>, f64)>; 2];
 
+/// The filter's states, kept for the way back. A second pass uses the memory of the first.
+#[derive(Default)]
+pub(crate) struct Forward<const N: usize> {
+    pub time: TimeScale,
+    pub log_likelihood: f64,
+    /// Mean and covariance of each state given the readings up to it.
+    pub filtered: Vec<Estimate<N>>,
+    /// Covariance of each state given the readings before it.
+    predicted: Vec<Square<N>>,
+    updates: Vec<Updates<N>>,
+}
+
+/// The readings after an instant, as seen from its state x: `E[x | all] = m + P state` and
+/// `cov[x | all] = P - P square P`, where m and P are the filter's mean and covariance.
+pub(crate) struct Adjoint<const N: usize> {
+    pub state: State<N>,
+    pub square: Square<N>,
+}
+
+impl<const N: usize> Adjoint<N> {
+    /// Of the last instant: there are no readings after it.
+    pub(crate) fn last() -> Self {
+        Self {
+            state: State::zeros(),
+            square: Square::zeros(),
+        }
+    }
+}
+
+impl<const N: usize> Forward<N> {
+    /// Filter the readings.
+    pub(crate) fn pass(&mut self, readings: &Readings, intensity: &[f64]) {
+        self.filtered.clear();
+        self.predicted.clear();
+        self.updates.clear();
+        let passed = filter::<N>(readings, intensity, |before, both, after| {
+            self.predicted.push(before.1);
+            self.updates.push(both);
+            self.filtered.push(after);
+        });
+        (self.time, self.log_likelihood) = (passed.time, passed.log_likelihood);
+    }
+
+    /// Call `visit` for each step from the last one to the first, with its index, transition,
+    /// adjoint at its start and expected squared disturbance ([`Smoothed::disturbance`]).
+    pub(crate) fn backward(
+        &self,
+        readings: &Readings,
+        intensity: &[f64],
+        mut visit: impl FnMut(usize, &Transition<N>, &Adjoint<N>, f64),
+    ) {
+        let rows = self.time.rows::<N>(readings);
+        let mut adjoint = Adjoint::last();
+        let mut step = Transition::over(0.0);
+        for k in (0..self.filtered.len().saturating_sub(1)).rev() {
+            let Adjoint { state: r, square } = &mut adjoint;
+            for (row, update) in rows.iter().zip(&self.updates[k + 1]).rev() {
+                if let Some((update, innovation)) = update {
+                    // With L = I - K row': r <- row e / S + L' r, N <- row row' / S + L' N L
+                    // (Durbin & Koopman's symbols).
+                    *r += row * (innovation / update.variance - update.gain.dot(r));
+                    let of_gain = *square * update.gain;
+                    let own = update.variance.recip() + update.gain.dot(&of_gain);
+                    let cross = row * of_gain.transpose();
+                    *square += row * row.transpose() * own - cross - cross.transpose();
+                }
+            }
+            self.time.step(readings, k, &mut step);
+            let q = intensity[k] * self.time.intensity;
+            let disturbance = if step.h > 0.0 {
+                // E[w' Q^-1 w] for w ~ N(q Q r, q Q - q Q N q Q).
+                let noise = step.noise;
+                let change = r.dot(&(noise * *r)) - noise.dot(square);
+                (q * q * change + N as f64 * q).max(0.0) / self.time.intensity
+            } else {
+                f64::NAN
+            };
+            *r = step.matrix().transpose() * *r;
+            *square = step.carried_back(square);
+            visit(k, &step, &adjoint, disturbance);
+        }
+    }
+}
+
 /// Time in units of the median step.
-#[derive(Clone, Copy)]
-struct TimeScale {
+#[derive(Clone, Copy, Default)]
+pub(crate) struct TimeScale {
     /// The median step, s.
-    unit: f64,
+    pub unit: f64,
     /// Factor of the noise's intensity.
-    intensity: f64,
+    pub intensity: f64,
 }
 
 impl TimeScale {
@@ -139,6 +195,12 @@ impl TimeScale {
         let unit = median_step(time);
         let intensity = unit.powi(2 * order as i32 - 1);
         Self { unit, intensity }
+    }
+
+    /// Position and recorded velocity as linear functions of the state.
+    pub(crate) fn rows<const N: usize>(&self, readings: &Readings) -> [State<N>; 2] {
+        let position = State::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
+        [position, late_velocity(readings.velocity_delay / self.unit)]
     }
 
     /// Set `step` to the transition from instant k to k + 1.
@@ -151,9 +213,8 @@ impl TimeScale {
 }
 
 /// What the filter returns besides its states.
-struct FilterOutput<const N: usize> {
-    scale: TimeScale,
-    rows: [State<N>; 2],
+struct FilterOutput {
+    time: TimeScale,
     log_likelihood: f64,
 }
 
@@ -163,7 +224,7 @@ fn filter<const N: usize>(
     readings: &Readings,
     intensity: &[f64],
     mut visit: impl FnMut(Estimate<N>, Updates<N>, Estimate<N>),
-) -> FilterOutput<N> {
+) -> FilterOutput {
     let n = [
         readings.time.len(),
         readings.position.len(),
@@ -175,21 +236,18 @@ fn filter<const N: usize>(
     .into_iter()
     .min()
     .unwrap_or(0);
-    let scale = TimeScale::new(&readings.time[..n], N);
-    let unit = scale.unit;
-    let rows: [State<N>; 2] = [
-        State::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 }),
-        late_velocity(readings.velocity_delay / unit),
-    ];
+    let time = TimeScale::new(&readings.time[..n], N);
+    let unit = time.unit;
+    let rows: [State<N>; 2] = time.rows(readings);
     let mut log_likelihood = 0.0;
     let (mut mean, mut covariance): Estimate<N> = initial_state(readings, n, unit);
     let mut step = Transition::over(0.0);
     for k in 0..n {
         if k > 0 {
-            scale.step(readings, k - 1, &mut step);
+            time.step(readings, k - 1, &mut step);
             mean = step.matrix() * mean;
             covariance =
-                step.carried(&covariance) + step.noise * (intensity[k - 1] * scale.intensity);
+                step.carried(&covariance) + step.noise * (intensity[k - 1] * time.intensity);
         }
         let before = (mean, covariance);
         let pair = [
@@ -219,8 +277,7 @@ fn filter<const N: usize>(
         visit(before, both, (mean, covariance));
     }
     FilterOutput {
-        scale,
-        rows,
+        time,
         log_likelihood,
     }
 }

@@ -1,6 +1,9 @@
 //! The smoother of a recorded motion, and residuals whitened for its errors.
 
-use jbf_motion::{Readings, Smoothed};
+use jbf_motion::{
+    estimate, log_likelihood, lower_bound, smooth, Passes, ReadingErrors, Readings, Record,
+    Smoothed,
+};
 use numpy::ndarray::{Array2, Array3, ArrayView2, ArrayView3};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -8,108 +11,241 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Readings of a motion at n instants with given error variances, and the noise that drives it.
+/// Readings of a motion at n instants.
 #[pyclass(module = "jbf._core", frozen)]
 pub struct MotionReadings {
-    /// Instants, positions, their variances, velocities, their variances: n values each.
-    columns: [Vec<f64>; 5],
-    intensity: Vec<f64>,
-    velocity_delay: f64,
-    order: Order,
+    time: Vec<f64>,
+    position: Vec<f64>,
+    position_shape: Vec<f64>,
+    position_floor: f64,
+    velocity: Vec<f64>,
+    velocity_shape: Vec<f64>,
+    velocity_floor: f64,
+    assigned: f64,
 }
 
-/// Which derivative of the position is white noise.
-#[derive(Clone, Copy)]
-enum Order {
-    Jerk,
-    Snap,
+/// The attributes of `jbf.records.motion.readings.ReadingErrors`.
+#[derive(FromPyObject)]
+pub struct Errors {
+    position_variance: f64,
+    velocity_variance: f64,
+    stamp_variance: f64,
+    intensity: f64,
+    order: usize,
+    velocity_delay_s: f64,
+}
+
+/// Variances of position, velocity and stamps, and intensity.
+type Estimated<'py> = (f64, f64, f64, f64, Bound<'py, PyArray1<f64>>);
+
+impl Errors {
+    fn of_readings(&self) -> ReadingErrors {
+        ReadingErrors {
+            position_variance: self.position_variance,
+            velocity_variance: self.velocity_variance,
+            stamp_variance: self.stamp_variance,
+            intensity: self.intensity,
+            velocity_delay: self.velocity_delay_s,
+        }
+    }
+}
+
+/// Call a function that is generic over the order of the motion.
+macro_rules! of_order {
+    ($order:expr, $function:ident, $($argument:expr),*) => {
+        match $order {
+            3 => Ok($function::<3>($($argument),*)),
+            4 => Ok($function::<4>($($argument),*)),
+            order => Err(PyValueError::new_err(format!("order {order}, not 3 or 4"))),
+        }
+    };
 }
 
 impl MotionReadings {
-    fn readings(&self) -> Readings<'_> {
-        let [time, position, position_variance, velocity, velocity_variance] = &self.columns;
-        Readings {
-            time,
-            position,
-            position_variance,
-            velocity,
-            velocity_variance,
-            velocity_delay: self.velocity_delay,
+    fn record(&self) -> Record<'_> {
+        Record {
+            time: &self.time,
+            position: &self.position,
+            position_shape: &self.position_shape,
+            position_floor: self.position_floor,
+            velocity: &self.velocity,
+            velocity_shape: &self.velocity_shape,
+            velocity_floor: self.velocity_floor,
+            assigned: self.assigned,
         }
+    }
+
+    /// The arrays as vectors, if they have n - 1 and n values.
+    fn steps_and_samples(
+        &self,
+        corners: &PyReadonlyArray1<'_, f64>,
+        speed: &PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let (corners, speed) = (corners.as_array().to_vec(), speed.as_array().to_vec());
+        let n = self.time.len();
+        if corners.len() != n.saturating_sub(1) || speed.len() != n {
+            let lengths = format!("{} factors and {} speeds", corners.len(), speed.len());
+            return Err(PyValueError::new_err(format!("{lengths} for {n} instants")));
+        }
+        Ok((corners, speed))
     }
 }
 
 #[pymethods]
 impl MotionReadings {
-    /// Readings from arrays of n values, and n - 1 intensities. A variance of infinity marks a
-    /// missing reading.
+    /// Readings from arrays of n values: see `jbf_motion::Record`.
     ///
     /// # Errors
-    /// If the lengths differ, or the order is neither 3 nor 4.
+    /// If the lengths differ.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
         time: PyReadonlyArray1<'_, f64>,
         position: PyReadonlyArray1<'_, f64>,
-        position_variance: PyReadonlyArray1<'_, f64>,
+        position_shape: PyReadonlyArray1<'_, f64>,
+        position_floor: f64,
         velocity: PyReadonlyArray1<'_, f64>,
-        velocity_variance: PyReadonlyArray1<'_, f64>,
-        intensity: PyReadonlyArray1<'_, f64>,
-        order: usize,
-        velocity_delay: f64,
+        velocity_shape: PyReadonlyArray1<'_, f64>,
+        velocity_floor: f64,
+        assigned: f64,
     ) -> PyResult<Self> {
-        let order = match order {
-            3 => Order::Jerk,
-            4 => Order::Snap,
-            _ => return Err(PyValueError::new_err(format!("order {order}, not 3 or 4"))),
-        };
         let copied = |array: &PyReadonlyArray1<'_, f64>| array.as_array().to_vec();
         let read = Self {
-            columns: [
-                copied(&time),
-                copied(&position),
-                copied(&position_variance),
-                copied(&velocity),
-                copied(&velocity_variance),
-            ],
-            intensity: copied(&intensity),
-            velocity_delay,
-            order,
+            time: copied(&time),
+            position: copied(&position),
+            position_shape: copied(&position_shape),
+            position_floor,
+            velocity: copied(&velocity),
+            velocity_shape: copied(&velocity_shape),
+            velocity_floor,
+            assigned,
         };
-        let n = read.columns[0].len();
-        let others = read.columns.iter().any(|column| column.len() != n);
-        if others || (n > 0 && read.intensity.len() + 1 != n) {
+        let others = [
+            &read.position,
+            &read.position_shape,
+            &read.velocity,
+            &read.velocity_shape,
+        ];
+        if others.iter().any(|array| array.len() != read.time.len()) {
             return Err(PyValueError::new_err(format!(
-                "arrays of lengths {:?} and {} steps for {n} instants",
-                read.columns.each_ref().map(Vec::len),
-                read.intensity.len()
+                "arrays of lengths {:?} for {} instants",
+                others.map(Vec::len),
+                read.time.len()
             )));
         }
         Ok(read)
     }
 
     /// Logarithm of the likelihood of the readings: see `jbf_motion::log_likelihood`.
-    fn log_likelihood(&self, py: Python<'_>) -> f64 {
-        let readings = self.readings();
-        py.detach(|| match self.order {
-            Order::Jerk => jbf_motion::log_likelihood::<3>(&readings, &self.intensity),
-            Order::Snap => jbf_motion::log_likelihood::<4>(&readings, &self.intensity),
+    ///
+    /// # Errors
+    /// Arrays of other lengths, or an order that is neither 3 nor 4.
+    fn log_likelihood(
+        &self,
+        py: Python<'_>,
+        errors: Errors,
+        corners: PyReadonlyArray1<'_, f64>,
+        speed: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<f64> {
+        let (corners, speed) = self.steps_and_samples(&corners, &speed)?;
+        let (of_readings, record) = (errors.of_readings(), self.record());
+        py.detach(|| {
+            record.with(&of_readings, &corners, &speed, |readings, intensity| {
+                of_order!(errors.order, log_likelihood, readings, intensity)
+            })
+        })
+    }
+
+    /// Lower bound of the likelihood marginal over the factors: see `jbf_motion::lower_bound`.
+    ///
+    /// # Errors
+    /// As of `log_likelihood`.
+    fn lower_bound(
+        &self,
+        py: Python<'_>,
+        errors: Errors,
+        corners: PyReadonlyArray1<'_, f64>,
+        speed: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<f64> {
+        let (corners, speed) = self.steps_and_samples(&corners, &speed)?;
+        let (of_readings, record) = (errors.of_readings(), self.record());
+        py.detach(|| {
+            of_order!(
+                errors.order,
+                lower_bound,
+                &record,
+                &of_readings,
+                &corners,
+                &speed
+            )
         })
     }
 
     /// The posterior of the motion: see `jbf_motion::smooth`.
-    fn smoothed<'py>(&self, py: Python<'py>) -> SmoothedMotion {
-        let readings = self.readings();
-        match self.order {
-            Order::Jerk => {
-                let found = py.detach(|| jbf_motion::smooth::<3>(&readings, &self.intensity));
-                SmoothedMotion::new(py, found)
-            }
-            Order::Snap => {
-                let found = py.detach(|| jbf_motion::smooth::<4>(&readings, &self.intensity));
-                SmoothedMotion::new(py, found)
-            }
+    ///
+    /// # Errors
+    /// As of `log_likelihood`.
+    fn smoothed(
+        &self,
+        py: Python<'_>,
+        errors: Errors,
+        corners: PyReadonlyArray1<'_, f64>,
+        speed: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<SmoothedMotion> {
+        fn smoothed<const N: usize>(
+            py: Python<'_>,
+            readings: &Readings,
+            intensity: &[f64],
+        ) -> SmoothedMotion {
+            SmoothedMotion::new(py, py.detach(|| smooth::<N>(readings, intensity)))
         }
+        let (corners, speed) = self.steps_and_samples(&corners, &speed)?;
+        let using = |readings: &Readings, intensity: &[f64]| {
+            of_order!(errors.order, smoothed, py, readings, intensity)
+        };
+        self.record()
+            .with(&errors.of_readings(), &corners, &speed, using)
+    }
+
+    /// Errors of the readings and factors of the intensity from starting values: see
+    /// `jbf_motion::estimate`.
+    ///
+    /// Returns the variances of position, velocity and stamps, the intensity and the factors.
+    ///
+    /// # Errors
+    /// As of `log_likelihood`.
+    fn estimated<'py>(
+        &self,
+        py: Python<'py>,
+        errors: Errors,
+        corners: PyReadonlyArray1<'_, f64>,
+        passes: (usize, usize),
+        fixed: bool,
+    ) -> PyResult<Estimated<'py>> {
+        let corners = corners.as_array().to_vec();
+        let (start, record) = (errors.of_readings(), self.record());
+        let passes = Passes {
+            normal: passes.0,
+            robust: passes.1,
+        };
+        let (found, corners) = py.detach(|| {
+            of_order!(
+                errors.order,
+                estimate,
+                &record,
+                start,
+                corners,
+                passes,
+                fixed
+            )
+        })?;
+        Ok((
+            found.position_variance,
+            found.velocity_variance,
+            found.stamp_variance,
+            found.intensity,
+            corners.into_pyarray(py),
+        ))
     }
 }
 
@@ -122,10 +258,6 @@ pub struct SmoothedMotion {
     covariance: Py<PyArray3<f64>>,
     /// Gains of the posterior as a Markov chain backward in time, (n - 1, N, N).
     gain: Py<PyArray3<f64>>,
-    /// Expected squared disturbance of each step, (n - 1,).
-    disturbance: Py<PyArray1<f64>>,
-    /// Logarithm of the likelihood of the readings.
-    log_likelihood: f64,
 }
 
 impl SmoothedMotion {
@@ -134,8 +266,6 @@ impl SmoothedMotion {
             mean: Array2::from(found.mean).into_pyarray(py).unbind(),
             covariance: matrices(py, &found.covariance),
             gain: matrices(py, &found.gain),
-            disturbance: found.disturbance.into_pyarray(py).unbind(),
-            log_likelihood: found.log_likelihood,
         }
     }
 }

@@ -231,8 +231,10 @@ def _each(rig: Rig, runs: Sequence[Run]) -> list[Prepared]:
     period_s = 1.0 / float(np.median(list(rates.values()))) if rates else None
     periods = [None if i in rates else period_s for i in range(len(runs))]
     errors = [p.motion.errors for p in found]
-    like = further_starts([e.smoothed for e in errors if e is not None and e.smoothed is not None])
+    starts = further_starts(
+        [e.smoothed for e in errors if e is not None and e.smoothed is not None]
+    )
     return [
-        Prepared.of(rig, run, period_s, like) if like or period_s is not None else p
+        Prepared.of(rig, run, period_s, starts) if starts or period_s is not None else p
         for p, run, period_s in zip(found, runs, periods, strict=True)
     ]

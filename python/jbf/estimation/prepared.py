@@ -90,7 +90,7 @@ class Prepared:
         rig: Rig,
         run: Run,
         period_s: float | None = None,
-        like: Sequence[ReadingErrors] = (),
+        starts: Sequence[ReadingErrors] = (),
     ) -> Prepared:
         """Estimate the motion of a run.
 
@@ -98,7 +98,7 @@ class Prepared:
         ----------
         period_s
             At which other runs of the same logger read the force, where that is known.
-        like
+        starts
             Errors of the readings of other runs of the same logger.
 
         Raises
@@ -108,7 +108,7 @@ class Prepared:
         """
         run = as_read(run_on(rig, run))
         require(run, "friction_n", "a comparison with the model")
-        instants, motion = imposed_as_read(rig, run, like)
+        instants, motion = imposed_as_read(rig, run, starts)
         if motion.clock_s is not None:
             run = replace(run, time_s=frozen(motion.clock_s))
         recorded = None

@@ -154,15 +154,15 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
 
 
 def imposed_as_read(
-    rig: Rig, run: Run, like: Sequence[ReadingErrors] = ()
+    rig: Rig, run: Run, starts: Sequence[ReadingErrors] = ()
 ) -> tuple[Array, ImposedMotion]:
     """The motion, and the instants at which it was read, s: those of a clock of its own, where it
-    has one; `like` as of :func:`jbf.records.motion.imposed.impose`."""
+    has one; `starts` as of :func:`jbf.records.motion.imposed.impose`."""
     run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
     if there is not None:
         run = run.select(there)
-    motion = impose(run, rig.radius_m, like)
+    motion = impose(run, rig.radius_m, starts)
     return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
 

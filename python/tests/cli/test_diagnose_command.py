@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import jbf
+import jsonschema
 import numpy as np
 import pytest
 from input_checks import Capture
@@ -13,6 +14,7 @@ from jbf.estimation import work
 
 LAW = ["--law", "coulomb"]
 NOISE_N = 0.1
+SCHEMA = Path(__file__).resolve().parents[3] / "docs" / "schema" / "results.json"
 
 
 def diagnosed(slide: Path, out: Path, *options: str) -> Any:
@@ -52,7 +54,9 @@ def test_diagnosis_that_exceeds_its_budget_writes_what_is_known(
     assert message.count("\n") == 1
     assert all(str(path) in message for path in (model, page, out))
     result = json.loads(out.read_text())
-    assert result["verdict"] is None
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    of_kind = {"$defs": schema["$defs"], "$ref": "#/$defs/unfinished"}
+    jsonschema.validate(result, of_kind)
     assert "no answer from these runs" in result["unfinished"]
     assert result["fit"]["parameters"]["F_c_n"]["value"] == pytest.approx(5.0, rel=0.05)
     assert jbf.Model.load(model).law == "coulomb"

@@ -39,6 +39,17 @@ def test_gap_is_reported_from_one_and_a_half_median_steps_on(steps: float, missi
     assert all(f"{missing} row" in finding.words for finding in findings)
 
 
+def test_late_stamps_are_no_gaps_beside_a_row_that_is_missing() -> None:
+    """Jitter of 0.2 periods gives steps of 1.5 periods and more."""
+    jitter = np.random.default_rng(6).normal(0.0, 0.2, 400)
+    jitter[195:206] *= 0.1
+    late = np.sort(0.01 * (np.arange(400) + jitter))
+    assert np.max(np.diff(late)) > 0.015
+    assert find_gaps(run_at(late)) == []
+    (finding,) = find_gaps(run_at(np.delete(late, 200)))
+    assert finding.words.startswith("1 row is missing")
+
+
 @pytest.mark.parametrize(("every", "found"), [(8, False), (12, True)])
 def test_gaps_are_reported_only_if_nine_of_ten_steps_are_equal(every: int, found: bool) -> None:
     time_s = np.delete(TIME_S[:240], np.arange(5, 230, every))

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jbf.records.motion.em import corners_of, lower_bound
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.readings import ReadingErrors, Readings
 from jbf.records.motion.smoothing import is_even, smooth
@@ -199,8 +198,5 @@ def test_lower_bound_is_just_below_the_likelihood_by_quadrature(order: int) -> N
     logs += density[:, None] + density[None, :]
     step = log_w[1] - log_w[0]
     likelihood = np.max(logs) + np.log(np.sum(np.exp(logs - np.max(logs))) * step**2)
-    corners = np.ones(2)
-    for _ in range(200):
-        corners = corners_of(errors, three.smoothed(errors, corners, np.zeros(3)))
-    bound = lower_bound(three, errors, corners)
+    bound = three.lower_bound(errors, three.corners(errors, 200))
     assert likelihood - 2.0 < bound < likelihood

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from jbf.records.findings.digits import resolution
 from jbf.records.findings.interpolated import Native, is_smooth
+from jbf.records.motion.roughness import quantum_of
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -48,8 +49,7 @@ def find_filled_in(time: Array, values: Array) -> Native | None:
         return None
     near = off[(off > rounding) & (off <= usual)]
     # A converter's steps put samples on a line as often as they put them one step off it.
-    step = float(near.min()) if len(near) else 0.0
-    chance = len(near) / usual * max(step, rounding)
+    chance = len(near) / usual * max(quantum_of(values), rounding)
     count = int(line.sum())
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None

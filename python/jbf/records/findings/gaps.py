@@ -13,6 +13,9 @@ EVEN = 0.5
 MOSTLY = 0.9
 """Share of the steps that must be the usual one for a longer one to be a gap."""
 
+STRETCH = 4
+"""Steps within which a stamp with jitter is made up for."""
+
 
 def find_gaps(run: Run) -> list[Finding]:
     """Rows missing from an evenly sampled record. Nothing is filled in: a model steps over them."""
@@ -21,10 +24,17 @@ def find_gaps(run: Run) -> list[Finding]:
     even = np.abs(steps - usual) < EVEN * usual
     if even.mean() < MOSTLY:
         return []
-    missing = np.round(steps / usual).astype(int) - 1
+    # A missing row makes every stretch that contains it longer by a step; jitter makes the steps
+    # beside a long one shorter.
+    missing = np.rint(steps / usual) - 1.0
+    for length in range(2, min(STRETCH, len(steps)) + 1):
+        window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / usual
+        more = np.pad(np.rint(window) - length, length - 1, constant_values=np.inf)
+        least = np.lib.stride_tricks.sliding_window_view(more, length).min(axis=1)
+        missing = np.minimum(missing, least)
     count = int(missing[missing > 0].sum())
     if count == 0:
         return []
-    longest = float(steps.max())
+    longest = float(steps[missing > 0].max())
     words = f"{count_of(count, 'row is', 'rows are')} missing, {longest:.2g} s at the longest"
     return [Finding("gaps", "time_s", run.name, longest, "s", "stepped over", words)]

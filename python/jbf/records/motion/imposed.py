@@ -138,9 +138,12 @@ class ImposedMotion:
             return self
         smoothed = self.errors.smoothed.rougher(factor)
         mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
+        velocity = np.where(self.resting, 0.0, mean[:, 1])
+        if len(velocity) and not self.sign_known[0]:
+            velocity[0] = 0.0
         return replace(
             self,
-            velocity_m_s=np.where(self.resting, 0.0, mean[:, 1]),
+            velocity_m_s=velocity,
             acceleration_m_s2=np.where(self.resting, 0.0, mean[:, 2]),
             angle_rad=mean[:, 0] / errors.arm_m,
             errors=errors,
@@ -207,7 +210,7 @@ class ImposedMotion:
         )
 
 
-def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ()) -> ImposedMotion:
+def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = ()) -> ImposedMotion:
     """Estimate the imposed motion of a run.
 
     Parameters
@@ -218,9 +221,9 @@ def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ())
         Journal radius, m: turns the angle into a path. None where it is not known: a position
         then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
         nothing of the speed.
-    like
-        Errors of the readings of other runs of the same logger, from which the estimation may
-        start, too.
+    starts
+        Errors of the readings of other runs of the same logger: further starting values for the
+        estimation.
     """
     clock_s = _clock(run, radius_m)
     stamps_s = None
@@ -246,7 +249,7 @@ def impose(run: Run, radius_m: float | None, like: Sequence[ReadingErrors] = ())
         readings = replace(
             readings, velocity_shape=np.hypot(readings.velocity_shape, contradiction / sd_speed)
         )
-    smoothed = smooth(readings, like)
+    smoothed = smooth(readings, starts)
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +91,23 @@ class Readings:
         slope = np.nan_to_num(np.gradient(self.position, step))
         return np.convolve(slope, np.ones(SPAN) / SPAN, "same")
 
+    def __getstate__(self) -> dict[str, Any]:
+        # The copy for the core cannot be pickled.
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def _core(self) -> MotionReadings:
+        return MotionReadings(
+            self.time_s,
+            self.position,
+            self.position_shape,
+            self.position_floor,
+            self.velocity,
+            self.velocity_shape,
+            self.velocity_floor,
+            AT_REST,
+        )
+
     def smoothed(self, errors: ReadingErrors, corners: Array, speed: Array) -> SmoothedMotion:
         """Posterior of the motion for given errors.
 
@@ -99,32 +118,38 @@ class Readings:
         speed
             A velocity at each sample, for the effect of the stamps' errors.
         """
-        return self._with(errors, corners, speed).smoothed()
+        return self._core.smoothed(errors, corners, speed)
 
     def log_likelihood(self, errors: ReadingErrors, corners: Array, speed: Array) -> float:
         """Log likelihood of the readings; arguments as of :meth:`smoothed`."""
-        return self._with(errors, corners, speed).log_likelihood()
+        return self._core.log_likelihood(errors, corners, speed)
 
-    def _with(self, errors: ReadingErrors, corners: Array, speed: Array) -> MotionReadings:
-        position, velocity = self.variances(errors, speed)
-        return MotionReadings(
-            self.time_s,
-            self.position,
-            position,
-            self.velocity,
-            velocity,
-            errors.intensity * corners,
-            errors.order,
-            errors.velocity_delay_s,
-        )
+    def lower_bound(self, errors: ReadingErrors, corners: Array) -> float:
+        """Variational lower bound of the log likelihood, marginal over the factors of all steps."""
+        return self._core.lower_bound(errors, corners, self.first_speed())
 
-    def variances(self, errors: ReadingErrors, speed: Array) -> tuple[Array, Array]:
-        """Variances of position and velocity at each sample; infinite where there is no reading."""
-        position = (
-            errors.position_variance * self.position_shape**2 + errors.stamp_variance * speed**2
+    def estimated(
+        self, errors: ReadingErrors, corners: Array, passes: tuple[int, int]
+    ) -> tuple[ReadingErrors, Array]:
+        """Errors and factors by expectation-maximisation from starting values.
+
+        Parameters
+        ----------
+        passes
+            Largest numbers of passes with normal noise, for a start, and with a t distribution.
+        """
+        position, velocity, stamp, intensity, factors = self._core.estimated(
+            errors, corners, passes, False
         )
-        velocity = errors.velocity_variance * self.velocity_shape**2
-        return (
-            np.where(np.isfinite(self.position), position, np.inf),
-            np.where(np.isfinite(self.velocity), velocity, np.inf),
+        found = replace(
+            errors,
+            position_variance=position,
+            velocity_variance=velocity,
+            stamp_variance=stamp,
+            intensity=intensity,
         )
+        return found, factors
+
+    def corners(self, errors: ReadingErrors, passes: int) -> Array:
+        """Factors by so many passes with known errors."""
+        return self._core.estimated(errors, np.ones(len(self.time_s) - 1), (0, passes), True)[-1]

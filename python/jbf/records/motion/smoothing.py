@@ -2,8 +2,8 @@
 
 The jerk or the snap of the motion is Student-t noise: large in the few steps with a corner, small
 elsewhere. With a random jerk the acceleration jumps at a corner; with a random snap it is smooth.
-The likelier model is taken. `em` estimates the errors of the readings from a start that is searched
-here; the filter and the smoother are `jbf._core.MotionReadings`.
+The likelier model is taken. Expectation-maximisation (`Readings.estimated`) finds the errors of the
+readings from a start that is searched here.
 
 References
 ----------
@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.em import corners_of, estimated, lower_bound
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.roughness import noise_of
 
@@ -31,8 +30,12 @@ SHORTEST = 4
 CHOSEN, LONGEST = 3_000, 8_000
 """Samples of a longer record from which the start and the clock are chosen, and from which the
 parameters are estimated: those in which the motion goes furthest."""
-TRIED, TRIED_PASSES = 1_500, 4
-"""Samples of a record from which its order is chosen, and robust passes until then."""
+PASSES = (6, 24)
+"""Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
+More of the latter reduce the intensity between corners further, and the standard errors of the
+motion become too small."""
+TRIED, TRIED_PASSES = 1_500, (6, 4)
+"""Samples of a record from which its order is chosen, and passes until then."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -45,7 +48,7 @@ DELAY_GAIN = 10.0
 """Log-likelihood gain that a delay of the velocity must have."""
 START_FACTORS = (1.0, 10.0, 100.0)
 """Factors applied to the velocity's standard deviation by third differences, for a start."""
-DELAY_ROUNDS, SAME_DELAY = 4, 0.01
+DELAY_ROUNDS, DELAY_SETTLED = 4, 0.01
 """Largest number of searches of the delay, and the change that ends them, samples."""
 HIDDEN = 0.01
 """Share of the velocity's variance with which a delay is evaluated, too."""
@@ -143,12 +146,12 @@ def is_even(readings: Readings, even_s: Array) -> bool:
     return by_clock > by_stamps
 
 
-def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
+def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed:
     """Estimate the errors of the readings by maximum likelihood, and smooth the motion.
 
     Parameters
     ----------
-    like
+    starts
         Additional starting values. Of their solutions the one with the largest lower bound is
         taken, if it gains `START_GAIN`.
     """
@@ -158,26 +161,21 @@ def smooth(readings: Readings, like: Sequence[ReadingErrors] = ()) -> Smoothed:
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
     start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    errors, corners = _delayed(few, *estimated(few, start))
-    if like:
-        most = lower_bound(few, errors, corners) + START_GAIN
-        for end in (_delayed(few, *estimated(few, tried)) for tried in like):
-            if (bound := lower_bound(few, *end)) > most:
+    errors, corners = _delayed(few, start)
+    if starts:
+        most = few.lower_bound(errors, corners) + START_GAIN
+        for end in (_delayed(few, tried) for tried in starts):
+            if (bound := few.lower_bound(*end)) > most:
                 (errors, corners), most = end, bound
-    speed = np.zeros(n)
     if n > len(few.time_s):
-        corners = np.ones(n - 1)
-        for _ in range(LONG_PASSES):
-            motion = readings.smoothed(errors, corners, speed)
-            speed = motion.mean[:, 1]
-            corners = corners_of(errors, motion)
-    else:
-        speed = readings.smoothed(errors, corners, speed).mean[:, 1]
+        corners = readings.corners(errors, LONG_PASSES)
+    speed = readings.smoothed(errors, corners, np.zeros(n)).mean[:, 1]
     return Smoothed.of(readings, errors, _located_to_a_step(corners), speed)
 
 
-def _likeliest_start(readings: Readings) -> ReadingErrors:
-    """Variances by the roughness of the readings, or larger ones where these are likelier.
+def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
+    """Variances by the roughness of the readings, or larger ones where these are likelier, and the
+    log likelihood.
 
     The roughness is that of most samples: where a machine mostly rests, its readings are noisier
     than that in motion.
@@ -189,7 +187,7 @@ def _likeliest_start(readings: Readings) -> ReadingErrors:
         )
         for factor in (START_FACTORS if np.isfinite(readings.velocity).any() else (1.0,))
     ]
-    return max(tried, key=lambda errors: _likelihood(readings, errors))
+    return max(tried, key=lambda found: found[1])
 
 
 def _start(readings: Readings) -> ReadingErrors:
@@ -207,17 +205,19 @@ def _start(readings: Readings) -> ReadingErrors:
 def _of_likeliest_order(readings: Readings) -> ReadingErrors:
     """Errors from which the estimation starts, with the likelier of the two orders."""
     start, _ = _likeliest_stamps(readings)
-    few = readings.part(_busiest(readings, TRIED))
     # The zero velocities assigned at rest are no readings.
+    few = readings.part(_busiest(readings, TRIED))
     few = replace(few, velocity=np.where(few.velocity_shape > AT_REST, few.velocity, np.nan))
-    starts = [_likeliest_intensity(few, replace(start, order=order)) for order in (JERK, SNAP)]
-    return max(starts, key=lambda e: lower_bound(few, *estimated(few, e, passes=TRIED_PASSES)))
+    starts = [_likeliest_intensity(few, replace(start, order=order))[0] for order in (JERK, SNAP)]
+    ones = np.ones(len(few.time_s) - 1)
+    return max(starts, key=lambda e: few.lower_bound(*few.estimated(e, ones, TRIED_PASSES)))
 
 
 def _likeliest_intensity(
     readings: Readings, errors: ReadingErrors, decades: float | None = None
-) -> ReadingErrors:
-    """The same errors with the intensity that is likeliest for normal noise, the same everywhere.
+) -> tuple[ReadingErrors, float]:
+    """The same errors with the intensity that is likeliest for normal noise, the same everywhere,
+    and the log likelihood.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def _likeliest_intensity(
         step, top = float(np.median(np.diff(readings.time_s))), float(np.max(np.abs(speed)))
         most = top**2 / step ** (2 * errors.order - 3)
         if most <= 0.0 or not np.isfinite(most):
-            return errors
+            return errors, -cost(float(np.log(errors.intensity)))
         # From a motion that follows every reading on to smoother ones, until these gain nothing.
         grid = np.log(most) - GRID * np.arange(SMOOTHEST)
         costs = [cost(grid[0])]
@@ -248,20 +248,19 @@ def _likeliest_intensity(
     from scipy.optimize import minimize_scalar  # half a second to import
 
     found = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.5})
-    return replace(errors, intensity=float(np.exp(found.x)))
+    return replace(errors, intensity=float(np.exp(found.x))), -float(found.fun)
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
     """Likeliest errors, with or without jitter of the stamps, and the penalised log likelihood."""
     step = float(np.median(np.diff(readings.time_s)))
-    start = _likeliest_start(readings)
-    found = start, _likelihood(readings, start)
+    found = _likeliest_start(readings)
+    start, _ = found
     for share in STAMP_ERRORS if np.isfinite(readings.position).any() else ():
         tried = replace(start, stamp_variance=(share * step) ** 2)
-        tried = _likeliest_intensity(readings, tried, NARROW)
-        likelihood = _likelihood(readings, tried) - STAMP_GAIN
-        if likelihood > found[1]:
-            found = tried, likelihood
+        tried, likelihood = _likeliest_intensity(readings, tried, NARROW)
+        if likelihood - STAMP_GAIN > found[1]:
+            found = tried, likelihood - STAMP_GAIN
     return found
 
 
@@ -279,16 +278,9 @@ def _busiest(readings: Readings, longest: int) -> slice:
     return slice(first, first + longest)
 
 
-def _likelihood(readings: Readings, errors: ReadingErrors) -> float:
-    """Log likelihood with noise of one intensity."""
-    ones = np.ones(len(readings.time_s) - 1)
-    return readings.log_likelihood(errors, ones, readings.first_speed())
-
-
-def _delayed(
-    readings: Readings, errors: ReadingErrors, corners: Array
-) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the delay of the velocity that is likeliest."""
+def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
+    """Errors and corners with the delay of the velocity that is likeliest, from starting values."""
+    errors, corners = readings.estimated(start, np.ones(len(readings.time_s) - 1), PASSES)
     if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
         return errors, corners
     usual = float(np.median(np.diff(readings.time_s)))
@@ -297,10 +289,10 @@ def _delayed(
         delay_s, gain = _likeliest_delay(readings, errors, corners, LONGEST_DELAY * usual)
         if before == 0.0 and gain < DELAY_GAIN:
             break
-        if abs(delay_s - before) < SAME_DELAY * usual:
+        if abs(delay_s - before) < DELAY_SETTLED * usual:
             break
         delayed = replace(errors, velocity_delay_s=delay_s)
-        errors, corners = estimated(readings, delayed, corners)
+        errors, corners = readings.estimated(delayed, corners, PASSES)
     return errors, corners
 
 

@@ -9,7 +9,6 @@ between never were.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -25,8 +24,13 @@ WINDOW = 40
 LONGER = 240
 """Samples of a look for shorter periods: nearly as many corners as samples leave a polygon little
 to be tested by."""
-SHORT = np.exp(np.arange(np.log(1.05), np.log(1.3), 0.0005))
-"""Periods looked for there, in samples."""
+SHORT = (1.05, 1.3)
+"""Periods looked for there, in samples,"""
+BEATS, NEAR = 4, np.linspace(-1.0, 1.0, 9)
+"""those of the strongest beats, so many, each at its frequency and near it, in units of what the
+stretch resolves,"""
+HEARD = 960
+"""and the samples of that stretch."""
 LOOKS = 3
 """First looks along the record, and as many where it bends most: coarse steps are flat for long."""
 MOST_BENDS = 0.5
@@ -61,8 +65,6 @@ ROUNDING = 1e-7
 """Share of the whole range below which noise is none: that of digits, and of the search."""
 SMOOTH = 0.5
 """Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
-EVEN = 1e-3
-"""Samples are evenly spaced where they are off an even grid by less than this share of a step."""
 MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
 """Corners a sample: from the first on they must be rougher than a curve; more than the second would
 be the samples themselves."""
@@ -157,8 +159,7 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
-    periods = np.repeat(SHORT * step, len(PHASES))
-    phases = np.tile(PHASES, len(SHORT)) * periods
+    periods, phases = _grid(_beats(time, values, step))
     each = lefts(t, y, periods, phases)
     # Through a curve that a filter has made smooth any such polygon goes nearly.
     usual = float(np.median(each))
@@ -172,6 +173,28 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
             if native is not None:
                 return native
     return None
+
+
+def _beats(time: Array, values: Array, step: float) -> Array:
+    """Periods, s, with which the roughness of a record comes and goes: halfway between two readings
+    of a channel a line is smoother than at them."""
+    n = min(len(time), HEARD)
+    first = (len(time) - n) // 2
+    place = (time[first + 1 : first + n - 1] - time[first]) / step
+    rough = np.abs(np.diff(values[first : first + n], 2))
+    rank = np.argsort(np.argsort(rough, kind="stable"), kind="stable") / len(rough) - 0.5
+    lowest, highest = (1.0 - 1.0 / period for period in SHORT)
+    frequency = np.arange(lowest, highest, 0.5 / n)
+    power = np.abs(np.exp(-2j * np.pi * frequency[:, None] * place) @ rank)
+    best = np.argsort(-power, kind="stable")[:BEATS]
+    near = (frequency[best, None] + NEAR / n).ravel()
+    return np.asarray(step / (1.0 - near))
+
+
+def _grid(periods: Array) -> tuple[Array, Array]:
+    """Each period with each phase, s."""
+    each = np.repeat(periods, len(PHASES))
+    return each, np.tile(PHASES, len(periods)) * each
 
 
 def _as_rough_as_noise(values: Array) -> bool:
@@ -265,71 +288,9 @@ def _at_ends(read: Array, values: Array) -> Array:
 def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
     """Periods and phases, s, with which a polygon nearly goes through a window's samples, best
     first: with corners nearly as many as samples a wrong one may come nearer on this grid."""
-    place = (t - t[0]) / step
-    even = float(np.max(np.abs(place - np.arange(len(t))))) < EVEN
-    looks = _even_looks(len(t)) if even else _looks(place)
-    above = y - y[0]
-    taken = np.add.reduceat((looks.basis @ above) ** 2, looks.begins).reshape(-1, len(PHASES))
-    square = np.maximum(float(above @ above) - taken, 0.0) / looks.free[:, None]
-    best = np.argmin(square, axis=1)
-    left = np.sqrt(np.min(square, axis=1))
-    likely = np.flatnonzero(left < LIKELY * noise)
-    found = [
-        (float(left[i]), float(looks.periods[i]) * step, float(PHASES[best[i]])) for i in likely
-    ]
-    return [(period, phase * period) for _, period, phase in sorted(found)[:FOLLOWED]]
-
-
-@dataclass(frozen=True)
-class _Looks:
-    """The polygons of every period and phase of a first look, at given places.
-
-    Attributes
-    ----------
-    periods, free
-        Periods, in samples, and how many samples each leaves beyond its corners, shape (p,).
-    basis
-        What spans the polygons of one period and phase after the other, orthonormal, shape
-        (rows, n).
-    begins
-        Where each one's rows begin.
-    """
-
-    periods: Array
-    free: Array
-    basis: Array
-    begins: npt.NDArray[np.intp]
-
-
-def _looks(place: Array) -> _Looks:
-    n = len(place)
-    counts = np.ceil((place[-1] - place[0]) / PERIODS).astype(np.intp) + 2
-    periods, parts, rows = [], [], []
-    # Those of as many corners at once.
-    for count in np.unique(counts[n - counts >= LEAST_FREE]).tolist():
-        own = PERIODS[counts == count]
-        at = place[None, None, :] / own[:, None, None] - PHASES[None, :, None] + 1.0
-        at = at.reshape(-1, n)
-        low = np.clip(np.floor(at).astype(np.intp), 0, count - 2)
-        share = at - low
-        design = np.zeros((len(at), n, count))
-        one, row = np.arange(len(at))[:, None], np.arange(n)[None, :]
-        design[one, row, low] = 1.0 - share
-        design[one, row, low + 1] = share
-        basis, _ = np.linalg.qr(design)
-        periods.append(own)
-        parts.append(np.swapaxes(basis, 1, 2).reshape(-1, n))
-        rows.append(np.full(len(at), count))
-    corners = np.concatenate(rows)
-    return _Looks(
-        periods=np.concatenate(periods),
-        free=(n - corners[:: len(PHASES)]).astype(np.float64),
-        basis=np.concatenate(parts),
-        begins=np.cumsum(corners) - corners,
-    )
-
-
-@lru_cache(maxsize=1)
-def _even_looks(n: int) -> _Looks:
-    """The same for evenly spaced samples, kept: nearly every record's are."""
-    return _looks(np.arange(n, dtype=np.float64))
+    long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= LEAST_FREE
+    periods, phases = _grid(PERIODS[long_enough] * step)
+    each = lefts(t, y, periods, phases)
+    best = [k for k in np.argsort(each, kind="stable").tolist() if each[k] < LIKELY * noise]
+    found = {periods[k]: phases[k] for k in reversed(best)}
+    return [(period, found[period]) for period in dict.fromkeys(periods[best].tolist())][:FOLLOWED]

@@ -34,7 +34,7 @@ PASSES = (6, 24)
 """Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
 More of the latter reduce the intensity between corners further, and the standard errors of the
 motion become too small."""
-TRIED, TRIED_PASSES = 1_500, (6, 4)
+TRIED, TRIED_PASSES = 750, (3, 3)
 """Samples of a record from which its order is chosen, and passes until then."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""

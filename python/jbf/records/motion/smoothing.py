@@ -28,14 +28,14 @@ JERK, SNAP = 3, 4
 SHORTEST = 4
 """Samples below which nothing is estimated: the motion is a parabola through them."""
 CHOSEN, LONGEST = 3_000, 8_000
-"""Samples of a longer record from which the start and the clock are chosen, and from which the
-parameters are estimated: those in which the motion goes furthest."""
+"""Samples of a longer record from which the start, the order and the clock are chosen, and from
+which the parameters are estimated: those in which the motion goes furthest."""
 PASSES = (6, 24)
 """Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
 More of the latter reduce the intensity between corners further, and the standard errors of the
 motion become too small."""
-TRIED, TRIED_PASSES = 750, (3, 3)
-"""Samples of a record from which its order is chosen, and passes until then."""
+TRIED_PASSES = (2, 2)
+"""Passes until the order is chosen."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -206,11 +206,15 @@ def _of_likeliest_order(readings: Readings) -> ReadingErrors:
     """Errors from which the estimation starts, with the likelier of the two orders."""
     start, _ = _likeliest_stamps(readings)
     # The zero velocities assigned at rest are no readings.
-    few = readings.part(_busiest(readings, TRIED))
-    few = replace(few, velocity=np.where(few.velocity_shape > AT_REST, few.velocity, np.nan))
-    starts = [_likeliest_intensity(few, replace(start, order=order))[0] for order in (JERK, SNAP)]
-    ones = np.ones(len(few.time_s) - 1)
-    return max(starts, key=lambda e: few.lower_bound(*few.estimated(e, ones, TRIED_PASSES)))
+    read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)
+    readings = replace(readings, velocity=read)
+    starts = [
+        _likeliest_intensity(readings, replace(start, order=order))[0] for order in (JERK, SNAP)
+    ]
+    ones = np.ones(len(readings.time_s) - 1)
+    return max(
+        starts, key=lambda e: readings.lower_bound(*readings.estimated(e, ones, TRIED_PASSES))
+    )
 
 
 def _likeliest_intensity(

@@ -68,6 +68,24 @@ def test_held_samples_finding_has_the_longest_otherwise_unexplained_stretch() ->
     assert (no_findings, mask.any()) == ([], False)
 
 
+def test_command_at_its_limit_is_used_and_a_noisy_force_that_stands_still_is_not() -> None:
+    command = np.clip(12.0 * np.sin(3.0 * TIME_S), -8.0, 8.0)
+    assert held(command).any()
+    motion = 0.1 + 0.0 * TIME_S
+    assert (
+        find_held(Run.from_arrays(TIME_S, motion, command), np.zeros(SAMPLES, dtype=bool))[0] == []
+    )
+    frozen = np.where((TIME_S > 3.2) & (TIME_S < 3.4), command[320], command)
+    (finding,), _ = find_held(
+        Run.from_arrays(TIME_S, motion, frozen), np.zeros(SAMPLES, dtype=bool)
+    )
+    assert finding.size == pytest.approx(0.2, abs=0.03)
+    noisy = command + np.random.default_rng(3).normal(0.0, 0.3, SAMPLES)
+    noisy[300:340] = np.max(noisy)
+    (finding,), _ = find_held(Run.from_arrays(TIME_S, motion, noisy), np.zeros(SAMPLES, dtype=bool))
+    assert finding.size == pytest.approx(0.39, abs=0.02)
+
+
 def recovered(ticks_s: Array, read: Array) -> tuple[Any, Array]:
     """Readings recovered from a record that repeats each until the next, and their numbers."""
     native: Any = find_repeated(FAST_S, read[np.searchsorted(ticks_s, FAST_S, side="right") - 1])

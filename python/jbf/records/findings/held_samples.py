@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
+from jbf.records.findings.smooth_force import is_without_noise
 from jbf.records.findings.steps import step_of
 from jbf.records.motion.roughness import noise_of
 from jbf.records.run import Run
@@ -58,7 +59,11 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
         True at readings of which something else is known to be wrong.
     """
     assert run.friction_n is not None
-    mask = held(run.friction_n) & ~explained
+    force = run.friction_n
+    mask = held(force) & ~explained
+    if mask.any() and is_without_noise(force[~mask]):
+        # A command that stands at its limit is what the drive did.
+        mask &= (force != np.max(force)) & (force != np.min(force))
     if not mask.any():
         return [], mask
     edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.roughness import noise_of, quantum_of
+from jbf.records.motion.roughness import noise_of, quantum_of, step_of
 
 Array = npt.NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
     """A finding where a speed is a difference of the path; None where it was measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
-    step = quantum_of(path)
+    step = quantum_of(path) or step_of(path)
     # Over some samples: a slow difference is zero between two counts. And not of the largest one:
     # messages that arrive at once make a difference without bounds.
     local = np.convolve(np.abs(speed), np.ones(SPANS[-1]) / SPANS[-1], "same")

@@ -30,12 +30,13 @@ SHORTEST = 4
 CHOSEN, LONGEST = 3_000, 8_000
 """Samples of a longer record from which the start, the order and the clock are chosen, and from
 which the parameters are estimated: those in which the motion goes furthest."""
-PASSES = (6, 24)
+NORMAL, ROBUST = 3, 24
 """Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
 More of the latter reduce the intensity between corners further, and the standard errors of the
 motion become too small."""
-TRIED_PASSES = (2, 2)
-"""Passes until the order is chosen."""
+TRIED = 12
+"""Robust passes after which the order is chosen. With fewer, that of a position loop that sticks is
+not certain."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -159,12 +160,16 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
     if n < SHORTEST:
         errors = replace(_start(readings), intensity=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
-    start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    errors, corners = _delayed(few, start)
+    errors, corners = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
+    if len(corners) == len(few.time_s) - 1:
+        errors, corners = few.estimated(errors, corners, (0, ROBUST - TRIED))
+    else:
+        errors, corners = _estimated(few, errors)
+    errors, corners = _delayed(few, errors, corners)
     if starts:
         most = few.lower_bound(errors, corners) + START_GAIN
-        for end in (_delayed(few, tried) for tried in starts):
+        for end in (_delayed(few, *_estimated(few, tried)) for tried in starts):
             if (bound := few.lower_bound(*end)) > most:
                 (errors, corners), most = end, bound
     if n > len(few.time_s):
@@ -202,19 +207,25 @@ def _start(readings: Readings) -> ReadingErrors:
     return ReadingErrors(noise[0], noise[1], 0.0, 1.0)
 
 
-def _of_likeliest_order(readings: Readings) -> ReadingErrors:
-    """Errors from which the estimation starts, with the likelier of the two orders."""
+def _estimated(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
+    """Errors and corners from starting values of the errors."""
+    return readings.estimated(start, np.ones(len(readings.time_s) - 1), (NORMAL, ROBUST))
+
+
+def _of_likeliest_order(readings: Readings) -> tuple[ReadingErrors, Array]:
+    """Errors and corners with the likelier of the two orders, on the way to their estimates."""
     start, _ = _likeliest_stamps(readings)
     # The zero velocities assigned at rest are no readings.
     read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)
     readings = replace(readings, velocity=read)
-    starts = [
-        _likeliest_intensity(readings, replace(start, order=order))[0] for order in (JERK, SNAP)
-    ]
     ones = np.ones(len(readings.time_s) - 1)
-    return max(
-        starts, key=lambda e: readings.lower_bound(*readings.estimated(e, ones, TRIED_PASSES))
-    )
+    tried = [
+        readings.estimated(
+            _likeliest_intensity(readings, replace(start, order=order))[0], ones, (NORMAL, TRIED)
+        )
+        for order in (JERK, SNAP)
+    ]
+    return max(tried, key=lambda end: readings.lower_bound(*end))
 
 
 def _likeliest_intensity(
@@ -282,9 +293,10 @@ def _busiest(readings: Readings, longest: int) -> slice:
     return slice(first, first + longest)
 
 
-def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the delay of the velocity that is likeliest, from starting values."""
-    errors, corners = readings.estimated(start, np.ones(len(readings.time_s) - 1), PASSES)
+def _delayed(
+    readings: Readings, errors: ReadingErrors, corners: Array
+) -> tuple[ReadingErrors, Array]:
+    """Errors and corners with the delay of the velocity that is likeliest."""
     if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
         return errors, corners
     usual = float(np.median(np.diff(readings.time_s)))
@@ -296,7 +308,7 @@ def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, A
         if abs(delay_s - before) < DELAY_SETTLED * usual:
             break
         delayed = replace(errors, velocity_delay_s=delay_s)
-        errors, corners = readings.estimated(delayed, corners, PASSES)
+        errors, corners = readings.estimated(delayed, corners, (NORMAL, ROBUST))
     return errors, corners
 
 

@@ -37,6 +37,8 @@ motion become too small."""
 TRIED = 12
 """Robust passes after which the order is chosen. With fewer, that of a position loop that sticks is
 not certain."""
+SNAP_GAIN = 0.02
+"""Gain of the lower bound that a random snap must have, a sample: of a corner it makes a curve."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -219,13 +221,14 @@ def _of_likeliest_order(readings: Readings) -> tuple[ReadingErrors, Array]:
     read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)
     readings = replace(readings, velocity=read)
     ones = np.ones(len(readings.time_s) - 1)
-    tried = [
+    jerk, snap = (
         readings.estimated(
             _likeliest_intensity(readings, replace(start, order=order))[0], ones, (NORMAL, TRIED)
         )
         for order in (JERK, SNAP)
-    ]
-    return max(tried, key=lambda end: readings.lower_bound(*end))
+    )
+    gain = readings.lower_bound(*snap) - readings.lower_bound(*jerk)
+    return snap if gain > SNAP_GAIN * len(ones) else jerk
 
 
 def _likeliest_intensity(

@@ -40,6 +40,29 @@ def npz(path: Path, columns: Columns) -> None:
     np.savez(path, **columns)  # type: ignore[arg-type]
 
 
+def json_arrays(path: Path, columns: Columns) -> None:
+    content = {"rig": {"operator": "Kim"}, "data": {k: v.tolist() for k, v in columns.items()}}
+    path.write_text(json.dumps(content, indent=1))
+
+
+def json_records(path: Path, columns: Columns) -> None:
+    path.write_text(json.dumps([dict(zip(columns, row, strict=True)) for row in rows(columns)]))
+
+
+def json_lines(path: Path, columns: Columns) -> None:
+    records = [json.dumps(dict(zip(columns, row, strict=True))) for row in rows(columns)]
+    path.write_text("\n".join(records) + "\n")
+
+
+def trace(path: Path, columns: Columns) -> None:
+    lines = ["[key]; [value]", "Version; 0x03050000", "EveryNCycles; 1"]
+    for number, (name, values) in enumerate(without_time(columns).items()):
+        lines += [f"{number}.Variable; {name}", f"{number}.Class; 14", f"{number}.Data; "]
+        pairs = zip(columns["time_s"].tolist(), values.tolist(), strict=True)
+        lines += [f"; {time!r}; {value!r}" for time, value in pairs]
+    path.write_text("\n".join(lines) + "\n")
+
+
 def mat(path: Path, columns: Columns) -> None:
     from scipy.io import savemat
 
@@ -183,6 +206,10 @@ def ros1_bag(path: Path, columns: Columns) -> None:
 WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     "r.csv": csv,
     "r.npz": npz,
+    "arrays.json": json_arrays,
+    "records.json": json_records,
+    "r.jsonl": json_lines,
+    "trace.csv": trace,
     "r.mat": mat,
     "structure.mat": mat_structure,
     "r73.mat": mat73,

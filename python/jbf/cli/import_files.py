@@ -11,10 +11,14 @@ from jbf.cli.arguments import Commands, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
-from jbf.text_files import real_path, write_text
+from jbf.text_files import read_text, real_path, write_text
 
 if TYPE_CHECKING:
     from jbf.importing.result import Import
+
+
+EVERY = "all"
+"""What `--joint` takes for every joint."""
 
 
 def add(commands: Commands) -> None:
@@ -30,7 +34,13 @@ def add(commands: Commands) -> None:
         "looked at and map.toml is written beside it",
     )
     parser.add_argument("--out", metavar="FOLDER", help="write the runs and rig.toml there")
+    parser.add_argument(
+        "--joint",
+        metavar="NAME",
+        help="a joint of several in the file; all: a campaign of each in a folder of FOLDER",
+    )
     parser.add_argument("--cut", metavar="CUT", help="cut.toml of an earlier import, edited")
+    parser.add_argument("--no-cut", action="store_true", help="do not cut a recording at its rests")
     parser.add_argument("--plot", metavar="PNG", help="draw how the recordings were cut")
     parser.add_argument(
         "--force", action="store_true", help="replace an earlier import, an earlier map.toml"
@@ -40,8 +50,36 @@ def add(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do it."""
     outputs.check({"--plot": arguments.plot}, outputs.read_by(arguments))
+    if arguments.joint is not None and arguments.map is not None:
+        raise InputError(file="--joint", problem="goes without --map", mend="the map names columns")
     if arguments.map is None and arguments.out is None:
         return _look(arguments)
+    if arguments.joint == EVERY:
+        return _each_joint(arguments)
+    return _import(arguments, arguments.joint, arguments.out)
+
+
+def _each_joint(arguments: argparse.Namespace) -> int:
+    """A campaign of each joint, in a folder of its name."""
+    from jbf.importing.guess import JointOpen
+    from jbf.importing.import_files import look
+
+    if arguments.out is None or arguments.plot is not None:
+        mend = "name --out FOLDER, and no --plot"
+        raise InputError(file="--joint", problem="all makes a folder of each joint", mend=mend)
+    try:
+        look(arguments.files[0])
+    except JointOpen as several:
+        joints = several.joints
+    else:
+        mend = "leave --joint out"
+        raise InputError(file=arguments.files[0], problem="holds one joint", mend=mend)
+    Path(arguments.out).mkdir(parents=True, exist_ok=True)
+    return max(_import(arguments, joint, str(Path(arguments.out) / joint)) for joint in joints)
+
+
+def _import(arguments: argparse.Namespace, joint: str | None, out: str | None) -> int:
+    """One campaign."""
     from jbf.importing.import_files import OpenQuestions, import_files
 
     try:
@@ -49,9 +87,11 @@ def run(arguments: argparse.Namespace) -> int:
             found = import_files(
                 arguments.files,
                 arguments.map,
-                arguments.out,
+                out,
                 cut_file=arguments.cut,
+                whole=arguments.no_cut,
                 replace_folder=arguments.force,
+                joint=joint,
                 progress=report,
             )
     except OpenQuestions as questions:
@@ -61,7 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         _draw(found, arguments.plot)
     outputs.say(found.summary(), {})
-    if arguments.out is None:
+    if out is None:
         outputs.say("\nNothing was written: name --out FOLDER", {})
     return 0
 
@@ -79,20 +119,32 @@ def _look(arguments: argparse.Namespace) -> int:
                 problem="goes with --map or --out",
                 mend="jbf import FILE alone looks at the file",
             )
-    target = real_path(arguments.files[0]).parent / "map.toml"
-    shown_path = Path(arguments.files[0]).parent / "map.toml"
-    if target.exists() and not arguments.force:
-        raise InputError(
-            file=shown_path,
-            problem="is there already, and would be written anew",
-            mend=f"go on with it: jbf import {arguments.files[0]} --map {shown_path} --out "
-            "FOLDER; or say --force",
-        )
-    outputs.check({"map.toml": str(target)}, arguments.files)
-    found = look(arguments.files[0])
-    write_text(target, map_text(found, str(shown_path)))
-    outputs.say(guess_report(found, str(shown_path)), {})
+    file = Path(arguments.files[0])
+    target, kept = _map_beside(file, replace=arguments.force)
+    shown_path = file.parent / target.name
+    if not kept:
+        outputs.check({shown_path.name: str(target)}, arguments.files)
+    found = look(file, arguments.joint)
+    if not kept:
+        write_text(target, map_text(found, str(shown_path)))
+    outputs.say(guess_report(found, str(shown_path), kept=kept), {})
     return 0
+
+
+def _map_beside(file: Path, *, replace: bool) -> tuple[Path, bool]:
+    """Where the map of a file goes, and whether one of it is there and is kept.
+
+    `map.toml`, or a name of its own where that is the map of another file.
+    """
+    from jbf.importing.map_text import map_is_of
+
+    folder = real_path(file).parent
+    for path in (folder / "map.toml", folder / f"{file.stem}.map.toml"):
+        if not path.exists():
+            return path, False
+        if map_is_of(read_text(path), file.name):
+            return path, not replace
+    return path, not replace
 
 
 def _draw(found: Import, path: str) -> None:

@@ -49,10 +49,11 @@ _WORDS = {
     "place": "x y s pos position weg hub displacement disp stroke travel distance strecke course "
     "déplacement deplacement posición posicion auslenkung lage spostamento corsa desplazamiento "
     "posizione wegmessung encoder angle winkel theta phi drehwinkel angolo angulo ángulo "
-    "verfahrweg schlittenposition alpha kolbenweg",
+    "verfahrweg schlittenposition alpha kolbenweg q qpos",
     "speed": "v n w vel velocity geschwindigkeit vitesse velocidad velocità velocita speed "
     "drehzahl omega gleitgeschwindigkeit régime regime winkelgeschwindigkeit "
-    "rotationsgeschwindigkeit umdrehungszahl geschw vit velo verfahrgeschwindigkeit",
+    "rotationsgeschwindigkeit umdrehungszahl geschw vit velo verfahrgeschwindigkeit qd dq qdot "
+    "qvel",
     "force": "f force kraft friction reibung reibkraft reibungskraft effort fuerza forza "
     "frottement ft fr ff tangential zugkraft friktion fx tangentialkraft attrito loadcell "
     "kraftmessdose presskraft vorschubkraft ffriction fricción friccion",
@@ -82,6 +83,13 @@ _SETPOINT = _words(
     "soll sollwert setpoint set ref reference target cmd command demand desired consigne "
     "sp commanded vorgabe nominal sollwerte setpt"
 )
+_MODELLED = _words(
+    "gravity model modelled feedforward ff estimated estimate est predicted pred simulated sim "
+    "external ext compensation comp limit max min residual error err"
+)
+"""Of what a controller or a person computed, not what a sensor or a drive read."""
+_ALSO = {"effort": "torque"}
+"""A force in French, a torque in robots' logs: the unit decides."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
 _ANGLES = _words(
     "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder drehzahl omega "
@@ -89,6 +97,9 @@ _ANGLES = _words(
 )
 _BY_WORD = {word: kind for kind, words in _WORDS.items() for word in words.split()}
 _SPLIT = re.compile(r"[^\w#µμ]+|_+|(?<=[a-zà-ÿ])(?=[A-ZÄÖÜ])")
+_NUMBERED = re.compile(r"([a-zà-ÿ]+)(\d+)")
+_GENERIC = _words("joint axis achse axe eje asse j data value actual state states msg message")
+"""Words that name neither a quantity nor a joint."""
 _SHORT = 2
 """Words of so few letters are symbols: what they mean is likely, not sure."""
 
@@ -120,9 +131,9 @@ class Header:
         The quantity that its words speak for; None where they speak for none.
     sure
         A whole word speaks, no mere letter.
-    motor, setpoint, turning
-        It is the motor's; it is what was asked for and not what was measured; its word is of
-        something that turns.
+    motor, setpoint, modelled, turning
+        It is the motor's; it is what was asked for and not what was measured; it was computed; its
+        word is of something that turns.
     """
 
     name: str
@@ -131,7 +142,9 @@ class Header:
     sure: bool
     motor: bool = False
     setpoint: bool = False
+    modelled: bool = False
     turning: bool = False
+    label: str = ""
 
 
 def split_unit(text: str) -> tuple[str, str]:
@@ -175,7 +188,9 @@ def understood(text: str, unit: str = "") -> Header:
         # The unit at the end of a name is no word of it.
         tail = unit_of_name(name)
         spoken = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
+    spoken, numbers = _unnumbered(spoken, parse_unit(unit))
     kinds = [(word, _BY_WORD[word]) for word in spoken if word in _BY_WORD]
+    kinds += [(word, _ALSO[word]) for word in spoken if word in _ALSO]
     if "cell" in spoken or "zelle" in spoken:
         kinds = [("loadcell", "force")]
     kinds += [(w, k) for w in spoken if w not in _BY_WORD and (k := _within(w)) is not None]
@@ -186,8 +201,31 @@ def understood(text: str, unit: str = "") -> Header:
         sure=any(len(word) > _SHORT for word, _ in kinds),
         motor=any(word in _MOTOR or word.startswith("motor") for word in words),
         setpoint=any(word in _SETPOINT for word in words) and not _ACTUAL.intersection(words),
+        modelled=any(word in _MODELLED for word in words) and not _ACTUAL.intersection(words),
         turning=any(word in _ANGLES for word in spoken),
+        label="_".join([w for w in spoken if _is_label(w)] + numbers),
     )
+
+
+def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[str]]:
+    """Words of quantities without the numbers at their ends, `q1`, and these numbers."""
+    found, numbers = [], []
+    for word in words:
+        match = _NUMBERED.fullmatch(word)
+        known = match is not None and (match[1] in _BY_WORD or match[1] in _GENERIC)
+        if known and match is not None:
+            kind = _BY_WORD.get(match[1], "")
+            if unit is None or kind not in KINDS or unit.dimensions in KINDS[kind]:
+                found.append(match[1])
+                numbers.append(match[2])
+                continue
+        found.append(word)
+    return found, numbers
+
+
+def _is_label(word: str) -> bool:
+    known = word in _BY_WORD or word in _MOTOR or word in _SETPOINT or word in _ACTUAL
+    return not known and word not in _GENERIC and _within(word) is None
 
 
 def _within(word: str) -> str | None:

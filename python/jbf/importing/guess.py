@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 
+import numpy as np
+
+from jbf.errors import InputError
 from jbf.importing.columns import KINDS, Header, understood
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
@@ -15,10 +21,15 @@ from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motio
 from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
-from jbf.importing.targets import FRICTION, KNOWN, MOTION, wanted_unit
+from jbf.importing.targets import FRICTION, KNOWN, MOTION, TURNING, wanted_unit
 from jbf.importing.unit_table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.importing.units import parse_unit
 
+JOINT_UNITS = (
+    {"position": "rad", "velocity": "rad/s", "effort": "N m"},
+    {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"},
+)
+"""Units of a joint by the names that robots' software gives, where a file has none."""
 NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
 """Quantities that make no column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
@@ -48,13 +59,38 @@ class Candidate:
         return f"{name} [{unit}]" if unit else name
 
 
-def guess(source: Source) -> Guess:
+class JointOpen(InputError):
+    """A file holds several joints, and none of them was named.
+
+    Attributes
+    ----------
+    joints
+        Their labels.
+    """
+
+    def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
+        self.joints = tuple(joints)
+        held = f"holds the joints {', '.join(joints)}"
+        problem = held if named is None else f"{held}, and no {named}"
+        mend = f"say which: --joint {joints[0]}, or --joint all with --out"
+        super().__init__(file=path, problem=problem, mend=mend)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return partial(InputError, **self._fields()), ()
+
+
+def guess(source: Source, joint: str | None = None) -> Guess:
     """What a file's columns are.
+
+    Parameters
+    ----------
+    joint
+        Name or number of one joint of several that the file holds.
 
     Raises
     ------
     InputError
-        The file is broken where it was looked at.
+        The file is broken where it was looked at, or it holds several joints and none is named.
     """
     entries: dict[str, Entry] = {}
     ignored: dict[str, str] = {}
@@ -62,16 +98,24 @@ def guess(source: Source) -> Guess:
     questions: list[Question] = []
     heads: dict[str, Values] = {}
     several = len(source.tables) > 1
-    whole = Counter(column.name for table in source.tables for column in table.columns)
-    for table in source.tables:
+    tables = tuple(_with_units_of_joint_states(table) for table in source.tables)
+    whole = Counter(column.name for table in tables for column in table.columns)
+    joints = _joints(tables)
+    if joints and joint not in joints:
+        raise JointOpen(source.path, joints, joint)
+    for table in tables:
         questions += [
             Question(f"[{table.name}]" if several else "file", q) for q in table.questions
         ]
         head = source.head(table, 5_000)
         heads |= {qualified(table, name, whole): values for name, values in head.items()}
         found = [
-            replace(c, called=qualified(table, c.column.name, whole)) for c in _candidates(table)
+            replace(c, called=qualified(table, c.column.name, whole))
+            for c in _candidates(table)
+            if not joints or c.header.label in ("", joint)
         ]
+        blank = [c for c in found if not np.isfinite(head[c.column.name]).any()]
+        found = [c for c in found if c not in blank]
         # Of several groups each has its own clock, and no line of the map names them all.
         own_clock = several and table.clock is not None
         time, open_ = (None, []) if own_clock else guess_time(table, head)
@@ -100,29 +144,61 @@ def guess(source: Source) -> Guess:
                     ask = f"is in [{table.name}], too; say table under [file], or write it out"
                     questions.append(Question(key, ask))
         ignored |= _left_over(table, found, time)
+        ignored |= {c.column.name: "holds no value" for c in blank}
     entries = _by_machine(entries)
     for key in _beside_the_point(entries):
         name = entries.pop(key).expression.split("`")[1]
         ignored[name] = "the force and the place tell enough"
     questions += _missing(entries, source)
+    questions += _turned(entries, ignored)
     sections, about_rig = guess_rig(set(entries))
     questions += about_rig
-    by_motion = time_by_motion(entries, source.tables, heads)
+    by_motion = time_by_motion(entries, tables, heads)
     if by_motion is not None:
         questions = [q for q in questions if q.place not in entries["time_s"].expression]
         entries["time_s"] = by_motion
-    questions += contradictions(entries, source.tables, heads)
+        unit = by_motion.expression[by_motion.expression.rindex("[") :]
+        clocks = {key: text.replace(f"[{OPEN}]", unit) for key, text in clocks.items()}
+    questions += contradictions(entries, tables, heads)
     ordered = sorted(entries.values(), key=lambda e: _order(e.key))
     return Guess(
         source.path,
         format_of(source.path).name,
-        source.tables,
+        tables,
         tuple(ordered),
         ignored,
         sections,
         tuple(dict.fromkeys(questions)),
         clocks,
     )
+
+
+def _with_units_of_joint_states(table: Table) -> Table:
+    """A table with the units of revolute joints (`sensor_msgs/JointState`), where the file has
+    none."""
+    words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
+    there = {word for found in words.values() for word in found}
+    needed = {"position", "effort", "q", "tau"}
+    units = next((u for u in JOINT_UNITS if needed & u.keys() <= there), {})
+    if not units or any(c.unit for c in table.columns):
+        return table
+    columns = []
+    for column in table.columns:
+        said = [unit for word, unit in units.items() if word in words[column.name]]
+        bare = len(said) == 1 and not understood(column.name).unit
+        columns.append(replace(column, unit=said[0]) if bare else column)
+    return replace(table, columns=tuple(columns))
+
+
+def _joints(tables: Sequence[Table]) -> list[str]:
+    """Labels of the joints, where a friction and a motion of each of several are there."""
+    found: dict[bool, list[str]] = {True: [], False: []}
+    for table in tables:
+        for candidate in _candidates(table):
+            if candidate.key in (*FRICTION, *MOTION) and candidate.header.label:
+                found[candidate.key in FRICTION].append(candidate.header.label)
+    both = [label for label in dict.fromkeys(found[False]) if label in found[True]]
+    return both if len(both) > 1 else []
 
 
 def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
@@ -157,10 +233,12 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if header.kind is None and not header.setpoint:
         # `force/value`: the group says what its column does not.
         header = understood(f"{table.name} {column.name}", column.unit)
-    if header.setpoint or header.kind in NEVER or is_doubtful_time(header):
+    if header.setpoint or header.modelled or header.kind in NEVER or is_doubtful_time(header):
         return None
     unit = None if header.unit in ASK else parse_unit(header.unit)
     kind, why = header.kind, "its name"
+    if kind == "force" and unit is not None and unit.dimensions == TORQUE:
+        kind = "torque"  # a friction in N m
     if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
         # A name of two letters is no witness against a unit.
         if kind == "time":
@@ -254,7 +332,15 @@ def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Q
 def _by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
     """Keys that depend on what moves: a torque beside a slide is the motor's."""
     found = dict(entries)
-    linear = any(key in found for key in ("position_m", "velocity_m_s"))
+    places = [key for key in ("position_m", "velocity_m_s") if key in found]
+    of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent"}
+    if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
+        # A place without a unit, beside a torque, is more often an angle.
+        for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
+            if key in found:
+                found[turning] = replace(found.pop(key), key=turning)
+        return found
+    linear = bool(places)
     if not linear or ("friction_n" in found and "velocity_m_s" in found):
         return found
     for key in ("torque_n_m", "angle_rad", "velocity_rad_s", "speed_rpm"):
@@ -268,6 +354,27 @@ def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
     if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
         return []
     return [key for key in entries if key.startswith("motor_")]
+
+
+def _turned(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
+    """What is open of a force beside an angle: a rotary drive's friction is a torque."""
+    turning = [key for key in TURNING if key in entries]
+    if "friction_n" not in entries or not turning or "position_m" in entries:
+        return []
+    force = entries.pop("friction_n")
+    if "velocity_m_s" in entries:
+        ignored[entries.pop("velocity_m_s").expression.split("`")[1]] = "the angle tells it"
+    if "torque_n_m" in entries:
+        both = f"{force.expression} or {entries['torque_n_m'].expression}"
+        entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)
+        return [Question("torque_n_m", f"which is the friction: {both}?")]
+    lever = f"{force.expression} * {OPEN} [mm]"
+    entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
+    ask = (
+        f"at what radius does {force.expression} act? write it in the place of the {OPEN}; of a "
+        "journal bearing write friction_n and [bearing] (docs/import.md)"
+    )
+    return [Question("torque_n_m", ask)]
 
 
 def _missing(entries: Mapping[str, Entry], source: Source) -> list[Question]:
@@ -300,6 +407,8 @@ def _left_over(table: Table, found: list[Candidate], time: Entry | None) -> dict
             why = "words"
         elif header.setpoint:
             why = "a set point"
+        elif header.modelled:
+            why = "computed, not measured"
         elif header.kind == "run":
             why = "numbers the runs: [cut] may go by it"
         elif header.kind is None:

@@ -11,20 +11,17 @@ from jbf.importing.targets import LINEAR, TURNING
 Sections = dict[str, dict[str, Any]]
 
 _ASKS = {
-    "rated_torque_n_m": "what is 100 % of the motor's torque, N m?",
-    "rated_force_n": "what is 100 % of the motor's force, N?",
-    "torque_constant_n_m_a": "what torque of the motor is 1 A, N m/A?",
-    "pitch_m": "how far does it move in one turn of its screw, m?",
+    "rated_torque_n_m": 'what is 100 % of the motor\'s torque (such as "1.27 N m")?',
+    "rated_force_n": 'what is 100 % of the motor\'s force (such as "60 N")?',
+    "torque_constant_n_m_a": "what torque of the motor is 1 A, N m?",
+    "pitch_m": 'how far does it move in one turn of its screw (such as "10 mm")?',
 }
-_BEARING = ("radius_m", "length_m", "clearance_m", "mass_kg", "count")
 
 
 def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
     """The sections of the rig, `?` where a value is open."""
     linear = any(key in keys for key in LINEAR)
     turning = any(key in keys for key in TURNING)
-    if "friction_n" in keys and turning and not (linear and "position_m" in keys):
-        return _bearing()
     if not linear and not turning:
         return {}, []
     motion = "linear" if linear else "rotary"
@@ -52,16 +49,3 @@ def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
     return {"drive": drive}, [
         Question(f"drive.{key}", f"{_ASKS[key]} write it into the map") for key in asked
     ]
-
-
-def _bearing() -> tuple[Sections, list[Question]]:
-    sections: Sections = {
-        "bearing": dict.fromkeys(_BEARING, OPEN),
-        "lubricant": {"viscosity_pa_s": OPEN},
-        "load": {"normal_n": OPEN},
-    }
-    ask = (
-        "a force beside an angle is a journal bearing's: what are its sizes? write them into the "
-        "map, or a [drive] in their place"
-    )
-    return sections, [Question("bearing", ask)]

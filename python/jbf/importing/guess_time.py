@@ -17,6 +17,10 @@ from jbf.importing.units import parse_unit
 
 _FROM_S, _TO_S = 9.5e8, 4.1e9
 """Seconds since 1970, from the year 2000 to 2100."""
+FORWARD, FEW = 0.9, 4
+"""Share of its steps that are positive, and rows below which it is not asked."""
+SHORTEST_S = 1e-6
+"""A step that no logger of friction has."""
 Found = tuple[Entry | None, list[Question]]
 
 
@@ -27,13 +31,13 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
     if own:
         return Entry("time_s", written("time_s"), "its name is jbf's own"), []
-    numbers = [c for c in table.columns if _is_time(c)]
+    numbers = [c for c in table.columns if _is_time(c) and _runs_forward(head[c.name])]
     instants = [
         c for c in table.columns if c.kind == "instant" and _steps(head[c.name]) is not None
     ]
     with_unit = [c for c in numbers if _time_unit(c)]
-    if len(with_unit) == 1:
-        return _of_number(with_unit[0])
+    if len(numbers) == 1 and with_unit:
+        return _of_number(numbers[0], _steps(head[numbers[0].name]))
     if not numbers and instants:
         finest = min(instants, key=lambda c: _steps(head[c.name]) or np.inf)
         return Entry("time_s", written(finest.name), "its cells are dates or times of day"), []
@@ -103,6 +107,15 @@ def _of_number(column: Column, step: float | None = None) -> Found:
     if _time_unit(column):
         in_name = understood(column.name).unit
         text = written(column.name) + ("" if in_name else f" [{column.unit}]")
+        unit = parse_unit(header.unit)
+        if step is not None and unit is not None and step * unit.in_si < SHORTEST_S:
+            ask = (
+                f"the times of {text} would be {step * unit.in_si:.2g} s apart, as of no logger: "
+                "write its unit behind the column"
+            )
+            open_text = f"{written(header.name)} [{OPEN}]"
+            entry = Entry("time_s", open_text, "its name", sure=False)
+            return entry, [Question(column.name, ask)]
         return Entry("time_s", text, "its name and its unit"), []
     if header.unit:
         ask = f"{header.unit} is no unit of time: [min], [ms] or what? write it behind the column"
@@ -125,6 +138,16 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
             why = f"{unit} since 1970, by its size"
             return Entry("time_s", f"{written(column.name)} [{unit}]", why)
     return None
+
+
+def _runs_forward(values: Values) -> bool:
+    """Whether a column may be a clock: it grows, but where a recording starts again."""
+    known = np.asarray(values, dtype=np.float64)
+    steps = np.diff(known[np.isfinite(known)])
+    steps = steps[steps != 0.0]
+    if len(known) < FEW:
+        return True
+    return bool(len(steps) and np.mean(steps > 0.0) > FORWARD)
 
 
 def _steps(values: Values) -> float | None:

@@ -21,6 +21,7 @@ from jbf.importing.ledger import ledger_of
 from jbf.importing.map_text import map_text
 from jbf.importing.mapping import Map, read_map
 from jbf.importing.overview import overview
+from jbf.importing.recording import check_loads
 from jbf.importing.recording import read_recording as spooled
 from jbf.importing.result import Import
 from jbf.importing.rig_columns import check_rig_columns
@@ -53,8 +54,13 @@ class OpenQuestions(InputError):
         return partial(InputError, **self._fields()), ()
 
 
-def look(path: PathLike) -> Guess:
+def look(path: PathLike, joint: str | None = None) -> Guess:
     """What a file's columns are, as far as it tells.
+
+    Parameters
+    ----------
+    joint
+        Name or number of one joint of several that the file holds.
 
     Raises
     ------
@@ -62,7 +68,7 @@ def look(path: PathLike) -> Guess:
         The file is not there, is broken, or its library is not installed.
     """
     with open_source(path) as source:
-        return guess(source)
+        return guess(source, joint)
 
 
 def import_files(
@@ -71,7 +77,9 @@ def import_files(
     out: PathLike | None = None,
     *,
     cut_file: PathLike | None = None,
+    whole: bool = False,
     replace_folder: bool = False,
+    joint: str | None = None,
     progress: Report | None = None,
 ) -> Import:
     """Recordings as a campaign: runs and a rig.
@@ -86,8 +94,13 @@ def import_files(
         The campaign's folder; without one a temporary folder, which goes with the result.
     cut_file : path, optional
         Trims (`cut.toml`) in the place of the map's `[cut]`.
+    whole : bool
+        Whether recordings are left whole where the map says nothing of cutting; else they are cut
+        at their rests.
     replace_folder : bool
         Whether an earlier import there may be replaced.
+    joint : str, optional
+        Name or number of one joint of several that the files hold; without a map only.
     progress : callable, optional
         Called with a message, how much is done and how much there is.
 
@@ -100,11 +113,13 @@ def import_files(
     folder = None if out is None else path_of(out)
     if folder is not None:
         check_folder(folder, replace=replace_folder)
-    mapping, text = _map(map, paths)
+    mapping, text = _map(map, paths, joint)
     rig = mapping.check()
     check_rig_columns(rig, mapping)
     if cut_file is not None:
         mapping = replace(mapping, cut=replace(mapping.cut, file=path_of(cut_file)))
+    if whole and mapping.cut.by is None:
+        mapping = replace(mapping, cut=replace(mapping.cut, by=()))
     beside = None if folder is None else folder.resolve().parent
     with TemporaryDirectory(prefix=".jbf-import-", dir=beside) as spool:
         recordings = [
@@ -112,6 +127,9 @@ def import_files(
             for number, path in enumerate(paths)
         ]
         pieces = _pieces(recordings, mapping)
+        for recording in recordings:
+            own = [p for p in pieces if p.keep and p.file == recording.path.name]
+            check_loads(recording, own, mapping)
         ledger = ledger_of(recordings, pieces, mapping)
         pictures = tuple(overview(recording) for recording in recordings)
         temporary = None
@@ -155,14 +173,14 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
     return paths
 
 
-def _map(given: PathLike | Map | None, paths: Sequence[Path]) -> tuple[Map, str]:
+def _map(given: PathLike | Map | None, paths: Sequence[Path], joint: str | None) -> tuple[Map, str]:
     """The map and its text; a guess, once it is sure, where none is given."""
     if isinstance(given, Map):
         text = "" if given.path is None else read_text(given.path)
         return given, text
     if given is not None:
         return read_map(given), read_text(given)
-    found = look(paths[0])
+    found = look(paths[0], joint)
     if not found.sure:
         raise OpenQuestions(found)
     return found.map(), map_text(found)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import tomlkit
 
 from jbf.importing.columns import understood
@@ -15,10 +18,17 @@ _HEAD = """\
 # what the name on the left ends in. Each ? is open: put what it is in its place.
 """
 _CUT = """\
-# One recording becomes several runs where it is cut. Time that starts again always cuts.
+# One recording becomes several runs where it is cut: at its rests where nothing is said here.
+# Time that starts again always cuts.
 # [cut]
 # by = "{way}"  # one or several of: "rests", "set_point", "load_step", "motion", "run"
 """
+
+
+def map_is_of(text: str, file_name: str) -> bool:
+    """Whether a look at a file of that name wrote this map."""
+    made = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
+    return made is not None and Path(made[1]).name == file_name
 
 
 def map_text(guess: Guess, name: str = "map.toml") -> str:

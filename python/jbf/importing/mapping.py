@@ -9,21 +9,27 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from jbf.errors import InputError
 from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.table import Options
 from jbf.importing.targets import FRICTION, MOTION, wanted_unit
+from jbf.importing.units import parse_unit, unit_of_name
 from jbf.records.checks import LARGEST
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
 
+_QUANTITY = re.compile(r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>\S.*?)\s*")
+_QUOTED = re.compile(r"`[^`]*`")
 RIG = ("drive", "bearing", "lubricant", "load")
 SECTIONS = ("file", "columns", "clocks", "cut", *RIG)
 
@@ -58,7 +64,7 @@ class Map:
         sections = {"columns": self.columns, "clocks": self.clocks, **self.rig}
         for section, content in sections.items():
             for key, value in content.items():
-                if isinstance(value, str) and (value.strip() == OPEN or f"[{OPEN}]" in value):
+                if isinstance(value, str) and OPEN in _QUOTED.sub("", value):
                     yield InputError(
                         file=self.path,
                         key=f"{section}.{key}",
@@ -130,9 +136,28 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
         clocks=_texts(content, "clocks"),
         options=_options(table(content.get("file", {}), "file")),
         cut=CutSettings.from_mapping(table(content.get("cut", {}), "cut"), path.parent),
-        rig={name: dict(table(content[name], name)) for name in RIG if name in content},
+        rig={name: _section(content, name) for name in RIG if name in content},
         path=path,
     )
+
+
+def _section(content: Mapping[str, Any], section: str) -> dict[str, Any]:
+    """A section of the rig; quantities with a unit, such as "10 mm", in the unit of their key."""
+    found = dict(table(content[section], section))
+    for key, value in found.items():
+        match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+        wanted = unit_of_name(key)
+        if match is None or wanted is None:
+            continue
+        unit = parse_unit(match["unit"])
+        if unit is None or not unit.fits(wanted[1]):
+            raise InputError(
+                key=f"{section}.{key}",
+                problem=f"{value!r} is no quantity in {wanted[1].text}",
+                mend=f"write a number of {wanted[1].text}, or one with its unit",
+            )
+        found[key] = float(unit.converted(np.array([float(match["number"])]), wanted[1])[0])
+    return found
 
 
 def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:

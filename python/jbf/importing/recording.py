@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.importing.cutting.piece import Piece
 from jbf.importing.evaluation import Quantity, converted, evaluate
 from jbf.importing.expression import Node, Reference, parse_expression, references
 from jbf.importing.formats.dates import as_date
@@ -28,8 +29,12 @@ from jbf.records.checks import LARGEST
 Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
-CUT_COLUMN = "cut"
-"""Where a set point or the number of a run is kept until the recording is cut."""
+CUT_COLUMN, KEPT_COLUMN = "cut", "kept"
+"""Where a set point or the number of a run, and whether a row is kept, stand until the recording is
+cut."""
+LOADED = 0.1
+"""Share of the usual load below which a machine counts as unloaded, in what is suggested."""
+OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
 _RATE = "rate"
 
 
@@ -61,7 +66,7 @@ def read_recording(
         groups = Counter((channel.table.name, channel.clock) for channel in channels)
         for number, (name, clock) in enumerate(groups):
             own = [c for c in channels if (c.table.name, c.clock) == (name, clock)]
-            _read_stream(source, mapping.options, own, folder / f"{number}.f64", recording, report)
+            _read_stream(source, mapping, own, folder / f"{number}.f64", recording, report)
         _check_segments(recording)
     except InputError as error:
         raise error.within(file=source.path) from None
@@ -81,9 +86,11 @@ def _channels(source: Source, mapping: Map) -> list[Channel]:
     wanted = {key: text for key, text in mapping.columns.items() if key != "time_s"}
     if mapping.cut.by and mapping.cut.column is not None:
         wanted[CUT_COLUMN] = mapping.cut.column
+    if mapping.cut.keep is not None:
+        wanted[KEPT_COLUMN] = mapping.cut.keep.difference
     found = []
     for key, text in wanted.items():
-        section = "cut.column" if key == CUT_COLUMN else f"columns.{key}"
+        section = {CUT_COLUMN: "cut.column", KEPT_COLUMN: "cut.keep"}.get(key, f"columns.{key}")
         try:
             node = parse_expression(text, names, known)
         except InputError as error:
@@ -96,7 +103,7 @@ def _channels(source: Source, mapping: Map) -> list[Channel]:
         (of,) = tables_of
         table = next(t for t in tables if t.name == of)
         clock = _clock(key, table, tables, mapping, names, places)
-        unit = ONE if key == CUT_COLUMN else wanted_unit(key)
+        unit = ONE if key in OF_CUTTING else wanted_unit(key)
         found.append(Channel(key, text, node, table, clock, unit))
     return found
 
@@ -147,13 +154,14 @@ def _clock(
 
 def _read_stream(
     source: Source,
-    options: Options,
+    mapping: Map,
     channels: list[Channel],
     file: Path,
     recording: Recording,
     report: Report | None,
 ) -> None:
     table, clock = channels[0].table, channels[0].clock
+    options, keep = mapping.options, mapping.cut.keep
     tables = _tables(source, options)
     names, units, places = column_names(tables), column_units(tables), located(tables)
     rate = options.rate_hz or table.rate_hz
@@ -174,11 +182,14 @@ def _read_stream(
             time = _seconds(time_node, values, units, recording)
         columns = [np.broadcast_to(time, (count,))]
         for channel in channels:
-            columns.append(np.broadcast_to(_values(channel, values, units, words), (count,)))
+            column = _values(channel, values, units, words)
+            if channel.key == KEPT_COLUMN:
+                assert keep is not None
+                column = keep.holds(column)
+            columns.append(np.broadcast_to(column, (count,)))
         rows = np.column_stack(columns)
         kept = rows[line.keep(rows[:, 0])]
         _check_sizes(stream.columns, kept)
-        _check_load(stream.columns, kept, recording, line)
         stream.append(kept)
         if report is not None:
             done, total = source.read_bytes()
@@ -196,7 +207,14 @@ def _read_stream(
     recording.notes += unwrapped(stream)
     recording.streams.append(stream)
     recording.start = recording.start or table.start
-    recording.channels += [_described(c, stream, units, rate) for c in channels]
+    for at in stream.empty:
+        key = stream.columns[at]
+        recording.notes.append(f"{key} holds no value and is left out")
+    recording.channels += [
+        _described(c, stream, units, rate)
+        for at, c in enumerate(channels, 1)
+        if at not in stream.empty and c.key != KEPT_COLUMN
+    ]
 
 
 EPOCH_S = (1e8, 1e10)
@@ -229,7 +247,7 @@ def _seconds(
 def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
-    if channel.key == CUT_COLUMN:
+    if channel.key in OF_CUTTING:
         if isinstance(channel.node, Reference):
             column = values[channel.node.column]
             return words.codes(column) if column.dtype == object else column
@@ -274,19 +292,35 @@ def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
         )
 
 
-def _check_load(
-    columns: tuple[str, ...], rows: Array, recording: Recording, line: TimeLine
-) -> None:
-    if "load_n" not in columns:
+def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> None:
+    """Refuse a run with a load that is not above zero.
+
+    Raises
+    ------
+    InputError
+        Names the run and the instant.
+    """
+    found = recording.stream_of("load_n")
+    if found is None:
         return
-    load = rows[:, columns.index("load_n")]
-    if (load <= 0.0).any():
-        worst = float(np.nanmin(load))
-        raise InputError(
-            key="columns.load_n",
-            problem=f"a load of {worst:g} N is not above zero",
-            mend="turn its sign or take its zero off in the map, or leave load_n out",
-        )
+    stream, key = found
+    at = stream.columns.index(key)
+    for piece in pieces:
+        first, end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
+        for block in stream.blocks(first, end):
+            low = block[:, at] <= 0.0
+            if not low.any():
+                continue
+            time, load = block[low][0][[0, at]]
+            usual = float(np.nanmedian(np.abs(stream.read(first, end)[:, at])))
+            least = f"{mapping.columns['load_n']} > {LOADED * usual:.2g} [N]"
+            raise InputError(
+                file=recording.path,
+                key="columns.load_n",
+                problem=f"a load of {load:g} N at {time:g} s is not above zero",
+                mend=f"keep = '{least}' under [cut] leaves such rows out; or turn its sign, or "
+                "take its zero off",
+            )
 
 
 def _described(

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
-from jbf.importing.recording import CUT_COLUMN
+from jbf.importing.recording import OF_CUTTING
 from jbf.importing.spool import Recording, Stream
 from jbf.records.checks import COLUMNS
 
@@ -22,9 +22,15 @@ Array = npt.NDArray[np.float64]
 
 def run_columns(recording: Recording) -> list[str]:
     """The columns of its runs in order: known ones first."""
-    keys = [key for stream in recording.streams for key in stream.columns[1:]]
+    keys = [stream.columns[at] for stream in recording.streams for at in _written(stream)[1:]]
     known = [key for key in COLUMNS if key in keys or key == "time_s"]
-    return known + [key for key in keys if key not in COLUMNS and key != CUT_COLUMN]
+    return known + [key for key in keys if key not in COLUMNS]
+
+
+def _written(stream: Stream) -> list[int]:
+    """Columns of a stream that a run has: none that it was cut by, and none without values."""
+    of_cutting = [at for at, key in enumerate(stream.columns) if key in OF_CUTTING]
+    return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 
 
 def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
@@ -38,8 +44,11 @@ def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
 def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator[Array]:
     """Rows of a run, shape (n, columns), nan where a channel has no sample."""
     parts = [_Part(stream, piece) for stream in recording.streams]
-    places = [[columns.index(k) for k in p.stream.columns if k != CUT_COLUMN] for p in parts]
-    taken = [[at for at, key in enumerate(p.stream.columns) if key != CUT_COLUMN] for p in parts]
+    taken = [_written(p.stream) for p in parts]
+    places = [
+        [columns.index(part.stream.columns[at]) for at in own]
+        for part, own in zip(parts, taken, strict=True)
+    ]
     while True:
         # Every part is filled, not only the first that has rows.
         there = [part.fill() for part in parts]

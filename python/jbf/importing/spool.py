@@ -50,6 +50,13 @@ class Stream:
         few = (self.missing > 0) & (self.missing < OWN_CLOCK * self.rows)
         return [int(column) for column in np.flatnonzero(few)]
 
+    @property
+    def empty(self) -> list[int]:
+        """Columns without a single value."""
+        if self.missing is None:
+            return []
+        return [int(column) for column in np.flatnonzero(self.missing == self.rows)]
+
     def complete(self, block: Array) -> Mask:
         """Rows that have what is needed."""
         mask: Mask = np.all(np.isfinite(block[:, self.needed]), axis=1)
@@ -156,10 +163,10 @@ class Recording:
     labels: list[str] = field(default_factory=list)
 
     def stream_of(self, *keys: str) -> tuple[Stream, str] | None:
-        """The stream that holds the first of these columns that is there."""
+        """The stream that holds the first of these columns that is there, and has values."""
         for key in keys:
             for stream in self.streams:
-                if key in stream.columns:
+                if key in stream.columns and stream.columns.index(key) not in stream.empty:
                     return stream, key
         return None
 

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from jbf.errors import InputError
+from jbf.importing.guess import JointOpen
+from jbf.importing.guessed import Guess
 from jbf.importing.import_files import import_files, look
 from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
@@ -38,7 +40,7 @@ def looked(folder: Folder, name: str) -> dict[str, Any]:
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))
     path = folder.path(name)
-    found = look(path)
+    found, open_joint = _first_joint(path)
     text = map_text(found)
     return {
         "file": name,
@@ -48,8 +50,18 @@ def looked(folder: Folder, name: str) -> dict[str, Any]:
         "form": form_of(text),
         "columns": file_columns(path),
         "quantities": quantities(),
-        "questions": [str(question) for question in found.questions],
+        "questions": [*open_joint, *map(str, found.questions)],
     }
+
+
+def _first_joint(path: Path) -> tuple[Guess, list[str]]:
+    """A guess at a file, of its first joint where it holds several, and a word on the others."""
+    try:
+        return look(path), []
+    except JointOpen as several:
+        first, *others = several.joints
+        said = f"joint: the columns are those of {first}; there are {', '.join(others)}, too"
+        return look(path, first), [said]
 
 
 def tried(

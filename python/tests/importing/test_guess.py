@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jbf import import_files, look
+from jbf.cli import main
 from jbf.errors import InputError
 
 
@@ -115,8 +116,12 @@ UNCERTAIN = {
         ["motor_position_counts", "drive.torque_constant_n_m_a"]),
     "percent on a slide": (text("time_s,ActPos_mm,ActTorque_pct\n", "t x pct"),
         ["drive.rated_torque_n_m", "drive.pitch_m"]),
-    "missing dimensions of a bearing": (
-        text("time_s,angle_rad,velocity_m_s,friction_n,load_n\n", "t x v f load"), ["bearing"]),
+    "radius at which a force acts": (
+        text("time_s,angle_rad,velocity_m_s,friction_n,load_n\n", "t x v f load"), ["torque_n_m"]),
+    "a torque elsewhere": (
+        text("t [s],angle [rad],friction [Nm],shaft_torque [Nm]\n", "t x f load"), ["torque_n_m"]),
+    "two clocks": (text("time [s],cpu_time_ms,F [N],x [mm]\n", "t ms f x"), ["time_s"]),
+    "a rate that no logger has": (text("time_ns,F [N],x [mm]\n", "t f x"), ["time_ns"]),
     "turns or radians": (text("t [s],n [1/s],M [Nm]\n", "t v f"), ["n [1/s]"]),
     "decimal or thousands": ("Zeit [s];Kraft [N];Weg [mm]\n"
         + "".join(f"{i},123;{i + 1},456;{i},789\n" for i in range(1, 60)),
@@ -136,6 +141,71 @@ def test_ambiguous_columns_become_questions_and_stop_the_import(case: str, tmp_p
     with pytest.raises(InputError):
         import_files(path, out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["uart_latency_ms", "dt_ms", "jitter_us", "loop_time_us"])
+def test_column_that_does_not_run_forward_is_no_clock(name: str, tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    lines = [f"time [s],{name},F [N],x [mm]"]
+    lines += [f"{t:.3f},{40.0 + random.normal():.3f},{f:.3f},{x:.4f}" for t, x, _, f in samples()]
+    found = look(written(tmp_path, "\n".join(lines) + "\n"))
+    assert found.sure
+    assert found.map().columns["time_s"] == "`time [s]`"
+    assert name in found.ignored
+
+
+def test_joint_states_without_units_are_those_of_a_revolute_joint(tmp_path: Path) -> None:
+    path = written(tmp_path, text("time,position,velocity,effort\n", "t x v f"))
+    found = look(path)
+    assert found.sure
+    assert found.rig == {"drive": {"motion": "rotary", "friction": "torque"}}
+    expected = {"angle_rad": "`position` [rad]", "velocity_rad_s": "`velocity` [rad/s]",
+                "torque_n_m": "`effort` [N m]", "time_s": "`time` [s]"}  # fmt: skip
+    assert found.map().columns == expected
+
+
+@pytest.mark.parametrize(
+    ("header", "joints"),
+    [
+        ("t [s],q1 [rad],q2 [rad],qd1 [rad/s],qd2 [rad/s],tau1 [N m],tau2 [N m]", ("1", "2")),
+        ("time,position.hip,position.knee,velocity.hip,velocity.knee,effort.hip,effort.knee",
+         ("hip", "knee")),
+    ],
+)  # fmt: skip
+def test_each_joint_of_several_is_a_campaign_of_its_own(
+    header: str, joints: tuple[str, str], tmp_path: Path
+) -> None:
+    lines = [header]
+    for t, x, v, f in samples():
+        lines.append(f"{t:.3f},{x:.5f},{2 * x:.5f},{v:.5f},{2 * v:.5f},{f:.4f},{3 * f:.4f}")
+    path = written(tmp_path, "\n".join(lines) + "\n")
+    with pytest.raises(InputError, match=f"holds the joints {joints[0]}, {joints[1]}"):
+        look(path)
+    torques = [
+        import_files(path, joint=joint, out=tmp_path / joint).runs[0].friction_n for joint in joints
+    ]
+    assert torques[0] is not None
+    assert torques[1] is not None
+    np.testing.assert_allclose(torques[1], 3.0 * torques[0], atol=2e-4)
+    assert main(["import", str(path), "--joint", "all", "--out", str(tmp_path / "each")]) == 0
+    assert {p.name for p in (tmp_path / "each").iterdir()} == set(joints)
+
+
+def test_channel_without_a_value_is_left_out(tmp_path: Path) -> None:
+    lines = ["t [s],F [N],x [mm],v [mm/s]"]
+    lines += [f"{t:.3f},{f:.3f},{x:.4f},nan" for t, x, _, f in samples()]
+    path = written(tmp_path, "\n".join(lines) + "\n")
+    found = look(path)
+    assert found.ignored["v [mm/s]"] == "holds no value"
+    channels = import_files(path).ledger["files"][0]["channels"]
+    assert [c["channel"] for c in channels] == ["position_m", "friction_n"]
+
+
+def test_computed_torque_is_not_taken_for_the_measured_one(tmp_path: Path) -> None:
+    header = "t [s],q [rad],torque [Nm],gravity_torque [Nm]\n"
+    found = look(written(tmp_path, text(header, "t x f load")))
+    assert found.sure
+    assert found.map().columns["torque_n_m"] == "`torque [Nm]`"
 
 
 NUMBERS = {

@@ -25,7 +25,7 @@ friction = "force"
 """
 RESTS = MAP + '[cut]\nby = "rests"\n'
 IMPORT = "import log.csv --map map.toml --out runs"
-OPEN = "time,speed_rpm,torque_pct\n" + "1,2,3\n2,3,4\n" * 20
+OPEN = "time,speed_rpm,torque_pct\n" + "".join(f"{k},2,3\n" for k in range(40))
 """A recording whose map has open entries."""
 
 
@@ -54,9 +54,25 @@ def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture)
     text = printed(capsys, "import log.csv")
     assert "Nothing is open" in text
     assert "jbf import log.csv --map map.toml --out FOLDER" in text
-    assert "3 runs" not in printed(capsys, IMPORT)
+    assert "1 run of" in printed(capsys, f"{IMPORT} --no-cut")
     written = {path.name for path in Path("runs").iterdir()}
     assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
+
+
+def test_recording_is_cut_at_its_rests_by_default_and_says_so(capsys: Capture) -> None:
+    text = printed(capsys, IMPORT)
+    assert "3 runs of" in text
+    assert "--no-cut keeps it whole" in text
+    assert len(jbf.import_files("log.csv", "map.toml", whole=True).runs) == 1
+
+
+def test_motion_that_sticks_and_slips_is_not_cut_by_default(capsys: Capture) -> None:
+    time_s = np.arange(0.0, 20.0, 0.01)
+    slips = np.floor(time_s / 0.8) + np.clip((time_s % 0.8) / 0.2, 0.0, 1.0)
+    force = np.where(time_s % 0.8 < 0.2, 5.0, 6.0)
+    csv(Path("log.csv"), {"time_s": time_s, "position_m": 1e-3 * slips, "friction_n": force})
+    Path("map.toml").write_text(MAP.replace('velocity_m_s = "velocity_m_s"\n', ""))
+    assert "1 run of" in printed(capsys, IMPORT)
 
 
 def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture) -> None:
@@ -74,10 +90,20 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     assert not Path("runs").exists()
 
 
-def test_existing_map_is_replaced_only_with_the_force_option(capsys: Capture) -> None:
-    refusal(capsys, "import log.csv", "is there already")
+def test_second_look_keeps_the_map_and_another_file_has_a_map_of_its_own(capsys: Capture) -> None:
+    # A map that no look has written is nobody's to replace.
+    assert "log.map.toml was written" in printed(capsys, "import log.csv")
+    assert Path("map.toml").read_text() == MAP
+    edited = Path("log.map.toml").read_text().replace("linear", "rotary")
+    Path("log.map.toml").write_text(edited)
+    assert "log.map.toml is there and was kept" in printed(capsys, "import log.csv")
+    assert Path("log.map.toml").read_text() == edited
     printed(capsys, "import log.csv --force")
-    assert Path("map.toml").read_text() != MAP
+    assert Path("log.map.toml").read_text() != edited
+    Path("other.csv").write_text(Path("log.csv").read_text())
+    Path("map.toml").unlink()
+    assert "map.toml was written" in printed(capsys, "import other.csv")
+    assert "log.map.toml is there" in printed(capsys, "import log.csv")
 
 
 def test_force_option_replaces_an_import_but_no_folder_with_other_files(capsys: Capture) -> None:
@@ -124,10 +150,32 @@ def set_cell(text: str, row: int, column: int, new: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def every(step: int, text: str, cell: str | None) -> str:
+    """A file with a wrong cell, or with all cells but one lost, in one row of so many."""
+    lines = text.splitlines()
+    for k in range(step + 1, len(lines), step):
+        cells = lines[k].split(",")
+        lines[k] = cells[0] if cell is None else ",".join([*cells[:3], cell, *cells[4:]])
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("cell", ["ab0.3", "1,2", None])
+def test_damaged_rows_are_left_out_and_reported_up_to_one_in_a_thousand(
+    cell: str | None, capsys: Capture
+) -> None:
+    path = Path("log.csv")
+    path.write_text(every(1050, path.read_text(), cell))
+    text = printed(capsys, f"{IMPORT} --no-cut")
+    assert "1 row left out, for the row is damaged" in text
+    assert "the first in row 1052" in text
+    path.write_text(every(300, path.read_text(), cell))
+    refusal(capsys, f"{IMPORT} --force", "rows so far are damaged")
+
+
 BAD_FILES = {
-    "a word": (lambda t: set_cell(t, 30, 3, "abc"), 'row 30, column friction_n: "abc"'),
-    "a row too long": (lambda t: set_cell(t, 9, 2, "1,2"), "row 9: has 6 cells"),
-    "a row too short": (lambda t: t.replace(t.splitlines()[8], "1"), "row 9: has 1 cell"),
+    "words": (lambda t: every(200, t, "abc"), 'row 202, column friction_n: "abc"'),
+    "rows too long": (lambda t: every(200, t, "1,2"), "row 202: has 6 cells"),
+    "rows too short": (lambda t: every(200, t, None), "row 202: has 1 cell"),
     "time runs back": (lambda t: set_cell(t, 500, 0, "5.0"), "row 500: sample 499: time runs back"),
     "no numbers": (lambda t: "a,b\nc,d\n", "holds no rows of numbers"),
     "a few samples": (lambda t: "\n".join(t.splitlines()[:6]), "nothing is left to be a run"),
@@ -141,6 +189,21 @@ def test_invalid_recording_is_refused_and_writes_nothing(case: str, capsys: Capt
     path.write_text(change(path.read_text()))
     assert refusal(capsys, IMPORT, fragment).startswith("jbf: log.csv")
     assert not any(p.is_dir() for p in Path().iterdir())
+
+
+def test_quantity_with_a_unit_is_converted_to_the_unit_of_its_key(capsys: Capture) -> None:
+    servo = (
+        '[columns]\ntime_s = "time_s"\nposition_m = "position_m"\n'
+        'torque_percent = "friction_n [%]"\n'
+        '[drive]\nmotion = "linear"\nfriction = "percent"\n'
+    )
+    Path("map.toml").write_text(servo + 'rated_torque_n_m = "127 N cm"\npitch_m = "10 mm"\n')
+    rig = jbf.import_files("log.csv", "map.toml").rig
+    assert rig.drive is not None
+    assert rig.drive.rated_torque_n_m == pytest.approx(1.27, rel=1e-12)
+    assert rig.drive.pitch_m == pytest.approx(0.01, rel=1e-12)
+    Path("map.toml").write_text(servo + 'rated_torque_n_m = "127 N"\npitch_m = 0.01\n')
+    refusal(capsys, IMPORT, "key drive.rated_torque_n_m: '127 N' is no quantity in N m")
 
 
 BAD_MAPS = {
@@ -211,7 +274,7 @@ def test_error_about_open_map_entries_is_unchanged_by_pickling() -> None:
 def test_read_recording_returns_the_same_runs_as_import_files() -> None:
     rig, runs = jbf.read_recording("log.csv", "map.toml")
     assert rig.drive is not None
-    assert len(runs) == 1
+    assert len(runs) == 3
     result = jbf.import_files(["log.csv"], jbf.read_map("map.toml"), "runs")
     np.testing.assert_array_equal(result.runs[0].friction_n, runs[0].friction_n)
     assert result.to_dict() == json.loads(Path("runs/import.json").read_text())

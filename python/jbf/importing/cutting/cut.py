@@ -3,23 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from jbf.errors import InputError
 from jbf.importing.cutting.changes import cut_at_changes
 from jbf.importing.cutting.load_steps import cut_at_load_steps
 from jbf.importing.cutting.motion_kinds import cut_at_motion_kinds
 from jbf.importing.cutting.piece import Cut, Piece
 from jbf.importing.cutting.rests import cut_at_rests
 from jbf.importing.cutting.settings import CutSettings
-from jbf.importing.recording import CUT_COLUMN
+from jbf.importing.recording import CUT_COLUMN, KEPT_COLUMN
 from jbf.importing.spool import Recording
 from jbf.importing.targets import FRICTION
 from jbf.records.checks import MIN_SAMPLES
 
+TOO_FEW = f", and a run has at least {MIN_SAMPLES}"
+REST_S, KEEP_REST_S = 0.25, 0.1
+"""Rests at which a recording is cut where nobody says how, and what of them stays, s."""
+LOST, SHORTEST_S = 0.05, 1.0
+"""Share of the motion that may be left out for that, and the usual length of a run: an axis that
+sticks and slips is not cut at every stop."""
+
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     """The pieces of a recording in the order of time, those that are left out among them."""
+    if settings.by is not None:
+        return _cut(recording, settings)
+    pieces = at_rests_by_default(recording, settings)
+    return _cut(recording, replace(settings, by=())) if pieces is None else pieces
+
+
+def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Piece] | None:
+    """A recording cut at its rests; None where that makes no runs of a usual length."""
+    by_rests = replace(settings, by=("rests",), rest_s=REST_S, keep_rest_s=KEEP_REST_S)
+    pieces = _cut(recording, by_rests)
+    runs = [p.to_s - p.from_s for p in pieces if p.keep]
+    lost = sum(p.to_s - p.from_s for p in pieces if p.why.endswith(TOO_FEW))
+    if len(runs) <= recording.segments or np.median(runs) < SHORTEST_S or lost > LOST * sum(runs):
+        return None
+    recording.notes.append(f"cut at its rests into {len(runs)} runs (--no-cut keeps it whole)")
+    return pieces
+
+
+def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     cuts: list[Cut] = []
-    for way in settings.by:
+    for way in settings.by or ():
         if way == "rests":
             cuts += cut_at_rests(recording, settings)
         elif way == "load_step":
@@ -30,6 +60,9 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
             found = recording.stream_of(CUT_COLUMN)
             assert found is not None
             cuts += cut_at_changes(found[0], CUT_COLUMN, way.replace("_", " "))
+    kept = recording.stream_of(KEPT_COLUMN)
+    if kept is not None:
+        cuts += cut_at_changes(kept[0], KEPT_COLUMN, "keep")
     pieces: list[Piece] = []
     for segment in range(recording.segments):
         own = sorted((c for c in cuts if c.segment == segment), key=lambda c: (c.first_s, c.last_s))
@@ -78,14 +111,33 @@ def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
     if not piece.keep:
         return piece
     found = recording.stream_of(*FRICTION)
-    assert found is not None
+    if found is None:
+        raise InputError(
+            file=recording.path,
+            column=next(k for k in FRICTION if any(k in s.columns for s in recording.streams)),
+            problem="holds no value",
+            mend="name another column in the map",
+        )
     first, end = found[0].rows_between(piece.segment, piece.from_s, piece.to_s)
     why = ""
-    if end - first < MIN_SAMPLES:
-        why = f"{end - first} samples, and a run has at least {MIN_SAMPLES}"
+    if settings.keep is not None and not _kept(recording, piece):
+        why = f"not {settings.keep.text}"
+    elif end - first < MIN_SAMPLES:
+        why = f"{end - first} samples{TOO_FEW}"
     elif piece.to_s - piece.from_s < settings.shortest_s:
         why = f"shorter than {settings.shortest_s:g} s"
     return Piece(piece.name, piece.file, piece.segment, piece.from_s, piece.to_s, not why, why)
+
+
+def _kept(recording: Recording, piece: Piece) -> bool:
+    """Whether the condition holds in a piece; it is cut where that changes."""
+    found = recording.stream_of(KEPT_COLUMN)
+    if found is None:
+        return False
+    stream, key = found
+    first, end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
+    row = stream.read(first, first + 1 if end > first else end)
+    return bool(len(row) and row[0, stream.columns.index(key)] == 1.0)
 
 
 def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:

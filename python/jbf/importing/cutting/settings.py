@@ -3,16 +3,72 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import operator
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.toml_file import number, refuse_unknown
 
+Array = npt.NDArray[np.float64]
+RELATIONS: dict[str, Callable[[Array, float], Any]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    ">=": operator.ge,
+    "<=": operator.le,
+    ">": operator.gt,
+    "<": operator.lt,
+}
+_COMPARISON = re.compile(r"((?:`[^`]*`|[^`<>=!])+)(==|!=|>=|<=|>|<)((?:`[^`]*`|[^`<>=!])+)")
 WAYS = ("rests", "set_point", "load_step", "motion", "run")
 """Ways of cutting, one file each in this folder or in `changes`."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A comparison of two expressions over the file's columns.
+
+    Attributes
+    ----------
+    difference
+        The left side minus the right one, as an expression.
+    relation
+        One of `RELATIONS`, between that and zero.
+    text
+        As it was written.
+    """
+
+    difference: str
+    relation: str
+    text: str
+
+    @classmethod
+    def of(cls, text: object) -> Condition:
+        """A condition from its text.
+
+        Raises
+        ------
+        InputError
+            It is no comparison.
+        """
+        match = _COMPARISON.fullmatch(text) if isinstance(text, str) else None
+        if match is None:
+            mend = 'write a comparison, such as "powered == 1" or "load > 5 [N]"'
+            raise InputError(key="cut.keep", problem=f"{text!r} is no condition", mend=mend)
+        left, relation, right = (part.strip() for part in match.groups())
+        difference = left if right == "0" else f"{left} - ({right})"
+        return cls(difference, relation, str(text))
+
+    def holds(self, values: Array) -> Array:
+        """1 where it holds for values of the difference, else 0; nan where there is none."""
+        found = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
+        return np.where(np.isfinite(values), found, np.nan)
 
 
 @dataclass(frozen=True)
@@ -23,7 +79,7 @@ class CutSettings:
     ----------
     by
         Ways of `WAYS`, all of which cut; none: one run a recording (and wherever time
-        starts again).
+        starts again). None: at rests, where that makes runs (`cut.at_rests_by_default`).
     column
         The file's column (an expression) of `set_point` or `run`.
     rest_s
@@ -34,16 +90,19 @@ class CutSettings:
         Shorter pieces are left out, s.
     still
         Share of the top speed below which a motion rests; by the record's own noise where None.
+    keep
+        Rows that are kept, such as ``powered == 1``; others are left out.
     file
         Trims that a person has edited, in the place of all ways.
     """
 
-    by: tuple[str, ...] = ()
+    by: tuple[str, ...] | None = None
     column: str | None = None
     rest_s: float = 2.0
     keep_rest_s: float = 0.5
     shortest_s: float = 0.0
     still: float | None = None
+    keep: Condition | None = None
     file: Path | None = None
 
     @classmethod
@@ -57,17 +116,20 @@ class CutSettings:
         """
         refuse_unknown(section, [f.name for f in fields(cls)], "cut.")
         given = dict(section)
-        by = given.get("by", ())
-        if not isinstance(by, str | list | tuple):
+        by = given.pop("by", None)
+        if by is None:
+            ways = None
+        elif not isinstance(by, str | list | tuple):
             mend = 'write by = "rests", or a list of ways'
             raise InputError(key="cut.by", problem=f"{by!r} is no way of cutting", mend=mend)
-        ways = (by,) if isinstance(by, str) else tuple(by)
-        for way in ways:
+        else:
+            ways = (by,) if isinstance(by, str) else tuple(by)
+        for way in ways or ():
             if way not in WAYS:
                 raise InputError(
                     key="cut.by", problem=f"{quoted(way)} is no cut", mend=did_you_mean(way, WAYS)
                 )
-        needs = [way for way in ways if way in ("set_point", "run")]
+        needs = [way for way in ways or () if way in ("set_point", "run")]
         if needs and not isinstance(given.get("column"), str):
             raise InputError(
                 key="cut.column",
@@ -80,6 +142,8 @@ class CutSettings:
                 if not 0.0 <= given[key] < math.inf:
                     problem = f"{given[key]} is below zero or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
+        if "keep" in given:
+            given["keep"] = Condition.of(given["keep"])
         if "file" in given:
             if not isinstance(given["file"], str):
                 mend = 'write file = "cut.toml"'

@@ -34,6 +34,7 @@ class ArraySource(Source):
         rows: int,
         clock: str | None = None,
         start: str | None = None,
+        rate_hz: float | None = None,
     ) -> None:
         """Add a table: column to slices and unit."""
         if rows == 0 or not columns:
@@ -48,7 +49,7 @@ class ArraySource(Source):
             elif kind in "OSU":
                 kept.append(Column(column, "", "word"))
         self._columns[name] = {c.name: columns[c.name][0] for c in kept}
-        self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, start=start))
+        self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, rate_hz, start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in slices."""

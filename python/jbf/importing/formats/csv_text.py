@@ -9,7 +9,7 @@ from __future__ import annotations
 import gzip
 import io
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 
@@ -20,11 +20,67 @@ from jbf.importing.formats.dates import Instants, as_date, day_or_month_first, s
 from jbf.importing.formats.dialect import Dialect, decode, is_empty, is_instant, sniff
 from jbf.importing.formats.layout import Layout, lay_out
 from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
+from jbf.importing.formats.trace_blocks import is_trace, open_trace
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
 _HEAD_LINES = 400
 _HEAD_BYTES = 1 << 20
+_TRACE_BYTES = 1 << 14
 _COMMENTS = ("#", "%", "//")
+DAMAGED = 1e-3
+"""Share of the rows that may be damaged; one always may."""
+SURELY, SURELY_ROWS = 1e-2, 20
+"""Share from which on, and rows more, a file is refused before its end."""
+
+
+@dataclass
+class _Damage:
+    """Damaged rows of a file: those of a line that was cut are passed over, more of them are not.
+
+    Attributes
+    ----------
+    rows
+        How many rows were looked at.
+    lines
+        The damaged ones, by their line.
+    """
+
+    path: Path
+    rows: int = 0
+    lines: set[int] = field(default_factory=set)
+    first: InputError | None = None
+
+    def add(self, error: InputError) -> None:
+        assert error.row is not None
+        self.lines.add(error.row)
+        self.first = self.first or error
+        if len(self.lines) > SURELY * self.rows + SURELY_ROWS:
+            raise self._refused()
+
+    def check(self) -> None:
+        """Refuse a file in which more rows are damaged than a broken line explains."""
+        if len(self.lines) > max(DAMAGED * self.rows, 1.0):
+            raise self._refused()
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        if self.first is None:
+            return []
+        where = "" if self.first.column is None else f" in column {self.first.column}"
+        why = f"the row is damaged ({self.first.problem}{where})"
+        return [(len(self.lines), why, self.first.row)]
+
+    def _refused(self) -> InputError:
+        assert self.first is not None
+        more = ""
+        if len(self.lines) > 1:
+            more = f", and {len(self.lines)} of {self.rows} rows so far are damaged"
+        return InputError(
+            file=self.path,
+            row=self.first.row,
+            column=self.first.column,
+            problem=self.first.problem + more,
+            mend=self.first.mend,
+        )
 
 
 class TextSource(Source):
@@ -39,6 +95,7 @@ class TextSource(Source):
             raise InputError(file=path, problem="is binary, not text", mend="name another file")
         self.encoding = options.encoding or decode(data)
         self._words: list[int] = []
+        self._damage = _Damage(path)
         self._firsts: dict[bool, int] = {}
         self._origins: dict[str, tuple[int, str | None]] = {}
         self._handle: io.BufferedReader | gzip.GzipFile | None = None
@@ -139,32 +196,21 @@ class TextSource(Source):
         names = self.layout.names
         width, first_name = len(names), names[0]
         split = self.dialect.split
-        short: tuple[int, int] | None = None
         self._words = []
+        self._damage = _Damage(self.path)
         for number, line in self._lines():
             if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
                 continue
-            if short is not None:
-                raise InputError(
-                    file=self.path,
-                    row=short[0],
-                    problem=f"has {short[1]} cells where the header has {width}",
-                    mend="correct the row or drop it",
-                )
+            self._damage.rows += 1
             cells = split(line.rstrip("\n"))
-            if len(cells) < width:
-                # Empty cells at the end may be left out; the last row may be cut off.
-                if self.dialect.delimiter == " " or len(cells) < width // 2:
-                    short = (number, len(cells))
-                    continue
-                cells += [""] * (width - len(cells))
-            elif len(cells) > width and any(cells[width:]):
-                raise InputError(
-                    file=self.path,
-                    row=number,
-                    problem=f"has {len(cells)} cells where the header has {width}",
-                    mend="correct the row, or say delimiter and decimal under [file]",
-                )
+            few = len(cells) < width and (self.dialect.delimiter == " " or len(cells) < width // 2)
+            if few or (len(cells) > width and any(cells[width:])):
+                problem = f"has {len(cells)} cells where the header has {width}"
+                mend = "correct the row, or say delimiter and decimal under [file]"
+                self._damage.add(InputError(row=number, problem=problem, mend=mend))
+                continue
+            # Empty cells at the end may be left out.
+            cells += [""] * (width - len(cells))
             if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
                 continue  # a logger that was started anew writes its header again
             if cells[0][:1].isalpha() and not any(map(self._counts, cells)):
@@ -177,8 +223,9 @@ class TextSource(Source):
         return self.dialect.is_number(cell) or is_instant(cell)
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """Rows of words among the samples."""
-        return [(len(self._words), "there are only words", self._words[0])] if self._words else []
+        """Rows of words among the samples, and damaged rows."""
+        words = [(len(self._words), "there are only words", self._words[0])] if self._words else []
+        return [*words, *self._damage.left_out()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Columns in blocks of lines."""
@@ -194,6 +241,7 @@ class TextSource(Source):
             numbers = [number for number, _ in block]
             turned = list(zip(*[cells for _, cells in block], strict=True))
             found: dict[str, Values] = {}
+            wrong: dict[int, InputError] = {}
             for name, at, kind in zip(names, places, kinds, strict=True):
                 cells = turned[at]
                 if kind == "word":
@@ -201,10 +249,24 @@ class TextSource(Source):
                 elif kind == "instant":
                     found[name] = self._instants(name, cells, numbers, readers[name])
                 else:
-                    found[name] = self._numbers(name, cells, numbers)
+                    found[name] = self._numbers(name, cells, numbers, wrong)
+            if wrong:
+                for at in sorted(wrong):
+                    self._damage.add(wrong[at])
+                good = np.ones(len(block), dtype=bool)
+                good[list(wrong)] = False
+                found = {name: values[good] for name, values in found.items()}
             yield found
+        self._damage.check()
 
-    def _numbers(self, name: str, cells: Sequence[str], rows: Sequence[int]) -> Values:
+    def _numbers(
+        self,
+        name: str,
+        cells: Sequence[str],
+        rows: Sequence[int],
+        wrong: dict[int, InputError],
+    ) -> Values:
+        """Cells as numbers; those that are none go into `wrong`, by their place in the block."""
         dialect = self.dialect
         plain = dialect.decimal == "." and not dialect.thousands
         try:
@@ -223,13 +285,10 @@ class TextSource(Source):
                 mend = f'correct the cell, or write empty = ["{cell}"] under [file] if it is none'
                 if Dialect(dialect.delimiter, other).is_number(cell):
                     mend = "write all decimals alike"
-                raise InputError(
-                    file=self.path,
-                    row=rows[at],
-                    column=name,
-                    problem=f"{quoted(cell)} is not a number",
-                    mend=mend,
-                )
+                problem = f"{quoted(cell)} is not a number"
+                error = InputError(row=rows[at], column=name, problem=problem, mend=mend)
+                wrong.setdefault(at, error)
+                continue
             found[at] = float(dialect.plain(cell))
         found[~np.isfinite(found)] = np.nan
         return found
@@ -252,7 +311,9 @@ class TextSource(Source):
 
     def row_of(self, table: Table, sample: int) -> int | None:
         """The line of a sample."""
-        return next((number for number, _ in islice(self._rows(), sample, None)), None)
+        bad = self._damage.lines
+        good = (number for number, _ in self._rows() if number not in bad)
+        return next(islice(good, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:
         """How much of the file has been read, and its size."""
@@ -279,5 +340,10 @@ def _opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
 
 
 def open_text(path: Path, options: Options) -> Source:
-    """Open a text file."""
+    """Open a text file: a table, or a controller's trace of a block a variable."""
+    with _opened(path) as file:
+        begin = file.read(_TRACE_BYTES)
+    encoding = options.encoding or decode(begin)
+    if is_trace(begin.decode(encoding, errors="replace").splitlines()):
+        return open_trace(path, encoding)
     return TextSource(path, options)

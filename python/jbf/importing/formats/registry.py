@@ -80,6 +80,9 @@ FORMATS = (
     Format("HDF5", "hdf5:open_hdf5", (".h5", ".hdf5", ".hdf", ".he5"), (_HDF,), "h5py", "hdf5"),
     Format("NumPy", "numpy_arrays:open_arrays", (".npy", ".npz"), (b"\x93NUMPY",)),
     Format(
+        "JSON", "json_text:open_json", (".json", ".jsonl", ".ndjson"), (b"{", b"[{", b"[\n", b"[ ")
+    ),
+    Format(
         "text",
         "csv_text:open_text",
         (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz"),

@@ -1,0 +1,134 @@
+"""JSON and JSON lines: records of numbers, or arrays of one length.
+
+What holds samples is looked for at any depth: a list of records (a row each), or a mapping of
+arrays (a column each). Several such mappings in a list, one a recording, are one table after
+another, told apart by the column `run`. JSON lines are a list of records.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, slices
+from jbf.importing.formats.messages import leaves_of
+from jbf.importing.formats.table import Options, Source, unique
+from jbf.text_files import read_text
+
+RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample_rate_hz")
+"""Keys of a rate, samples a second."""
+FEWEST = 3
+"""Samples from which on a list of numbers is a column."""
+Columns = dict[str, npt.NDArray[np.float64]]
+
+
+def open_json(path: Path, options: Options) -> Source:
+    """Open a file of JSON or of JSON lines."""
+    content = _content(path)
+    source = ArraySource(path)
+    found = list(_tables(content, "", options.rate_hz))
+    names = unique([name for name, _, _ in found])
+    for called, (_, columns, rate_hz) in zip(names, found, strict=True):
+        rows = max(map(len, columns.values()))
+        own = {key: (slices(values), "") for key, values in columns.items()}
+        source.add(called if len(found) > 1 else "", own, rows, rate_hz=rate_hz)
+    if not source.tables:
+        raise InputError(
+            file=path, problem="holds no records and no arrays of numbers", mend="write CSV"
+        )
+    return source
+
+
+def _content(path: Path) -> Any:
+    text = read_text(path)
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as whole:
+        records = []
+        for number, line in enumerate(text.splitlines(), 1):
+            if not line.strip():
+                continue
+            try:
+                records.append(json.loads(line))
+            except json.JSONDecodeError as error:
+                row = number if records else whole.lineno
+                problem = f"is no JSON there ({error.msg if records else whole.msg})"
+                raise InputError(
+                    file=path, row=row, problem=problem, mend="correct it, or write CSV"
+                ) from None
+        return records
+
+
+def _tables(
+    content: Any, name: str, rate_hz: float | None
+) -> Iterator[tuple[str, Columns, float | None]]:
+    """Every table in a value: its name, columns and rate."""
+    if isinstance(content, Mapping):
+        for told in (*content.values(), content):
+            rates = [v for k, v in told.items() if k in RATES] if isinstance(told, Mapping) else []
+            if rates and isinstance(rates[0], int | float):
+                rate_hz = float(rates[0])
+        columns = _columns(content)
+        if columns:
+            yield name, columns, rate_hz
+        for key, value in content.items():
+            if key not in columns:
+                yield from _tables(value, str(key) if not name else f"{name}.{key}", rate_hz)
+    elif isinstance(content, list) and content and all(isinstance(r, Mapping) for r in content):
+        recordings = [_columns(record) for record in content]
+        if all(recordings) and len({tuple(columns) for columns in recordings}) == 1:
+            yield name, _one_after_the_other(recordings), rate_hz
+        elif any(recordings):
+            for at, record in enumerate(content):
+                yield from _tables(record, f"{name}[{at}]", rate_hz)
+        else:
+            columns = _of_records(content)
+            if columns and len(content) >= FEWEST:
+                yield name, columns, rate_hz
+
+
+def _columns(content: Mapping[str, Any]) -> Columns:
+    """The arrays of numbers of one length in a mapping, matrices by their columns."""
+    arrays: Columns = {}
+    for key, value in content.items():
+        if not isinstance(value, list) or len(value) < FEWEST:
+            continue
+        if all(map(_is_number, value)):
+            arrays[key] = _numbers(value)
+        elif all(isinstance(row, list) and row and all(map(_is_number, row)) for row in value):
+            width = min(map(len, value))
+            arrays |= {f"{key}[{k}]": _numbers([row[k] for row in value]) for k in range(width)}
+    lengths = [len(values) for values in arrays.values()]
+    usual = max(lengths, key=lengths.count, default=0)
+    return {key: values for key, values in arrays.items() if len(values) == usual}
+
+
+def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
+    joined: Columns = {
+        key: np.concatenate([columns[key] for columns in recordings]) for key in recordings[0]
+    }
+    counts = [len(next(iter(columns.values()))) for columns in recordings]
+    if len(recordings) > 1:
+        joined["run"] = np.repeat(np.arange(1.0, len(counts) + 1.0), counts)
+    return joined
+
+
+def _of_records(records: Sequence[Any]) -> Columns:
+    """Columns of records; nan where a record lacks one."""
+    rows = [dict(leaves_of(record)) for record in records]
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return {key: _numbers([row.get(key) for row in rows]) for key in keys}
+
+
+def _is_number(value: Any) -> bool:
+    return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
+
+
+def _numbers(values: Sequence[Any]) -> npt.NDArray[np.float64]:
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
-from jbf.diagnosis.evidence import evidence_alone, price_of
+from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.selection import Follow, Names, Round, reconsider, still_needed, try_candidates
 from jbf.diagnosis.shifted import DELAY
+from jbf.diagnosis.which_law import NUISANCES
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
+from jbf.models.catalogue import may_come
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ def select(
         if differ is not None:
             return Selected(present, steps, again=differ)
         if found.leader is None:
+            moved = _machine_together(candidates, present)
+            if moved != present and frozenset(moved) not in visited:
+                visited.add(frozenset(moved))
+                present = moved
+                continue
             return Selected(present, steps, _refused(candidates, present))
         if len(present) >= candidates.policy.most_effects:
             return Selected(present, steps, (_one_more(candidates, present, found.leader),))
@@ -72,6 +79,24 @@ def select(
             return Selected(present, steps)
         visited.add(frozenset(grown))
         present = grown
+
+
+def _machine_together(candidates: Candidates, present: Names) -> Names:
+    """The effects with those of the moved mass and the weight that are needed only together.
+
+    The residual without one of them may be as smooth as the motion, of which few samples are
+    independent; with all of them it is the noise.
+    """
+    missing = [n for n in NUISANCES if n in candidates.names and n not in present]
+    missing = [name for name in missing if may_come(name, present)]
+    if len(missing) < 2 or len(present) + len(missing) > candidates.policy.most_effects:
+        return present
+    together = (*present, *missing)
+    base, whole = candidates.converge(present), candidates.converge(together)
+    predicts = candidates.left_out_rms(together) < candidates.left_out_rms(present)
+    if evidence(candidates, whole, base) <= 0.0 or not predicts:
+        return present
+    return still_needed(candidates, together)
 
 
 def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:

@@ -61,8 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _each_joint(arguments: argparse.Namespace) -> int:
     """A campaign of each joint, in a folder of its name."""
-    from jbf.importing.guess import JointOpen
     from jbf.importing.import_files import look
+    from jbf.importing.joints import JointOpen
 
     if arguments.out is None or arguments.plot is not None:
         mend = "name --out FOLDER, and no --plot"

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
-from jbf.errors import InputError
 from jbf.importing.columns import KINDS, Header, understood
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
@@ -19,17 +15,13 @@ from jbf.importing.formats.table import Column, Source, Table, Values
 from jbf.importing.guess_rig import guess_rig
 from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
 from jbf.importing.guessed import Entry, Guess, Question
+from jbf.importing.joints import JointOpen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
 from jbf.importing.targets import FRICTION, KNOWN, MOTION, TURNING, wanted_unit
 from jbf.importing.unit_table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.importing.units import parse_unit
 
-JOINT_UNITS = (
-    {"position": "rad", "velocity": "rad/s", "effort": "N m"},
-    {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"},
-)
-"""Units of a joint by the names that robots' software gives, where a file has none."""
 NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
 """Quantities that make no column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
@@ -59,26 +51,6 @@ class Candidate:
         return f"{name} [{unit}]" if unit else name
 
 
-class JointOpen(InputError):
-    """A file holds several joints, and none of them was named.
-
-    Attributes
-    ----------
-    joints
-        Their labels.
-    """
-
-    def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
-        self.joints = tuple(joints)
-        held = f"holds the joints {', '.join(joints)}"
-        problem = held if named is None else f"{held}, and no {named}"
-        mend = f"say which: --joint {joints[0]}, or --joint all with --out"
-        super().__init__(file=path, problem=problem, mend=mend)
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return partial(InputError, **self._fields()), ()
-
-
 def guess(source: Source, joint: str | None = None) -> Guess:
     """What a file's columns are.
 
@@ -98,7 +70,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     questions: list[Question] = []
     heads: dict[str, Values] = {}
     several = len(source.tables) > 1
-    tables = tuple(_with_units_of_joint_states(table) for table in source.tables)
+    tables = tuple(with_units_of_joint_states(table) for table in source.tables)
     whole = Counter(column.name for table in tables for column in table.columns)
     joints = _joints(tables)
     if joints and joint not in joints:
@@ -171,23 +143,6 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         tuple(dict.fromkeys(questions)),
         clocks,
     )
-
-
-def _with_units_of_joint_states(table: Table) -> Table:
-    """A table with the units of revolute joints (`sensor_msgs/JointState`), where the file has
-    none."""
-    words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
-    there = {word for found in words.values() for word in found}
-    needed = {"position", "effort", "q", "tau"}
-    units = next((u for u in JOINT_UNITS if needed & u.keys() <= there), {})
-    if not units or any(c.unit for c in table.columns):
-        return table
-    columns = []
-    for column in table.columns:
-        said = [unit for word, unit in units.items() if word in words[column.name]]
-        bare = len(said) == 1 and not understood(column.name).unit
-        columns.append(replace(column, unit=said[0]) if bare else column)
-    return replace(table, columns=tuple(columns))
 
 
 def _joints(tables: Sequence[Table]) -> list[str]:

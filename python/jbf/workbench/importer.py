@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.importing.guess import JointOpen
 from jbf.importing.guessed import Guess
 from jbf.importing.import_files import import_files, look
+from jbf.importing.joints import JointOpen
 from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
 from jbf.workbench.files import Folder

@@ -1,0 +1,56 @@
+"""Joints of a robot's log: the units that their names imply, and which joint is meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.importing.columns import understood
+from jbf.importing.formats.table import Table
+
+JOINT_UNITS = (
+    {"position": "rad", "velocity": "rad/s", "effort": "N m"},
+    {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"},
+)
+"""Units of a joint by the names that robots' software gives, where a file has none."""
+
+
+class JointOpen(InputError):
+    """A file holds several joints, and none of them was named.
+
+    Attributes
+    ----------
+    joints
+        Their labels.
+    """
+
+    def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
+        self.joints = tuple(joints)
+        held = f"holds the joints {', '.join(joints)}"
+        problem = held if named is None else f"{held}, and no {named}"
+        mend = f"say which: --joint {joints[0]}, or --joint all with --out"
+        super().__init__(file=path, problem=problem, mend=mend)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return partial(InputError, **self._fields()), ()
+
+
+def with_units_of_joint_states(table: Table) -> Table:
+    """A table with the units of revolute joints (`sensor_msgs/JointState`), where the file has
+    none."""
+    words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
+    there = {word for found in words.values() for word in found}
+    needed = {"position", "effort", "q", "tau"}
+    units = next((u for u in JOINT_UNITS if needed & u.keys() <= there), {})
+    if not units or any(c.unit for c in table.columns):
+        return table
+    columns = []
+    for column in table.columns:
+        said = [unit for word, unit in units.items() if word in words[column.name]]
+        bare = len(said) == 1 and not understood(column.name).unit
+        columns.append(replace(column, unit=said[0]) if bare else column)
+    return replace(table, columns=tuple(columns))

@@ -6,7 +6,7 @@ use crate::smoother::{Adjoint, Forward, Readings};
 const FREEDOM: u32 = 2;
 /// EM ends where intensity and variances change by less than this share in a pass,
 const SETTLED: f64 = 0.01;
-/// but not before so many passes.
+/// but not in the first passes with the t distribution, so many.
 const FEWEST: usize = 3;
 /// Smallest intensity, so that its logarithm exists.
 const LEAST: f64 = 1e-300;
@@ -51,7 +51,7 @@ pub struct ReadingErrors {
 /// How many passes [`estimate`] makes, at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// With normal noise, for a start.
+    /// With the factors as they are given, for a start.
     pub normal: usize,
     /// With the t distribution.
     pub robust: usize,

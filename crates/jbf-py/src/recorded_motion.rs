@@ -223,6 +223,10 @@ impl MotionReadings {
         fixed: bool,
     ) -> PyResult<Estimated<'py>> {
         let corners = corners.as_array().to_vec();
+        if corners.len() != self.time.len().saturating_sub(1) {
+            let lengths = format!("{} factors for {} instants", corners.len(), self.time.len());
+            return Err(PyValueError::new_err(lengths));
+        }
         let (start, record) = (errors.of_readings(), self.record());
         let passes = Passes {
             normal: passes.0,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,10 +38,14 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--joint",
         metavar="NAME",
-        help="a joint of several in the file; all: a campaign of each in a folder of FOLDER",
+        help="one of the joints in the file; all: import each joint into a subfolder of FOLDER",
     )
     parser.add_argument("--cut", metavar="CUT", help="cut.toml of an earlier import, edited")
-    parser.add_argument("--no-cut", action="store_true", help="do not cut a recording at its rests")
+    parser.add_argument(
+        "--no-cut",
+        action="store_true",
+        help="do not cut at rests where the map says nothing of cutting",
+    )
     parser.add_argument("--plot", metavar="PNG", help="draw how the recordings were cut")
     parser.add_argument(
         "--force", action="store_true", help="replace an earlier import, an earlier map.toml"
@@ -61,20 +66,25 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _each_joint(arguments: argparse.Namespace) -> int:
     """A campaign of each joint, in a folder of its name."""
+    from jbf.importing.campaign_folder import check_folder
     from jbf.importing.import_files import look
-    from jbf.importing.joints import JointOpen
+    from jbf.importing.joints import JointNotChosen
 
     if arguments.out is None or arguments.plot is not None:
         mend = "name --out FOLDER, and no --plot"
         raise InputError(file="--joint", problem="all makes a folder of each joint", mend=mend)
     try:
         look(arguments.files[0])
-    except JointOpen as several:
+    except JointNotChosen as several:
         joints = several.joints
     else:
         mend = "leave --joint out"
         raise InputError(file=arguments.files[0], problem="holds one joint", mend=mend)
-    Path(arguments.out).mkdir(parents=True, exist_ok=True)
+    out = Path(arguments.out)
+    check_folder(out, replace=arguments.force, holding=joints)
+    out.mkdir(exist_ok=True)
+    for joint in joints:
+        check_folder(out / joint, replace=arguments.force)
     return max(_import(arguments, joint, str(Path(arguments.out) / joint)) for joint in joints)
 
 
@@ -120,7 +130,7 @@ def _look(arguments: argparse.Namespace) -> int:
                 mend="jbf import FILE alone looks at the file",
             )
     file = Path(arguments.files[0])
-    target, kept = _map_beside(file, replace=arguments.force)
+    target, kept = _map_beside(file, arguments.joint, replace=arguments.force)
     shown_path = file.parent / target.name
     if not kept:
         outputs.check({shown_path.name: str(target)}, arguments.files)
@@ -131,20 +141,27 @@ def _look(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _map_beside(file: Path, *, replace: bool) -> tuple[Path, bool]:
+def _map_beside(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
     """Where the map of a file goes, and whether one of it is there and is kept.
 
-    `map.toml`, or a name of its own where that is the map of another file.
+    `map.toml`, or a name of its own for a joint and where that is the map of another file.
     """
-    from jbf.importing.map_text import map_is_of
+    from jbf.importing.map_text import map_was_written_for
 
     folder = real_path(file).parent
-    for path in (folder / "map.toml", folder / f"{file.stem}.map.toml"):
+    stem = file.stem if joint is None else f"{file.stem}.{joint}"
+    names = chain(
+        ["map.toml"] if joint is None else [],
+        [f"{stem}.map.toml"],
+        (f"{stem}_{k}.map.toml" for k in count(2)),
+    )
+    for name in names:
+        path = folder / name
         if not path.exists():
             return path, False
-        if map_is_of(read_text(path), file.name):
+        if map_was_written_for(read_text(path), file.name):
             return path, not replace
-    return path, not replace
+    raise AssertionError("endless")
 
 
 def _draw(found: Import, path: str) -> None:

@@ -24,8 +24,13 @@ from jbf.text_files import os_error, real_path
 Report = Callable[[str, int, int], None]
 
 
-def check_folder(path: Path, *, replace: bool) -> None:
+def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> None:
     """Refuse a folder that cannot be written, or that holds what is no import.
+
+    Parameters
+    ----------
+    holding
+        Names of folders that may be there already, of imports.
 
     Raises
     ------
@@ -39,7 +44,7 @@ def check_folder(path: Path, *, replace: bool) -> None:
     if os.path.exists(path) and not os.path.isdir(path):
         raise wrong("is a file, not a folder", "name a folder")
     try:
-        holds = os.path.isdir(path) and any(path.iterdir())
+        holds = os.path.isdir(path) and any(p.name not in holding for p in path.iterdir())
     except OSError as error:
         raise os_error(path, error, "read") from None
     if holds:

@@ -84,8 +84,7 @@ _SETPOINT = _words(
     "sp commanded vorgabe nominal sollwerte setpt"
 )
 _MODELLED = _words(
-    "gravity model modelled feedforward ff estimated estimate est predicted pred simulated sim "
-    "external ext compensation comp limit max min residual error err"
+    "gravity model modelled feedforward estimated estimate predicted simulated compensation"
 )
 """Of what a controller or a person computed, not what a sensor or a drive read."""
 _ALSO = {"effort": "torque"}
@@ -98,7 +97,10 @@ _ANGLES = _words(
 _BY_WORD = {word: kind for kind, words in _WORDS.items() for word in words.split()}
 _SPLIT = re.compile(r"[^\w#µμ]+|_+|(?<=[a-zà-ÿ])(?=[A-ZÄÖÜ])")
 _NUMBERED = re.compile(r"([a-zà-ÿ]+)(\d+)")
-_GENERIC = _words("joint axis achse axe eje asse j data value actual state states msg message")
+_GENERIC = _words(
+    "joint axis achse axe eje asse j data value actual state states msg message raw filtered filt "
+    "smoothed avg mean corrected abs"
+)
 """Words that name neither a quantity nor a joint."""
 _SHORT = 2
 """Words of so few letters are symbols: what they mean is likely, not sure."""
@@ -180,13 +182,15 @@ def understood(text: str, unit: str = "") -> Header:
         What the file says of the unit elsewhere, where it does.
     """
     name, stated = split_unit(text)
+    if stated == "1" and name == " ".join(text.split()):
+        stated = ""  # the number of a joint, `q_1`
     unit = unit or stated
     words = [word.lower() for word in _SPLIT.split(name) if word]
     if not stated or parse_unit(stated) is None:
         spoken = words
     else:
         # The unit at the end of a name is no word of it.
-        tail = unit_of_name(name)
+        tail = None if name.endswith("_1") else unit_of_name(name)
         spoken = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
     spoken, numbers = _unnumbered(spoken, parse_unit(unit))
     kinds = [(word, _BY_WORD[word]) for word in spoken if word in _BY_WORD]

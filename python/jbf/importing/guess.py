@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from jbf.errors import InputError
 from jbf.importing.columns import KINDS, Header, understood
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
@@ -15,13 +16,15 @@ from jbf.importing.formats.table import Column, Source, Table, Values
 from jbf.importing.guess_rig import guess_rig
 from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
 from jbf.importing.guessed import Entry, Guess, Question
-from jbf.importing.joints import JointOpen, with_units_of_joint_states
+from jbf.importing.joints import JointNotChosen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
 from jbf.importing.targets import FRICTION, KNOWN, MOTION, TURNING, wanted_unit
 from jbf.importing.unit_table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.importing.units import parse_unit
 
+HEAD = 5_000
+"""Rows that are looked at."""
 NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
 """Quantities that make no column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
@@ -74,19 +77,22 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     whole = Counter(column.name for table in tables for column in table.columns)
     joints = _joints(tables)
     if joints and joint not in joints:
-        raise JointOpen(source.path, joints, joint)
+        raise JointNotChosen(source.path, joints, joint)
+    if joint is not None and not joints:
+        raise InputError(file=source.path, problem="holds one joint", mend="name no joint")
     for table in tables:
         questions += [
             Question(f"[{table.name}]" if several else "file", q) for q in table.questions
         ]
-        head = source.head(table, 5_000)
+        head = source.head(table, HEAD)
         heads |= {qualified(table, name, whole): values for name, values in head.items()}
         found = [
             replace(c, called=qualified(table, c.column.name, whole))
             for c in _candidates(table)
-            if not joints or c.header.label in ("", joint)
+            if c.header.label not in joints or c.header.label == joint
         ]
-        blank = [c for c in found if not np.isfinite(head[c.column.name]).any()]
+        whole_head = len(next(iter(head.values()), ())) < HEAD
+        blank = [c for c in found if whole_head and not np.isfinite(head[c.column.name]).any()]
         found = [c for c in found if c not in blank]
         # Of several groups each has its own clock, and no line of the map names them all.
         own_clock = several and table.clock is not None
@@ -119,10 +125,9 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         ignored |= {c.column.name: "holds no value" for c in blank}
     entries = _by_machine(entries)
     for key in _beside_the_point(entries):
-        name = entries.pop(key).expression.split("`")[1]
-        ignored[name] = "the force and the place tell enough"
+        ignored[_column_of(entries.pop(key))] = "the force and the place tell enough"
     questions += _missing(entries, source)
-    questions += _turned(entries, ignored)
+    questions += _force_as_torque(entries, ignored)
     sections, about_rig = guess_rig(set(entries))
     questions += about_rig
     by_motion = time_by_motion(entries, tables, heads)
@@ -292,7 +297,7 @@ def _by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
     if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
         # A place without a unit, beside a torque, is more often an angle.
         for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
-            if key in found:
+            if key in found and turning not in found:
                 found[turning] = replace(found.pop(key), key=turning)
         return found
     linear = bool(places)
@@ -311,14 +316,17 @@ def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
     return [key for key in entries if key.startswith("motor_")]
 
 
-def _turned(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
+def _force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
     """What is open of a force beside an angle: a rotary drive's friction is a torque."""
     turning = [key for key in TURNING if key in entries]
     if "friction_n" not in entries or not turning or "position_m" in entries:
         return []
     force = entries.pop("friction_n")
+    if force.expression == OPEN:
+        entries["torque_n_m"] = replace(force, key="torque_n_m")
+        return []
     if "velocity_m_s" in entries:
-        ignored[entries.pop("velocity_m_s").expression.split("`")[1]] = "the angle tells it"
+        ignored[_column_of(entries.pop("velocity_m_s"))] = "the angle tells it"
     if "torque_n_m" in entries:
         both = f"{force.expression} or {entries['torque_n_m'].expression}"
         entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)
@@ -330,6 +338,12 @@ def _turned(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question
         "journal bearing write friction_n and [bearing] (docs/import.md)"
     )
     return [Question("torque_n_m", ask)]
+
+
+def _column_of(entry: Entry) -> str:
+    """The file's column that an entry is made of; its key where that is open."""
+    parts = entry.expression.split("`")
+    return parts[1] if len(parts) > 1 else entry.key
 
 
 def _missing(entries: Mapping[str, Entry], source: Source) -> list[Question]:

@@ -13,7 +13,7 @@ Sections = dict[str, dict[str, Any]]
 _ASKS = {
     "rated_torque_n_m": 'what is 100 % of the motor\'s torque (such as "1.27 N m")?',
     "rated_force_n": 'what is 100 % of the motor\'s force (such as "60 N")?',
-    "torque_constant_n_m_a": "what torque of the motor is 1 A, N m?",
+    "torque_constant_n_m_a": 'what torque is 1 A of the motor (such as "0.5 N m/A")?',
     "pitch_m": 'how far does it move in one turn of its screw (such as "10 mm")?',
 }
 

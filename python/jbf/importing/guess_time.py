@@ -18,7 +18,7 @@ from jbf.importing.units import parse_unit
 _FROM_S, _TO_S = 9.5e8, 4.1e9
 """Seconds since 1970, from the year 2000 to 2100."""
 FORWARD, FEW = 0.9, 4
-"""Share of its steps that are positive, and rows below which it is not asked."""
+"""Minimum share of increasing steps of a clock, and rows below which it is not tested."""
 SHORTEST_S = 1e-6
 """A step that no logger of friction has."""
 Found = tuple[Entry | None, list[Question]]

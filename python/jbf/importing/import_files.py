@@ -113,6 +113,9 @@ def import_files(
     folder = None if out is None else path_of(out)
     if folder is not None:
         check_folder(folder, replace=replace_folder)
+    if joint is not None and map is not None:
+        mend = "leave one of them out: the map names the columns"
+        raise InputError(problem="a joint and a map are given", mend=mend)
     mapping, text = _map(map, paths, joint)
     rig = mapping.check()
     check_rig_columns(rig, mapping)
@@ -144,16 +147,20 @@ def read_recording(
     files: PathLike | Iterable[PathLike],
     map: PathLike | Map | None = None,
     *,
+    whole: bool = False,
+    joint: str | None = None,
     progress: Report | None = None,
 ) -> tuple[Rig, list[Run]]:
     """The rig and the runs of recordings, as `import_files` makes them; no folder is left.
+
+    Parameters are those of `import_files`.
 
     Raises
     ------
     InputError
         As `import_files`.
     """
-    found = import_files(files, map, progress=progress)
+    found = import_files(files, map, whole=whole, joint=joint, progress=progress)
     return found.rig, found.runs
 
 

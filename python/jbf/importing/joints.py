@@ -12,14 +12,17 @@ from jbf.errors import InputError
 from jbf.importing.columns import understood
 from jbf.importing.formats.table import Table
 
-JOINT_UNITS = (
-    {"position": "rad", "velocity": "rad/s", "effort": "N m"},
-    {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"},
+JOINT_UNITS: tuple[tuple[set[str], dict[str, str]], ...] = (
+    (
+        {"position", "velocity", "effort"},
+        {"position": "rad", "velocity": "rad/s", "effort": "N m"},
+    ),
+    ({"q", "tau"}, {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"}),
 )
 """Units of a joint by the names that robots' software gives, where a file has none."""
 
 
-class JointOpen(InputError):
+class JointNotChosen(InputError):
     """A file holds several joints, and none of them was named.
 
     Attributes
@@ -31,7 +34,7 @@ class JointOpen(InputError):
     def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
         self.joints = tuple(joints)
         held = f"holds the joints {', '.join(joints)}"
-        problem = held if named is None else f"{held}, and no {named}"
+        problem = held if named is None else f"{held}; none is called {named}"
         mend = f"say which: --joint {joints[0]}, or --joint all with --out"
         super().__init__(file=path, problem=problem, mend=mend)
 
@@ -44,9 +47,8 @@ def with_units_of_joint_states(table: Table) -> Table:
     none."""
     words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
     there = {word for found in words.values() for word in found}
-    needed = {"position", "effort", "q", "tau"}
-    units = next((u for u in JOINT_UNITS if needed & u.keys() <= there), {})
-    if not units or any(c.unit for c in table.columns):
+    units = next((units for needed, units in JOINT_UNITS if needed <= there), {})
+    if not units or any(c.unit for c in table.columns if words[c.name] & units.keys()):
         return table
     columns = []
     for column in table.columns:

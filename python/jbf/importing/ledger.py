@@ -40,7 +40,7 @@ def ledger_of(
             "columns": dict(mapping.columns),
             "clocks": dict(mapping.clocks),
             "file": {k: v for k, v in asdict(mapping.options).items() if v not in (None, ())},
-            "cut_by": "rests, by default" if mapping.cut.by is None else list(mapping.cut.by),
+            "cut_by": list(mapping.cut.by or ()),
         },
         "files": [_page(recording, pieces) for recording in recordings],
     }

@@ -25,7 +25,7 @@ _CUT = """\
 """
 
 
-def map_is_of(text: str, file_name: str) -> bool:
+def map_was_written_for(text: str, file_name: str) -> bool:
     """Whether a look at a file of that name wrote this map."""
     made = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
     return made is not None and Path(made[1]).name == file_name

@@ -28,6 +28,8 @@ from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
 
+CONSTANTS = {"torque_constant_n_m_a": "N m/A", "force_constant_n_a": "N/A"}
+"""Units of keys whose end is not the whole of their unit."""
 _QUANTITY = re.compile(r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>\S.*?)\s*")
 _QUOTED = re.compile(r"`[^`]*`")
 RIG = ("drive", "bearing", "lubricant", "load")
@@ -146,17 +148,18 @@ def _section(content: Mapping[str, Any], section: str) -> dict[str, Any]:
     found = dict(table(content[section], section))
     for key, value in found.items():
         match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-        wanted = unit_of_name(key)
+        named = unit_of_name(key)
+        wanted = parse_unit(CONSTANTS[key]) if key in CONSTANTS else named and named[1]
         if match is None or wanted is None:
             continue
         unit = parse_unit(match["unit"])
-        if unit is None or not unit.fits(wanted[1]):
+        if unit is None or not unit.fits(wanted):
             raise InputError(
                 key=f"{section}.{key}",
-                problem=f"{value!r} is no quantity in {wanted[1].text}",
-                mend=f"write a number of {wanted[1].text}, or one with its unit",
+                problem=f"{value!r} is no quantity in {wanted.text}",
+                mend=f"write a number of {wanted.text}, or one with its unit",
             )
-        found[key] = float(unit.converted(np.array([float(match["number"])]), wanted[1])[0])
+        found[key] = float(unit.converted(np.array([float(match["number"])]), wanted)[0])
     return found
 
 

@@ -248,6 +248,10 @@ def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
     if channel.key in OF_CUTTING:
+        read = [values[reference.column] for reference in references(channel.node)]
+        if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
+            mend = "compare a column of numbers"
+            raise InputError(key="cut.keep", problem="takes a column of words", mend=mend)
         if isinstance(channel.node, Reference):
             column = values[channel.node.column]
             return words.codes(column) if column.dtype == object else column

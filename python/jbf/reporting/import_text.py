@@ -22,7 +22,6 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     kept
         Whether a map of an earlier look is there and was not written anew.
     """
-    written = "is there and was kept (--force writes it anew)" if kept else "was written"
     held = []
     for table in guess.tables:
         name = f" [{table.name}]" if table.name else ""
@@ -41,9 +40,15 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
         lines += ["", "Not sure:"]
         for question in guess.questions:
             lines += hanging("- ", str(question))
-        lines += ["", f"{map_path} {written}: answer there, then"]
+    if kept:
+        lines += ["", f"{map_path} is there and was kept (--force writes it anew); go on with"]
+    elif guess.questions:
+        lines += ["", f"{map_path} was written: answer there, then"]
     else:
-        lines += ["", f"Nothing is open. {map_path} {written}, should you want to change it; then"]
+        lines += [
+            "",
+            f"Nothing is open. {map_path} was written, should you want to change it; then",
+        ]
     lines.append(f"  jbf import {guess.path} --map {map_path} --out FOLDER")
     return "\n".join(lines)
 

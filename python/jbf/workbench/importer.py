@@ -13,7 +13,7 @@ import numpy as np
 from jbf.errors import InputError
 from jbf.importing.guessed import Guess
 from jbf.importing.import_files import import_files, look
-from jbf.importing.joints import JointOpen
+from jbf.importing.joints import JointNotChosen
 from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
 from jbf.workbench.files import Folder
@@ -58,7 +58,7 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
     """A guess at a file, of its first joint where it holds several, and a word on the others."""
     try:
         return look(path), []
-    except JointOpen as several:
+    except JointNotChosen as several:
         first, *others = several.joints
         said = f"joint: the columns are those of {first}; there are {', '.join(others)}, too"
         return look(path, first), [said]

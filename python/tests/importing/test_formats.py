@@ -83,9 +83,13 @@ def test_file_format_is_recognised_by_the_first_bytes(name: str, path: Path) -> 
     assert format_of(path.rename(path.with_name("nameless"))) is known
 
 
+TEXTS = ("bag", "r.csv", "trace.csv", "r.jsonl")
+"""Of lines, of which a torn last one is passed over, and a folder."""
+
+
 # asammdf closes a truncated file twice.
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-@pytest.mark.parametrize("name", [n for n in WRITERS if n not in ("bag", "r.csv", "trace.csv")])
+@pytest.mark.parametrize("name", [n for n in WRITERS if n not in TEXTS])
 def test_truncated_file_is_refused_in_one_line_and_writes_nothing(name: str, path: Path) -> None:
     data, folder = path.read_bytes(), path.parent
     path.write_bytes(data[: len(data) // 2])

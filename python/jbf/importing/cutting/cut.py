@@ -14,6 +14,7 @@ from jbf.importing.cutting.motion_kinds import cut_at_motion_kinds
 from jbf.importing.cutting.piece import Cut, Piece
 from jbf.importing.cutting.rests import cut_at_rests
 from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.formats.table import BLOCK
 from jbf.importing.recording import CUT_COLUMN, KEPT_COLUMN
 from jbf.importing.spool import Recording
 from jbf.importing.targets import FRICTION
@@ -58,7 +59,11 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
             cuts += cut_at_motion_kinds(recording, settings)
         else:
             found = recording.stream_of(CUT_COLUMN)
-            assert found is not None
+            if found is None:
+                mend = "name another column"
+                raise InputError(
+                    file=recording.path, key="cut.column", problem="holds no value", mend=mend
+                )
             cuts += cut_at_changes(found[0], CUT_COLUMN, way.replace("_", " "))
     kept = recording.stream_of(KEPT_COLUMN)
     if kept is not None:
@@ -136,8 +141,14 @@ def _kept(recording: Recording, piece: Piece) -> bool:
         return False
     stream, key = found
     first, end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
-    row = stream.read(first, first + 1 if end > first else end)
-    return bool(len(row) and row[0, stream.columns.index(key)] == 1.0)
+    at = stream.columns.index(key)
+    for block in stream.blocks(first, end):
+        known = block[np.isfinite(block[:, at]), at]
+        if len(known):
+            return bool(known[0] == 1.0)
+    before = stream.read(max(first - BLOCK, 0), first)[:, at]
+    known = before[np.isfinite(before)]
+    return bool(len(known) and known[-1] == 1.0)
 
 
 def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.importing.spool import Recording, Stream
 from jbf.importing.targets import MOTION
 
@@ -28,7 +29,12 @@ class MotionSpeed:
 
     def __init__(self, recording: Recording, window_s: float) -> None:
         found = recording.stream_of(*_SPEEDS) or recording.stream_of(*_PLACES)
-        assert found is not None
+        if found is None:
+            raise InputError(
+                file=recording.path,
+                problem="holds no value of a place or a speed",
+                mend="name another column in the map",
+            )
         self.stream: Stream = found[0]
         self.key = found[1]
         self.recorded = self.key in _SPEEDS

@@ -118,7 +118,8 @@ class CutSettings:
         given = dict(section)
         by = given.pop("by", None)
         if by is None:
-            ways = None
+            # Who says how long a rest is, wants to cut there.
+            ways = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
         elif not isinstance(by, str | list | tuple):
             mend = 'write by = "rests", or a list of ways'
             raise InputError(key="cut.by", problem=f"{by!r} is no way of cutting", mend=mend)

@@ -26,6 +26,7 @@ class ArraySource(Source):
         self._columns: dict[str, dict[str, Slice]] = {}
         self._close = close
         self._origin: np.datetime64 | None = None
+        self.passed_over: list[tuple[int, str, int | None]] = []
 
     def add(
         self,
@@ -67,6 +68,10 @@ class ArraySource(Source):
                 else:
                     found[name] = as_numbers(values)
             yield found
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """What the format passed over."""
+        return self.passed_over
 
     def close(self) -> None:
         """Let the file go."""

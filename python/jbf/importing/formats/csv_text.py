@@ -6,6 +6,7 @@ where that fails: a good file goes fast and a bad one still gets its row and col
 
 from __future__ import annotations
 
+import codecs
 import gzip
 import io
 from collections.abc import Iterator, Sequence
@@ -19,7 +20,7 @@ from jbf.errors import InputError, quoted
 from jbf.importing.formats.dates import Instants, as_date, day_or_month_first, seconds_since
 from jbf.importing.formats.dialect import Dialect, decode, is_empty, is_instant, sniff
 from jbf.importing.formats.layout import Layout, lay_out
-from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
+from jbf.importing.formats.table import BLOCK, DAMAGED, Column, Options, Source, Table, Values
 from jbf.importing.formats.trace_blocks import is_trace, open_trace
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
@@ -27,10 +28,8 @@ _HEAD_LINES = 400
 _HEAD_BYTES = 1 << 20
 _TRACE_BYTES = 1 << 14
 _COMMENTS = ("#", "%", "//")
-DAMAGED = 1e-3
-"""Share of the rows that may be damaged; one always may."""
-SURELY, SURELY_ROWS = 1e-2, 20
-"""Share from which on, and rows more, a file is refused before its end."""
+STOP_SHARE, STOP_ROWS = 1e-2, 20
+"""Reading stops once more than this share of the rows, and so many more, are damaged."""
 
 
 @dataclass
@@ -54,7 +53,7 @@ class _Damage:
         assert error.row is not None
         self.lines.add(error.row)
         self.first = self.first or error
-        if len(self.lines) > SURELY * self.rows + SURELY_ROWS:
+        if len(self.lines) > STOP_SHARE * self.rows + STOP_ROWS:
             raise self._refused()
 
     def check(self) -> None:
@@ -73,7 +72,7 @@ class _Damage:
         assert self.first is not None
         more = ""
         if len(self.lines) > 1:
-            more = f", and {len(self.lines)} of {self.rows} rows so far are damaged"
+            more = f", and {len(self.lines)} of the first {self.rows} rows are damaged"
         return InputError(
             file=self.path,
             row=self.first.row,
@@ -191,30 +190,37 @@ class TextSource(Source):
         at = self.layout.names.index(column.name)
         return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
 
-    def _rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Every row of samples with its number, as many cells as there are names."""
+    def _rows(
+        self, damage: _Damage | None = None, words: list[int] | None = None
+    ) -> Iterator[tuple[int, list[str]]]:
+        """Every row of samples with its number, as many cells as there are names.
+
+        Parameters
+        ----------
+        damage, words
+            Where rows that are passed over are counted.
+        """
+        damage, words = damage or _Damage(self.path), [] if words is None else words
         names = self.layout.names
         width, first_name = len(names), names[0]
         split = self.dialect.split
-        self._words = []
-        self._damage = _Damage(self.path)
         for number, line in self._lines():
             if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
                 continue
-            self._damage.rows += 1
+            damage.rows += 1
             cells = split(line.rstrip("\n"))
             few = len(cells) < width and (self.dialect.delimiter == " " or len(cells) < width // 2)
             if few or (len(cells) > width and any(cells[width:])):
                 problem = f"has {len(cells)} cells where the header has {width}"
                 mend = "correct the row, or say delimiter and decimal under [file]"
-                self._damage.add(InputError(row=number, problem=problem, mend=mend))
+                damage.add(InputError(row=number, problem=problem, mend=mend))
                 continue
             # Empty cells at the end may be left out.
             cells += [""] * (width - len(cells))
             if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
                 continue  # a logger that was started anew writes its header again
             if cells[0][:1].isalpha() and not any(map(self._counts, cells)):
-                self._words.append(number)  # "End of data"
+                words.append(number)  # "End of data"
                 continue
             yield number, cells if len(cells) == width else cells[:width]
 
@@ -236,7 +242,8 @@ class TextSource(Source):
             for name, kind in zip(names, kinds, strict=True)
             if kind == "instant"
         }
-        rows = self._rows()
+        self._words, self._damage = [], _Damage(self.path)
+        rows = self._rows(self._damage, self._words)
         while block := list(islice(rows, BLOCK)):
             numbers = [number for number, _ in block]
             turned = list(zip(*[cells for _, cells in block], strict=True))
@@ -344,6 +351,15 @@ def open_text(path: Path, options: Options) -> Source:
     with _opened(path) as file:
         begin = file.read(_TRACE_BYTES)
     encoding = options.encoding or decode(begin)
-    if is_trace(begin.decode(encoding, errors="replace").splitlines()):
-        return open_trace(path, encoding)
+    # An unknown encoding is refused where the text is read.
+    if is_trace(begin.decode(_known(encoding), errors="replace").splitlines()):
+        with _opened(path) as file:
+            return open_trace(path, io.TextIOWrapper(file, encoding, errors="replace"))
     return TextSource(path, options)
+
+
+def _known(encoding: str) -> str:
+    try:
+        return codecs.lookup(encoding).name
+    except LookupError:
+        return "latin-1"

@@ -17,10 +17,12 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, slices
-from jbf.importing.formats.messages import leaves_of
-from jbf.importing.formats.table import Options, Source, unique
+from jbf.importing.formats.messages import LONGEST, leaves_of, nanoseconds
+from jbf.importing.formats.table import DAMAGED, Options, Source, unique
 from jbf.text_files import read_text
 
+SETTINGS = ("config", "settings", "meta", "metadata", "header", "info", "sampling", "recording")
+"""Mappings beside the samples that may state their rate."""
 RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample_rate_hz")
 """Keys of a rate, samples a second."""
 FEWEST = 3
@@ -30,9 +32,10 @@ Columns = dict[str, npt.NDArray[np.float64]]
 
 def open_json(path: Path, options: Options) -> Source:
     """Open a file of JSON or of JSON lines."""
-    content = _content(path)
+    content, torn = _content(path)
     source = ArraySource(path)
     found = list(_tables(content, "", options.rate_hz))
+    source.passed_over = torn
     names = unique([name for name, _, _ in found])
     for called, (_, columns, rate_hz) in zip(names, found, strict=True):
         rows = max(map(len, columns.values()))
@@ -45,24 +48,30 @@ def open_json(path: Path, options: Options) -> Source:
     return source
 
 
-def _content(path: Path) -> Any:
+def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
+    """The content, of JSON lines a list; and how many torn lines were passed over, and why."""
     text = read_text(path)
     try:
-        return json.loads(text)
+        return json.loads(text), []
     except json.JSONDecodeError as whole:
-        records = []
+        records, torn = [], list[tuple[int, str]]()
         for number, line in enumerate(text.splitlines(), 1):
             if not line.strip():
                 continue
             try:
                 records.append(json.loads(line))
             except json.JSONDecodeError as error:
-                row = number if records else whole.lineno
-                problem = f"is no JSON there ({error.msg if records else whole.msg})"
-                raise InputError(
-                    file=path, row=row, problem=problem, mend="correct it, or write CSV"
-                ) from None
-        return records
+                torn.append((number, error.msg))
+        if len(torn) > max(DAMAGED * len(records), 1.0) or len(records) < FEWEST:
+            row, reason = torn[0] if len(records) > len(torn) else (whole.lineno, whole.msg)
+            raise InputError(
+                file=path,
+                row=row,
+                problem=f"is no JSON ({reason})",
+                mend="correct it, or write CSV",
+            ) from None
+        why = [(len(torn), f"the line is torn ({reason})", row) for row, reason in torn[:1]]
+        return records, list(why)
 
 
 def _tables(
@@ -70,10 +79,9 @@ def _tables(
 ) -> Iterator[tuple[str, Columns, float | None]]:
     """Every table in a value: its name, columns and rate."""
     if isinstance(content, Mapping):
-        for told in (*content.values(), content):
-            rates = [v for k, v in told.items() if k in RATES] if isinstance(told, Mapping) else []
-            if rates and isinstance(rates[0], int | float):
-                rate_hz = float(rates[0])
+        for holder in (*(content.get(key) for key in SETTINGS), content):
+            rates = [holder.get(k) for k in RATES] if isinstance(holder, Mapping) else []
+            rate_hz = next((float(r) for r in rates if r is not None and _is_number(r)), rate_hz)
         columns = _columns(content)
         if columns:
             yield name, columns, rate_hz
@@ -81,7 +89,7 @@ def _tables(
             if key not in columns:
                 yield from _tables(value, str(key) if not name else f"{name}.{key}", rate_hz)
     elif isinstance(content, list) and content and all(isinstance(r, Mapping) for r in content):
-        recordings = [_columns(record) for record in content]
+        recordings = [{} if _is_row(record) else _columns(record) for record in content]
         if all(recordings) and len({tuple(columns) for columns in recordings}) == 1:
             yield name, _one_after_the_other(recordings), rate_hz
         elif any(recordings):
@@ -109,13 +117,22 @@ def _columns(content: Mapping[str, Any]) -> Columns:
     return {key: values for key, values in arrays.items() if len(values) == usual}
 
 
+def _is_row(record: Mapping[str, Any]) -> bool:
+    """Whether a record is one sample: there are numbers in it beside arrays, which are short."""
+    arrays = [value for value in record.values() if isinstance(value, list)]
+    alone = {k: v for k, v in record.items() if not isinstance(v, list) and k not in RATES}
+    return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(alone))
+
+
 def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
     joined: Columns = {
         key: np.concatenate([columns[key] for columns in recordings]) for key in recordings[0]
     }
     counts = [len(next(iter(columns.values()))) for columns in recordings]
     if len(recordings) > 1:
-        joined["run"] = np.repeat(np.arange(1.0, len(counts) + 1.0), counts)
+        joined["run" if "run" not in joined else "recording"] = np.repeat(
+            np.arange(1.0, len(counts) + 1.0), counts
+        )
     return joined
 
 
@@ -131,4 +148,12 @@ def _is_number(value: Any) -> bool:
 
 
 def _numbers(values: Sequence[Any]) -> npt.NDArray[np.float64]:
-    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+    known = [
+        nanoseconds(value) / 1e9
+        if isinstance(value, Mapping)
+        else np.nan
+        if value is None
+        else value
+        for value in values
+    ]
+    return np.array(known, dtype=np.float64)

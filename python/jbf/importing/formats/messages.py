@@ -16,7 +16,7 @@ from jbf.importing.formats.dates import as_date
 from jbf.importing.formats.table import BLOCK, Column, Source, Table, Values
 
 LOG_TIME = "log_time"
-_LONGEST = 32
+LONGEST = 32
 """Elements of a list that become columns."""
 _SECONDS = ("sec", "secs")
 _NANOSECONDS = ("nanosec", "nanosecs", "nsec", "nsecs")
@@ -91,7 +91,7 @@ def leaves_of(message: Any, lead: str = "") -> Iterator[tuple[str, Any]]:
         if isinstance(value, int | float | np.integer | np.floating) or _is_stamp(value):
             yield path, value
         elif isinstance(value, list | tuple | np.ndarray):
-            for at, item in enumerate(value[:_LONGEST]):
+            for at, item in enumerate(value[:LONGEST]):
                 if isinstance(item, int | float | np.integer | np.floating):
                     yield f"{path}[{at}]", item
                 elif not isinstance(item, str | bytes):

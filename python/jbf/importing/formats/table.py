@@ -18,6 +18,8 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, did_you_mean
 
+DAMAGED = 1e-3
+"""Share of the rows of a text that may be damaged; one always may."""
 BLOCK = 50_000
 """Rows that are held at a time."""
 Values = npt.NDArray[Any]

@@ -27,10 +27,10 @@ def is_trace(lines: Iterable[str]) -> bool:
     return any(VARIABLE.match(line) for line in lines)
 
 
-def open_trace(path: Path, encoding: str) -> Source:
+def open_trace(path: Path, lines: Iterable[str]) -> Source:
     """Open a trace export: one table where all variables have the same times, else one of each."""
-    blocks = list(_blocks(path, encoding))
-    names = unique([name for name, _, _ in blocks])
+    blocks = list(_blocks(path, lines))
+    _, *names = unique(["time", *(name for name, _, _ in blocks)])
     source = ArraySource(path)
     times = [time for _, time, _ in blocks]
     if times and all(np.array_equal(times[0], time) for time in times[1:]):
@@ -44,23 +44,22 @@ def open_trace(path: Path, encoding: str) -> Source:
     return source
 
 
-def _blocks(path: Path, encoding: str) -> Iterator[tuple[str, Array, Array]]:
+def _blocks(path: Path, lines: Iterable[str]) -> Iterator[tuple[str, Array, Array]]:
     """Name, times and values of each variable."""
     name, rows = "", list[list[float]]()
-    with path.open(encoding=encoding, errors="replace") as file:
-        for number, line in enumerate(file, 1):
-            if (variable := VARIABLE.match(line)) is not None:
-                if rows:
-                    yield name, *np.array(rows).T
-                name, rows = variable["name"], []
-            elif (sample := _SAMPLE.match(line)) is not None and name:
-                try:
-                    cells = (sample[k].replace(",", ".") for k in ("time", "value"))
-                    rows.append([float({"TRUE": "1", "FALSE": "0"}.get(c, c)) for c in cells])
-                except ValueError:
-                    problem = f"{line.strip()!r} is no sample"
-                    raise InputError(
-                        file=path, row=number, problem=problem, mend="export the trace anew"
-                    ) from None
+    for number, line in enumerate(lines, 1):
+        if (variable := VARIABLE.match(line)) is not None:
+            if rows:
+                yield name, *np.array(rows).T
+            name, rows = variable["name"], []
+        elif (sample := _SAMPLE.match(line)) is not None and name:
+            try:
+                cells = (sample[k].replace(",", ".") for k in ("time", "value"))
+                rows.append([float({"TRUE": "1", "FALSE": "0"}.get(c, c)) for c in cells])
+            except ValueError:
+                problem = f"{line.strip()!r} is no sample"
+                raise InputError(
+                    file=path, row=number, problem=problem, mend="export the trace anew"
+                ) from None
     if rows:
         yield name, *np.array(rows).T

@@ -14,7 +14,7 @@ MOSTLY = 0.9
 """Share of the steps that must be the usual one for a longer one to be a gap."""
 
 STRETCH = 4
-"""Steps within which a stamp with jitter is made up for."""
+"""Window, in steps, in which the jitter of a stamp cancels."""
 
 
 def find_gaps(run: Run) -> list[Finding]:

@@ -63,7 +63,8 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     mask = held(force) & ~explained
     if mask.any() and is_without_noise(force[~mask]):
         # A command that stands at its limit is what the drive did.
-        mask &= (force != np.max(force)) & (force != np.min(force))
+        read = force[~explained]
+        mask &= (force != np.max(read)) & (force != np.min(read))
     if not mask.any():
         return [], mask
     edges = np.diff(np.concatenate(([0], mask.astype(np.int8), [0])))

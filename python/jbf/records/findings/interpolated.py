@@ -25,12 +25,12 @@ LONGER = 240
 """Samples of a look for shorter periods: nearly as many corners as samples leave a polygon little
 to be tested by."""
 SHORT = (1.05, 1.3)
-"""Periods looked for there, in samples,"""
+"""Range of periods searched in a channel that is hardly slower than its record, samples."""
 BEATS, NEAR = 4, np.linspace(-1.0, 1.0, 9)
-"""those of the strongest beats, so many, each at its frequency and near it, in units of what the
-stretch resolves,"""
+"""Number of the strongest beat frequencies that are tried, and offsets from each, in units of the
+reciprocal of the analysed length."""
 HEARD = 960
-"""and the samples of that stretch."""
+"""Length of the analysed segment, samples."""
 LOOKS = 3
 """First looks along the record, and as many where it bends most: coarse steps are flat for long."""
 MOST_BENDS = 0.5

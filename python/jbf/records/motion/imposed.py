@@ -139,6 +139,7 @@ class ImposedMotion:
         smoothed = self.errors.smoothed.rougher(factor)
         mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
         velocity = np.where(self.resting, 0.0, mean[:, 1])
+        # As in `impose`: with an unknown first sign a model starts at rest.
         if len(velocity) and not self.sign_known[0]:
             velocity[0] = 0.0
         return replace(

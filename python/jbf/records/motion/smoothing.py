@@ -38,7 +38,7 @@ TRIED = 12
 """Robust passes after which the order is chosen. With fewer, that of a position loop that sticks is
 not certain."""
 SNAP_GAIN = 0.02
-"""Gain of the lower bound that a random snap must have, a sample: of a corner it makes a curve."""
+"""Minimum gain in the lower bound, per sample, for the snap: it makes a curve of a corner."""
 LONG_PASSES = 12
 """Passes for the corners of such a record."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -164,6 +164,7 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
     few = readings.part(_busiest(readings, LONGEST))
     errors, corners = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
+    # Where the order was chosen on all of these samples, the estimation goes on from there.
     if len(corners) == len(few.time_s) - 1:
         errors, corners = few.estimated(errors, corners, (0, ROBUST - TRIED))
     else:

@@ -30,13 +30,13 @@ SHORTEST = 4
 CHOSEN, LONGEST = 3_000, 8_000
 """Samples of a longer record from which the start, the order and the clock are chosen, and from
 which the parameters are estimated: those in which the motion goes furthest."""
-NORMAL, ROBUST = 3, 24
+PASSES = (6, 24)
 """Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
 More of the latter reduce the intensity between corners further, and the standard errors of the
 motion become too small."""
-TRIED = 12
-"""Robust passes after which the order is chosen. With fewer, that of a position loop that sticks is
-not certain."""
+TRIED = (3, 12)
+"""Passes after which the order is chosen. With fewer, that of a position loop that sticks is not
+certain."""
 SNAP_GAIN = 0.02
 """Minimum gain in the lower bound, per sample, for the snap: it makes a curve of a corner."""
 LONG_PASSES = 12
@@ -162,17 +162,12 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
     if n < SHORTEST:
         errors = replace(_start(readings), intensity=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
+    start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
     few = readings.part(_busiest(readings, LONGEST))
-    errors, corners = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
-    # Where the order was chosen on all of these samples, the estimation goes on from there.
-    if len(corners) == len(few.time_s) - 1:
-        errors, corners = few.estimated(errors, corners, (0, ROBUST - TRIED))
-    else:
-        errors, corners = _estimated(few, errors)
-    errors, corners = _delayed(few, errors, corners)
+    errors, corners = _delayed(few, start)
     if starts:
         most = few.lower_bound(errors, corners) + START_GAIN
-        for end in (_delayed(few, *_estimated(few, tried)) for tried in starts):
+        for end in (_delayed(few, tried) for tried in starts):
             if (bound := few.lower_bound(*end)) > most:
                 (errors, corners), most = end, bound
     if n > len(few.time_s):
@@ -210,26 +205,20 @@ def _start(readings: Readings) -> ReadingErrors:
     return ReadingErrors(noise[0], noise[1], 0.0, 1.0)
 
 
-def _estimated(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
-    """Errors and corners from starting values of the errors."""
-    return readings.estimated(start, np.ones(len(readings.time_s) - 1), (NORMAL, ROBUST))
-
-
-def _of_likeliest_order(readings: Readings) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the likelier of the two orders, on the way to their estimates."""
+def _of_likeliest_order(readings: Readings) -> ReadingErrors:
+    """Errors from which the estimation starts, with the likelier of the two orders."""
     start, _ = _likeliest_stamps(readings)
     # The zero velocities assigned at rest are no readings.
     read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)
     readings = replace(readings, velocity=read)
-    ones = np.ones(len(readings.time_s) - 1)
     jerk, snap = (
-        readings.estimated(
-            _likeliest_intensity(readings, replace(start, order=order))[0], ones, (NORMAL, TRIED)
-        )
-        for order in (JERK, SNAP)
+        _likeliest_intensity(readings, replace(start, order=order))[0] for order in (JERK, SNAP)
     )
-    gain = readings.lower_bound(*snap) - readings.lower_bound(*jerk)
-    return snap if gain > SNAP_GAIN * len(ones) else jerk
+    ones = np.ones(len(readings.time_s) - 1)
+    of_jerk, of_snap = (
+        readings.lower_bound(*readings.estimated(each, ones, TRIED)) for each in (jerk, snap)
+    )
+    return snap if of_snap - of_jerk > SNAP_GAIN * len(ones) else jerk
 
 
 def _likeliest_intensity(
@@ -297,10 +286,9 @@ def _busiest(readings: Readings, longest: int) -> slice:
     return slice(first, first + longest)
 
 
-def _delayed(
-    readings: Readings, errors: ReadingErrors, corners: Array
-) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the delay of the velocity that is likeliest."""
+def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
+    """Errors and corners with the delay of the velocity that is likeliest, from starting values."""
+    errors, corners = readings.estimated(start, np.ones(len(readings.time_s) - 1), PASSES)
     if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
         return errors, corners
     usual = float(np.median(np.diff(readings.time_s)))
@@ -312,7 +300,7 @@ def _delayed(
         if abs(delay_s - before) < DELAY_SETTLED * usual:
             break
         delayed = replace(errors, velocity_delay_s=delay_s)
-        errors, corners = readings.estimated(delayed, corners, (NORMAL, ROBUST))
+        errors, corners = readings.estimated(delayed, corners, PASSES)
     return errors, corners
 
 

@@ -24,6 +24,12 @@ _CUT = """\
 # by = "{way}"  # one or several of: "rests", "set_point", "load_step", "motion", "run"
 """
 
+CHOICES = {
+    "motion": '  # "linear" or "rotary"',
+    "friction": '  # "force" (linear only), "torque", "current" or "percent"',
+}
+"""What else may stand there."""
+
 
 def map_was_written_for(text: str, file_name: str) -> bool:
     """Whether a look at a file of that name wrote this map."""
@@ -57,8 +63,9 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
         parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
     parts.append(_cut(guess))
     for section, content in guess.rig.items():
-        table = tomlkit.dumps({section: dict(content)}).rstrip("\n")
-        parts.append(table + "\n")
+        lines = tomlkit.dumps({section: dict(content)}).rstrip("\n").split("\n")
+        choices = [CHOICES.get(line.split(" = ")[0], "") for line in lines]
+        parts.append("\n".join(map("".join, zip(lines, choices, strict=True))) + "\n")
     if not guess.rig:
         parts.append(
             '# What it was recorded on, as in rig.toml:\n# [drive]\n# motion = "linear"\n'

@@ -1,6 +1,7 @@
 """One recording in every file format gives bit-identical runs; unreadable files are refused."""
 
 import csv
+import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -114,6 +115,37 @@ def test_missing_library_of_a_format_is_reported_with_the_extra_to_install(
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(InputError, match=rf"pip install 'jbf\[{known.extra}\]'"):
         open_source(path)
+
+
+def test_joint_states_in_json_lines_are_rows_with_a_column_for_each_joint(tmp_path: Path) -> None:
+    time = np.arange(100) / 50.0
+    lines = []
+    for k, t in enumerate(time.tolist()):
+        stamp = {"sec": 1_700_000_000 + k // 50, "nanosec": 20_000_000 * (k % 50)}
+        position = [float(np.sin(t)), 2.0 * t]
+        velocity, effort = [float(np.cos(t)), 2.0], [1.0 + k, 2.0 + k]
+        state = {"position": position, "velocity": velocity, "effort": effort}
+        lines.append(json.dumps({"header": {"stamp": stamp}, **state}))
+    path = tmp_path / "states.jsonl"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(InputError, match="holds the joints 0, 1"):
+        jbf.look(path)
+    with open_source(path) as source:
+        head = source.head(source.tables[0])
+    np.testing.assert_array_equal(head["effort[1]"], 2.0 + np.arange(100))
+    np.testing.assert_allclose(np.diff(head["header.stamp"]), 0.02, atol=1e-6)
+
+
+def test_list_of_recordings_in_json_is_one_table_with_the_number_of_the_run(tmp_path: Path) -> None:
+    data = [{"type": "chirp", "position": [0.0, k, 2.0 * k], "torque": [1, 2, 3]} for k in (1, 2)]
+    path = tmp_path / "log.json"
+    path.write_text(json.dumps({"config": {"hz": 50}, "data": data}))
+    with open_source(path) as source:
+        (table,) = source.tables
+        head = source.head(table)
+    assert table.rate_hz == 50.0
+    assert head["run"].tolist() == [1, 1, 1, 2, 2, 2]
+    assert head["position"].tolist() == [0, 1, 2, 0, 2, 4]
 
 
 @pytest.mark.parametrize("version", ["v7", "v7.3"])

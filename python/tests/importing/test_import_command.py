@@ -206,7 +206,31 @@ def test_quantity_with_a_unit_is_converted_to_the_unit_of_its_key(capsys: Captur
     refusal(capsys, IMPORT, "key drive.rated_torque_n_m: '127 N' is no quantity in N m")
 
 
+def test_condition_leaves_out_the_rows_where_it_does_not_hold(capsys: Capture) -> None:
+    table = dict(recording(1, 8.0, 4.0).columns)
+    powered = (table["time_s"] > 5.0) & (table["time_s"] < 9.0)
+    csv(Path("log.csv"), {**table, "powered": powered.astype(float)})
+    Path("map.toml").write_text(MAP + '[cut]\nby = []\nkeep = "powered == 1"\n')
+    assert "not powered == 1" in printed(capsys, IMPORT)
+    (run,) = jbf.import_files("log.csv", "map.toml").runs
+    np.testing.assert_array_equal(run.time_s, table["time_s"][powered])
+
+
+def test_load_that_is_not_above_zero_is_refused_only_in_what_is_kept(capsys: Capture) -> None:
+    table = dict(recording(1, 8.0, 4.0).columns)
+    off = table["time_s"] < 3.0
+    csv(Path("log.csv"), {**table, "load_n": np.where(off, -0.1, 40.0)})
+    loaded = MAP.replace("[drive]", 'load_n = "load_n"\n[drive]')
+    Path("map.toml").write_text(loaded + "[cut]\nby = []\n")
+    line = refusal(capsys, IMPORT, "a load of -0.1 N at 0 s is not above zero")
+    assert "keep = 'load_n > 4 [N]'" in line
+    Path("map.toml").write_text(loaded + '[cut]\nby = []\nkeep = "load_n > 4 [N]"\n')
+    assert "1 run of" in printed(capsys, IMPORT)
+
+
 BAD_MAPS = {
+    MAP + '[cut]\nkeep = "powered"\n': "key cut.keep: 'powered' is no condition",
+    MAP + '[cut]\nkeep = "nothing == 1"\n': "key cut.keep",
     "": "key columns: is missing; add [columns] with lines such as",
     MAP + '[file]\nencoding = "utf-99"\n': "utf-99",
     MAP + "[file]\nheader = 9999999999999\n": "log.csv",

@@ -61,15 +61,15 @@ def select(
         found = try_candidates(candidates, present, follow)
         follow = "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
+        together = present if found.leader else _machine_together(candidates, present)
+        if frozenset(together) not in visited:
+            visited.add(frozenset(together))
+            present = together
+            continue
         differ = _differ_more(candidates, present, found)
         if differ is not None:
             return Selected(present, steps, again=differ)
         if found.leader is None:
-            moved = _machine_together(candidates, present)
-            if moved != present and frozenset(moved) not in visited:
-                visited.add(frozenset(moved))
-                present = moved
-                continue
             return Selected(present, steps, _refused(candidates, present))
         if len(present) >= candidates.policy.most_effects:
             return Selected(present, steps, (_one_more(candidates, present, found.leader),))

@@ -4,9 +4,9 @@ use crate::smoother::{Adjoint, Forward, Readings};
 
 /// Degrees of freedom of the noise's t distribution: with few, corners are sharp.
 const FREEDOM: u32 = 2;
-/// EM ends where intensity and variances change by less than this share in a pass,
+/// Relative change of intensity and variances in a pass below which EM ends.
 const SETTLED: f64 = 0.01;
-/// but not in the first passes with the t distribution, so many.
+/// Number of passes with the t distribution before which EM does not end.
 const FEWEST: usize = 3;
 /// Smallest intensity, so that its logarithm exists.
 const LEAST: f64 = 1e-300;
@@ -16,13 +16,13 @@ const LEAST: f64 = 1e-300;
 pub struct Record<'a> {
     /// Instants, s, not decreasing; shape (n,).
     pub time: &'a [f64],
-    /// Positions, m or rad; NaN where there is none.
+    /// Positions, m or rad; NaN for a missing reading.
     pub position: &'a [f64],
     /// Relative standard errors of the positions: factors of the one in [`ReadingErrors`].
     pub position_shape: &'a [f64],
     /// Smallest variance that a position can have, of an encoder's step.
     pub position_floor: f64,
-    /// Velocities, m/s or rad/s; NaN where there is none.
+    /// Velocities, m/s or rad/s; NaN for a missing reading.
     pub velocity: &'a [f64],
     /// Relative standard errors of the velocities.
     pub velocity_shape: &'a [f64],

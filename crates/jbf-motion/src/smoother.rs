@@ -117,7 +117,7 @@ pub(crate) struct Adjoint<const N: usize> {
 }
 
 impl<const N: usize> Adjoint<N> {
-    /// Of the last instant: there are no readings after it.
+    /// The adjoint at the last instant, which no reading follows.
     pub(crate) fn last() -> Self {
         Self {
             state: State::zeros(),

@@ -155,13 +155,12 @@ def _map_beside(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, 
         [f"{stem}.map.toml"],
         (f"{stem}_{k}.map.toml" for k in count(2)),
     )
-    for name in names:
-        path = folder / name
-        if not path.exists():
-            return path, False
-        if map_was_written_for(read_text(path), file.name):
-            return path, not replace
-    raise AssertionError("endless")
+    path = next(
+        path
+        for path in (folder / name for name in names)
+        if not path.exists() or map_was_written_for(read_text(path), file.name)
+    )
+    return path, path.exists() and not replace
 
 
 def _draw(found: Import, path: str) -> None:

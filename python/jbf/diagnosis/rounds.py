@@ -82,10 +82,10 @@ def select(
 
 
 def _machine_together(candidates: Candidates, present: Names) -> Names:
-    """The effects with those of the moved mass and the weight that are needed only together.
+    """Add mass, weight and zero jointly, and keep those that are needed.
 
-    The residual without one of them may be as smooth as the motion, of which few samples are
-    independent; with all of them it is the noise.
+    The residual of a model that lacks one of them may be as smooth as the motion, so that few of
+    its samples are independent and a single effect has no evidence. With all of them it is noise.
     """
     missing = [n for n in NUISANCES if n in candidates.names and n not in present]
     missing = [name for name in missing if may_come(name, present)]

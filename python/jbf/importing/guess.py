@@ -317,7 +317,7 @@ def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
 
 
 def _force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
-    """What is open of a force beside an angle: a rotary drive's friction is a torque."""
+    """Replace a force that is recorded with an angle by a torque, and ask for its radius."""
     turning = [key for key in TURNING if key in entries]
     if "friction_n" not in entries or not turning or "position_m" in entries:
         return []

@@ -151,7 +151,7 @@ def set_cell(text: str, row: int, column: int, new: str) -> str:
 
 
 def every(step: int, text: str, cell: str | None) -> str:
-    """A file with a wrong cell, or with all cells but one lost, in one row of so many."""
+    """Damage every `step`-th row: replace one cell, or drop all cells but the first."""
     lines = text.splitlines()
     for k in range(step + 1, len(lines), step):
         cells = lines[k].split(",")

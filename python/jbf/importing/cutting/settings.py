@@ -66,7 +66,7 @@ class Condition:
         return cls(difference, relation, str(text))
 
     def holds(self, values: Array) -> Array:
-        """1 where it holds for values of the difference, else 0; nan where there is none."""
+        """1 where the condition holds, 0 where it does not, NaN for a missing value."""
         found = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
         return np.where(np.isfinite(values), found, np.nan)
 

@@ -29,7 +29,7 @@ _HEAD_BYTES = 1 << 20
 _TRACE_BYTES = 1 << 14
 _COMMENTS = ("#", "%", "//")
 STOP_SHARE, STOP_ROWS = 1e-2, 20
-"""Reading stops once more than this share of the rows, and so many more, are damaged."""
+"""Reading stops when the number of damaged rows exceeds STOP_SHARE * rows + STOP_ROWS."""
 
 
 @dataclass
@@ -273,7 +273,7 @@ class TextSource(Source):
         rows: Sequence[int],
         wrong: dict[int, InputError],
     ) -> Values:
-        """Cells as numbers; those that are none go into `wrong`, by their place in the block."""
+        """Convert cells to numbers; errors are added to `wrong` by their index in the block."""
         dialect = self.dialect
         plain = dialect.decimal == "." and not dialect.thousands
         try:
@@ -359,6 +359,7 @@ def open_text(path: Path, options: Options) -> Source:
 
 
 def _known(encoding: str) -> str:
+    """The encoding, or Latin-1 in place of an unknown one."""
     try:
         return codecs.lookup(encoding).name
     except LookupError:

@@ -22,7 +22,7 @@ from jbf.importing.formats.table import DAMAGED, Options, Source, unique
 from jbf.text_files import read_text
 
 SETTINGS = ("config", "settings", "meta", "metadata", "header", "info", "sampling", "recording")
-"""Mappings beside the samples that may state their rate."""
+"""Keys of mappings that may state the sampling rate of the arrays next to them."""
 RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample_rate_hz")
 """Keys of a rate, samples a second."""
 FEWEST = 3

@@ -24,8 +24,8 @@ def find_gaps(run: Run) -> list[Finding]:
     even = np.abs(steps - usual) < EVEN * usual
     if even.mean() < MOSTLY:
         return []
-    # A missing row makes every stretch that contains it longer by a step; jitter makes the steps
-    # beside a long one shorter.
+    # A missing row makes every stretch that contains it longer by one step. Jitter makes a step
+    # longer and its neighbours shorter.
     missing = np.rint(steps / usual) - 1.0
     for length in range(2, min(STRETCH, len(steps)) + 1):
         window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / usual

@@ -151,5 +151,5 @@ class Readings:
         return found, factors
 
     def corners(self, errors: ReadingErrors, passes: int) -> Array:
-        """Factors by so many passes with known errors."""
+        """Estimate the intensity factors in `passes` passes, with known errors."""
         return self._core.estimated(errors, np.ones(len(self.time_s) - 1), (0, passes), True)[-1]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from jbf.importing.unit_table import (
+from jbf.units.table import (
     ANGLE,
     COUNT,
     CURRENT,
@@ -27,7 +27,7 @@ from jbf.importing.unit_table import (
     VOLTAGE,
     Dimensions,
 )
-from jbf.importing.units import Unit, parse_unit, unit_of_name
+from jbf.units.unit import Unit, parse_unit, unit_of_name
 
 KINDS: dict[str, tuple[Dimensions, ...]] = {
     "time": (TIME,),

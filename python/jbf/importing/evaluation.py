@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, quoted
 from jbf.importing.expression import OPEN, Binary, Call, Node, Number, Reference, Signed
-from jbf.importing.unit_table import ASK, BASES, NONE
-from jbf.importing.units import ONE, Unit, parse_unit
+from jbf.units.table import ASK, BASES, NONE
+from jbf.units.unit import ONE, Unit, parse_unit
 
 Array = npt.NDArray[np.float64]
 Value = Array | float

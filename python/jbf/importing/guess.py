@@ -20,8 +20,8 @@ from jbf.importing.joints import JointNotChosen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
 from jbf.importing.targets import FRICTION, KNOWN, MOTION, TURNING, wanted_unit
-from jbf.importing.unit_table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
-from jbf.importing.units import parse_unit
+from jbf.units.table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
+from jbf.units.unit import parse_unit
 
 HEAD = 5_000
 """Rows that are looked at."""

@@ -12,8 +12,8 @@ from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.table import Column, Table, Values
 from jbf.importing.guessed import Entry, Question
 from jbf.importing.plausible import OFF, PAIRS, speed_ratio
-from jbf.importing.unit_table import TIME
-from jbf.importing.units import parse_unit
+from jbf.units.table import TIME
+from jbf.units.unit import parse_unit
 
 _FROM_S, _TO_S = 9.5e8, 4.1e9
 """Seconds since 1970, from the year 2000 to 2100."""

@@ -22,7 +22,7 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.table import Options
 from jbf.importing.targets import FRICTION, MOTION, wanted_unit
-from jbf.importing.units import parse_unit, unit_of_name
+from jbf.units.unit import parse_unit, unit_of_name
 from jbf.records.checks import LARGEST
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike

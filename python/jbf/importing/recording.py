@@ -23,8 +23,8 @@ from jbf.importing.spool import Dropped, Recording, Stream
 from jbf.importing.targets import wanted_unit
 from jbf.importing.time_line import TimeLine
 from jbf.importing.turns import unwrapped
-from jbf.importing.units import ONE, Unit
 from jbf.records.checks import LARGEST
+from jbf.units.unit import ONE, Unit
 
 Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from jbf.errors import InputError, closest, did_you_mean, quoted
-from jbf.importing.units import Unit, unit_of_name
 from jbf.records.checks import COLUMNS
 from jbf.records.csv_file import OF_DRIVES
+from jbf.units.unit import Unit, unit_of_name
 
 KNOWN = (*COLUMNS, *OF_DRIVES, "pressure_pa")
 """Columns that a run can have and that mean something to it."""

@@ -23,7 +23,7 @@ from jbf.importing.formats.registry import open_source
 from jbf.importing.guess_rig import guess_rig
 from jbf.importing.mapping import Map, read_map
 from jbf.importing.targets import KNOWN, wanted_unit
-from jbf.importing.units import parse_unit
+from jbf.units.unit import parse_unit
 
 FIRST = 3
 """Values of a column that are shown as the file has them."""

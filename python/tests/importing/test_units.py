@@ -13,7 +13,7 @@ from jbf.errors import InputError
 from jbf.importing.evaluation import converted, evaluate
 from jbf.importing.expression import parse_expression, references, written
 from jbf.importing.targets import wanted_unit
-from jbf.importing.units import ONE, parse_unit, unit_of_name
+from jbf.units.unit import ONE, parse_unit, unit_of_name
 
 # Definitions: SI brochure; international pound, inch and standard gravity.
 SIZES = {

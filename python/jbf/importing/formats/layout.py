@@ -14,7 +14,7 @@ from jbf.errors import InputError
 from jbf.importing.columns import split_unit, understood
 from jbf.importing.formats.dialect import is_empty, is_instant
 from jbf.importing.formats.table import unique
-from jbf.importing.units import parse_unit
+from jbf.units.unit import parse_unit
 
 Row = tuple[int, list[str]]
 """A row's number in the file, the first being 1, and its cells."""

@@ -1,8 +1,8 @@
-"""Units that recordings come in, by the names people give them: each in SI, exactly.
+"""Units of recordings by the names that loggers give them, with exact sizes in SI.
 
-A size is a ratio of whole numbers times a power of pi, so that milliseconds are divided by a
-thousand and not multiplied with a rounded 0.001. Angles and counts have dimensions of their own
-here: the turn that nobody wrote is the commonest slip of a factor of six.
+A size is a ratio of whole numbers times a power of pi, so that a conversion is rounded once:
+milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts have
+dimensions of their own, so that a missing revolution (a factor of 2 pi) is an error.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 BASES = ("kg", "m", "s", "A", "K", "rad", "count")
-"""What dimensions are exponents of."""
+"""Base units; dimensions are exponents of these."""
 
 Dimensions = tuple[int, ...]
 Entry = tuple[Fraction, int, Dimensions]
@@ -70,6 +70,9 @@ _SINGLE: dict[str, Entry] = {
     "kgf": (_KILOGRAM_FORCE, 0, FORCE),
     "gf": (_KILOGRAM_FORCE / 1000, 0, FORCE),
     "psi": (_POUND / _INCH**2, 0, PRESSURE),
+    "cP": (Fraction(1, 1000), 0, dimensions(kg=1, m=-1, s=-1)),
+    "lbf ft": (_POUND * 12 * _INCH, 0, TORQUE),
+    "lbf in": (_POUND * _INCH, 0, TORQUE),
     "atm": (Fraction(101325), 0, PRESSURE),
     "deg": (Fraction(1, 180), 1, ANGLE),
     "gon": (Fraction(1, 200), 1, ANGLE),
@@ -91,7 +94,7 @@ UNITS: dict[str, Entry] = _SINGLE | {
     for name, (entry, prefixes) in _WITH_PREFIX.items()
     for prefix in ("", *prefixes)
 }
-"""Name to size and dimensions; case tells mN from MN."""
+"""Size and dimensions by name; upper and lower case differ (mN, MN)."""
 
 ALIASES = {
     "sek": "s", "second": "s", "seconds": "s", "sekunde": "s", "sekunden": "s", "secs": "s",
@@ -115,8 +118,10 @@ ALIASES = {
     "cnts": "count", "inc": "count", "incs": "count", "increments": "count", "ink": "count",
     "inkremente": "count", "ticks": "count", "tick": "count", "pulses": "count", "steps": "count",
     "kelvin": "K", "-": "1", "–": "1", "dimensionless": "1", "oz": "ozf",
+    "ft-lb": "lbf ft", "ft lb": "lbf ft", "lb-ft": "lbf ft", "lb ft": "lbf ft", "ft-lbs": "lbf ft",
+    "in-lb": "lbf in", "in lb": "lbf in", "lb-in": "lbf in", "lb in": "lbf in", "in-lbs": "lbf in",
 }  # fmt: skip
-"""Other names, in lower case."""
+"""Other names, in lower case, of entries of `UNITS`."""
 
 CELSIUS = ("°c", "degc", "deg c", "celsius", "c", "grad c", "°celsius", "ºc", "℃")
 FAHRENHEIT = ("°f", "degf", "deg f", "fahrenheit", "℉")
@@ -133,7 +138,7 @@ ASK = {
     "Hz": "rev/s or rad/s",
     "oz": "ozf (a force) or a mass",
 }
-"""Names that mean several things of what is recorded: asked for, not guessed."""
+"""Names with several meanings in recordings; the user is asked which one applies."""
 
 SUFFIXES = {
     "s": "s", "ms": "ms", "us": "us", "ns": "ns", "min": "min", "h": "h", "sec": "s", "m": "m",
@@ -150,6 +155,6 @@ SUFFIXES = {
     "counts": "count", "count": "count", "cnt": "count", "inc": "count", "ticks": "count",
     "c": "°C", "degc": "°C", "celsius": "°C", "k": "K", "degf": "°F",
     "m_s2": "m/s^2", "rad_s2": "rad/s^2", "kg_m2": "kg m^2", "kg": "kg", "g": "g", "lb": "lb",
-    "1": "1",
+    "1": "1", "pa_s": "Pa s", "n_m_a": "N m/A", "n_a": "N/A",
 }  # fmt: skip
-"""Ends of names, in lower case, as in `speed_rpm`."""
+"""Units by the suffix of a column or key, in lower case, as in `speed_rpm`."""

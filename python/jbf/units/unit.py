@@ -1,7 +1,7 @@
-"""A unit as text becomes a size and dimensions; values go from one unit to another.
+"""Parsing of unit texts and conversion of values between units.
 
-`N m`, `N·m`, `Nm`, `mm/s`, `m s^-1`, `kg m²`, `N/(mm s)`: factors side by side, a slash that
-divides by the next factor, whole exponents.
+A text is a product of factors with integer exponents: `N m`, `N·m`, `Nm`, `mm/s`, `m s^-1`,
+`kg m²`, `N/(mm s)`. A slash divides by the next factor only.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from jbf.importing.unit_table import (
+from jbf.units.table import (
     ALIASES,
     BASES,
     CELSIUS,
@@ -42,8 +42,10 @@ class Unit:
     ----------
     text
         As it was written.
+    ratio, pi
+        Size in SI units: `ratio * pi ** pi`.
     zero
-        SI value of a reading of nought, of temperatures only.
+        SI value of a reading of 0; not 0 for temperatures only.
     """
 
     text: str
@@ -64,13 +66,15 @@ class Unit:
         )
 
     def raised(self, power: int) -> Unit:
-        """The unit to a whole power."""
+        """The unit raised to an integer power."""
         whole = tuple(a * power for a in self.dimensions)
         return Unit(self.text, self.ratio**power, self.pi * power, whole)
 
     def fits(self, wanted: Unit) -> bool:
-        """Whether a quantity in this unit is one of `wanted`; radians may fall away (rad x m is m),
-        but none comes of nothing."""
+        """Whether values in this unit can be converted to `wanted`.
+
+        Radians of this unit may be dropped (rad m is m) but not added.
+        """
         if self.dimensions == wanted.dimensions:
             return True
         mine, other = list(self.dimensions), list(wanted.dimensions)
@@ -79,7 +83,7 @@ class Unit:
         return mine == other
 
     def converted(self, values: Array, to: Unit) -> Array:
-        """Readings in this unit as readings in another, rounded once where that can be."""
+        """Values in this unit converted to another, with one rounding where possible."""
         if self.zero != to.zero or (self.zero and self.ratio != to.ratio):
             shift = float((self.zero - to.zero) / to.ratio)
             return values * float(self.ratio / to.ratio) + shift
@@ -87,12 +91,12 @@ class Unit:
 
     @property
     def in_si(self) -> float:
-        """What one of it is in SI."""
+        """Size of the unit in SI units."""
         return float(self.ratio) * math.pi**self.pi
 
 
 def scaled(values: Array, ratio: Fraction, pi: int = 0) -> Array:
-    """Values times a ratio and a power of pi; a division where the ratio is one."""
+    """Values times a ratio and a power of pi; divided where the ratio is 1/n, which rounds once."""
     if pi:
         return values * (float(ratio) * math.pi**pi)
     if ratio == 1:
@@ -108,7 +112,7 @@ FAHRENHEIT_UNIT = Unit("°F", Fraction(5, 9), 0, TEMPERATURE, Fraction("273.15")
 
 
 def parse_unit(text: str) -> Unit | None:
-    """The unit that a text means, or None where it is none that is known."""
+    """The unit of a text, or None where the text is not a known unit."""
     shown = " ".join(text.split())
     if not shown or len(shown) > _LONGEST:
         return None
@@ -128,7 +132,7 @@ def parse_unit(text: str) -> Unit | None:
 
 
 def unit_of_name(name: str) -> tuple[str, Unit] | None:
-    """What stands before the unit at the end of a name, and the unit: `speed_rpm`, `v_m_s`."""
+    """A name without its suffix, and the unit of that suffix: `speed_rpm`, `v_m_s`."""
     parts = name.split("_")
     for count in (3, 2, 1):
         if len(parts) <= count:
@@ -141,19 +145,19 @@ def unit_of_name(name: str) -> tuple[str, Unit] | None:
 
 
 def _single(name: str) -> tuple[Fraction, int, Dimensions] | None:
-    """A unit that stands in the table, by its name, an alias, or its name in another case."""
+    """A unit of the table by its name, an alias, or its name in another case."""
     if name in UNITS:
         return UNITS[name]
     alias = ALIASES.get(name.lower())
     if alias is not None:
         return UNITS[alias]
-    # In capitals or in small letters, where no other unit would be meant.
+    # In another case, where only one unit matches.
     alike = {entry for known, entry in UNITS.items() if known.lower() == name.lower()}
     return alike.pop() if len(alike) == 1 and len(name) > 1 else None
 
 
 class _Product:
-    """Factors, slashes, brackets and exponents."""
+    """Recursive-descent parser of factors, slashes, brackets and exponents."""
 
     def __init__(self, text: str) -> None:
         text = text.replace("·", " ").replace("*", " ").replace("⋅", " ").replace("×", " ")

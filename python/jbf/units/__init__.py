@@ -1,0 +1,1 @@
+"""Units of measurement: names, sizes, dimensions and conversion."""

@@ -15,22 +15,16 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from jbf.errors import InputError
 from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.table import Options
 from jbf.importing.targets import FRICTION, MOTION, wanted_unit
-from jbf.units.unit import parse_unit, unit_of_name
 from jbf.records.checks import LARGEST
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
 
-CONSTANTS = {"torque_constant_n_m_a": "N m/A", "force_constant_n_a": "N/A"}
-"""Units of keys whose end is not the whole of their unit."""
-_QUANTITY = re.compile(r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>\S.*?)\s*")
 _QUOTED = re.compile(r"`[^`]*`")
 RIG = ("drive", "bearing", "lubricant", "load")
 SECTIONS = ("file", "columns", "clocks", "cut", *RIG)
@@ -138,29 +132,9 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
         clocks=_texts(content, "clocks"),
         options=_options(table(content.get("file", {}), "file")),
         cut=CutSettings.from_mapping(table(content.get("cut", {}), "cut"), path.parent),
-        rig={name: _section(content, name) for name in RIG if name in content},
+        rig={name: dict(table(content[name], name)) for name in RIG if name in content},
         path=path,
     )
-
-
-def _section(content: Mapping[str, Any], section: str) -> dict[str, Any]:
-    """A section of the rig; quantities with a unit, such as "10 mm", in the unit of their key."""
-    found = dict(table(content[section], section))
-    for key, value in found.items():
-        match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-        named = unit_of_name(key)
-        wanted = parse_unit(CONSTANTS[key]) if key in CONSTANTS else named and named[1]
-        if match is None or wanted is None:
-            continue
-        unit = parse_unit(match["unit"])
-        if unit is None or not unit.fits(wanted):
-            raise InputError(
-                key=f"{section}.{key}",
-                problem=f"{value!r} is no quantity in {wanted.text}",
-                mend=f"write a number of {wanted.text}, or one with its unit",
-            )
-        found[key] = float(unit.converted(np.array([float(match["number"])]), wanted)[0])
-    return found
 
 
 def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:

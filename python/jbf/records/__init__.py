@@ -4,5 +4,5 @@ Comes in: CSV files of runs, the rig's TOML file, or arrays. Goes out: `Run` (ch
 `Rig`, and `ImposedMotion` (speed, acceleration and path with their errors, rests, and the samples
 at which the sign of the motion is known). Knows nothing of models.
 
-May import: `jbf.errors`, `jbf.text_files`.
+May import: `jbf.errors`, `jbf.text_files`, `jbf.units`.
 """

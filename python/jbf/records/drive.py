@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 from jbf.errors import InputError, did_you_mean, quoted
 from jbf.records.quantities import LINEAR, ROTARY, Quantities
 from jbf.records.toml_file import positive, refuse_unknown, table
+from jbf.units.quantity import quantities
 
 Kind = Literal["rotary", "linear"]
 Friction = Literal["force", "torque", "current", "percent"]
@@ -143,7 +144,7 @@ class Drive:
             if key not in section:
                 raise _wrong(f"{prefix}.{key}", "is missing", f"add it to [{prefix}]")
         try:
-            return cls(**section)
+            return cls(**quantities(section, ""))
         except InputError as error:
             raise error.within(key_prefix=f"{prefix}.") from None
 

@@ -14,6 +14,7 @@ from jbf.records.drive import Drive
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.records.toml_file import PathLike, number, positive, read_toml, refuse_unknown, table
 from jbf.text_files import write_text
+from jbf.units.quantity import quantities
 
 MOST_BEARINGS = 1000
 COLDEST_C, WARMEST_C = -100.0, 1000.0
@@ -117,6 +118,7 @@ def _section(
     content = table(mapping[name], prefix + name)
     known = [f.name for f in fields(kind)]
     refuse_unknown(content, known, f"{prefix}{name}.")
+    content = quantities(content, f"{prefix}{name}.")
     needed = [f.name for f in fields(kind) if f.default is MISSING]
     for key in needed:
         if key not in content:
@@ -180,6 +182,9 @@ class Rig:
         cls, mapping: Mapping[str, Any], *, file: PathLike | None = None, prefix: str = ""
     ) -> Rig:
         """A rig from the nested mapping that its TOML holds.
+
+        A quantity is a number in the unit that its key ends in, or text with a unit of its own,
+        such as "10 mm".
 
         Parameters
         ----------

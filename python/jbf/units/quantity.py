@@ -1,0 +1,54 @@
+"""Quantities with a unit in TOML, converted to the unit that their key ends in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.units.unit import parse_unit, unit_of_name
+
+_QUANTITY = re.compile(
+    r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>(?![\d.])\S.*?)\s*"
+)
+_LONGEST = 60
+
+
+def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """A section of a rig with each quantity as a number in the unit of its key.
+
+    Parameters
+    ----------
+    section
+        Keys and values: `pitch_m = "10 mm"` becomes `pitch_m = 0.01`. Values that are not text of a
+        number and a unit, and those of keys that end in no unit, are unchanged.
+    prefix
+        Put before the key in an error, such as ``"drive."``.
+
+    Raises
+    ------
+    InputError
+        The unit is unknown or has other dimensions than that of the key.
+    """
+    return {key: _converted(key, value, prefix) for key, value in section.items()}
+
+
+def _converted(key: str, value: object, prefix: str) -> object:
+    named = unit_of_name(key)
+    if named is None or not isinstance(value, str) or len(value) > _LONGEST:
+        return value
+    match = _QUANTITY.fullmatch(value)
+    if match is None:
+        return value
+    wanted, unit = named[1], parse_unit(match["unit"])
+    # Equal dimensions: a lead of "10 mm/rev" would become one of 1.6 mm.
+    if unit is None or unit.dimensions != wanted.dimensions:
+        raise InputError(
+            key=f"{prefix}{key}",
+            problem=f"{value!r} is no quantity in {wanted.text}",
+            mend=f"write a number of {wanted.text}, or one with its unit",
+        )
+    return float(unit.converted(np.array([float(match["number"])]), wanted)[0])

@@ -14,6 +14,7 @@ from jbf.importing.formats.dates import (
     Instants,
     as_date,
     day_or_month_first,
+    is_instant,
     seconds_since,
 )
 
@@ -45,6 +46,30 @@ def test_parsed_date_agrees_with_the_standard_library_in_every_notation(moment: 
         assert parsed(cell) == ns(moment), cell
     american = f"{moment:%m/%d/%Y} {moment:%I:%M:%S}.{fraction} {moment:%p}"
     assert parsed(american, MONTH_FIRST) == ns(moment)
+
+
+@given(st.lists(st.tuples(MOMENTS, st.integers(0, 3)), max_size=30), st.data())
+def test_column_of_several_notations_is_parsed_like_its_cells(
+    moments: list[tuple[datetime, int]], data: st.DataObject
+) -> None:
+    formats = ("%Y-%m-%dT%H:%M:%S.%f", "%d.%m.%y %H:%M", "%d-%b-%Y %I:%M:%S %p", "%Y/%m/%d")
+    cells = [moment.strftime(formats[notation]) for moment, notation in moments]
+    empty = [data.draw(st.booleans()) for _ in cells]
+    wanted = [NO_INSTANT if e else parsed(c) for c, e in zip(cells, empty, strict=True)]
+    assert Instants().parse(cells, empty).tolist() == wanted
+
+
+@pytest.mark.parametrize(
+    ("cell", "month"),
+    [
+        ("24-Nov-2026 13:05:07", 11), ("24 November 2026 13:05:07", 11),
+        ("24-Mai-2026 13:05:07", 5), ("24-Mär-2026 13:05:07", 3), ("24 déc. 2026 13:05:07", 12),
+        ("24-OKT-2026 13:05:07", 10),
+    ],
+)  # fmt: skip
+def test_month_that_is_written_as_a_word_is_recognised(cell: str, month: int) -> None:
+    assert parsed(cell) == ns(datetime(2026, month, 24, 13, 5, 7))
+    assert is_instant(cell)
 
 
 @pytest.mark.parametrize(
@@ -84,11 +109,16 @@ def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> No
 
 
 @pytest.mark.parametrize(
-    "cell", ["2026-02-30", "31.04.2026 10:00", "noon", "10", "2026-13-01", "12:00:00 XM", "1.2"]
-)
+    "cell",
+    [
+        "2026-02-30", "31.04.2026 10:00", "noon", "10", "2026-13-01", "12:00:00 XM", "1.2",
+        "24-Foo-2026", "24 juil 2026", "9999-01-01", "२०२६-11-24", "12:00:00." + 60 * "0",
+        "13:05:00,000;12,125;-1234,50",
+    ],
+)  # fmt: skip
 def test_cell_that_is_no_valid_date_or_time_is_refused_with_its_row(cell: str) -> None:
     with pytest.raises(InputError, match="is no date and no time of day") as refused:
-        Instants().parse(["2026-01-01", cell], [False, False])
+        Instants().parse(["2026-01-01", cell, "-"], [False, False, False])
     assert refused.value.row == 1
 
 

@@ -17,8 +17,14 @@ from pathlib import Path
 import numpy as np
 
 from jbf.errors import InputError, quoted
-from jbf.importing.formats.dates import Instants, as_date, day_or_month_first, seconds_since
-from jbf.importing.formats.dialect import Dialect, decode, is_empty, is_instant, sniff
+from jbf.importing.formats.dates import (
+    Instants,
+    as_date,
+    day_or_month_first,
+    is_instant,
+    seconds_since,
+)
+from jbf.importing.formats.dialect import Dialect, decode, is_empty, sniff
 from jbf.importing.formats.layout import Layout, lay_out
 from jbf.importing.formats.table import BLOCK, DAMAGED, Column, Options, Source, Table, Values
 from jbf.importing.formats.trace_blocks import is_trace, open_trace

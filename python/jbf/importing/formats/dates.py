@@ -1,7 +1,10 @@
-"""Dates and times of day, as loggers write them, in whole nanoseconds.
+"""Dates and times of day as loggers write them, in whole nanoseconds.
 
-ISO 8601, `31.12.2026 23:59:59,125`, `12/31/2026 11:59:59.125 PM`, `23:59:59.125`. A time of day
-that starts again goes on to the next day.
+ISO 8601, `31.12.2026 23:59:59,125`, `31-Dec-2026 23:59:59`, `12/31/2026 11:59:59.125 PM`,
+`23:59:59.125`. A time of day that starts again goes on to the next day.
+
+A column is converted by NumPy: cells are grouped by their shape (the text with each digit replaced
+by 0), the pattern is matched once for each shape, and the digits of all its cells are combined.
 """
 
 from __future__ import annotations
@@ -22,10 +25,36 @@ NO_INSTANT = int(np.iinfo(np.int64).min)
 _DAY_NS = 86_400 * 10**9
 _INSTANT = re.compile(
     r"(?:(?:(?P<y>\d{4})[-/.](?P<m>\d{1,2})[-/.](?P<d>\d{1,2})"
-    r"|(?P<a>\d{1,2})(?P<mark>[-/.])(?P<b>\d{1,2})[-/.](?P<y2>\d{4}|\d{2}))\.?(?:\s*T?\s*|$))?"
+    r"|(?P<a>\d{1,2})(?P<mark>[-/.])(?P<b>\d{1,2})[-/.](?P<y2>\d{4}|\d{2})"
+    r"|(?P<d3>\d{1,2})[- ](?P<name>(?u:[^\W\d_]{3}))(?u:[^\W\d_]*)\.?[- ](?P<y3>\d{4}))"
+    r"\.?(?:\s*T?\s*|$))?"
     r"(?:(?P<h>\d{1,2}):(?P<min>\d\d)(?::(?P<s>\d\d)(?:[.,:](?P<f>\d+))?)?\s*(?P<half>[AaPp]\.?[Mm]\.?)?"
-    r"\s*(?P<zone>Z|UTC|[+-]\d\d:?\d\d)?)?"
+    r"\s*(?:Z|UTC|(?P<sign>[+-])(?P<zh>\d\d):?(?P<zmin>\d\d))?)?",
+    re.ASCII,
 )
+_MONTHS = (
+    "jan", "feb fév", "mar mär mrz", "apr avr abr", "may mai mag", "jun jui giu", "jul lug",
+    "aug aoû ago", "sep set", "oct okt ott", "nov", "dec dez déc dic",
+)  # fmt: skip
+"""First three letters of the months in English, German, French, Spanish and Italian."""
+_MONTH = {name: n for n, names in enumerate(_MONTHS, 1) for name in names.split()}
+del _MONTH["jui"]  # juin or juillet
+_LONGEST = 64
+_FIRST_YEAR, _LAST_YEAR = 1678, 2261
+"""Years whose instants fit into 64 bits."""
+
+
+def is_instant(cell: str) -> bool:
+    """Whether a cell is written as a date, a time of day or both."""
+    return _matched(cell) is not None
+
+
+def _matched(cell: str) -> re.Match[str] | None:
+    match = _INSTANT.fullmatch(cell.strip())
+    # Date and time are both optional in the pattern.
+    if match is None or not match[0] or len(match[0]) >= _LONGEST:
+        return None
+    return match if match["name"] is None or match["name"].lower() in _MONTH else None
 
 
 def day_or_month_first(cells: Sequence[str]) -> str | None:
@@ -45,7 +74,7 @@ def day_or_month_first(cells: Sequence[str]) -> str | None:
 
 
 class Instants:
-    """Reads cells one after the other; remembers the day where only times of day are written."""
+    """Reads blocks of cells; remembers the day where only times of day are written."""
 
     def __init__(self, order: str = DAY_FIRST) -> None:
         self.order = order
@@ -60,54 +89,81 @@ class Instants:
         InputError
             A cell is no instant; its row counts from 0, and no file is named.
         """
-        found = np.full(len(cells), NO_INSTANT, dtype=np.int64)
-        for at, (cell, empty) in enumerate(zip(cells, is_empty, strict=True)):
-            if empty:
+        result = np.full(len(cells), NO_INSTANT, dtype=np.int64)
+        full = np.flatnonzero(~np.asarray(is_empty, dtype=bool)).tolist()
+        if not full:
+            return result
+        text = np.array([cells[at].strip()[:_LONGEST] for at in full])
+        letters = text.view(np.uint32).reshape(len(full), -1)
+        digits = letters - ord("0")
+        masked = np.where(digits < 10, ord("0"), letters).astype(np.uint32)
+        shapes, shape_of = np.unique(masked.view(text.dtype)[:, 0], return_inverse=True)
+        matches = [_matched(str(shape)) for shape in shapes]
+        valid = np.array([match is not None for match in matches])[shape_of]
+        without_date = np.zeros(len(full), dtype=bool)
+        values = np.zeros(len(full), dtype=np.int64)
+        for number, match in enumerate(matches):
+            if match is None:
                 continue
-            value = self._one(cell)
-            if value is None:
-                raise InputError(
-                    row=at,
-                    problem=f"{quoted(cell.strip())} is no date and no time of day",
-                    mend="correct the cell or drop the row",
-                )
-            found[at] = value
-        return found
+            rows = np.flatnonzero(shape_of == number)
+            values[rows], valid[rows] = self._decoded(match, digits[rows].astype(np.int64))
+            without_date[rows] = all(match[group] is None for group in ("y", "a", "name"))
+        if not valid.all():
+            at = full[int(np.argmin(valid))]
+            raise InputError(
+                row=at,
+                problem=f"{quoted(cells[at].strip())} is no date and no time of day",
+                mend="correct the cell or drop the row",
+            )
+        values[without_date] = self._continued(values[without_date])
+        result[full] = values
+        return result
 
-    def _one(self, cell: str) -> int | None:
-        match = _INSTANT.fullmatch(cell.strip())
-        if match is None or (match["h"] is None and match["y"] is None and match["a"] is None):
-            return None
-        hour = int(match["h"] or 0)
+    def _decoded(
+        self, match: re.Match[str], digits: Nanoseconds
+    ) -> tuple[Nanoseconds, npt.NDArray[np.bool_]]:
+        """Values of cells of one shape, and whether each is a date of the calendar."""
+
+        def number(group: str, longest: int = 9) -> Nanoseconds:
+            begin, end = match.span(group)
+            total = np.zeros(len(digits), dtype=np.int64)
+            for place in range(begin, min(end, begin + longest)):
+                total = 10 * total + digits[:, place]
+            return total
+
+        hour = number("h")
         if match["half"]:
             hour = hour % 12 + (12 if match["half"][0] in "Pp" else 0)
-        fraction = int(((match["f"] or "") + "000000000")[:9])
-        of_day = ((hour * 60 + int(match["min"] or 0)) * 60 + int(match["s"] or 0)) * 10**9
-        of_day += fraction
-        zone = match["zone"]
-        if zone and zone[0] in "+-":
-            minutes = int(zone[1:3]) * 60 + int(zone[-2:])
-            of_day -= (minutes if zone[0] == "+" else -minutes) * 60 * 10**9
-        if match["y"] is None and match["a"] is None:
-            if self._last is not None and of_day < self._last - _DAY_NS // 2:
-                self._days += 1
-            self._last = of_day
-            return of_day + self._days * _DAY_NS
-        day = self._date(match)
-        return None if day is None else day * _DAY_NS + of_day
-
-    def _date(self, match: re.Match[str]) -> int | None:
+        of_day = ((hour * 60 + number("min")) * 60 + number("s")) * 10**9
+        of_day += number("f") * 10 ** max(9 - len(match["f"] or ""), 0)
+        zone = (number("zh") * 60 + number("zmin")) * 60 * 10**9
+        of_day += zone if match["sign"] == "-" else -zone
         if match["y"]:
-            year, month, day = int(match["y"]), int(match["m"]), int(match["d"])
-        else:
-            year = int(match["y2"]) + (2000 if len(match["y2"]) == 2 else 0)
-            month, day = int(match["b"]), int(match["a"])
+            year, month, day = number("y"), number("m"), number("d")
+        elif match["a"]:
+            year, month, day = number("y2"), number("b"), number("a")
+            year += 2000 if len(match["y2"]) == 2 else 0
             if self.order == MONTH_FIRST:
                 month, day = day, month
-        try:
-            return int(np.datetime64(f"{year:04d}-{month:02d}-{day:02d}", "D").astype(np.int64))
-        except ValueError:
-            return None
+        elif match["name"]:
+            year, day = number("y3"), number("d3")
+            month = np.full_like(year, _MONTH[match["name"].lower()])
+        else:
+            return of_day, np.ones(len(of_day), dtype=bool)
+        first = (12 * (year - 1970) + month - 1).astype("datetime64[M]")
+        date = first.astype("datetime64[D]") + (day - 1)
+        valid = (month >= 1) & (month <= 12) & (date.astype("datetime64[M]") == first)
+        valid &= (year >= _FIRST_YEAR) & (year <= _LAST_YEAR)
+        return date.astype(np.int64) * _DAY_NS + of_day, valid
+
+    def _continued(self, of_day: Nanoseconds) -> Nanoseconds:
+        """Times of day in the order of the file, each after midnight on the next day."""
+        if not of_day.size:
+            return of_day
+        last = of_day[0] if self._last is None else self._last
+        days = self._days + np.cumsum(np.diff(of_day, prepend=last) < -(_DAY_NS // 2))
+        self._last, self._days = int(of_day[-1]), int(days[-1])
+        return of_day + days * _DAY_NS
 
 
 def seconds_since(instants: Nanoseconds, origin: int) -> npt.NDArray[np.float64]:

@@ -12,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from jbf.errors import quoted
+from jbf.importing.formats.dates import is_instant
 
 DELIMITERS = ("\t", ";", ",", "|", " ")
 _EMPTY_WORDS = frozenset(
@@ -40,7 +41,6 @@ _GROUPED = {
     ".": re.compile(r"[+-]?\d{1,3}(?:[,' \u00a0\u202f]\d{3})+(?:\.\d*)?(?:[eE][+-]?\d+)?"),
 }
 _PLAIN = {mark: re.compile(_NUMBER.format(d=re.escape(mark))) for mark in ",."}
-_TIME = re.compile(r".*\d[:T]\d\d.*|\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}")
 _PARTS = re.compile(r"[+-]?(\d+)([.,])(\d+)")
 
 
@@ -91,11 +91,6 @@ def is_empty(cell: str, words: frozenset[str] = frozenset()) -> bool:
     """Whether a cell says that there is no sample."""
     low = cell.strip().lower()
     return not low or low in _EMPTY_WORDS or low in words
-
-
-def is_instant(cell: str) -> bool:
-    """Whether a cell looks like a date or a time of day."""
-    return _TIME.fullmatch(cell.strip()) is not None
 
 
 def decode(data: bytes) -> str:

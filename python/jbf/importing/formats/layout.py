@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 from jbf.errors import InputError
 from jbf.importing.columns import split_unit, understood
-from jbf.importing.formats.dialect import is_empty, is_instant
+from jbf.importing.formats.dates import is_instant
+from jbf.importing.formats.dialect import is_empty
 from jbf.importing.formats.table import unique
 from jbf.units.unit import parse_unit
 

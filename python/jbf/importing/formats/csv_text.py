@@ -9,14 +9,15 @@ from __future__ import annotations
 import codecs
 import gzip
 import io
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from jbf.errors import InputError, quoted
+from jbf.importing.formats.damaged_rows import DamagedRows
 from jbf.importing.formats.dates import (
     Instants,
     as_date,
@@ -26,7 +27,8 @@ from jbf.importing.formats.dates import (
 )
 from jbf.importing.formats.dialect import Dialect, decode, is_empty, sniff
 from jbf.importing.formats.layout import Layout, lay_out
-from jbf.importing.formats.table import BLOCK, DAMAGED, Column, Options, Source, Table, Values
+from jbf.importing.formats.plain_lines import plain_columns
+from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
 from jbf.importing.formats.trace_blocks import is_trace, open_trace
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
@@ -34,58 +36,6 @@ _HEAD_LINES = 400
 _HEAD_BYTES = 1 << 20
 _TRACE_BYTES = 1 << 14
 _COMMENTS = ("#", "%", "//")
-STOP_SHARE, STOP_ROWS = 1e-2, 20
-"""Reading stops when the number of damaged rows exceeds STOP_SHARE * rows + STOP_ROWS."""
-
-
-@dataclass
-class _Damage:
-    """Damaged rows of a file: those of a line that was cut are passed over, more of them are not.
-
-    Attributes
-    ----------
-    rows
-        How many rows were looked at.
-    lines
-        The damaged ones, by their line.
-    """
-
-    path: Path
-    rows: int = 0
-    lines: set[int] = field(default_factory=set)
-    first: InputError | None = None
-
-    def add(self, error: InputError) -> None:
-        assert error.row is not None
-        self.lines.add(error.row)
-        self.first = self.first or error
-        if len(self.lines) > STOP_SHARE * self.rows + STOP_ROWS:
-            raise self._refused()
-
-    def check(self) -> None:
-        """Refuse a file in which more rows are damaged than a broken line explains."""
-        if len(self.lines) > max(DAMAGED * self.rows, 1.0):
-            raise self._refused()
-
-    def left_out(self) -> list[tuple[int, str, int | None]]:
-        if self.first is None:
-            return []
-        where = "" if self.first.column is None else f" in column {self.first.column}"
-        why = f"the row is damaged ({self.first.problem}{where})"
-        return [(len(self.lines), why, self.first.row)]
-
-    def _refused(self) -> InputError:
-        assert self.first is not None
-        more = ""
-        if len(self.lines) > 1:
-            more = f", and {len(self.lines)} of the first {self.rows} rows are damaged"
-        return InputError(
-            file=self.path,
-            row=self.first.row,
-            column=self.first.column,
-            problem=self.first.problem + more,
-            mend=self.first.mend,
-        )
 
 
 class TextSource(Source):
@@ -100,7 +50,7 @@ class TextSource(Source):
             raise InputError(file=path, problem="is binary, not text", mend="name another file")
         self.encoding = options.encoding or decode(data)
         self._words: list[int] = []
-        self._damage = _Damage(path)
+        self._damage = DamagedRows(path)
         self._firsts: dict[bool, int] = {}
         self._origins: dict[str, tuple[int, str | None]] = {}
         self._handle: io.BufferedReader | gzip.GzipFile | None = None
@@ -157,7 +107,7 @@ class TextSource(Source):
         return layout
 
     def _table(self) -> Table:
-        first = list(islice(self._rows(), 500))
+        first = list(islice(self._rows(self._samples()), 500))
         columns, questions, start = [], [], None
         if self.dialect.question:
             questions.append(self.dialect.question)
@@ -196,23 +146,32 @@ class TextSource(Source):
         at = self.layout.names.index(column.name)
         return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
 
+    def _samples(self) -> Iterator[tuple[int, str]]:
+        """Every line from the first row of samples on, without blank lines and comments."""
+        for number, line in self._lines():
+            if number >= self.layout.first and line.strip() and not line.startswith(_COMMENTS):
+                yield number, line
+
     def _rows(
-        self, damage: _Damage | None = None, words: list[int] | None = None
+        self,
+        lines: Iterable[tuple[int, str]],
+        damage: DamagedRows | None = None,
+        words: list[int] | None = None,
     ) -> Iterator[tuple[int, list[str]]]:
         """Every row of samples with its number, as many cells as there are names.
 
         Parameters
         ----------
+        lines
+            From `_samples`.
         damage, words
             Where rows that are passed over are counted.
         """
-        damage, words = damage or _Damage(self.path), [] if words is None else words
+        damage, words = damage or DamagedRows(self.path), [] if words is None else words
         names = self.layout.names
         width, first_name = len(names), names[0]
         split = self.dialect.split
-        for number, line in self._lines():
-            if number < self.layout.first or not line.strip() or line.startswith(_COMMENTS):
-                continue
+        for number, line in lines:
             damage.rows += 1
             cells = split(line.rstrip("\n"))
             few = len(cells) < width and (self.dialect.delimiter == " " or len(cells) < width // 2)
@@ -248,25 +207,40 @@ class TextSource(Source):
             for name, kind in zip(names, kinds, strict=True)
             if kind == "instant"
         }
-        self._words, self._damage = [], _Damage(self.path)
-        rows = self._rows(self._damage, self._words)
-        while block := list(islice(rows, BLOCK)):
-            numbers = [number for number, _ in block]
-            turned = list(zip(*[cells for _, cells in block], strict=True))
-            found: dict[str, Values] = {}
+        self._words, self._damage = [], DamagedRows(self.path)
+        numeric = [at for at, kind in zip(places, kinds, strict=True) if kind == "number"]
+        text = [at for at, kind in zip(places, kinds, strict=True) if kind != "number"]
+        lines = self._samples()
+        while block := list(islice(lines, BLOCK)):
+            plain = plain_columns(
+                [line for _, line in block], self.dialect, len(self.layout.names), numeric, text
+            )
             wrong: dict[int, InputError] = {}
+            if plain is not None:
+                self._damage.rows += len(block)
+                numbers = [number for number, _ in block]
+                turned = dict(zip([*numeric, *text], [*plain[0], *plain[1]], strict=True))
+            else:
+                rows = list(self._rows(block, self._damage, self._words))
+                if not rows:
+                    continue
+                numbers = [number for number, _ in rows]
+                turned = dict(enumerate(zip(*[cells for _, cells in rows], strict=True)))
+            found: dict[str, Values] = {}
             for name, at, kind in zip(names, places, kinds, strict=True):
                 cells = turned[at]
                 if kind == "word":
                     found[name] = np.array([cell.strip() for cell in cells], dtype=object)
                 elif kind == "instant":
                     found[name] = self._instants(name, cells, numbers, readers[name])
+                elif plain is not None:
+                    found[name] = cells
                 else:
                     found[name] = self._numbers(name, cells, numbers, wrong)
             if wrong:
                 for at in sorted(wrong):
                     self._damage.add(wrong[at])
-                good = np.ones(len(block), dtype=bool)
+                good = np.ones(len(numbers), dtype=bool)
                 good[list(wrong)] = False
                 found = {name: values[good] for name, values in found.items()}
             yield found
@@ -325,7 +299,7 @@ class TextSource(Source):
     def row_of(self, table: Table, sample: int) -> int | None:
         """The line of a sample."""
         bad = self._damage.lines
-        good = (number for number, _ in self._rows() if number not in bad)
+        good = (number for number, _ in self._rows(self._samples()) if number not in bad)
         return next(islice(good, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:

@@ -1,0 +1,64 @@
+"""Damaged rows among the samples of a text file: counted, left out, or an error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.importing.formats.table import DAMAGED
+
+STOP_SHARE, STOP_ROWS = 1e-2, 20
+"""Reading stops when the number of damaged rows exceeds STOP_SHARE * rows + STOP_ROWS."""
+
+
+@dataclass
+class DamagedRows:
+    """Damaged rows of a file; a few, as broken lines leave them, are left out, more are an error.
+
+    Attributes
+    ----------
+    rows
+        Number of rows that were read.
+    lines
+        Line numbers of the damaged ones.
+    """
+
+    path: Path
+    rows: int = 0
+    lines: set[int] = field(default_factory=set)
+    first: InputError | None = None
+
+    def add(self, error: InputError) -> None:
+        """Count a damaged row; refuse the file if there are too many."""
+        assert error.row is not None
+        self.lines.add(error.row)
+        self.first = self.first or error
+        if len(self.lines) > STOP_SHARE * self.rows + STOP_ROWS:
+            raise self._refused()
+
+    def check(self) -> None:
+        """Refuse a file in which more than a share of `DAMAGED` of the rows is damaged."""
+        if len(self.lines) > max(DAMAGED * self.rows, 1.0):
+            raise self._refused()
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """Number of the damaged rows, the reason and the first of them."""
+        if self.first is None:
+            return []
+        where = "" if self.first.column is None else f" in column {self.first.column}"
+        why = f"the row is damaged ({self.first.problem}{where})"
+        return [(len(self.lines), why, self.first.row)]
+
+    def _refused(self) -> InputError:
+        assert self.first is not None
+        more = ""
+        if len(self.lines) > 1:
+            more = f", and {len(self.lines)} of the first {self.rows} rows are damaged"
+        return InputError(
+            file=self.path,
+            row=self.first.row,
+            column=self.first.column,
+            problem=self.first.problem + more,
+            mend=self.first.mend,
+        )

@@ -1,0 +1,61 @@
+"""Blocks of text lines without irregularities, converted by the parser of NumPy.
+
+`numpy.loadtxt` is several times faster than a loop over cells, and gives the same bits as `float`.
+It cannot report the row and column of a wrong cell, nor keep the other rows. A block that it does
+not accept is therefore left to the caller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.importing.formats.dialect import Dialect
+
+
+def plain_columns(
+    lines: Sequence[str], dialect: Dialect, width: int, numeric: Sequence[int], text: Sequence[int]
+) -> tuple[npt.NDArray[np.float64], list[list[str]]] | None:
+    """Columns of a block of lines.
+
+    Parameters
+    ----------
+    width
+        Number of cells of each line.
+    numeric, text
+        Positions of the columns to be read as numbers (at least one) and as text.
+
+    Returns
+    -------
+    tuple of array and list, or None
+        Numbers, one row for each numeric column, and cells of each text column. None if a line has
+        another number of cells or a cell of a numeric column is not a finite number.
+    """
+    mark = dialect.delimiter
+    if not numeric or dialect.thousands:
+        return None
+    if mark == " ":
+        rows = [line.split() for line in lines]
+        if any(len(row) != width for row in rows):
+            return None
+        cells = [[row[at] for row in rows] for at in text]
+    else:
+        if any(line.count(mark) != width - 1 for line in lines):
+            return None
+        cells = [[line.split(mark, at + 1)[at] for line in lines] for at in text]
+    if dialect.decimal == ",":
+        lines = [line.replace(",", ".") for line in lines]
+    try:
+        values = np.loadtxt(
+            lines,
+            delimiter=None if mark == " " else mark,
+            comments=None,
+            usecols=numeric,
+            ndmin=2,
+            unpack=True,
+        )
+    except ValueError:
+        return None
+    return (values, cells) if np.isfinite(values).all() else None

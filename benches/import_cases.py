@@ -66,6 +66,35 @@ UNITS: dict[str, tuple[float, str]] = {
 TWO_MEANINGS = ("lb", "kg", "g", "t", "grad", "1/s", "s-1", "s^-1", "Hz", "oz")
 """A force or a mass; degrees or gon; turns or radians in one second."""
 
+PINT_DEFINITIONS = """
+rad = [angle] = _ = radian
+newton_meter = newton * meter = Nm
+newton_centimeter = 0.01 * newton * meter = Ncm
+newton_millimeter = 0.001 * newton * meter = Nmm
+turn = 2 * pi * rad = rev = rot = tr = U = Umdr = revolution = turns
+degree = pi / 180 * rad = deg = °
+gon = pi / 200 * rad
+revolution_per_minute = turn / minute = rpm = RPM
+revolution_per_second = turn / second = rps
+encoder_count = [counts] = inc = count = counts = cnt = ticks
+ampere_rms = ampere = Arms = A_rms = Aeff
+kilopond = 9.80665 * newton = kp
+thousandth_inch = 0.001 * inch = mil
+percent_ = 0.01 = pct
+""".strip().splitlines()
+"""What pint's registry lacks, or has with another meaning."""
+PINT_REWRITES = (
+    (r"^(1?/min|min-1|min\^-1|min⁻¹)$", "rpm"),
+    (r"(?<=[A-Za-z])-(?=[A-Za-z])", "*"),
+    (r"(?<=[A-Za-z])-(?=\d)", "**-"),
+    (r'^"$', "inch"),
+    (r"^r\.p\.m\.$", "rpm"),
+    (r"^-$", "dimensionless"),
+    (r"^C(elsius)?$", "degC"),
+    (r"\b(lb|oz)(?=\*(ft|in))|(?<=(in|ft)\*)(lb|oz)\b", r"\1\4f"),
+)
+"""Spellings that pint's parser does not accept, as regular expressions."""
+
 
 def _ns(*parts: int, ns: int = 0, minutes_east: int = 0) -> int:
     since = datetime(*parts, tzinfo=timezone.utc) - datetime(1970, 1, 1, tzinfo=timezone.utc)

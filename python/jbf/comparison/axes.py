@@ -190,13 +190,13 @@ def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
     u_tr
         Transition speed of the model, m/s: parts the regimes. None of a law without a film.
     """
-    axes = [
-        make(campaign, u_tr)
-        for make in (_direction, _velocity, _regime, _acceleration, _time, _run)
-    ]
+    unit = campaign.rig.quantities.force
+    of_states = [make(campaign, u_tr) for make in (_direction, _velocity, _regime, _run)]
+    if campaign.steady:
+        return [replace(a, force_unit=unit) for a in of_states if a.bins]
+    axes = [*of_states[:-1], _acceleration(campaign, u_tr), _time(campaign, u_tr), of_states[-1]]
     if campaign.has_angle:
         axes.append(_angle(campaign, u_tr))
     axes.append(_since(campaign, "time since a rest", _time_since_rest))
     axes.append(_since(campaign, "distance since a reversal", _distance_since_reversal))
-    unit = campaign.rig.quantities.force
     return [replace(a, force_unit=unit) for a in axes if a.bins]

@@ -66,7 +66,8 @@ def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits
     """Limits without gaps, and the step of a run to be proposed, s."""
     filled = (limits or Limits()).filled(candidates.campaign)
     step_s = float(np.median([p.step_s for p in candidates.campaign.prepared]))
-    return filled, max(step_s, filled.duration_s / MOST_SAMPLES)
+    most_s = filled.duration_s / LEAST_SAMPLES
+    return filled, max(min(step_s, most_s), filled.duration_s / MOST_SAMPLES)
 
 
 def motions(
@@ -94,3 +95,7 @@ def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> 
     celsius = None if warmth is None else np.full(len(time), warmth)
     run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
     return run_on(rig, run)
+
+
+LEAST_SAMPLES = 200
+"""Samples of an imagined run, of machines that were read more seldom."""

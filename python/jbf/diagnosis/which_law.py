@@ -20,6 +20,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
+from jbf.estimation.initial_state import memories
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_law, laws
@@ -88,6 +89,9 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
             check_film(campaign, name, clock)
         except InputError as error:
             refused[f"law {name}"] = error.problem
+            continue
+        if campaign.steady and memories(name, ()):
+            refused[f"law {name}"] = "steady states do not show its memory"
             continue
         found.append(name)
     return found, refused

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.converter import curve_rms_n, noise_before
 from jbf.estimation.noise_floor import most_noise
-from jbf.estimation.prepared import Prepared
+from jbf.estimation.prepared import NoMotion, Prepared, coasting
 from jbf.estimation.samples import Samples
 from jbf.estimation.work import Work
 from jbf.models.catalogue import Effect
@@ -41,6 +42,18 @@ LOADS_DIFFER = 0.05
 TEMPERATURES_DIFFER_K = 2.0
 """Temperatures that differ by less, K, are one: it changes an oil by a tenth, dry friction by a
 hundredth or two, and a thermometer sits where the friction is not."""
+OF_A_READING = frozenset(
+    ("inertia_leak", "sensor_hysteresis", "sensor_nonlinearity", "sensor_lag", "time_delay")
+) | {"sensor_drift"}
+"""Effects in a force that was read: not in one that follows from the deceleration."""
+OF_TIME = (
+    OF_A_READING - {"sensor_nonlinearity"}
+    | frozenset(
+        ("drive_compliance", "backlash", "thermal_thinning", "film_memory", "wear_in", "warm_up")
+    )
+    | {"dwell_stiction", "presliding"}
+)
+"""Effects of a motion's course in time: not in steady states."""
 NOISE_SPAN = 3.29
 """Standard deviations between the quantiles of white noise at 5 % and at 95 %."""
 
@@ -71,25 +84,23 @@ class Campaign:
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
-        """Estimate each run's motion once; a run that was given twice is one run.
+        """Estimate each run's motion once; a run that was given twice is one run, and one in which
+        nothing moves is left out where another moves.
 
         Raises
         ------
         InputError
-            No run at all, a run without friction, one in which nothing moves, or a force that is
+            No run at all, a run without friction, none in which anything moves, or a force that is
             zero throughout.
         """
         runs = list_of_runs(runs)
         if not runs:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
         again = copies(runs)
+        ready, without_motion = _each(rig, {i: r for i, r in enumerate(runs) if i not in again})
         prepared = tuple(
             p.finding([repeated(p.run, runs[k]) for k in again if again[k] == i])
-            for i, p in zip(
-                (i for i in range(len(runs)) if i not in again),
-                _each(rig, [run for i, run in enumerate(runs) if i not in again]),
-                strict=True,
-            )
+            for i, p in ready.items()
         )
         if not any(np.any(p.friction_n) for p in prepared):
             raise InputError(
@@ -100,7 +111,8 @@ class Campaign:
             )
         samples = Samples.of(prepared)
         work = Work.of(sum(len(p.friction_n) for p in prepared))
-        return cls(rig, prepared, samples, most_noise(prepared, samples), work=work)
+        noise = most_noise(prepared, samples)
+        return cls(rig, prepared, samples, noise, tuple(without_motion), work)
 
     @property
     def named(self) -> str:
@@ -117,6 +129,16 @@ class Campaign:
     def has_angle(self) -> bool:
         """True where every run has the shaft's angle."""
         return all(has_angle(self.rig, p.run) for p in self.prepared)
+
+    @property
+    def steady(self) -> bool:
+        """Whether a run holds steady states in the place of a course in time."""
+        return any(p.run.steady for p in self.prepared)
+
+    @property
+    def force_has_clock(self) -> bool:
+        """Whether the force was read in time: not one of steady states, nor of a deceleration."""
+        return not self.steady and coasting(self.rig) is None
 
     @property
     def has_loads(self) -> bool:
@@ -150,6 +172,10 @@ class Campaign:
     def lacking(self, effect: Effect) -> str | None:
         """What these runs do not hold of what an effect needs, in words; None where nothing."""
         needs = effect.needs
+        if coasting(self.rig) is not None and effect.name in OF_A_READING:
+            return "no force was recorded"
+        if effect.name in OF_TIME and self.steady:
+            return "steady states do not show it"
         for column in effect.columns:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
                 return f"not every run has the column {column}"
@@ -223,18 +249,38 @@ def _span(load: Array) -> float:
     return float(np.sqrt(max(float(high - low) ** 2 - noise**2, 0.0)))
 
 
-def _each(rig: Rig, runs: Sequence[Run]) -> list[Prepared]:
-    """The runs, each looked at anew where the others tell of their logger: at what rate it read the
-    force, or other errors of the motion's readings."""
-    found = [Prepared.of(rig, run) for run in runs]
-    rates = {i: rate for i, p in enumerate(found) if (rate := p.drawn_at_hz) > 0.0}
+def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[Finding]]:
+    """The runs that move, and a finding on each of the others.
+
+    Each is looked at anew where the others tell of their logger: at what rate it read the force, or
+    other errors of the motion's readings.
+    """
+    found: dict[int, Prepared] = {}
+    refused: list[NoMotion] = []
+    without_motion = []
+    for i, run in runs.items():
+        try:
+            found[i] = Prepared.of(rig, run)
+        except NoMotion as error:
+            refused.append(error)
+            without_motion.append(_without_motion(run, error))
+    if not found:
+        raise refused[0]
+    rates = {i: rate for i, p in found.items() if (rate := p.drawn_at_hz) > 0.0}
     period_s = 1.0 / float(np.median(list(rates.values()))) if rates else None
-    periods = [None if i in rates else period_s for i in range(len(runs))]
-    errors = [p.motion.errors for p in found]
+    errors = [p.motion.errors for p in found.values()]
     starts = further_starts(
         [e.smoothed for e in errors if e is not None and e.smoothed is not None]
     )
-    return [
-        Prepared.of(rig, run, period_s, starts) if starts or period_s is not None else p
-        for p, run, period_s in zip(found, runs, periods, strict=True)
-    ]
+    for i in found if starts or period_s is not None else ():
+        with suppress(NoMotion):
+            found[i] = Prepared.of(rig, runs[i], None if i in rates else period_s, starts)
+    return found, without_motion
+
+
+def _without_motion(run: Run, error: NoMotion) -> Finding:
+    """A finding on a run that is left out."""
+    words = f"{error.problem}: the run is left out"
+    return Finding(
+        "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words
+    )

@@ -14,7 +14,7 @@ from jbf.errors import InputError
 from jbf.models.chain import imposed_as_read
 from jbf.models.driven import Driven
 from jbf.models.driven_motion import driven_motion
-from jbf.records.checks import frozen
+from jbf.records.checks import MIN_SAMPLES, frozen
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import find_noisy_load, steady_load
@@ -33,6 +33,8 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 
+APART = 2
+"""Distance of samples of an acceleration, lags at which the correlation of its errors vanishes."""
 FINER = 1.5
 """A motion read so many times as often as the force tells more than at the force's instants."""
 
@@ -45,6 +47,16 @@ def slides(motion: ImposedMotion) -> Mask:
     """
     sliding: Mask = motion.sign_known & ~motion.resting
     return sliding
+
+
+class NoMotion(InputError):
+    """A run in which nothing moves, or not in a known direction."""
+
+
+def coasting(rig: Rig) -> float | None:
+    """Known mass, kg, or inertia, kg m^2, of a coast-down; None where a friction was recorded."""
+    drive = rig.drive
+    return drive.moved if drive is not None and drive.friction == "none" else None
 
 
 @dataclass(frozen=True)
@@ -70,8 +82,10 @@ class Prepared:
 
     @property
     def has_noise(self) -> bool:
-        """False where the force is a command, or was filtered: its noise is not on record."""
-        return all(f.kind != "smooth_force" for f in self.examined.findings)
+        """Whether the record holds the noise of the force: not that of a command, a filtered force,
+        or one that follows from the motion."""
+        read = coasting(self.rig) is None
+        return read and all(f.kind != "smooth_force" for f in self.examined.findings)
 
     @property
     def drawn_at_hz(self) -> float:
@@ -104,10 +118,14 @@ class Prepared:
         Raises
         ------
         InputError
-            The run has no friction, or nothing moves in it.
+            The run has no friction.
+        NoMotion
+            Nothing moves in it.
         """
         run = as_read(run_on(rig, run))
-        require(run, "friction_n", "a comparison with the model")
+        moved = coasting(rig)
+        if moved is None:
+            require(run, "friction_n", "a comparison with the model")
         instants, motion = imposed_as_read(rig, run, starts)
         if motion.clock_s is not None:
             run = replace(run, time_s=frozen(motion.clock_s))
@@ -120,8 +138,18 @@ class Prepared:
             moving = (run.time_s >= instants[0]) & (run.time_s <= instants[-1])
             run = replace(run.select(there & moving), read={})
             motion = motion.at(instants, run.time_s)
-        assert run.friction_n is not None
-        examined = examine(run, motion.velocity_m_s, period_s)
+        read = moved is None and not run.steady
+        if read:
+            assert run.friction_n is not None
+            examined = examine(run, motion.velocity_m_s, period_s)
+        elif moved is None:
+            examined = Examined((), np.ones(len(run), dtype=bool))
+        else:
+            recorded = recorded or (instants, motion)
+            run = run.select(_independent(motion))
+            motion = motion.at(recorded[0], run.time_s)
+            run = replace(run, friction_n=frozen(-moved * motion.acceleration_m_s2))
+            examined = Examined((_derived(run, moved),), np.ones(len(run), dtype=bool))
         if examined.native is not None:
             native = examined.native
             instants, motion = recorded = recorded or (run.time_s, motion)
@@ -132,14 +160,14 @@ class Prepared:
             found = (*examined.findings, *of_readings.findings, *steps)
             examined = Examined(found, of_readings.usable)
         if not np.all(motion.resting) and not np.any(motion.sign_known):
-            raise InputError(
+            raise NoMotion(
                 file=run.path or run.name,
                 column="velocity_m_s",
                 problem="of no sample is it known which way the motion goes",
                 mend="leave this run out, or record a smoother speed",
             )
         if np.all(motion.resting):
-            raise InputError(
+            raise NoMotion(
                 file=run.path or run.name,
                 problem=f"{run.quantities.mover} never moves",
                 mend="leave this run out, or record one with motion",
@@ -148,8 +176,7 @@ class Prepared:
             *run.reading,
             *own,
             *motion.findings,
-            *find_pushing(run, motion, examined.usable),
-            *_without_noise(run, slides(motion) & examined.usable, examined),
+            *(_of_readings(run, motion, examined) if read else ()),
             *find_noisy_load(run.name, run.load_n),
             *find_slow_temperature(run),
         )
@@ -228,6 +255,34 @@ class Prepared:
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: the core's copy is made again there."""
         return {name: value for name, value in vars(self).items() if name != "core"}
+
+
+def _independent(motion: ImposedMotion) -> Mask:
+    """Samples so far apart that the errors of their accelerations are independent, shape (n,)."""
+    count, errors = len(motion.velocity_m_s), motion.errors
+    if errors is None:
+        return np.ones(count, dtype=bool)
+    middle = count // 2
+    lag, shared = 0, errors.covariance[middle]
+    while lag < middle and shared[2, 2] > 0.0:
+        lag += 1
+        shared = errors.gain[middle - lag] @ shared
+    every = int(np.clip(APART * lag, 1, max(count // MIN_SAMPLES, 1)))
+    kept: Mask = np.arange(count) % every == 0
+    return kept
+
+
+def _of_readings(run: Run, motion: ImposedMotion, examined: Examined) -> list[Finding]:
+    """Findings on readings of a force, next to the motion."""
+    without_noise = _without_noise(run, slides(motion) & examined.usable, examined)
+    return [*find_pushing(run, motion, examined.usable), *without_noise]
+
+
+def _derived(run: Run, moved: float) -> Finding:
+    """A finding that the friction follows from the deceleration."""
+    said = run.quantities
+    words = f"the {said.noun} is {moved:.5g} {said.unit('kg')} times the deceleration"
+    return Finding("converted", "friction_n", run.name, moved, said.unit("kg"), "once", words)
 
 
 def _without_noise(run: Run, sliding: Mask, examined: Examined) -> list[Finding]:

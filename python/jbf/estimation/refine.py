@@ -13,7 +13,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.joint_lateness import delay_slope, delay_step
 from jbf.estimation.noise import WHITE
-from jbf.estimation.prepared import Prepared
+from jbf.estimation.prepared import Prepared, coasting
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
@@ -112,6 +112,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
     """Iterate the fit with the force late by `clock_s` and, with delays, by a significant delay
     that all runs share."""
     problem, late_s = first, clock_s
+    delays = delays and first.campaign.force_has_clock
     if clock_s != 0.0:
         problem = _delayed(first, late_s)
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
@@ -142,6 +143,9 @@ def _with_smoothing(end: _End) -> Array:
     prepared = []
     for p in problem.campaign.prepared:
         motion = p.motion.rougher(p.run.time_s, ROUGHER)
+        mass = coasting(p.rig)
+        if mass is not None:
+            p = replace(p, friction_n=-mass * motion.acceleration_m_s2)
         recorded = p.recorded
         if recorded is not None:
             recorded = (recorded[0], recorded[1].rougher(recorded[0], ROUGHER))
@@ -171,6 +175,11 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
         other = problem.chain.predict(solution.values, [p.core for p in moved])
         for own, before, after, step in zip(sensitivity, predicted, other, steps, strict=True):
             own[:, axis] = np.divide(after - before, step, where=step > 0.0, out=own[:, axis])
+    mass = coasting(problem.campaign.rig)
+    if mass is not None:
+        # The force is the deceleration's: an error of the acceleration is one of the record, too.
+        for own in sensitivity:
+            own[:, 2] += mass
     weights = solution.samples.weight
     errors = tuple(p.motion.errors for p in prepared)
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)

@@ -34,7 +34,7 @@ KINDS: dict[str, tuple[Dimensions, ...]] = {
     "place": (LENGTH, ANGLE, COUNT),
     "speed": (SPEED, SPIN, RATE),
     "force": (FORCE,),
-    "load": (FORCE,),
+    "load": (FORCE, TORQUE),
     "torque": (TORQUE, NONE),
     "current": (CURRENT,),
     "temperature": (TEMPERATURE,),

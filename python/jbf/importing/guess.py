@@ -13,19 +13,25 @@ from jbf.importing.columns import KINDS, Header, understood
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
 from jbf.importing.formats.table import Column, Source, Table, Values
-from jbf.importing.guess_rig import guess_rig
+from jbf.importing.guess_rig import (
+    by_machine,
+    column_of,
+    force_as_torque,
+    guess_rig,
+    redundant_motor_columns,
+)
 from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
 from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.joints import JointNotChosen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
-from jbf.importing.targets import FRICTION, KNOWN, MOTION, TURNING, wanted_unit
+from jbf.importing.targets import FRICTION, KNOWN, MOTION, wanted_unit
 from jbf.units.table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.units.unit import parse_unit
 
 HEAD = 5_000
 """Rows that are looked at."""
-NEVER = ("index", "voltage", "acceleration", "coefficient", "run")
+NEVER = ("index", "acceleration", "coefficient", "run")
 """Quantities that make no column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
 _BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
@@ -76,6 +82,9 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     tables = tuple(with_units_of_joint_states(table) for table in source.tables)
     whole = Counter(column.name for table in tables for column in table.columns)
     joints = _joints(tables)
+    by_voltage = not any(
+        c.key in FRICTION and c.key != "voltage_v" for table in tables for c in _candidates(table)
+    )
     if joints and joint not in joints:
         raise JointNotChosen(source.path, joints, joint)
     if joint is not None and not joints:
@@ -89,7 +98,8 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         found = [
             replace(c, called=qualified(table, c.column.name, whole))
             for c in _candidates(table)
-            if c.header.label not in joints or c.header.label == joint
+            if (c.header.label not in joints or c.header.label == joint)
+            and (by_voltage or c.key != "voltage_v")
         ]
         whole_head = len(next(iter(head.values()), ())) < HEAD
         blank = [c for c in found if whole_head and not np.isfinite(head[c.column.name]).any()]
@@ -123,12 +133,15 @@ def guess(source: Source, joint: str | None = None) -> Guess:
                     questions.append(Question(key, ask))
         ignored |= _left_over(table, found, time)
         ignored |= {c.column.name: "holds no value" for c in blank}
-    entries = _by_machine(entries)
-    for key in _beside_the_point(entries):
-        ignored[_column_of(entries.pop(key))] = "the force and the place tell enough"
-    questions += _missing(entries, source)
-    questions += _force_as_torque(entries, ignored)
-    sections, about_rig = guess_rig(set(entries))
+    if "load_n_m" in entries and not any(key in entries for key in FRICTION):
+        entries["torque_n_m"] = replace(entries.pop("load_n_m"), key="torque_n_m")
+    entries = by_machine(entries)
+    for key in redundant_motor_columns(entries):
+        ignored[column_of(entries.pop(key))] = "the force and the place tell enough"
+    lone_motion = all(c.kind != "number" or _is_used(c, entries) for t in tables for c in t.columns)
+    questions += _missing(entries, source, lone_motion)
+    questions += force_as_torque(entries, ignored)
+    sections, about_rig = guess_rig(set(entries), lone_motion)
     questions += about_rig
     by_motion = time_by_motion(entries, tables, heads)
     if by_motion is not None:
@@ -216,6 +229,9 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if header.unit in ASK:
         ask = f"{header.unit} may be {ASK[header.unit]}; write which behind the column"
         return Candidate(key, column, header, False, why, ask)
+    if kind == "voltage" and not header.motor:
+        ask = "is it the motor's voltage? then write V; friction is told in volts"
+        return Candidate(key, column, header, False, why, ask)
     if unit is None:
         said = f"the unit {header.unit!r} is not known" if header.unit else "no unit is written"
         return Candidate(key, column, header, False, why, f"{said}; write it behind the column")
@@ -252,7 +268,7 @@ def _key(kind: str, header: Header) -> str:
         return "force_percent"
     names = {
         "force": "friction_n",
-        "load": "load_n",
+        "load": "load_n_m" if size == TORQUE else "load_n",
         "current": "current_a",
         "temperature": "temperature_c",
         "pressure": "pressure_pa",
@@ -289,72 +305,23 @@ def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Q
     return entry, [], [Question(key, f"which of these is it: {names}?")]
 
 
-def _by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
-    """Keys that depend on what moves: a torque beside a slide is the motor's."""
-    found = dict(entries)
-    places = [key for key in ("position_m", "velocity_m_s") if key in found]
-    of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent"}
-    if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
-        # A place without a unit, beside a torque, is more often an angle.
-        for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
-            if key in found and turning not in found:
-                found[turning] = replace(found.pop(key), key=turning)
-        return found
-    linear = bool(places)
-    if not linear or ("friction_n" in found and "velocity_m_s" in found):
-        return found
-    for key in ("torque_n_m", "angle_rad", "velocity_rad_s", "speed_rpm"):
-        if key in found and f"motor_{key}" not in found:
-            found[f"motor_{key}"] = replace(found.pop(key), key=f"motor_{key}")
-    return found
+def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:
+    return any(written(column.name) in entry.expression for entry in entries.values())
 
 
-def _beside_the_point(entries: Mapping[str, Entry]) -> list[str]:
-    """Columns of a motor, where a slide has a force and a motion: they would ask for a pitch."""
-    if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
-        return []
-    return [key for key in entries if key.startswith("motor_")]
-
-
-def _force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
-    """Replace a force that is recorded with an angle by a torque, and ask for its radius."""
-    turning = [key for key in TURNING if key in entries]
-    if "friction_n" not in entries or not turning or "position_m" in entries:
-        return []
-    force = entries.pop("friction_n")
-    if force.expression == OPEN:
-        entries["torque_n_m"] = replace(force, key="torque_n_m")
-        return []
-    if "velocity_m_s" in entries:
-        ignored[_column_of(entries.pop("velocity_m_s"))] = "the angle tells it"
-    if "torque_n_m" in entries:
-        both = f"{force.expression} or {entries['torque_n_m'].expression}"
-        entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)
-        return [Question("torque_n_m", f"which is the friction: {both}?")]
-    lever = f"{force.expression} * {OPEN} [mm]"
-    entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
-    ask = (
-        f"at what radius does {force.expression} act? write it in the place of the {OPEN}; of a "
-        "journal bearing write friction_n and [bearing] (docs/import.md)"
-    )
-    return [Question("torque_n_m", ask)]
-
-
-def _column_of(entry: Entry) -> str:
-    """The file's column that an entry is made of; its key where that is open."""
-    parts = entry.expression.split("`")
-    return parts[1] if len(parts) > 1 else entry.key
-
-
-def _missing(entries: Mapping[str, Entry], source: Source) -> list[Question]:
+def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) -> list[Question]:
+    """Questions for the friction and the motion; a file of a motion alone is a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     found = []
-    if not any(key in entries for key in FRICTION):
+    if not any(key in entries for key in FRICTION) and not lone_motion:
         if "load_n" in entries:
             ask = f"is {entries['load_n'].expression} the friction or the load? write friction_n"
         else:
-            ask = f"which column is the friction force or torque? there are {shown}"
+            ask = (
+                f"which column is the friction force or torque? there are {shown}; of a coast-down "
+                'write friction = "none" and what moves under [drive]'
+            )
         found.append(Question("friction", ask))
     if not any(key in entries for key in MOTION):
         found.append(Question("motion", f"which column is a place or a speed? there are {shown}"))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from jbf.importing.expression import OPEN
-from jbf.importing.guessed import Question
+from jbf.importing.guessed import Entry, Question
 from jbf.importing.targets import LINEAR, TURNING
 
 Sections = dict[str, dict[str, Any]]
@@ -14,12 +16,22 @@ _ASKS = {
     "rated_torque_n_m": 'what is 100 % of the motor\'s torque (such as "1.27 N m")?',
     "rated_force_n": 'what is 100 % of the motor\'s force (such as "60 N")?',
     "torque_constant_n_m_a": 'what torque is 1 A of the motor (such as "0.5 N m/A")?',
+    "inertia_kg_m2": 'no force was recorded: what inertia coasts or swings ("0.02 kg m^2")?',
+    "mass_kg": 'no force was recorded: what mass coasts ("3.5 kg")?',
     "pitch_m": 'how far does it move in one turn of its screw (such as "10 mm")?',
 }
 
 
-def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
-    """The sections of the rig, `?` where a value is open."""
+def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list[Question]]:
+    """The sections of the rig, `?` where a value is open.
+
+    Parameters
+    ----------
+    keys
+        Columns of the run.
+    lone_motion
+        Whether the file holds a motion and nothing else: that of a coast-down.
+    """
     linear = any(key in keys for key in LINEAR)
     turning = any(key in keys for key in TURNING)
     if not linear and not turning:
@@ -40,6 +52,11 @@ def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
     elif "current_a" in keys:
         drive["friction"] = "current"
         asked.append("torque_constant_n_m_a")
+    elif "voltage_v" in keys:
+        drive["friction"] = "voltage"
+    elif lone_motion:
+        drive["friction"] = "none"
+        asked.append("mass_kg" if linear else "inertia_kg_m2")
     else:
         return {}, []
     of_motor = any(key.startswith("motor_") for key in keys)
@@ -49,3 +66,60 @@ def guess_rig(keys: set[str]) -> tuple[Sections, list[Question]]:
     return {"drive": drive}, [
         Question(f"drive.{key}", f"{_ASKS[key]} write it into the map") for key in asked
     ]
+
+
+def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
+    """Keys that depend on what moves: a torque beside a slide is the motor's."""
+    found = dict(entries)
+    places = [key for key in ("position_m", "velocity_m_s") if key in found]
+    of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}
+    if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
+        # A place without a unit, beside a torque, is more often an angle.
+        for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
+            if key in found and turning not in found:
+                found[turning] = replace(found.pop(key), key=turning)
+        return found
+    linear = bool(places)
+    if not linear or ("friction_n" in found and "velocity_m_s" in found):
+        return found
+    for key in ("torque_n_m", "angle_rad", "velocity_rad_s", "speed_rpm"):
+        if key in found and f"motor_{key}" not in found:
+            found[f"motor_{key}"] = replace(found.pop(key), key=f"motor_{key}")
+    return found
+
+
+def redundant_motor_columns(entries: Mapping[str, Entry]) -> list[str]:
+    """Columns of a motor, where a slide has a force and a motion: they would ask for a pitch."""
+    if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
+        return []
+    return [key for key in entries if key.startswith("motor_")]
+
+
+def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
+    """Replace a force that is recorded with an angle by a torque, and ask for its radius."""
+    turning = [key for key in TURNING if key in entries]
+    if "friction_n" not in entries or not turning or "position_m" in entries:
+        return []
+    force = entries.pop("friction_n")
+    if force.expression == OPEN:
+        entries["torque_n_m"] = replace(force, key="torque_n_m")
+        return []
+    if "velocity_m_s" in entries:
+        ignored[column_of(entries.pop("velocity_m_s"))] = "the angle tells it"
+    if "torque_n_m" in entries:
+        both = f"{force.expression} or {entries['torque_n_m'].expression}"
+        entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)
+        return [Question("torque_n_m", f"which is the friction: {both}?")]
+    lever = f"{force.expression} * {OPEN} [mm]"
+    entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
+    ask = (
+        f"at what radius does {force.expression} act? write it in the place of the {OPEN}; of a "
+        "journal bearing write friction_n and [bearing] (docs/import.md)"
+    )
+    return [Question("torque_n_m", ask)]
+
+
+def column_of(entry: Entry) -> str:
+    """The file's column that an entry is made of; its key where that is open."""
+    parts = entry.expression.split("`")
+    return parts[1] if len(parts) > 1 else entry.key

@@ -52,7 +52,10 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
         return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
     if table.rate_hz is not None:
         return None, []
-    ask = "no column holds it; say rate_hz (samples a second) under [file], or which column it is"
+    ask = (
+        "no column holds it; under [file] say rate_hz (samples a second), or steady = true where "
+        "each row is a steady state (a Stribeck curve); or say which column it is"
+    )
     return None, [Question("time_s", ask)]
 
 

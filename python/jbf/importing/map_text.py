@@ -26,7 +26,7 @@ _CUT = """\
 
 CHOICES = {
     "motion": '  # "linear" or "rotary"',
-    "friction": '  # "force" (linear only), "torque", "current" or "percent"',
+    "friction": '  # "force" (linear only), "torque", "current", "percent", "voltage", "none"',
 }
 """What else may stand there."""
 

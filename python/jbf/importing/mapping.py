@@ -92,7 +92,10 @@ class Map:
             raise error.within(file=self.path) from None
 
     def _complete(self) -> None:
+        coasts = self.rig.get("drive", {}).get("friction") == "none"
         for wanted, what in ((FRICTION, "a friction"), (MOTION, "a motion")):
+            if wanted is FRICTION and coasts:
+                continue
             if not any(key in self.columns for key in wanted):
                 raise InputError(
                     key="columns",
@@ -159,6 +162,7 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "units": (int, "the number of a row, 0 where there is none"),
     "table": (str, "the name of a sheet, group or topic"),
     "rate_hz": ((int, float), "a number above zero"),
+    "steady": (bool, "true or false"),
     "dates": (str, '"day_first" or "month_first"'),
     "empty": (list, 'a list of words, such as ["OFF"]'),
 }
@@ -169,7 +173,7 @@ def _options(section: Mapping[str, Any]) -> Options:
     given = dict(section)
     for key, value in given.items():
         kind, wanted = _KINDS[key]
-        good = isinstance(value, kind) and not isinstance(value, bool)
+        good = isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
         if key == "decimal":
             good = value in (",", ".")
         elif key == "dates":

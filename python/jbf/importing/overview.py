@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from jbf.importing.cutting.load_steps import LOADS
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.spool import Recording, Stream
 from jbf.importing.targets import FRICTION, MOTION
@@ -45,7 +46,7 @@ def overview(recording: Recording) -> Overview:
         starts.append(offset - begin if offset else 0.0)
         offset = max(offset, begin + starts[-1]) + stream.at(end - 1) - begin
     curves = {}
-    for keys in (FRICTION, MOTION, ("load_n", "pressure_pa")):
+    for keys in (FRICTION, MOTION, LOADS):
         found = recording.stream_of(*keys)
         if found is not None:
             curves[found[1]] = _curve(*found, starts)

@@ -36,6 +36,8 @@ LOADED = 0.1
 """Share of the usual load below which a machine counts as unloaded, in what is suggested."""
 OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
 _RATE = "rate"
+STEADY = "none: each row is a steady state"
+"""What a ledger says of the clock of steady states."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ def read_recording(
     InputError
         A column is not there, a unit does not fit, a cell or a time is wrong.
     """
-    recording = Recording(_stem(source.path), source.path, "")
+    recording = Recording(_stem(source.path), source.path, "", steady=mapping.options.steady)
     try:
         channels = _channels(source, mapping)
         groups = Counter((channel.table.name, channel.clock) for channel in channels)
@@ -128,6 +130,8 @@ def _clock(
     places: Mapping[str, tuple[Table, str]],
 ) -> str:
     """The expression of a column's time; `rate` where its rate alone is known."""
+    if mapping.options.steady:
+        return _RATE
     text = mapping.clocks.get(key, mapping.columns.get("time_s"))
     if text is not None:
         node = parse_expression(text, names)
@@ -164,7 +168,7 @@ def _read_stream(
     options, keep = mapping.options, mapping.cut.keep
     tables = _tables(source, options)
     names, units, places = column_names(tables), column_units(tables), located(tables)
-    rate = options.rate_hz or table.rate_hz
+    rate = 1.0 if options.steady else options.rate_hz or table.rate_hz
     time_node = None if clock == _RATE else parse_expression(clock, names)
     nodes = [c.node for c in channels] + ([] if time_node is None else [time_node])
     used = list(dict.fromkeys(r.column for node in nodes for r in references(node)))
@@ -211,7 +215,7 @@ def _read_stream(
         key = stream.columns[at]
         recording.notes.append(f"{key} holds no value and is left out")
     recording.channels += [
-        _described(c, stream, units, rate)
+        _described(c, stream, units, rate, recording.steady)
         for at, c in enumerate(channels, 1)
         if at not in stream.empty and c.key != KEPT_COLUMN
     ]
@@ -328,7 +332,11 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
 
 
 def _described(
-    channel: Channel, stream: Stream, units: Mapping[str, str], rate: float | None
+    channel: Channel,
+    stream: Stream,
+    units: Mapping[str, str],
+    rate: float | None,
+    steady: bool,
 ) -> dict[str, object]:
     read = [
         {"column": r.column, "unit": units.get(r.column, "") if r.unit is None else r.unit}
@@ -337,13 +345,16 @@ def _described(
     times = stream.read(0, min(stream.rows, 20_000))[:, 0]
     steps = np.diff(times)
     usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else None
+    clock = f"{rate:g} Hz, stated" if channel.clock == _RATE else channel.clock.strip("`")
+    if steady:
+        clock = STEADY
     return {
         "channel": channel.key,
         "made_of": channel.text,
         "read": read,
         "unit": channel.unit.text,
-        "clock": f"{rate:g} Hz, stated" if channel.clock == _RATE else channel.clock.strip("`"),
-        "rate_hz": None if usual is None else float(f"{1.0 / usual:.6g}"),
+        "clock": clock,
+        "rate_hz": None if usual is None or steady else float(f"{1.0 / usual:.6g}"),
         "samples": stream.rows,
     }
 

@@ -15,7 +15,7 @@ from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.recording import OF_CUTTING
 from jbf.importing.spool import Recording, Stream
-from jbf.records.checks import COLUMNS
+from jbf.records.checks import COLUMNS, POINT
 
 Array = npt.NDArray[np.float64]
 
@@ -36,7 +36,8 @@ def _written(stream: Stream) -> list[int]:
 def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
     """The text of a run, in parts."""
     columns = run_columns(recording)
-    yield ",".join(columns) + "\n"
+    called = [POINT if recording.steady and c == "time_s" else c for c in columns]
+    yield ",".join(called) + "\n"
     for block in run_rows(recording, piece, columns):
         yield _lines(block)
 

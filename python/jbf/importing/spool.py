@@ -149,6 +149,8 @@ class Recording:
         The first instant as a date, where the file tells.
     origin_s
         What was taken off all times, s.
+    steady
+        Whether each row is a steady state and has no time.
     """
 
     name: str
@@ -161,6 +163,7 @@ class Recording:
     start: str | None = None
     origin_s: float | None = None
     labels: list[str] = field(default_factory=list)
+    steady: bool = False
 
     def stream_of(self, *keys: str) -> tuple[Stream, str] | None:
         """The stream that holds the first of these columns that is there, and has values."""

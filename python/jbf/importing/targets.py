@@ -11,6 +11,7 @@ KNOWN = (*COLUMNS, *OF_DRIVES, "pressure_pa")
 """Columns that a run can have and that mean something to it."""
 FRICTION = (
     "friction_n", "torque_n_m", "motor_torque_n_m", "current_a", "torque_percent", "force_percent",
+    "voltage_v",
 )  # fmt: skip
 LINEAR = ("position_m", "velocity_m_s")
 TURNING = (

@@ -25,6 +25,10 @@ COLUMNS = (
     "temperature_c",
 )
 """Columns with a meaning, in the order in which `Run.write_csv` writes them."""
+POINT = "point"
+"""A column in the place of `time_s`: the number of a steady state, as of a Stribeck curve."""
+POINT_S = 60.0
+"""How long a steady state is held before it is read, s."""
 SLOW = "temperature_c"
 """A column that may have gaps."""
 LARGEST = 1e12

@@ -23,6 +23,8 @@ from jbf.records.checks import (
     COLUMNS,
     MIN_SAMPLES,
     MOTION,
+    POINT,
+    POINT_S,
     SLOW,
     check_columns,
     frozen,
@@ -44,6 +46,8 @@ OF_DRIVES = (
     "current_a",
     "torque_percent",
     "force_percent",
+    "voltage_v",
+    "load_n_m",
     "velocity_rad_s",
     "speed_rpm",
     "motor_angle_rad",
@@ -197,7 +201,8 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     ``position_m``, or ``angle_rad`` and a rig with a bearing) must be there, the other `COLUMNS`
     may be. Any further column whose cells are all finite numbers is kept in
     `Run.extra`, any other is ignored. Empty cells, of a column that has many, are instants at which
-    it was not read: it has a clock of its own. Comma, semicolon or tab part the cells; blank
+    it was not read: it has a clock of its own. ``point`` in the place of ``time_s`` numbers steady
+    states, as of a Stribeck curve. Comma, semicolon or tab part the cells; blank
     lines, and lines before the header that start with ``#``, are skipped.
 
     Parameters
@@ -226,6 +231,9 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     else:
         required = _required(header, need_friction)
     known = COLUMNS if of_drive is None else of_drive.known
+    steady = POINT in header and "time_s" not in header
+    if steady:
+        required = [POINT if name == "time_s" else name for name in required]
     _checked_header(path, header_row, header, required, of_drive)
     if not rows:
         raise InputError(file=path, problem="has a header but no samples", mend="add the samples")
@@ -257,6 +265,8 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             continue
         if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
+    if steady and POINT in columns:
+        columns["time_s"] = frozen(POINT_S * columns[POINT])
     check_columns(name_of_run, columns, path, numbers, known)
     for name, there in gaps.items():
         columns[name] = filled(columns["time_s"], columns[name], there)

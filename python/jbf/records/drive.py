@@ -13,7 +13,7 @@ from jbf.records.toml_file import positive, refuse_unknown, table
 from jbf.units.quantity import quantities
 
 Kind = Literal["rotary", "linear"]
-Friction = Literal["force", "torque", "current", "percent"]
+Friction = Literal["force", "torque", "current", "percent", "voltage", "none"]
 
 _CONSTANTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("rotary", "torque"): (),
@@ -23,6 +23,10 @@ _CONSTANTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("linear", "torque"): (),
     ("linear", "current"): ("force_constant_n_a", "torque_constant_n_m_a"),
     ("linear", "percent"): ("rated_force_n", "rated_torque_n_m"),
+    ("rotary", "voltage"): (),
+    ("linear", "voltage"): (),
+    ("rotary", "none"): (),
+    ("linear", "none"): (),
 }
 """For each motion and reading the constants that turn it into a force or a torque: one of them."""
 _ALL_CONSTANTS = tuple(dict.fromkeys(name for names in _CONSTANTS.values() for name in names))
@@ -31,6 +35,8 @@ _SENSORS = {
     "torque": "the torque sensor",
     "current": "the current sensor",
     "percent": "the drive's own reading of its load",
+    "voltage": "the motor's voltage",
+    "none": "the deceleration",
 }
 
 
@@ -43,7 +49,9 @@ class Drive:
     motion : str
         `rotary` (answers in N m and rad) or `linear` (in N and m).
     friction : str
-        What was recorded: `force`, `torque`, `current` (A) or `percent` of a rated value.
+        What was recorded: `force`, `torque`, `current` (A), `percent` of a rated value, `voltage`
+        (V; answers are in volts), or `none`: a coast-down or free swing, whose friction is the
+        known mass or inertia times the deceleration.
     torque_constant_n_m_a, force_constant_n_a : float, optional
         Torque of the motor, N m, or force of a linear motor, N, for one ampere.
     rated_torque_n_m, rated_force_n : float, optional
@@ -53,7 +61,8 @@ class Drive:
     pitch_m : float, optional
         Way of a linear drive for one turn of its screw (lead), or of its pinion or pulley, m.
     inertia_kg_m2, mass_kg : float, optional
-        What is known to be moved, told beside what `inertia_leak` finds; it is not taken off.
+        Known moved inertia or mass. Reported next to the estimate of `inertia_leak`; required for
+        `friction = "none"`, where it makes a force of the deceleration.
     """
 
     motion: Kind
@@ -82,6 +91,10 @@ class Drive:
         for name in strangers:
             if getattr(self, name) is not None:
                 raise _wrong(name, f"means nothing of a {self.motion} drive", "drop it")
+        if self.friction == "none" and self.moved is None:
+            name = "inertia_kg_m2" if self.motion == "rotary" else "mass_kg"
+            problem = "is missing, and makes a force of the deceleration"
+            raise _wrong(name, problem, 'friction = "none" needs it')
         if self.motion == "linear" and self.pitch_m is None:
             turning = self.friction == "torque" or self._of_motor is not None
             if turning or self.gear_ratio != 1.0:
@@ -102,6 +115,11 @@ class Drive:
             problem = "both stand there" if given else "is missing"
             mend = "keep one of them" if given else f'friction = "{self.friction}" needs it'
             raise _wrong(" or ".join(wanted), problem, mend)
+
+    @property
+    def moved(self) -> float | None:
+        """Known moved inertia (kg m^2) or mass (kg); None where it is not known."""
+        return self.inertia_kg_m2 if self.motion == "rotary" else self.mass_kg
 
     @property
     def _of_motor(self) -> float | None:
@@ -132,7 +150,8 @@ class Drive:
     def quantities(self) -> Quantities:
         """The units and words of its answers."""
         kind = ROTARY if self.motion == "rotary" else LINEAR
-        return kind.read_by(_SENSORS[self.friction])
+        read = kind.read_by(_SENSORS[self.friction])
+        return read.in_volts() if self.friction == "voltage" else read
 
     @classmethod
     def from_mapping(cls, content: object, prefix: str) -> Drive:

@@ -31,6 +31,10 @@ ALIASES = {
     "motor_torque": "motor_torque_n_m",
     "current": "current_a",
     "iq": "current_a",
+    "voltage": "voltage_v",
+    "volts": "voltage_v",
+    "load_torque": "load_n_m",
+    "load_torque_n_m": "load_n_m",
     "i_a": "current_a",
     "torque_pct": "torque_percent",
     "force_pct": "force_percent",
@@ -48,6 +52,7 @@ ALIASES = {
 _ENDS = {
     "_n_m": "1 N m",
     "_a": "1 A",
+    "_v": "1 V",
     "_percent": "1 %",
     "_rpm": "1 turn a minute",
     "_rad_s": "1 rad/s",
@@ -93,7 +98,7 @@ class DriveColumns:
             return next((name for name in names if name in header), names[0])
 
         found = ["time_s", one([*self.speed, *self.place])]
-        return found + ([one([*self.friction])] if need_friction else [])
+        return found + ([one([*self.friction])] if need_friction and self.friction else [])
 
     def refuse_strangers(self, path: Path, row: int, header: Sequence[str]) -> None:
         """An InputError where a column of another kind of machine stands in the file."""
@@ -145,6 +150,10 @@ class DriveColumns:
 
 
 def _friction(drive: Drive) -> dict[str, float]:
+    if drive.friction == "none":
+        return {}
+    if drive.friction == "voltage":
+        return {"voltage_v": 1.0}
     if drive.friction == "force":
         return {"friction_n": 1.0}
     if drive.friction == "torque":
@@ -158,9 +167,9 @@ def _friction(drive: Drive) -> dict[str, float]:
 
 def _strangers(columns: DriveColumns) -> dict[str, str]:
     """Columns that this drive cannot have, and what to do about each."""
-    first = next(iter(columns.friction))
+    first = next(iter(columns.friction), None)
     found = {}
-    if first != "friction_n":
+    if first not in ("friction_n", None):
         found["friction_n"] = f"keep {first} and drop it, or correct [drive]"
     if columns.drive.motion == "rotary":
         for name, own in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):

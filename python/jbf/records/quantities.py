@@ -6,6 +6,7 @@ over radians, at a radius of one. The numbers are the same; this module knows wh
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -24,6 +25,7 @@ _ROTARY = {
     "kg": "kg m^2",
 }
 _LINEAR = {"N m/rad": "N/m", "N m s/rad": "N s/m", "kg m^2": "kg"}
+_FORCES = re.compile(r"\(N m\)|N m\b|N\b")
 
 
 @dataclass(frozen=True)
@@ -63,11 +65,26 @@ class Quantities:
     def unit(self, si: str) -> str:
         """What a unit of the catalogue, whose laws are in newtons and metres, is here."""
         known = {"bearing": {}, "linear": _LINEAR, "rotary": _ROTARY}[self.motion]
-        return known.get(si, si)
+        unit = known.get(si, si)
+        if self.force in ("N", "N m"):
+            return unit
+        if unit in ("kg", "kg m^2"):
+            return f"{self.force} s^2/{self.length}"
+        return _FORCES.sub(self.force, unit)
 
     def read_by(self, sensor: str) -> Quantities:
         """The same, read by another sensor."""
         return replace(self, sensor=sensor)
+
+    def in_volts(self) -> Quantities:
+        """The quantities of a motor whose voltage stands for its force or torque.
+
+        Coulomb friction is then in V, viscous friction (with the back-EMF) in V s/rad or V s/m, and
+        inertia in V s^2/rad or V s^2/m: the constants kS, kV and kA of a feedforward.
+        """
+        return replace(
+            self, force="V", friction="Motor voltage", noun="voltage", friction_column="voltage_v"
+        )
 
     def to_dict(self) -> dict[str, str]:
         """For JSON: the units of what the keys end in `_n`, `_m_s` and `_m` of."""

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.records.channels import Channels, filled, side_by_side, with_own_clock
-from jbf.records.checks import COLUMNS, MOTION, SLOW, as_array, check_columns, frozen, listed
+from jbf.records.checks import COLUMNS, MOTION, POINT, SLOW, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
@@ -88,6 +88,11 @@ class Run(Shown):
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    @property
+    def steady(self) -> bool:
+        """Whether each sample is a steady state, as of a Stribeck curve."""
+        return POINT in self.extra
 
     @property
     def duration_s(self) -> float:

@@ -15,7 +15,8 @@ NEEDS = {
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "position": "the column angle_rad or position_m in every run",
     "temperatures": "the column temperature_c in every run, and temperatures that differ",
-    "loads": "runs under several loads (load_n, or pressure_pa on an axis without a bearing)",
+    "loads": "runs under several loads (load_n, pressure_pa on an axis without a bearing, or "
+    "load_n_m on a rotary drive)",
 }
 
 

@@ -9,7 +9,7 @@ from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.power_text import level_words, power_lines
 from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
-from jbf.reporting.text_parts import finding_lines, where_lines
+from jbf.reporting.text_parts import finding_lines, recorded, where_lines
 from jbf.reporting.words import (
     BARE,
     against_noise,
@@ -65,7 +65,6 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     samples = diagnosis.before.samples.count
     model = diagnosis.model
     unit = model.rig.quantities.force
-    duration = sum(p.run.duration_s for p in campaign.prepared)
     lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
     if diagnosis.next_experiment:
         lines += hanging("Next experiment: ", diagnosis.next_experiment)
@@ -76,7 +75,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines += [
         "",
         "Measurement",
-        f"    {count_of(len(campaign.prepared), 'run')} of {duration:.0f} s in all, "
+        f"    {recorded([p.run for p in campaign.prepared])}, "
         f"{count_of(samples, 'sample')} "
         f"where the sign of the motion is known",
         f"    noise floor {noise_words(bare.noise_n, unit)}"

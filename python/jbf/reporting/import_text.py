@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from jbf.importing.guessed import Guess
+from jbf.importing.recording import STEADY
 from jbf.importing.result import Import
 from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns, hanging
@@ -59,12 +60,13 @@ def import_report(found: Import) -> str:
     out = [piece for piece in found.pieces if not piece.keep]
     seconds = sum(piece.to_s - piece.from_s for piece in runs)
     files = found.ledger["files"]
-    lines = [
-        f"{count_of(len(runs), 'run')} of {seconds:.4g} s in all, "
-        f"from {count_of(len(files), 'file')}:"
-    ]
+    steady = any(channel["clock"] == STEADY for channel in files[0]["channels"])
+    length = "steady states" if steady else f"{seconds:.4g} s in all"
+    lines = [f"{count_of(len(runs), 'run')} of {length}, from {count_of(len(files), 'file')}:"]
     rows = [
-        (piece.name, f"{piece.from_s:.4f}", "to", f"{piece.to_s:.4f} s", f"of {piece.file}")
+        (piece.name, f"of {piece.file}", "", "", "")
+        if steady
+        else (piece.name, f"{piece.from_s:.4f}", "to", f"{piece.to_s:.4f} s", f"of {piece.file}")
         for piece in runs[:_MOST]
     ]
     lines += columns(rows, "<><><")

@@ -15,6 +15,7 @@ from jbf import _core
 from jbf.importing.ledger import ledgers_beside
 from jbf.records.counts import count_of
 from jbf.reporting.import_text import provenance_rows
+from jbf.reporting.text_parts import recorded
 from jbf.reporting.words import noise_words
 
 if TYPE_CHECKING:
@@ -67,9 +68,8 @@ def measurement(comparison: Comparison, noise_n: float) -> str:
     """What was recorded, in half a sentence."""
     runs = comparison.campaign.prepared
     unit = comparison.model.rig.quantities.force
-    duration = sum(p.run.duration_s for p in runs)
     return (
-        f"{count_of(len(runs), 'run')} of {duration:.0f} s in all, "
+        f"{recorded([p.run for p in runs])}, "
         f"{count_of(comparison.samples.count, 'sample')} "
         f"where the sign of the motion is known, "
         f"noise floor {noise_words(noise_n, unit)}"

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from jbf.comparison.patterns import Failure
 from jbf.diagnosis.ledger import Remainder
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.run import Run
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import finding_rows, parameter_rows
 
@@ -53,3 +55,11 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
     for head, words in rows:
         lines += hanging(f"{head}: ", words, 4)
     return lines
+
+
+def recorded(runs: Sequence[Run]) -> str:
+    """How many runs of what duration, in words."""
+    count = count_of(len(runs), "run")
+    if any(run.steady for run in runs):
+        return f"{count} of steady states"
+    return f"{count} of {sum(run.duration_s for run in runs):.0f} s in all"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "import.md"
-BENCH_MAP, DRIVE_MAP, SEAL_MAP = re.findall(
+BENCH_MAP, _, DRIVE_MAP, SEAL_MAP = re.findall(
     r"```toml[^\n]*\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL
 )
 

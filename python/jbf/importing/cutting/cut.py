@@ -17,7 +17,7 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.recording import CUT_COLUMN, KEPT_COLUMN
 from jbf.importing.spool import Recording
-from jbf.importing.targets import FRICTION
+from jbf.importing.targets import FRICTION, MOTION
 from jbf.records.checks import MIN_SAMPLES
 
 TOO_FEW = f", and a run has at least {MIN_SAMPLES}"
@@ -30,7 +30,7 @@ sticks and slips is not cut at every stop."""
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     """The pieces of a recording in the order of time, those that are left out among them."""
-    if settings.by is not None:
+    if settings.by is not None or recording.steady:
         return _cut(recording, settings)
     pieces = at_rests_by_default(recording, settings)
     return _cut(recording, replace(settings, by=())) if pieces is None else pieces
@@ -115,11 +115,12 @@ def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
     """A piece that is no run is left out."""
     if not piece.keep:
         return piece
-    found = recording.stream_of(*FRICTION)
+    read = [k for k in FRICTION if any(k in s.columns for s in recording.streams)]
+    found = recording.stream_of(*(read or MOTION))
     if found is None:
         raise InputError(
             file=recording.path,
-            column=next(k for k in FRICTION if any(k in s.columns for s in recording.streams)),
+            column=next(iter(read), "motion"),
             problem="holds no value",
             mend="name another column in the map",
         )

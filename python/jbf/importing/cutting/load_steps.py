@@ -11,7 +11,7 @@ from jbf.importing.spool import Recording, Stream
 
 Array = npt.NDArray[np.float64]
 
-LOADS = ("load_n", "pressure_pa")
+LOADS = ("load_n", "load_n_m", "pressure_pa")
 _PARTS = 20
 """Rows whose median is one point of the load's course."""
 _STEP = 0.05
@@ -21,7 +21,7 @@ _SIGMAS = 8.0
 
 
 def cut_at_load_steps(recording: Recording) -> list[Cut]:
-    """A cut at each step of `load_n`, or of `pressure_pa`.
+    """A cut at each step of `load_n`, `load_n_m` or `pressure_pa`.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def cut_at_load_steps(recording: Recording) -> list[Cut]:
     if found is None:
         raise InputError(
             key="cut.by",
-            problem="load_step needs load_n or pressure_pa",
+            problem="load_step needs load_n, load_n_m or pressure_pa",
             mend="name the column under [columns]",
         )
     stream, key = found

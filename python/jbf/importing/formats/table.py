@@ -101,6 +101,8 @@ class Options:
         The sheet, group, topic or variable; all by default.
     rate_hz
         Samples a second of a file without times.
+    steady
+        Whether each row is a steady state, in the place of a time: a table of a Stribeck curve.
     dates
         `day_first` or `month_first`, of dates written with slashes.
     empty
@@ -115,6 +117,7 @@ class Options:
     units: int | None = None
     table: str | None = None
     rate_hz: float | None = None
+    steady: bool = False
     dates: str | None = None
     empty: tuple[str, ...] = field(default=())
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.errors import InputError
 from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of
@@ -226,6 +227,8 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
         Errors of the readings of other runs of the same logger: further starting values for the
         estimation.
     """
+    if run.steady:
+        return _steady(run)
     clock_s = _clock(run, radius_m)
     stamps_s = None
     if clock_s is not None:
@@ -291,6 +294,19 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
         ),
         clock_s,
     )
+
+
+def _steady(run: Run) -> ImposedMotion:
+    """The motion of steady states: their speeds, without acceleration and path."""
+    if not run.speed_recorded:
+        raise InputError(
+            file=run.path or run.name,
+            column="velocity_m_s",
+            problem="is missing, and steady states need a speed",
+            mend="add the speed of each point",
+        )
+    zeros, rest = np.zeros(len(run)), run.velocity_m_s == 0.0
+    return ImposedMotion(run.velocity_m_s, zeros, zeros, zeros, rest, ~rest)
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:

@@ -23,6 +23,7 @@ from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
+from jbf.estimation.held_out_ranges import Beyond, runs_beyond
 from jbf.estimation.initial_state import begins_anywhere
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.left_out import (
@@ -79,7 +80,7 @@ class Fitted:
     left_out
         Runs that were left out of the fit; empty until somebody asks.
     halves
-        The same of the halves of a run.
+        The same of the halves of a run, and whether they are alternate parts.
     """
 
     problem: Problem
@@ -93,7 +94,7 @@ class Fitted:
     promised: float = np.inf
     peaks_searched: bool = False
     left_out: list[LeftOut] = field(default_factory=list)
-    halves: dict[int, list[LeftOut]] = field(default_factory=dict)
+    halves: dict[tuple[int, bool], list[LeftOut]] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The solution so far."""
@@ -353,19 +354,30 @@ class Candidates:
         names = tuple(self.campaign.samples.runs[i] for i in halved)
         return Confirmation.of(before, after, left, richer_left, names)
 
-    def left_out(self, effects: Sequence[str], halved: Sequence[int] = ()) -> list[LeftOut]:
-        """Runs left out of the fit one at a time; of some, `halved`, the halves in turns."""
+    def left_out(
+        self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
+    ) -> list[LeftOut]:
+        """Runs left out of the fit one at a time; of some the halves, or alternate parts."""
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.left_out:
             fitted.left_out = left_out(fitted.problem, solution)
-        for run in set(halved) - set(fitted.halves):
-            fitted.halves[run] = halves_left_out(fitted.problem, solution, run)
-        whole = [part.without(halved) for part in fitted.left_out]
-        return [p for p in whole if p.runs] + [p for i in halved for p in fitted.halves[i]]
+        found = [p for part in fitted.left_out if (p := part.without(halved)).runs]
+        for run in halved:
+            if (run, alternate) not in fitted.halves:
+                own = halves_left_out(fitted.problem, solution, run, alternate=alternate)
+                fitted.halves[run, alternate] = own
+            found += fitted.halves[run, alternate]
+        return found
+
+    @cached_property
+    def beyond(self) -> list[Beyond]:
+        """The runs that go beyond the range of all others; none of a single run."""
+        return runs_beyond(self.campaign)
 
     def left_out_rms(self, effects: Sequence[str]) -> float:
-        """RMS over runs left out of the fit one at a time, N."""
-        parts = self.left_out(effects)
+        """RMS of the held-out errors, N: of runs left out of the fit one at a time, and of parts of
+        those that go beyond all others."""
+        parts = self.left_out(effects, [b.run for b in self.beyond], alternate=True)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 

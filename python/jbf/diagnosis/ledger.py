@@ -41,12 +41,36 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Extrapolation:
+    """A run beyond the range of all others, predicted by a fit to those alone.
+
+    Attributes
+    ----------
+    run
+        Its name.
+    rms_n
+        RMS of the error of that prediction, N; no part of the held-out error.
+    where
+        What it goes beyond, in words.
+    """
+
+    run: str
+    rms_n: float
+    where: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return dict(vars(self))
+
+
+@dataclass(frozen=True)
 class Step:
     """The model after one addition (the first: the bare law).
 
-    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs that each had no part
-    in the fit that predicts them; `noise_n` the noise floor, zero where it is not known; all N.
-    `trials` are the candidates that competed for the next place.
+    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs, or parts of runs, that
+    each had no part in the fit that predicts them; `noise_n` the noise floor, zero where it is not
+    known; all N. `trials` are the candidates that competed for the next place. `extrapolations`
+    are the errors of runs that go beyond all others: parts of them count in `holdout_rms_n`.
     """
 
     effects: tuple[str, ...]
@@ -54,6 +78,7 @@ class Step:
     holdout_rms_n: float
     noise_n: float
     trials: tuple[Trial, ...] = ()
+    extrapolations: tuple[Extrapolation, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -63,6 +88,7 @@ class Step:
             "holdout_rms_n": self.holdout_rms_n,
             "noise_n": self.noise_n or None,
             "tried": [t.to_dict() for t in self.trials],
+            "extrapolated": [e.to_dict() for e in self.extrapolations],
         }
 
 

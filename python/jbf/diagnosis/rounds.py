@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
-from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.selection import Follow, Names, Round, reconsider, still_needed, try_candidates
 from jbf.diagnosis.shifted import DELAY
 from jbf.diagnosis.which_law import NUISANCES
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
 from jbf.models.catalogue import may_come
@@ -140,7 +143,25 @@ def _says_as_much(before_n: float, effect_n: float, apart_n: float, most: float)
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:
     rms, left_out = candidates.converge(effects).rms_n, candidates.left_out_rms(effects)
-    return Step(effects, rms, left_out, noise_n, trials)
+    return Step(effects, rms, left_out, noise_n, trials, _extrapolations(candidates, effects))
+
+
+def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
+    """Errors of the runs beyond all others, predicted by a fit to those alone."""
+    if not candidates.beyond:
+        return ()
+    unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
+    errors = errors_by_run(candidates.converge(effects), candidates.left_out(effects))
+    found = []
+    for beyond in candidates.beyond:
+        own = errors.get(beyond.run, np.zeros(0))
+        if len(own):
+            size = f" {unit.speed}" if beyond.quantity == "speed" else ""
+            own_range = f"{beyond.quantity} {beyond.value:.3g}{size}"
+            where = f"{own_range}, others to {beyond.others:.3g}{size}"
+            rms = float(np.sqrt(np.mean(own**2)))
+            found.append(Extrapolation(names[beyond.run], rms, where))
+    return tuple(found)
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.held_out_ranges import alternate_parts
 from jbf.estimation.problem import Problem
 from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples
@@ -119,14 +120,14 @@ def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
 
     A parameter that the remaining runs say nothing of goes back to its null (or its starting
     value) and is held there: what only the left-out run could know must not leak into its
-    prediction. With one run there is nothing to leave out, and the halves of the run take turns.
+    prediction. With one run its halves, of alternate parts, take turns.
     """
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
     told = _Told.of(problem, solution)
     parts = []
-    for group in _groups([p.run.name for p in problem.campaign.prepared]):
+    for group in _groups(problem.campaign):
         rest = [k for k in range(count) if k not in group]
         residuals = _predicted(problem, solution, told, group, rest)
         whole = tuple(np.ones(len(r), dtype=bool) for r in residuals)
@@ -149,13 +150,23 @@ def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
     )
 
 
-def halves_left_out(problem: Problem, solution: Solution, run: int) -> list[LeftOut]:
-    """The halves of one run (`only_witnesses`), which take turns in having had no part in the fit,
-    beside all of the others."""
+def halves_left_out(
+    problem: Problem, solution: Solution, run: int, *, alternate: bool = False
+) -> list[LeftOut]:
+    """Two halves of one run, which take turns in having no part in a fit to the rest and to all
+    other runs.
+
+    Parameters
+    ----------
+    alternate
+        Whether they are alternate parts (`alternate_parts`), which hold the same kinds of motion;
+        else the first and the second half, which tell whether the run is the same throughout.
+    """
     samples, known = solution.samples, _known(solution)
     every = [np.ones(len(c), dtype=bool) for c in samples.counted]
     others = known.sum(axis=0) - known[run]
-    first = np.arange(len(every[run])) < len(every[run]) // 2
+    count = len(every[run])
+    first = alternate_parts(count) if alternate else np.arange(count) < count // 2
     parts = []
     for half in (first, ~first):
         kept = samples.within([*every[:run], ~half, *every[run + 1 :]])
@@ -266,11 +277,22 @@ def _straight(solution: Solution, way: Array, group: list[int], residuals: list[
     return off <= STRAIGHT**2 * moved + (STRAIGHT * NOTHING) ** 2 * size
 
 
-def _groups(names: list[str]) -> list[list[int]]:
-    """Runs that are left out together: neighbours by name are not, and in whatever order runs are
-    given, groups are the same."""
-    by_name = sorted(range(len(names)), key=lambda i: names[i])
-    return [by_name[k::MOST_FITS] for k in range(min(MOST_FITS, len(names)))]
+def _groups(campaign: Campaign) -> list[list[int]]:
+    """Runs that are left out together, each group with the same kinds of motion as the others.
+
+    The runs are dealt out by direction, top speed and name: in whatever order they are given, the
+    groups are the same.
+    """
+    speeds = [p.motion.velocity_m_s for p in campaign.prepared]
+    order = sorted(
+        range(len(speeds)),
+        key=lambda i: (
+            round(float(np.mean(np.sign(speeds[i])))),
+            float(f"{np.max(np.abs(speeds[i]), initial=0.0):.2g}"),
+            campaign.prepared[i].run.name,
+        ),
+    )
+    return [sorted(order[k::MOST_FITS]) for k in range(min(MOST_FITS, len(order)))]
 
 
 def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
@@ -296,11 +318,11 @@ def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
 
 
 def _halves(problem: Problem, solution: Solution) -> list[LeftOut]:
-    """Each half of a single run predicted from a fit to the other."""
-    count = len(solution.samples.counted[0])
-    first = np.arange(count) < count // 2
+    """Two halves of a single run, of alternate parts, each predicted by a fit to the other."""
+    first = alternate_parts(len(solution.samples.counted[0]))
     parts = []
-    for half, kept in zip((~first, first), solution.samples.halves(), strict=True):
+    for half in (~first, first):
+        kept = solution.samples.within([~half])
         values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
         told = np.ones(solution.free, dtype=bool)
         parts.append(LeftOut((0,), (half,), told, tuple(problem.residuals(values))))

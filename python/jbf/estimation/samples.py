@@ -116,11 +116,6 @@ class Samples:
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
         return replace(self, weight=weight)
 
-    def halves(self) -> tuple[Samples, Samples]:
-        """The first and the second half of each run, to take turns in being left out."""
-        first = [np.arange(len(c)) < len(c) // 2 for c in self.counted]
-        return self.within(first), self.within([~half for half in first])
-
     # ---- sizes ------------------------------------------------------------------------------
 
     def flat(self, values: Sequence[npt.NDArray[T]]) -> npt.NDArray[T]:

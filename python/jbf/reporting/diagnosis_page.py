@@ -40,7 +40,14 @@ from jbf.reporting.tables import (
     run_rows,
     trial_rows,
 )
-from jbf.reporting.words import BARE, headline_and_rest, listed, number
+from jbf.reporting.words import (
+    BARE,
+    extrapolation_sentences,
+    headline_and_rest,
+    held_out_sentence,
+    listed,
+    number,
+)
 
 WIDTH = 10.0
 """Of a picture that is as wide as the page, inches: so its text is as large as the page's."""
@@ -72,6 +79,8 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         ledger_picture=_ledger(diagnosis),
         before_picture=_before(diagnosis),
         measurement=measurement(before, diagnosis.steps[0].noise_n),
+        held_out=held_out_sentence(diagnosis),
+        extrapolations=extrapolation_sentences(diagnosis),
         findings=finding_rows(diagnosis.findings),
         failures=failure_cards(diagnosis),
         unexplained=remainder_cards(diagnosis),

@@ -13,6 +13,7 @@ from jbf.reporting.text_parts import finding_lines, recorded, where_lines
 from jbf.reporting.words import (
     BARE,
     against_noise,
+    extrapolation_sentences,
     law_words,
     noise_words,
     number,
@@ -92,6 +93,8 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     lines += ["", f"The error falling ({unit})"]
     head = ("step", "fit", "held out", "noise", "held out / noise")
     lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)
+    for sentence in extrapolation_sentences(diagnosis):
+        lines += hanging("    ", sentence)
     lines += finding_lines(diagnosis.findings)
     lines += ["", "What remains"]
     lines += where_lines(diagnosis.unexplained) or ["    nothing that stands above the noise"]

@@ -204,3 +204,21 @@ def _it(effects: tuple[str, ...]) -> str:
 def step_name(diagnosis: Diagnosis, index: int) -> str:
     """What step `index` of the ledger brought: the bare law, or `+ effect`."""
     return step_words([step.effects for step in diagnosis.steps], index)
+
+
+def held_out_sentence(diagnosis: Diagnosis) -> str:
+    """How the held-out error was found."""
+    runs = len(diagnosis.before.campaign.prepared)
+    if runs == 1:
+        return "Held out: alternate parts of the run, predicted by fits to the other parts."
+    return "Held out: each run predicted by a fit that it had no part in."
+
+
+def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
+    """Of each run that goes beyond all others: its error, and how it is tested."""
+    unit = diagnosis.model.rig.quantities.force
+    return [
+        f"{e.run} goes beyond the other runs ({e.where}): predicted by those it errs by "
+        f"{number(e.rms_n)} {unit}, an extrapolation; held out are alternate parts of it"
+        for e in diagnosis.steps[-1].extrapolations
+    ]

@@ -68,14 +68,6 @@ def test_samples_only_selects_all_properties_of_the_given_runs() -> None:
     assert SAMPLES.only([0]).between is None
 
 
-def test_samples_halves_split_each_run_in_its_middle() -> None:
-    first, second = SAMPLES.halves()
-    assert lists(first.counted) == [[True, True, False, False], [True, False, False]]
-    assert lists(first.weight) == [[1.0, 0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]
-    assert lists(second.counted) == [[False, False, False, True], [False, False, True]]
-    assert lists(second.weight) == [[0.0, 0.0, 0.0, 1.0], [0.0, 0.25, 1.0]]
-
-
 def test_samples_weighed_multiplies_weights_and_accumulates_the_noise_level() -> None:
     level, robust = [np.full(4, 0.5), np.full(3, 0.8)], [np.full(4, 0.1), np.ones(3)]
     once = SAMPLES.weighed(level, robust, None)

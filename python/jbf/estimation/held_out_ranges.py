@@ -1,0 +1,87 @@
+"""Runs that go beyond all others, and alternate parts of a run for tests within its own range.
+
+A prediction of a faster run by slower ones is an extrapolation and no held-out error: what it says
+depends on the form of the law more than on the fit. Such a run, and a single one, is tested by
+alternate parts of its own, which hold the same kinds of motion as what the fit has.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.campaign import Campaign
+from jbf.records.recorded_load import recorded_load
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+PARTS = 10
+"""Alternate parts of a run: every other one is held out."""
+MARGIN = 0.1
+"""Share of the largest value of all runs within which a value is no extrapolation."""
+SHARE = 0.05
+"""Share of a run's samples from which it goes beyond the others."""
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """A run that goes beyond the range of all others.
+
+    Attributes
+    ----------
+    run
+        Its place in the campaign.
+    quantity
+        `speed` (with its sign: also the only run in one direction) or `load`.
+    value, others
+        Its own extreme value, and the nearest one of the others, in the unit of the record.
+    """
+
+    run: int
+    quantity: str
+    value: float
+    others: float
+
+
+def alternate_parts(count: int) -> Mask:
+    """Every other one of `PARTS` parts of so many samples, shape (count,)."""
+    parts: Mask = (np.arange(count) * PARTS // max(count, 1)) % 2 == 0
+    return parts
+
+
+def runs_beyond(campaign: Campaign) -> list[Beyond]:
+    """The runs that go beyond the range of all others, the first quantity of each."""
+    found: dict[int, Beyond] = {}
+    for quantity, values in _quantities(campaign).items():
+        for beyond in _beyond(quantity, values):
+            found.setdefault(beyond.run, beyond)
+    return [found[run] for run in sorted(found)]
+
+
+def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
+    """Speed and load at the samples that count, one array a run."""
+    runs, counted = campaign.prepared, campaign.samples.counted
+    speeds = [p.motion.velocity_m_s[c] for p, c in zip(runs, counted, strict=True)]
+    loads = [recorded_load(p.rig, p.run) for p in runs]
+    known = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
+    return {"speed": speeds} | ({"load": known} if len(known) == len(runs) else {})
+
+
+def _beyond(quantity: str, values: list[Array]) -> list[Beyond]:
+    top = max((float(np.max(np.abs(v), initial=0.0)) for v in values), default=0.0)
+    found = []
+    for run, own in enumerate(values):
+        rest = [v for other, v in enumerate(values) if other != run and len(v)]
+        if not len(own) or not rest:
+            continue
+        low, high = min(float(v.min()) for v in rest), max(float(v.max()) for v in rest)
+        for outside, value, others in (
+            (own > high + MARGIN * top, float(own.max()), high),
+            (own < low - MARGIN * top, float(own.min()), low),
+        ):
+            if np.mean(outside) > SHARE:
+                found.append(Beyond(run, quantity, value, others))
+    return found

@@ -21,7 +21,8 @@ _CUT = """\
 # One recording becomes several runs where it is cut: at its rests where nothing is said here.
 # Time that starts again always cuts.
 # [cut]
-# by = "{way}"  # one or several of: "rests", "set_point", "load_step", "motion", "run"
+# by = "{way}"  # one or several of: "rests", "cycles", "set_point", "load_step", "motion",
+#               # "run", "parts"
 """
 
 CHOICES = {

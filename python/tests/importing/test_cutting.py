@@ -189,3 +189,53 @@ def test_import_has_plot_repr_and_html_page_of_its_pieces(tmp_path: Path) -> Non
     assert "4 runs" in repr(result)
     result.save_html(tmp_path / "import.html")
     assert (tmp_path / "import.html").stat().st_size > 10_000
+
+
+def to_and_fro(cycles: int = 6, period: float = 2.0) -> Columns:
+    """Sine strokes of 0.1 m; forward strokes begin at 0, 2, 4, ... s."""
+    time = 0.005 * np.arange(int(cycles * period / 0.005))
+    phase = 2.0 * np.pi * time / period
+    speed = 0.1 * np.sin(phase)
+    return {
+        "time_s": time,
+        "position_m": -0.1 * period / (2.0 * np.pi) * np.cos(phase),
+        "velocity_m_s": speed,
+        "friction_n": 5.0 * np.sign(speed),
+        "load_n": np.full(len(time), 20.0),
+    }
+
+
+@pytest.mark.parametrize("without", ["nothing", "position_m", "velocity_m_s"])
+def test_motion_to_and_fro_is_cut_where_each_forward_stroke_begins(
+    without: str, tmp_path: Path
+) -> None:
+    result = imported(tmp_path, 'by = "cycles"', to_and_fro(), without)
+    starts = [first for first, _ in spans(result)]
+    np.testing.assert_allclose(starts, np.arange(0.0, 12.0, 2.0), atol=0.06)
+    assert sum(len(run) for run in result.runs) == 2400
+
+
+def test_noise_at_standstill_makes_no_cycles(tmp_path: Path) -> None:
+    columns = to_and_fro(cycles=2)
+    rng = np.random.default_rng(4)
+    rest = {name: np.full(400, values[-1]) for name, values in columns.items()}
+    rest["time_s"] = columns["time_s"][-1] + 0.005 * np.arange(1, 401)
+    rest["velocity_m_s"] = np.zeros(400)
+    whole = {name: np.concatenate([columns[name], rest[name]]) for name in columns}
+    noise = 1e-4 * rng.normal(size=len(whole["time_s"]))
+    whole["velocity_m_s"] = whole["velocity_m_s"] + noise
+    assert len(spans(imported(tmp_path, 'by = "cycles"', whole))) == 2
+
+
+@pytest.mark.parametrize(("cut", "count"), [('by = "parts"', 10), ("parts = 2", 2)])
+def test_recording_is_cut_into_parts_of_equal_duration(
+    cut: str, count: int, tmp_path: Path
+) -> None:
+    result = imported(tmp_path, cut, to_and_fro())
+    assert [len(run) for run in result.runs] == [2400 // count] * count
+
+
+@pytest.mark.parametrize("parts", ["1", "2.5", "true", '"half"'])
+def test_number_of_parts_that_is_no_whole_number_is_refused(parts: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cut\.parts"):
+        imported(tmp_path, f"parts = {parts}", to_and_fro())

@@ -9,6 +9,7 @@ import numpy as np
 
 from jbf.errors import InputError
 from jbf.importing.cutting.changes import cut_at_changes
+from jbf.importing.cutting.cycles import cut_at_cycles, cut_into_parts
 from jbf.importing.cutting.load_steps import cut_at_load_steps
 from jbf.importing.cutting.motion_kinds import cut_at_motion_kinds
 from jbf.importing.cutting.piece import Cut, Piece
@@ -55,6 +56,10 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
             cuts += cut_at_rests(recording, settings)
         elif way == "load_step":
             cuts += cut_at_load_steps(recording)
+        elif way == "cycles":
+            cuts += cut_at_cycles(recording, settings)
+        elif way == "parts":
+            cuts += cut_into_parts(recording, settings.parts)
         elif way == "motion":
             cuts += cut_at_motion_kinds(recording, settings)
         else:

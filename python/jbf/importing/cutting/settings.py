@@ -26,7 +26,7 @@ RELATIONS: dict[str, Callable[[Array, float], Any]] = {
     "<": operator.lt,
 }
 _COMPARISON = re.compile(r"((?:`[^`]*`|[^`<>=!])+)(==|!=|>=|<=|>|<)((?:`[^`]*`|[^`<>=!])+)")
-WAYS = ("rests", "set_point", "load_step", "motion", "run")
+WAYS = ("rests", "cycles", "set_point", "load_step", "motion", "run", "parts")
 """Ways of cutting, one file each in this folder or in `changes`."""
 
 
@@ -90,6 +90,8 @@ class CutSettings:
         Shorter pieces are left out, s.
     still
         Share of the top speed below which a motion rests; by the record's own noise where None.
+    parts
+        How many parts of equal duration `parts` makes: 2 for halves.
     keep
         Rows that are kept, such as ``powered == 1``; others are left out.
     file
@@ -102,6 +104,7 @@ class CutSettings:
     keep_rest_s: float = 0.5
     shortest_s: float = 0.0
     still: float | None = None
+    parts: int = 10
     keep: Condition | None = None
     file: Path | None = None
 
@@ -120,6 +123,7 @@ class CutSettings:
         if by is None:
             # Who says how long a rest is, wants to cut there.
             ways = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
+            ways = ("parts",) if "parts" in given else ways
         elif not isinstance(by, str | list | tuple):
             mend = 'write by = "rests", or a list of ways'
             raise InputError(key="cut.by", problem=f"{by!r} is no way of cutting", mend=mend)
@@ -143,6 +147,10 @@ class CutSettings:
                 if not 0.0 <= given[key] < math.inf:
                     problem = f"{given[key]} is below zero or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
+        parts = given.get("parts", 2)
+        if isinstance(parts, bool) or not isinstance(parts, int) or parts < 2:
+            problem = f"{parts!r} is not a whole number of at least 2"
+            raise InputError(key="cut.parts", problem=problem, mend="write parts = 2 for halves")
         if "keep" in given:
             given["keep"] = Condition.of(given["keep"])
         if "file" in given:

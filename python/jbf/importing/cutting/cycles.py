@@ -1,0 +1,48 @@
+"""Cut a motion to and fro into its cycles, or a recording into parts of equal duration."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jbf.importing.cutting.motion_speed import MotionSpeed
+from jbf.importing.cutting.piece import Cut
+from jbf.importing.cutting.rests import NOISES, STILL
+from jbf.importing.cutting.settings import CutSettings
+from jbf.importing.spool import Recording
+
+WINDOW_S = 0.05
+"""Duration over which a speed is taken from a position, s."""
+
+
+def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
+    """A cut where each forward stroke begins: a cycle is a stroke forward and one back."""
+    motion = MotionSpeed(recording, WINDOW_S)
+    share = STILL if settings.still is None else settings.still
+    least = max(share * motion.top(), NOISES * motion.noise())
+    stream, found = motion.stream, list[Cut]()
+    for segment, (first, _) in enumerate(stream.segments):
+        last_back: int | None = None
+        for begin, _, speed in motion.blocks(segment):
+            way = np.where(speed > least, 1, np.where(speed < -least, -1, 0))
+            for at in np.flatnonzero(way):
+                if way[at] < 0:
+                    last_back = begin + int(at)
+                elif last_back is not None:
+                    row = (last_back + begin + int(at) + 1) // 2
+                    if row > first:
+                        found.append(Cut(segment, stream.at(row - 1), stream.at(row), "a cycle"))
+                    last_back = None
+    return found
+
+
+def cut_into_parts(recording: Recording, count: int) -> list[Cut]:
+    """Cuts into so many parts of equal duration, of each stretch of time."""
+    stream, found = recording.streams[0], list[Cut]()
+    for segment, (first, end) in enumerate(stream.segments):
+        from_s, to_s = stream.at(first), stream.at(end - 1)
+        for part in range(1, count):
+            at_s = from_s + (to_s - from_s) * part / count
+            row, _ = stream.rows_between(segment, at_s, to_s)
+            if first < row < end:
+                found.append(Cut(segment, stream.at(row - 1), stream.at(row), f"part {part + 1}"))
+    return found

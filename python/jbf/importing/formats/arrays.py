@@ -2,19 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values, as_numbers
+from jbf.importing.formats.table import (
+    BLOCK,
+    Column,
+    Options,
+    Source,
+    Table,
+    Values,
+    as_numbers,
+    unique,
+)
 
 Slice = Callable[[int, int], Any]
 """Values from a first row to before an end."""
 _WIDEST = 64
 """A matrix of more columns is no table of channels."""
+_NAMED = 3
+"""Columns that the name of a table lists."""
+CLOCK = "time"
+"""Column of the instants of signals that have their own."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One channel with its own instants.
+
+    Attributes
+    ----------
+    times
+        Instants, in `time_unit`.
+    read
+        Samples, one for each instant.
+    unit, time_unit
+        Units of the samples and of the times; empty where the file states none.
+    """
+
+    name: str
+    times: npt.NDArray[Any]
+    read: Slice
+    unit: str = ""
+    time_unit: str = ""
 
 
 class ArraySource(Source):
@@ -115,6 +151,39 @@ def add_by_length(
         raise InputError(
             file=source.path, problem="holds no columns of numbers", mend="name another file"
         )
+
+
+def add_by_clock(source: ArraySource, signals: Iterable[Signal], alone: bool = True) -> None:
+    """Add signals by their instants: those that were sampled at the same ones share a table.
+
+    Times in seconds are the format's own clock.
+
+    Parameters
+    ----------
+    alone
+        Whether the file holds no other tables, so that a single one needs no name.
+    """
+    sampled = [signal for signal in signals if len(signal.times)]
+    _, *names = unique([CLOCK, *(signal.name for signal in sampled)])
+    groups: dict[tuple[str, bytes], dict[str, Signal]] = {}
+    for name, signal in zip(names, sampled, strict=True):
+        groups.setdefault((signal.time_unit, signal.times.tobytes()), {})[name] = signal
+    for (unit, _), group in groups.items():
+        times = next(iter(group.values())).times
+        columns = {name: (signal.read, signal.unit) for name, signal in group.items()}
+        source.add(
+            "" if alone and len(groups) == 1 else table_name(list(group)),
+            {CLOCK: (slices(times), unit), **columns},
+            len(times),
+            CLOCK if unit == "s" else None,
+        )
+
+
+def table_name(columns: Sequence[str]) -> str:
+    """Name of a table that the file does not name: its columns, of many the first."""
+    if len(columns) <= _NAMED:
+        return ", ".join(columns)
+    return f"{columns[0]} and {len(columns) - 1} more"
 
 
 def _several(lengths: Mapping[int, None]) -> bool:

@@ -67,6 +67,7 @@ class Format:
 
 _HDF = b"\x89HDF\r\n\x1a\n"
 FORMATS = (
+    Format("a WPILib data log", "wpilog:open_wpilog", (".wpilog",), (b"WPILOG",)),
     Format("MCAP", "mcap_log:open_mcap", (".mcap",), (b"\x89MCAP0",), "mcap", "mcap"),
     Format("a ROS bag", "ros_bag:open_bag", (".bag", ".db3"), (b"#ROSBAG",), "rosbags", "rosbag"),
     Format("MDF", "mdf:open_mdf", (".mf4", ".mdf", ".dat4"), (b"MDF     ",), "asammdf", "mdf"),

@@ -11,13 +11,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.importing.formats.arrays import ArraySource, slices
-from jbf.importing.formats.table import Source, unique
+from jbf.importing.formats.arrays import ArraySource, Signal, add_by_clock, slices
+from jbf.importing.formats.table import Source
 
-Array = npt.NDArray[np.float64]
 VARIABLE = re.compile(r"^\s*\d+\.Variable\s*[;,\t]\s*(?P<name>[^;,\t]+?)\s*[;,\t]?\s*$", re.I)
 _SAMPLE = re.compile(r"^\s*[;,\t]\s*(?P<time>[^;\t]+?)\s*[;\t,]\s*(?P<value>[^;\t]+?)\s*[;\t]?\s*$")
 
@@ -28,29 +26,21 @@ def is_trace(lines: Iterable[str]) -> bool:
 
 
 def open_trace(path: Path, lines: Iterable[str]) -> Source:
-    """Open a trace export: one table where all variables have the same times, else one of each."""
-    blocks = list(_blocks(path, lines))
-    _, *names = unique(["time", *(name for name, _, _ in blocks)])
+    """Open a trace export; variables with the same times share a table."""
     source = ArraySource(path)
-    times = [time for _, time, _ in blocks]
-    if times and all(np.array_equal(times[0], time) for time in times[1:]):
-        values = {n: (slices(v), "") for n, (_, _, v) in zip(names, blocks, strict=True)}
-        source.add("", {"time": (slices(times[0]), ""), **values}, len(times[0]))
-    else:
-        for name, (_, time, value) in zip(names, blocks, strict=True):
-            source.add(name, {"time": (slices(time), ""), name: (slices(value), "")}, len(time))
+    add_by_clock(source, _blocks(path, lines))
     if not source.tables:
         raise InputError(file=path, problem="holds no samples", mend="export the trace anew")
     return source
 
 
-def _blocks(path: Path, lines: Iterable[str]) -> Iterator[tuple[str, Array, Array]]:
-    """Name, times and values of each variable."""
+def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
+    """Each variable with its times."""
     name, rows = "", list[list[float]]()
     for number, line in enumerate(lines, 1):
         if (variable := VARIABLE.match(line)) is not None:
             if rows:
-                yield name, *np.array(rows).T
+                yield _signal(name, rows)
             name, rows = variable["name"], []
         elif (sample := _SAMPLE.match(line)) is not None and name:
             try:
@@ -62,4 +52,9 @@ def _blocks(path: Path, lines: Iterable[str]) -> Iterator[tuple[str, Array, Arra
                     file=path, row=number, problem=problem, mend="export the trace anew"
                 ) from None
     if rows:
-        yield name, *np.array(rows).T
+        yield _signal(name, rows)
+
+
+def _signal(name: str, rows: list[list[float]]) -> Signal:
+    times, values = np.array(rows).T
+    return Signal(name, times, slices(values))

@@ -1,0 +1,147 @@
+"""WPILib data logs, read as their specification (version 1.0) describes: records of entries, each
+with its instant in microseconds.
+
+The library of WPILib is not used: of a truncated log it returns values from beyond the end.
+"""
+
+from __future__ import annotations
+
+import json
+from array import array
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, Signal, add_by_clock, slices
+from jbf.importing.formats.messages import LONGEST
+from jbf.importing.formats.table import Options, Source
+
+_TYPES = {"double": "<f8", "float": "<f4", "int64": "<i8", "boolean": "?"}
+"""Types of entries that hold numbers, and of arrays of them (`double[]`)."""
+_UNITS = ("unit", "units")
+"""Keys of an entry's metadata that state its unit."""
+_START, _FINISH, _METADATA = 0, 1, 2
+"""Kinds of control records, which are those of entry 0."""
+_US = 1e6
+_HEADER = 12
+_LARGEST = 2**63 - 1
+
+
+class _TornError(Exception):
+    """The log ends within a record."""
+
+
+@dataclass
+class _Entry:
+    """Samples of one entry: instants, where each sample begins in the log, and its size."""
+
+    name: str
+    kind: str
+    unit: str
+    stamps_us: array[int] = field(default_factory=lambda: array("q"))
+    begins: array[int] = field(default_factory=lambda: array("q"))
+    sizes: array[int] = field(default_factory=lambda: array("q"))
+
+    def signals(self, data: bytes, origin_us: int) -> Iterator[Signal]:
+        """The entry as signals, an array by its elements; times are seconds from the origin."""
+        dtype = np.dtype(_TYPES[self.kind.removesuffix("[]")])
+        lengths = np.array(self.sizes) // dtype.itemsize
+        width = min(int(lengths.max(initial=0)), LONGEST if self.kind.endswith("[]") else 1)
+        # A log may hold records in any order.
+        order = np.argsort(self.stamps_us, kind="stable")
+        times = (np.array(self.stamps_us)[order] - origin_us) / _US
+        values = np.full((len(order), width), np.nan)
+        for row, at in enumerate(order.tolist()):
+            count = min(int(lengths[at]), width)
+            values[row, :count] = np.frombuffer(data, dtype, count, self.begins[at])
+        for column in range(width):
+            name = f"{self.name}[{column}]" if self.kind.endswith("[]") else self.name
+            yield Signal(name, times, slices(values[:, column]), self.unit, "s")
+
+
+def open_wpilog(path: Path, options: Options) -> Source:
+    """Open a data log; a torn record at its end is passed over."""
+    data = path.read_bytes()
+    if len(data) < _HEADER:
+        raise InputError(
+            file=path, problem="is no whole data log of WPILib", mend="copy it from the robot anew"
+        )
+    source = ArraySource(path)
+    entries, torn = _entries(data)
+    if torn is not None:
+        source.passed_over = [(1, f"the record at byte {torn} is torn", None)]
+    origin_us = min((min(entry.stamps_us) for entry in entries if entry.stamps_us), default=0)
+    add_by_clock(source, (s for entry in entries for s in entry.signals(data, origin_us)))
+    if not source.tables:
+        raise InputError(file=path, problem="holds no entries with numbers", mend="name another")
+    return source
+
+
+def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
+    """Entries that hold numbers, and where a torn record begins; entries of one name and type, as
+    after a restart, are one."""
+    found: dict[tuple[str, str], _Entry] = {}
+    by_number: dict[int, _Entry] = {}
+    at = _HEADER + int.from_bytes(data[8:_HEADER], "little")
+    while at < len(data):
+        lengths = data[at]
+        number_end = at + 2 + (lengths & 3)
+        size_end = number_end + 1 + (lengths >> 2 & 3)
+        begin = size_end + 1 + (lengths >> 4 & 7)
+        number = int.from_bytes(data[at + 1 : number_end], "little")
+        size = int.from_bytes(data[number_end:size_end], "little")
+        if begin + size > len(data):
+            return list(found.values()), at
+        if number == 0:
+            try:
+                _control(data[begin : begin + size], found, by_number)
+            except _TornError:
+                return list(found.values()), at
+        elif (entry := by_number.get(number)) is not None:
+            entry.stamps_us.append(int.from_bytes(data[size_end:begin], "little") & _LARGEST)
+            entry.begins.append(begin)
+            entry.sizes.append(size)
+        at = begin + size
+    return list(found.values()), None
+
+
+def _control(
+    content: bytes, found: dict[tuple[str, str], _Entry], by_number: dict[int, _Entry]
+) -> None:
+    """Start or finish an entry, or change its metadata."""
+    if len(content) < 5:
+        raise _TornError
+    number = int.from_bytes(content[1:5], "little")
+    if content[0] == _START:
+        name, at = _text(content, 5)
+        kind, at = _text(content, at)
+        metadata, _ = _text(content, at)
+        by_number.pop(number, None)
+        if kind.removesuffix("[]") in _TYPES:
+            entry = _Entry(name, kind, _unit(metadata))
+            by_number[number] = found.setdefault((name, kind), entry)
+    elif content[0] == _FINISH:
+        by_number.pop(number, None)
+    elif content[0] == _METADATA and number in by_number:
+        by_number[number].unit = _unit(_text(content, 5)[0])
+
+
+def _text(content: bytes, at: int) -> tuple[str, int]:
+    """A text after its length, and where it ends."""
+    end = at + 4 + int.from_bytes(content[at : at + 4], "little")
+    if end > len(content):
+        raise _TornError
+    return content[at + 4 : end].decode("utf-8", "replace"), end
+
+
+def _unit(metadata: str) -> str:
+    """The unit that an entry's metadata states, as JSON."""
+    try:
+        content = json.loads(metadata)
+    except ValueError:
+        return ""
+    stated = [content.get(key) for key in _UNITS] if isinstance(content, dict) else []
+    return next((unit for unit in stated if isinstance(unit, str)), "")

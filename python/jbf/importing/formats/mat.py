@@ -7,43 +7,45 @@ from typing import Any
 
 import numpy as np
 
-from jbf.importing.formats.arrays import ArraySource, add_by_length, vectors_of
+from jbf.errors import InputError
+from jbf.importing.formats.arrays import ArraySource, slices, vectors_of
+from jbf.importing.formats.mat_structures import Samples, Tree, add_structures
 from jbf.importing.formats.matlab_tables import add_tables
 from jbf.importing.formats.table import Options, Source
 
 
 def open_mat(path: Path, options: Options) -> Source:
-    """Open a MAT file: vectors, columns of matrices, fields of structures."""
+    """Open a MAT file: vectors, columns of matrices, signals and fields of structures."""
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
     content = loadmat(path, struct_as_record=False, squeeze_me=False)
-    vectors: dict[str, tuple[Any, str]] = {}
-    opaque = False
-    for name, value in content.items():
-        if isinstance(value, MatlabOpaque):
-            opaque = True
-        elif not name.startswith("__"):
-            _collect(name, value, vectors)
+    opaque = any(isinstance(value, MatlabOpaque) for value in content.values())
     source = ArraySource(path)
     if opaque:
         add_tables(source, path)
-    if vectors or not source.tables:
-        add_by_length(source, vectors, options)
+    variables = {name: _tree(v) for name, v in content.items() if not name.startswith("__")}
+    add_structures(source, variables)
+    if not source.tables:
+        raise InputError(file=path, problem="holds no columns of numbers", mend="name another file")
     return source
 
 
-def _collect(name: str, value: Any, vectors: dict[str, tuple[Any, str]]) -> None:
+def _tree(value: Any) -> Tree:
     fields = getattr(value, "_fieldnames", None)
     if fields is not None:
-        for field in fields:
-            _collect(f"{name}.{field}", getattr(value, field), vectors)
-        return
+        return {field: _tree(getattr(value, field)) for field in fields}
     array = np.asarray(value)
     if array.dtype == object:
         # A structure stands in an array of one.
-        if array.size == 1:
-            _collect(name, array.reshape(-1)[0], vectors)
-        return
-    if array.dtype.kind in "biuf" and array.size > 1:
-        vectors |= {n: (v, "") for n, v in vectors_of(name, array).items()}
+        items = [_tree(item) for item in array.reshape(-1)]
+        return items[0] if len(items) == 1 else items
+    if array.dtype.kind == "U":
+        return str(array.reshape(-1)[0]) if array.size == 1 else ""
+    if array.dtype.kind not in "biuf" or array.size < 2:
+        return None
+    if array.ndim == 3:
+        # The samples of a signal of several elements lie along the last dimension.
+        array = array.reshape(-1, array.shape[2], order="F").T
+    columns = list(vectors_of("", array).values())
+    return Samples(len(columns[0]), tuple(map(slices, columns))) if columns else None

@@ -6,55 +6,89 @@ from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 
 from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, Slice
+from jbf.importing.formats.mat_structures import Samples, Tree, add_structures
 from jbf.importing.formats.matlab_tables import add_tables
 from jbf.importing.formats.table import Options, Source
 
+_WIDEST = 64
+"""Columns of a matrix; a wider one holds no channels."""
+_DEEPEST = 32
+"""Levels of structures; a file that refers to itself has no end."""
+
 
 def open_mat73(path: Path, options: Options) -> Source:
-    """Open a MAT file: vectors, columns of matrices, fields of structures."""
+    """Open a MAT file: vectors, columns of matrices, signals and fields of structures."""
     file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
-    found: dict[int, dict[str, tuple[Slice, str]]] = {}
-    opaque = _collect(file, "", found)
-    if opaque:
+    variables = {name: item for name, item in file.items() if not name.startswith("#")}
+    if any(_is_opaque(item) for item in variables.values()):
         add_tables(source, path)
-    for length, columns in found.items():
-        source.add(f"{length} samples" if len(found) > 1 else "", columns, length)
+    add_structures(source, {name: _tree(file, item, 0) for name, item in variables.items()})
     if not source.tables:
         raise InputError(file=path, problem="holds no columns of numbers", mend="name another")
     return source
 
 
-def _collect(group: Any, lead: str, found: dict[int, dict[str, tuple[Slice, str]]]) -> bool:
-    """Gather vectors by length; says whether MATLAB's own objects are among them."""
-    opaque = False
-    for name, item in group.items():
-        if name.startswith("#"):
-            continue
-        whole = f"{lead}{name}"
-        if "MATLAB_object_decode" in item.attrs:
-            opaque = True
-        elif isinstance(item, h5py.Group):
-            opaque |= _collect(item, f"{whole}.", found)
-        elif (
-            item.dtype.kind in "biuf"
-            and item.ndim == 2
-            and item.attrs.get("MATLAB_class") != b"char"
-        ):
-            # MATLAB's columns are HDF5's rows.
-            rows, width = item.shape[1], item.shape[0]
-            if rows == 1:
-                rows, width = width, 1
-                found.setdefault(rows, {})[whole] = (_first_column(item), "")
-            elif width <= 64:
-                for at in range(width):
-                    called = whole if width == 1 else f"{whole} column {at + 1}"
-                    found.setdefault(rows, {})[called] = (_row(item, at), "")
-    found.pop(1, None)
-    return opaque
+def _is_opaque(item: Any) -> bool:
+    """Whether MATLAB's own objects are in a variable."""
+    if isinstance(item, h5py.Group):
+        return any(map(_is_opaque, item.values()))
+    return "MATLAB_object_decode" in item.attrs
+
+
+def _tree(file: Any, item: Any, depth: int) -> Tree:
+    if depth > _DEEPEST or _is_opaque(item):
+        return None
+    if isinstance(item, h5py.Group):
+        if _is_array_of_structures(item):
+            fields = {name: np.ravel(field[()], order="F") for name, field in item.items()}
+            count = min(map(len, fields.values()))
+            return [
+                {name: _tree(file, file[refs[k]], depth + 1) for name, refs in fields.items()}
+                for k in range(count)
+            ]
+        return {name: _tree(file, field, depth + 1) for name, field in item.items()}
+    if item.dtype == h5py.ref_dtype:
+        return [_tree(file, file[ref], depth + 1) for ref in np.ravel(item[()], order="F") if ref]
+    if "MATLAB_empty" in item.attrs:
+        return None
+    if item.attrs.get("MATLAB_class") == b"char":
+        return "".join(map(chr, np.ravel(item[()])))
+    if item.dtype.kind not in "biuf":
+        return None
+    return _samples(item)
+
+
+def _is_array_of_structures(group: Any) -> bool:
+    """Whether each field of a group refers to its values in one structure after the other."""
+    fields = list(group.values())
+    return bool(fields) and all(
+        isinstance(field, h5py.Dataset)
+        and field.dtype == h5py.ref_dtype
+        and "MATLAB_class" not in field.attrs
+        for field in fields
+    )
+
+
+def _samples(item: Any) -> Samples | None:
+    """The columns of a dataset; MATLAB's columns are HDF5's rows."""
+    if item.ndim == 3:
+        # The samples of a signal of several elements lie along MATLAB's last dimension.
+        width = item.shape[1] * item.shape[2]
+        columns = tuple(_element(item, at) for at in range(width))
+        return Samples(item.shape[0], columns) if width <= _WIDEST else None
+    if item.ndim != 2:
+        return None
+    width, rows = item.shape
+    if rows == 1:
+        return Samples(width, (_first_column(item),))
+    if width > _WIDEST:
+        return None
+    return Samples(rows, tuple(_row(item, at) for at in range(width)))
 
 
 def _row(item: Any, at: int) -> Slice:
@@ -63,3 +97,9 @@ def _row(item: Any, at: int) -> Slice:
 
 def _first_column(item: Any) -> Slice:
     return lambda first, end: item[first:end, 0]
+
+
+def _element(item: Any, at: int) -> Slice:
+    return lambda first, end: np.reshape(item[first:end], (-1, item.shape[1] * item.shape[2]))[
+        :, at
+    ]

@@ -1,0 +1,158 @@
+"""Structures of MAT files: which of their fields are signals, with which names and clocks.
+
+A signal is a structure that holds samples (`values`, `Data`) and their label: Simulink's
+"Structure with time", a timeseries as a structure, recordings of dSPACE. Its clock is the time of
+the structure itself, or of the nearest one around it. All other vectors are named by their path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+from jbf.importing.formats.arrays import ArraySource, Signal, Slice, add_by_clock
+
+SAMPLES = ("values", "data")
+"""Fields that hold the samples of a signal, in small letters."""
+LABELS = ("label", "name", "signalname", "blockname")
+"""Fields that name a signal, the best first."""
+UNITS = ("unit", "units")
+"""Fields that state a unit."""
+SECONDS = ("s", "sec", "seconds")
+"""Units of a time that are seconds."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Columns of one array."""
+
+    rows: int
+    columns: tuple[Slice, ...]
+
+
+Tree: TypeAlias = "Mapping[str, Tree] | list[Tree] | str | Samples | None"
+"""A variable of a file: structures, arrays of structures or cells, text, numbers."""
+
+
+@dataclass(frozen=True)
+class _Clock:
+    samples: Samples
+    unit: str
+
+
+@dataclass(frozen=True)
+class _Found:
+    name: str
+    samples: Samples
+    unit: str = ""
+    clock: _Clock | None = None
+
+    def columns(self) -> Iterator[tuple[str, Slice]]:
+        """Columns by name; of a matrix they are numbered from 1."""
+        for at, column in enumerate(self.samples.columns, 1):
+            several = len(self.samples.columns) > 1
+            yield f"{self.name} column {at}" if several else self.name, column
+
+
+def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
+    """Add the variables of a file: signals by their clocks, all other vectors by their length."""
+    found = [entry for name, node in content.items() for entry in _walk(node, name, None)]
+    by_length: dict[int, dict[str, tuple[Slice, str]]] = {}
+    signals = []
+    for entry in found:
+        for name, column in entry.columns():
+            if entry.clock is None:
+                by_length.setdefault(entry.samples.rows, {})[name] = (column, entry.unit)
+                continue
+            times = entry.clock.samples
+            instants = times.columns[0](0, times.rows)
+            signals.append(Signal(name, instants, column, entry.unit, entry.clock.unit))
+    alone = not source.tables
+    add_by_clock(source, signals, alone and not by_length)
+    for length, columns in by_length.items():
+        one = alone and not signals and len(by_length) == 1
+        source.add("" if one else f"{length} samples", columns, length)
+
+
+def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Found]:
+    """Signals and vectors of a variable.
+
+    Parameters
+    ----------
+    clock
+        Time of the structure around it.
+    """
+    if isinstance(node, Samples):
+        if node.rows > 1:
+            yield _Found(name, node)
+    elif isinstance(node, list):
+        for at, item in enumerate(node, 1):
+            yield from _walk(item, f"{name}({at})", clock)
+    elif isinstance(node, Mapping):
+        yield from _of_structure(node, name, clock)
+
+
+def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> Iterator[_Found]:
+    fields = {key.lower(): key for key in node}
+    own = _clock(node, fields)
+    time = own or clock
+    signal = _signal(node, fields, name, time)
+    used = {fields["time"]} if own is not None else set[str]()
+    if signal is not None:
+        used |= {fields[key] for key in SAMPLES if key in fields}
+    below = [
+        entry
+        for key, item in node.items()
+        if key not in used
+        for entry in _walk(item, f"{name}.{key}", time)
+    ]
+    entries = below if signal is None else [signal, *below]
+    if own is not None:
+        if any(entry.clock is own for entry in entries):
+            # What stands next to a clock and has its length was sampled by it.
+            entries = [
+                replace(entry, clock=own)
+                if entry.clock is None and entry.samples.rows == own.samples.rows
+                else entry
+                for entry in entries
+            ]
+        else:
+            yield _Found(f"{name}.{fields['time']}", own.samples)
+    yield from entries
+
+
+def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None:
+    """The time that a structure holds."""
+    time = node.get(fields.get("time", ""))
+    if not isinstance(time, Samples) or time.rows < 2 or len(time.columns) != 1:
+        return None
+    about = node.get(fields.get("timeinfo", ""))
+    unit = _text(about, UNITS) if isinstance(about, Mapping) else ""
+    # Simulink counts in seconds.
+    simulink = "signals" in fields
+    return _Clock(time, "s" if simulink or unit.lower() in SECONDS else unit)
+
+
+def _signal(
+    node: Mapping[str, Tree], fields: Mapping[str, str], name: str, clock: _Clock | None
+) -> _Found | None:
+    """The signal that a structure is; None of one without samples, or without label and clock."""
+    held = [node[fields[key]] for key in SAMPLES if key in fields]
+    samples = next((item for item in held if isinstance(item, Samples) and item.rows > 1), None)
+    if samples is None:
+        return None
+    fitting = clock if clock is not None and clock.samples.rows == samples.rows else None
+    label = _text(node, LABELS).strip("<> ")
+    if fitting is None and not label:
+        return None
+    about = node.get(fields.get("datainfo", ""))
+    unit = _text(node, UNITS) or (_text(about, UNITS) if isinstance(about, Mapping) else "")
+    return _Found(label or name, samples, unit, fitting)
+
+
+def _text(node: Mapping[str, Any], keys: tuple[str, ...]) -> str:
+    """The first text that is not empty among fields."""
+    fields = {key.lower(): value for key, value in node.items()}
+    texts = (fields.get(key) for key in keys)
+    return next((text.strip() for text in texts if isinstance(text, str) and text.strip()), "")

@@ -17,16 +17,19 @@ from pathlib import Path
 import numpy as np
 
 from jbf.errors import InputError, quoted
+from jbf.importing.formats.arrays import table_name
+from jbf.importing.formats.channel_rows import lay_out_channels
 from jbf.importing.formats.damaged_rows import DamagedRows
 from jbf.importing.formats.dates import (
     Instants,
     as_date,
     day_or_month_first,
+    is_file_time,
     is_instant,
     seconds_since,
 )
 from jbf.importing.formats.dialect import Dialect, decode, is_empty, sniff
-from jbf.importing.formats.layout import Layout, lay_out
+from jbf.importing.formats.layout import LABEL, Layout, Part, lay_out, merged
 from jbf.importing.formats.plain_lines import plain_columns
 from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
 from jbf.importing.formats.trace_blocks import is_trace, open_trace
@@ -39,7 +42,7 @@ _COMMENTS = ("#", "%", "//")
 
 
 class TextSource(Source):
-    """A text file of one table."""
+    """A text file of one table, or of several next to each other."""
 
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
@@ -60,7 +63,7 @@ class TextSource(Source):
         self.dialect = sniff(lines, options.delimiter, options.decimal, options.thousands)
         self.empty = frozenset(word.lower() for word in options.empty)
         self.layout = self._laid_out(lines)
-        self.tables = (self._table(),)
+        self.tables = tuple(self._tables())
 
     def _lines(self) -> Iterator[tuple[int, str]]:
         """Every line with its number."""
@@ -89,6 +92,14 @@ class TextSource(Source):
             if line.strip() and not line.lstrip().startswith(_COMMENTS)
         ]
         options = self.options
+        if options.header is None and (channels := lay_out_channels(rows)) is not None:
+            if self.dialect.delimiter == " ":
+                raise InputError(
+                    file=self.path,
+                    problem="is separated by blanks, which the names of its channels may hold",
+                    mend="export it with tabs or semicolons",
+                )
+            return channels
         try:
             layout = lay_out(rows, self.dialect.is_number, options.header, options.units)
         except InputError as error:
@@ -106,9 +117,10 @@ class TextSource(Source):
                 layout = lay_out([*fitting, *samples], self.dialect.is_number)
         return layout
 
-    def _table(self) -> Table:
+    def _tables(self) -> Iterator[Table]:
         first = list(islice(self._rows(self._samples()), 500))
-        columns, questions, start = [], [], None
+        columns: list[Column] = []
+        questions, start = list[str](), self.layout.start
         if self.dialect.question:
             questions.append(self.dialect.question)
         for at, (name, unit) in enumerate(zip(self.layout.names, self.layout.units, strict=True)):
@@ -117,6 +129,8 @@ class TextSource(Source):
             if cells and not any(map(self.dialect.is_number, cells)):
                 dated = sum(map(is_instant, cells)) > 0.9 * len(cells)
                 column = replace(column, kind="instant" if dated else "word", unit="")
+            elif cells and all(map(is_file_time, cells)):
+                column = replace(column, kind="instant", unit="")
             if column.kind == "instant":
                 order = self.options.dates or day_or_month_first(cells)
                 if order is None:
@@ -124,7 +138,12 @@ class TextSource(Source):
                         f"column {name}: {quoted(cells[0])} may begin with the day or the month; "
                         'say dates = "day_first" or "month_first" under [file]'
                     )
-                instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
+                try:
+                    instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
+                except InputError as error:
+                    raise InputError(
+                        file=self.path, column=name, problem=error.problem, mend=error.mend
+                    ) from None
                 start = as_date(instant) or start
                 # One of dates and one of times of day, for all columns: their clocks are to be
                 # compared.
@@ -132,18 +151,34 @@ class TextSource(Source):
                 self._firsts.setdefault(dated, instant)
                 self._origins[name] = (self._firsts[dated], order)
             columns.append(column)
-        columns = [c for c in columns if self._holds_something(c, first)]
-        return Table(
-            "",
-            tuple(columns),
-            rate_hz=self.options.rate_hz or self.layout.rate_hz,
-            start=start,
-            questions=tuple(questions),
+        held = [c for c in columns if self._holds_something(c, first)]
+        parts = merged(self.layout.parts, (cells for _, cells in self._rows(self._samples()))) or (
+            Part(tuple(range(len(columns))), None, self.layout.rate_hz),
         )
+        for part in parts:
+            own = [columns[at] for at in part.columns if columns[at] in held]
+            channels = [c.name for c in own if columns.index(c) != part.clock]
+            yield Table(
+                table_name(channels) if len(parts) > 1 else "",
+                tuple(own),
+                rate_hz=self.options.rate_hz or part.rate_hz,
+                start=start,
+                questions=tuple(questions),
+            )
+
+    def _clock_of(self, table: Table) -> int | None:
+        """Place of the times of one of several tables: rows without one are not its own."""
+        if len(self.tables) < 2:
+            return None
+        places = [self.layout.names.index(column.name) for column in table.columns]
+        clocks = [part.clock for part in self.layout.parts]
+        return next((at for at in places if at in clocks), None)
 
     def _holds_something(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
         """A nameless column without a value is a delimiter at the end of each line."""
         at = self.layout.names.index(column.name)
+        if column.name.startswith(LABEL):
+            return column.kind != "word"
         return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
 
     def _samples(self) -> Iterator[tuple[int, str]]:
@@ -175,6 +210,8 @@ class TextSource(Source):
             damage.rows += 1
             cells = split(line.rstrip("\n"))
             few = len(cells) < width and (self.dialect.delimiter == " " or len(cells) < width // 2)
+            # Of tables next to each other the shorter ones may end first.
+            few = few and not self.layout.parts
             if few or (len(cells) > width and any(cells[width:])):
                 problem = f"has {len(cells)} cells where the header has {width}"
                 mend = "correct the row, or say delimiter and decimal under [file]"
@@ -208,20 +245,27 @@ class TextSource(Source):
             if kind == "instant"
         }
         self._words, self._damage = [], DamagedRows(self.path)
+        clock = self._clock_of(table)
         numeric = [at for at, kind in zip(places, kinds, strict=True) if kind == "number"]
         text = [at for at, kind in zip(places, kinds, strict=True) if kind != "number"]
         lines = self._samples()
         while block := list(islice(lines, BLOCK)):
-            plain = plain_columns(
-                [line for _, line in block], self.dialect, len(self.layout.names), numeric, text
-            )
+            plain = None
+            if clock is None:
+                plain = plain_columns(
+                    [line for _, line in block], self.dialect, len(self.layout.names), numeric, text
+                )
             wrong: dict[int, InputError] = {}
             if plain is not None:
                 self._damage.rows += len(block)
                 numbers = [number for number, _ in block]
                 turned = dict(zip([*numeric, *text], [*plain[0], *plain[1]], strict=True))
             else:
-                rows = list(self._rows(block, self._damage, self._words))
+                rows = [
+                    (number, cells)
+                    for number, cells in self._rows(block, self._damage, self._words)
+                    if clock is None or cells[clock].strip()
+                ]
                 if not rows:
                     continue
                 numbers = [number for number, _ in rows]
@@ -298,8 +342,12 @@ class TextSource(Source):
 
     def row_of(self, table: Table, sample: int) -> int | None:
         """The line of a sample."""
-        bad = self._damage.lines
-        good = (number for number, _ in self._rows(self._samples()) if number not in bad)
+        bad, clock = self._damage.lines, self._clock_of(table)
+        good = (
+            number
+            for number, cells in self._rows(self._samples())
+            if number not in bad and (clock is None or cells[clock].strip())
+        )
         return next(islice(good, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:

@@ -1,7 +1,7 @@
 """Dates and times of day as loggers write them, in whole nanoseconds.
 
 ISO 8601, `31.12.2026 23:59:59,125`, `31-Dec-2026 23:59:59`, `12/31/2026 11:59:59.125 PM`,
-`23:59:59.125`. A time of day that starts again goes on to the next day.
+`23:59:59.125`, file times of Windows. A time of day that starts again goes on to the next day.
 
 A column is converted by NumPy: cells are grouped by their shape (the text with each digit replaced
 by 0), the pattern is matched once for each shape, and the digits of all its cells are combined.
@@ -23,6 +23,9 @@ NO_INSTANT = int(np.iinfo(np.int64).min)
 """Of an empty cell; numpy's NaT."""
 
 _DAY_NS = 86_400 * 10**9
+_FILE_TIME = re.compile(r"1[23]\d{16}")
+_FILE_TIME_1970 = 116_444_736 * 10**9
+"""1970 as a file time of Windows, which counts 100 ns from 1601."""
 _INSTANT = re.compile(
     r"(?:(?:(?P<y>\d{4})[-/.](?P<m>\d{1,2})[-/.](?P<d>\d{1,2})"
     r"|(?P<a>\d{1,2})(?P<mark>[-/.])(?P<b>\d{1,2})[-/.](?P<y2>\d{4}|\d{2})"
@@ -42,6 +45,11 @@ del _MONTH["jui"]  # juin or juillet
 _LONGEST = 64
 _FIRST_YEAR, _LAST_YEAR = 1678, 2261
 """Years whose instants fit into 64 bits."""
+
+
+def is_file_time(cell: str) -> bool:
+    """Whether a cell is a file time of Windows, of the years 1981 to 2041."""
+    return _FILE_TIME.fullmatch(cell.strip()) is not None
 
 
 def is_instant(cell: str) -> bool:
@@ -92,6 +100,9 @@ class Instants:
         result = np.full(len(cells), NO_INSTANT, dtype=np.int64)
         full = np.flatnonzero(~np.asarray(is_empty, dtype=bool)).tolist()
         if not full:
+            return result
+        if all(is_file_time(cells[at]) for at in full):
+            result[full] = [(int(cells[at]) - _FILE_TIME_1970) * 100 for at in full]
             return result
         text = np.array([cells[at].strip()[:_LONGEST] for at in full])
         letters = text.view(np.uint32).reshape(len(full), -1)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 from jbf.errors import InputError
 from jbf.importing.columns import split_unit, understood
@@ -25,7 +25,31 @@ _RATE = re.compile(
     re.IGNORECASE,
 )
 _VALUE = re.compile(r"(?P<value>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[a-zµμA-Z/]*)")
+_NUMERAL = re.compile(r"[+-]?\d+(?:[.,]\d*)?(?:[eE][+-]?\d+)?")
+_EXACT = 16
+"""Digits of a number that a float keeps."""
+LABEL = "label of"
+"""Columns that hold the name of the next column in each row."""
 _HZ = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "sps": 1.0}
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of several tables next to each other.
+
+    Attributes
+    ----------
+    columns
+        Places of its columns, the first being 0.
+    clock
+        Place of its column of times; None where it has none.
+    rate_hz
+        Samples a second, where the file states it.
+    """
+
+    columns: tuple[int, ...]
+    clock: int | None
+    rate_hz: float | None = None
 
 
 @dataclass(frozen=True)
@@ -36,6 +60,10 @@ class Layout:
     ----------
     rate_hz
         Samples a second, where the lines before the header state it.
+    parts
+        Tables next to each other; empty where all columns share their rows.
+    start
+        Date of the first instant, where the lines before the header state it.
     """
 
     names: tuple[str, ...]
@@ -43,6 +71,8 @@ class Layout:
     first: int
     rate_hz: float | None = None
     headless: bool = False
+    parts: tuple[Part, ...] = ()
+    start: str | None = None
 
 
 def lay_out(
@@ -74,6 +104,8 @@ def lay_out(
     if not wide:
         raise InputError(problem="holds no rows of numbers", mend="name a file with samples")
     width = Counter(wide[len(wide) // 2 :]).most_common(1)[0][0]
+    # Of tables next to each other the shorter ones end before the others do.
+    width = max([width, *(len(cells) for _, cells in rows if _side_by_side(cells))])
     first = _first_sample(rows, width, numeric, counts)
     if first is None:
         raise InputError(problem="holds no rows of numbers", mend="name a file with samples")
@@ -95,11 +127,15 @@ def lay_out(
         if found is not None:
             unit_cells, heads = found[1], [row for row in heads if row is not found]
     number = rows[first][0]
+    labels = _labels([cells for _, cells in rows[first : first + 3]])
+    if header is None and labels is not None:
+        return Layout(labels, _padded(unit_cells, len(labels)), number, rate)
     if header == 0 or (header is None and not heads):
         names = tuple(f"column {i}" for i in range(1, width + 1))
         return Layout(names, _padded(unit_cells, width), number, rate, headless=True)
     names_row = _row(above, header) if header else heads[-1][1]
     named = _padded(names_row, width)
+    parts = _side_by_side(named)
     groups = [cells for n, cells in heads if header is None and cells is not names_row]
     if groups and len({n for n in named if n}) < sum(map(bool, named)):
         named = tuple(
@@ -107,7 +143,69 @@ def lay_out(
             for group, name in zip(_carried(groups[-1], width), named, strict=True)
         )
     cleaned = tuple(_bare_unit(cell) for cell in _padded(unit_cells, width))
-    return Layout(tuple(unique(named)), cleaned, number, rate)
+    return Layout(tuple(unique(named)), cleaned, number, rate, parts=parts)
+
+
+def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
+    """Tables next to each other: each begins with a column of times, named as the first one is."""
+    clocks = [at for at, name in enumerate(names) if name == names[0]]
+    ends = [*clocks[1:], len(names)]
+    apart = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
+    if len(clocks) < 2 or not apart or understood(names[0]).kind != "time":
+        return ()
+    return tuple(Part(tuple(range(at, end)), at) for at, end in zip(clocks, ends, strict=True))
+
+
+def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part, ...]:
+    """Tables next to each other, those with the same times throughout as one.
+
+    Parameters
+    ----------
+    rows
+        Cells of every row of samples; read where more than one table has times only.
+    """
+    clocks = [part.clock for part in parts if part.clock is not None]
+    if len(clocks) < len(parts) or len(parts) < 2:
+        return parts
+    groups = [list(range(len(parts)))]
+    for cells in rows:
+        if all(cells[clocks[i]] == cells[clocks[group[0]]] for group in groups for i in group):
+            continue
+        apart = list[list[int]]()
+        for group in groups:
+            by_time: dict[float | str, list[int]] = {}
+            for i in group:
+                by_time.setdefault(_instant(cells[clocks[i]]), []).append(i)
+            apart += by_time.values()
+        groups = apart
+    found = []
+    for group in groups:
+        own = [at for i in group for at in parts[i].columns if at != clocks[i]]
+        found.append(replace(parts[group[0]], columns=(clocks[group[0]], *own)))
+    return tuple(found)
+
+
+def _instant(cell: str) -> float | str:
+    """A time to compare: `0` is `0.0`."""
+    cell = cell.strip()
+    return float(cell.replace(",", ".")) if len(cell) < _EXACT and _is_numeral(cell) else cell
+
+
+def _labels(rows: Sequence[list[str]]) -> tuple[str, ...] | None:
+    """Names of columns whose values have their name in front of them, `x 1.5 y 2.5`."""
+    words = {tuple(cells[::2]) for cells in rows}
+    values = [cell for cells in rows for cell in cells[1::2]]
+    if len(words) != 1 or any(len(cells) % 2 for cells in rows) or not any(words):
+        return None
+    (names,) = words
+    if any(_is_numeral(name) for name in names) or not all(map(_is_numeral, values)):
+        return None
+    columns = [text for name in unique(names) for text in (f"{LABEL} {name}", name)]
+    return tuple(columns)
+
+
+def _is_numeral(cell: str) -> bool:
+    return _NUMERAL.fullmatch(cell) is not None
 
 
 def _first_sample(

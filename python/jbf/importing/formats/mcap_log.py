@@ -41,7 +41,7 @@ class McapSource(MessageSource):
         if not self.tables:
             held = f" (it holds {', '.join(sorted(others))})" if others else ""
             problem = f"holds no messages of ROS 2 or JSON with numbers{held}"
-            raise InputError(file=path, problem=problem, mend="name another file")
+            raise InputError(file=path, problem=problem, mend="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
         """The messages of a topic."""

@@ -91,13 +91,60 @@ FORMATS = (
 )
 
 
+@dataclass(frozen=True)
+class Unread:
+    """A format that is recognised, and not read.
+
+    Attributes
+    ----------
+    name
+        As a person calls it.
+    mend
+        What to do with the file.
+    suffixes, magic
+        Ends of its file names, in small letters, and how its files begin.
+    """
+
+    name: str
+    mend: str
+    suffixes: tuple[str, ...] = ()
+    magic: tuple[bytes, ...] = ()
+
+
+UNREAD = (
+    Unread("a TwinCAT Scope recording", "export it as CSV", (".svdx", ".svd", ".svb", ".tcscopex")),
+    Unread(
+        "an Excel workbook of before 2007",
+        "save it as .xlsx",
+        (".xls",),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",),
+    ),
+    Unread("an OpenDocument spreadsheet", "save it as .xlsx", (".ods",)),
+    Unread(
+        "a bus log of Vector", "convert it to MDF4 with its signals decoded", (".blf",), (b"LOGG",)
+    ),
+    Unread("a SoMat recording", "export it as CSV", (".sie",)),
+    Unread("an imc FAMOS file", "export it as MDF4 or CSV", (".raw",), (b"|CF,",)),
+    Unread("a Dewesoft recording", "export it as MDF4 or CSV", (".dxd", ".dxz", ".d7d")),
+    Unread("a DIAdem file", "save it as TDMS", (".tdm", ".tdx")),
+    Unread("a measurement of TIA Portal", "export it as CSV", (".ttrec", ".ttrecx")),
+    Unread("a session of Simulink's Data Inspector", "export it as a MAT file", (".mldatx",)),
+    Unread("a PX4 log", "convert it with ulog2csv", (".ulg",), (b"ULog\x01\x12\x35",)),
+    Unread("an ArduPilot log", "convert it with mavlogdump.py", (), (b"\xa3\x95\x80\x80",)),
+    Unread("an oscilloscope's waveform", "save it as CSV", (".isf", ".wfm", ".wdf", ".wvf")),
+    Unread("an Arrow file", "save it as Parquet", (".feather", ".arrow"), (b"ARROW1",)),
+    Unread("a Python pickle", "save it as Parquet or CSV", (".pkl", ".pickle")),
+    Unread("an archive", "unpack it", (".zip", ".7z", ".tar", ".rar"), (b"7z\xbc\xaf", b"Rar!")),
+)
+
+
 def format_of(path: Path) -> Format:
     """The format of a file; text where nothing says otherwise.
 
     Raises
     ------
     InputError
-        The file cannot be read.
+        The file cannot be read, or is of a format that is not read.
     """
     if os.path.isdir(path):
         # ROS 2 writes a folder.
@@ -111,6 +158,10 @@ def format_of(path: Path) -> Format:
         if any(begin.startswith(magic, known.magic_at) for magic in known.magic):
             return known
     suffix = path.suffix.lower()
+    for unread in UNREAD:
+        if suffix in unread.suffixes or begin.startswith(unread.magic):
+            problem = f"is {unread.name}{f' ({suffix})' if suffix in unread.suffixes else ''}"
+            raise InputError(file=path, problem=f"{problem}, which is not read", mend=unread.mend)
     by_name = next((f for f in FORMATS if suffix in f.suffixes), None)
     return FORMATS[-1] if by_name is None else by_name
 

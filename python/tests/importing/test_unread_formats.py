@@ -1,0 +1,43 @@
+"""A file of a known format that is not read is refused with what to do."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from jbf.errors import InputError
+from jbf.importing.formats.registry import FORMATS, UNREAD, format_of
+
+
+@pytest.mark.parametrize("unread", UNREAD, ids=lambda unread: unread.name)
+def test_unread_format_is_named_with_a_remedy(unread: object, tmp_path: Path) -> None:
+    known = next(u for u in UNREAD if u is unread)
+    paths = [tmp_path / f"a{suffix}" for suffix in known.suffixes]
+    for path in paths:
+        path.write_bytes(b"\x00\x01\x02\x03")
+    for number, magic in enumerate(known.magic):
+        paths.append(tmp_path / f"nameless{number}")
+        paths[-1].write_bytes(magic + bytes(600))
+    for path in paths:
+        with pytest.raises(InputError) as refused:
+            format_of(path)
+        line = str(refused.value)
+        assert line.startswith(f"{path}: is {known.name}")
+        assert line.endswith(f"which is not read; {known.mend}")
+        assert "\n" not in line
+
+
+def test_no_suffix_is_both_read_and_unread() -> None:
+    read = {suffix for known in FORMATS for suffix in known.suffixes}
+    assert not read & {suffix for unread in UNREAD for suffix in unread.suffixes}
+
+
+def test_look_at_an_unread_format_exits_with_2_and_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "axis.svdx"
+    path.write_bytes(b"\x00\x01")
+    command = [sys.executable, "-m", "jbf", "import", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "TwinCAT Scope recording (.svdx), which is not read; export it as CSV" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["axis.svdx"]

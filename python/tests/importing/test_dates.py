@@ -1,6 +1,7 @@
 """Dates and times of day as loggers write them, against the calendar of Python."""
 
 from datetime import datetime, timedelta, timezone
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from jbf.importing.formats.dates import (
     is_instant,
     seconds_since,
 )
+from jbf.importing.formats.registry import open_source
 
 EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
 MOMENTS = st.datetimes(datetime(1970, 1, 2), datetime(2099, 12, 31))
@@ -144,3 +146,14 @@ def test_time_of_day_without_a_date_is_not_written_as_a_date() -> None:
 
 def test_year_of_two_digits_in_a_date_is_read_as_a_year_after_2000() -> None:
     assert parsed("24.11.26") == ns(datetime(2026, 11, 24))
+
+
+def test_file_times_of_windows_keep_their_ticks(tmp_path: Path) -> None:
+    first = 132_959_733_843_760_001
+    lines = ["stamp;force [N]", *(f"{first + 12_345 * k};{k}.5" for k in range(50))]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    with open_source(tmp_path / "a.csv") as source:
+        (table,) = source.tables
+        head = source.head(table)
+    assert table.start == "2022-05-02T13:56:24.376000100"
+    np.testing.assert_allclose(head["stamp"], 12_345e-7 * np.arange(50), rtol=0, atol=1e-15)

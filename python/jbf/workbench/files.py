@@ -18,7 +18,7 @@ DEPTH = 4
 _LARGEST_TOML = 1 << 20
 _RIG = {"bearing", "lubricant", "load", "drive"}
 _RECORDINGS = {".mat", ".parquet", ".pq", ".tdms", ".mf4", ".mdf", ".mcap", ".bag", ".h5", ".hdf5",
-               ".xlsx", ".txt", ".tsv", ".dat", ".log"}  # fmt: skip
+               ".xlsx", ".txt", ".tsv", ".dat", ".log", ".wpilog"}  # fmt: skip
 _UPLOADS = _RECORDINGS | {".csv", ".toml"}
 
 

@@ -117,6 +117,38 @@ def test_twincat_export_without_timelines_takes_rates_from_the_sample_times(tmp_
     assert rates == {"Position": 1000.0, "Speed": 1000.0, "Force": 200.0}
 
 
+def test_twincat_export_whose_samples_lack_the_columns_of_times_is_read(tmp_path: Path) -> None:
+    write(tmp_path / "a.csv", timelines="none")
+    lines = (tmp_path / "a.csv").read_text().splitlines()
+    first = next(at for at, line in enumerate(lines) if line.startswith("Unit")) + 1
+    lines[first:] = [line.removeprefix(";") for line in lines[first:]]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    with open_source(tmp_path / "a.csv") as source:
+        fast, slow = source.tables
+        speed, force = source.head(fast)["Speed"], source.head(slow)["Force"]
+    assert (fast.rate_hz, slow.rate_hz) == (1000.0, 200.0)
+    np.testing.assert_array_equal(speed, VALUES["Speed"])
+    np.testing.assert_array_equal(force[np.isfinite(force)], VALUES["Force"])
+
+
+def test_twincat_channel_that_begins_later_keeps_its_times(tmp_path: Path) -> None:
+    lines = [
+        "Name;a",
+        "",
+        "Name;A;Name;B",
+        "SampleTime[ms];1;SampleTime[ms];1",
+        "Port;1;Port;1",
+        "",
+    ]
+    lines += [f"{k};{2 * k}" + (f";{k + 0.5};{3 * k}" if k > 9 else "") for k in range(50)]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    with open_source(tmp_path / "a.csv") as source:
+        found = channels(source)
+    np.testing.assert_array_equal(found["A"][1], 2.0 * np.arange(50))
+    np.testing.assert_array_equal(found["B"][0], np.arange(10, 50) + 0.5)
+    np.testing.assert_array_equal(found["B"][1], 3.0 * np.arange(10, 50))
+
+
 def test_twincat_export_of_the_older_head_is_read(tmp_path: Path) -> None:
     write(tmp_path / "a.csv", heads=("StartRecord", "EndRecord"), eof=False)
     with open_source(tmp_path / "a.csv") as source:

@@ -1,6 +1,6 @@
 """Exports of TwinCAT Scope: rows that describe the channels, each with a key in front.
 
-The key stands again above each column of times: `Name;POS;VEL;Name;TRQ` are two tables next to each
+The key is repeated above each column of times: `Name;POS;VEL;Name;TRQ` are two tables next to each
 other, POS and VEL with the times of the first column, TRQ with those of the fourth. Without columns
 of times the sample time of each channel is its clock.
 """
@@ -32,11 +32,13 @@ def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
     """
     named = None
     described: dict[str, list[str]] = {}
-    samples: Row | None = None
+    samples: list[Row] = []
     start = None
     for number, cells in rows:
         key = cells[0].strip().lower()
-        if key == NAME and not described:
+        if samples:
+            samples.append((number, cells))
+        elif key == NAME and not described:
             named = cells
         elif key in KEYS and named is not None:
             described.setdefault(key, cells)
@@ -45,52 +47,51 @@ def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
         elif key in _STARTS and len(cells) > 1 and is_file_time(cells[1]):
             start = as_date(int(Instants().parse(cells[1:2], [False])[0]))
         elif len(described) >= FEWEST:
-            samples = (number, cells)
-            break
-    if named is None or samples is None:
+            samples.append((number, cells))
+    if named is None or not samples:
         return None
     return _layout(named, described, samples, start)
 
 
 def _layout(
-    named: Sequence[str], described: dict[str, list[str]], samples: Row, start: str | None
+    named: Sequence[str], described: dict[str, list[str]], samples: Sequence[Row], start: str | None
 ) -> Layout:
     key = named[0]
     clocks = [at for at, cell in enumerate(named[:-1]) if cell in (key, "") and named[at + 1]]
     channels = [at for at, cell in enumerate(named) if at not in clocks and cell]
-    first, cells = samples
-    filled = len(cells) if any(cells[len(named) :]) else len(cells[: len(named)])
-    without = filled <= len(channels) < len(named) or not any(
-        cells[at] for at in clocks if at < len(cells)
-    )
-    shift = len(named) - len(channels) if filled <= len(channels) else 0
     periods = _cells(described, PERIOD, named, clocks)
-    parts: list[Part] = []
-    if without:
-        by_period: dict[str, list[int]] = {}
-        for at in channels:
-            by_period.setdefault(periods[at], []).append(at)
-        parts = [Part(tuple(own), None, _rate(period)) for period, own in by_period.items()]
+    units = [_unit(cell) for cell in _cells(described, UNIT, named, clocks)]
+    names = list(named)
+    for at in clocks:
+        names[at], units[at] = TIME, TIME_UNIT
+    rows = [cells for _, cells in samples]
+    absent = _widest(rows) == len(channels) < len(named)
+    parts = []
+    if absent or not any(row[at] for row in rows for at in clocks if at < len(row)):
+        if absent:
+            # The samples have no columns of times, unlike the rows that describe the channels.
+            names, units, periods = ([r[at] for at in channels] for r in (names, units, periods))
+            channels = list(range(len(channels)))
+        for period in dict.fromkeys(periods[at] for at in channels):
+            own = tuple(at for at in channels if periods[at] == period)
+            parts.append(Part(own, None, _rate(period)))
     else:
-        ends = [*clocks[1:], len(named)]
-        for clock, end in zip(clocks, ends, strict=True):
-            own = [at for at in channels if clock < at < end]
-            parts.append(Part((clock, *own), clock))
-    names = [TIME if at in clocks else named[at] for at in range(len(named))]
-    units = _cells(described, UNIT, named, clocks)
-    stated = [TIME_UNIT if at in clocks else _unit(units[at]) for at in range(len(named))]
-    if shift:
-        # The columns of times are not there at all.
-        place = {at: k for k, at in enumerate(channels)}
-        parts = [Part(tuple(place[at] for at in p.columns), None, p.rate_hz) for p in parts]
-        names, stated = [names[at] for at in channels], [stated[at] for at in channels]
-    return Layout(tuple(unique(names)), tuple(stated), first, parts=tuple(parts), start=start)
+        for clock, end in zip(clocks, [*clocks[1:], len(named)], strict=True):
+            parts.append(Part((clock, *(at for at in channels if clock < at < end)), clock))
+    return Layout(
+        tuple(unique(names)), tuple(units), samples[0][0], parts=tuple(parts), start=start
+    )
+
+
+def _widest(samples: Sequence[Sequence[str]]) -> int:
+    """Cells of the longest row, without empty ones at its end."""
+    return max(max((at for at, cell in enumerate(row, 1) if cell), default=0) for row in samples)
 
 
 def _cells(
     described: dict[str, list[str]], key: str, named: Sequence[str], clocks: Sequence[int]
 ) -> list[str]:
-    """The cells of a key's row; empty where its keys do not stand where those of the names do."""
+    """Cells of a key's row; empty where its keys are not where those of the names are."""
     cells = described.get(key, [])
     aligned = all(at < len(cells) and cells[at].lower() in (key, "") for at in clocks)
     return [*cells, *[""] * len(named)][: len(named)] if aligned else [""] * len(named)

@@ -110,7 +110,7 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
     entries = below if signal is None else [signal, *below]
     if own is not None:
         if any(entry.clock is own for entry in entries):
-            # What stands next to a clock and has its length was sampled by it.
+            # Vectors next to a clock, of its length, were sampled by it.
             entries = [
                 replace(entry, clock=own)
                 if entry.clock is None and entry.samples.rows == own.samples.rows

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
@@ -13,6 +16,7 @@ from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.machine import machine_of
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
 from jbf.diagnosis.reached import Reached
@@ -20,7 +24,7 @@ from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import Selected, select, step
 from jbf.diagnosis.second_look import second_look
-from jbf.diagnosis.selection import Names, weights
+from jbf.diagnosis.selection import Names, start_model, weights
 from jbf.diagnosis.shifted import DELAY
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
@@ -29,6 +33,7 @@ from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
+from jbf.estimation.refine import motion_weights
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
@@ -125,6 +130,9 @@ def _diagnose(
     corrected = _without_bias(candidates, ())
     if corrected is not None:
         candidates = Candidates(corrected, law, clock, policy, progress, candidates)
+    certain = _weighed_by_motion(candidates)
+    if certain is not None:
+        candidates = Candidates(certain, law, clock, policy, progress, candidates)
     before = _before(candidates)
     selected = select(candidates, before.noise_n)
     for _ in range(policy.most_looks):
@@ -156,23 +164,25 @@ def _diagnose(
     present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
     doubted = confounders(candidates, present, remains) if remains else ()
+    machine = machine_of(candidates, present)
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
     if doubted and not _remainder(candidates, named):
         # What some runs asked for and others did not, nothing asks for once it is gone.
         present, remains = named, refused
-    posterior = weights(candidates, named)
+    missing = tuple(name for name in named if name not in machine)
+    posterior = {name: w for name, w in weights(candidates, named).items() if name in missing}
     equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     kept = best_predicting(candidates, present, named)
     if kept != steps[-1].effects:
         steps.append(step(candidates, kept, before.noise_n, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others}
-    answer = verdict(effects=len(named), alternatives=len(tied), remains=bool(remains))
+    answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
     strengths = () if remains else power(candidates, present)
     hidden = unseen(candidates, present, strengths)
     instead = None
-    if not laws and (len(named) > 1 or remains):
+    if not laws and (len(missing) > 1 or remains):
         instead = simpler_law(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
@@ -182,7 +192,8 @@ def _diagnose(
         proposal = propose(candidates, rivals, limits)
     return Diagnosis(
         verdict=answer,
-        effects=named,
+        effects=missing,
+        machine=machine_of(candidates, kept),
         alternatives=equal,
         weights=posterior,
         steps=tuple(steps),
@@ -250,9 +261,23 @@ def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:
     return without_bias(problem, solution, candidates.policy)
 
 
+def _weighed_by_motion(candidates: Candidates) -> Campaign | None:
+    """The campaign of a drive with weights by the errors of its motion; None where these are
+    negligible."""
+    if candidates.campaign.rig.drive is None:
+        return None
+    base = start_model(candidates)
+    weights = motion_weights(candidates.fitted(base).problem, candidates.converge(base))
+    if weights is None:
+        return None
+    samples, ones = candidates.campaign.samples, [np.ones(len(w)) for w in weights]
+    return replace(candidates.campaign, samples=samples.weighed(weights, ones, samples.between))
+
+
 def _before(candidates: Candidates) -> Comparison:
-    """The law alone, beside the records."""
-    bare = finish(candidates.fitted(()).problem, candidates.converge(()))
+    """The law with its machine, next to the records."""
+    base = start_model(candidates)
+    bare = finish(candidates.fitted(base).problem, candidates.converge(base))
     return compare_prepared(bare.model, candidates.campaign)
 
 

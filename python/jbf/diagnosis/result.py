@@ -29,6 +29,9 @@ class Diagnosis(Result):
     ----------
     verdict
         `adequate`, `missing`, `ambiguous` or `unexplained`.
+    machine
+        Terms of a drive's own machine that the runs need: inertia or mass, weight, offset. They are
+        part of the model from the start, and no missing effects.
     effects
         What was added and rests on its own evidence, in the order found.
     alternatives
@@ -95,6 +98,7 @@ class Diagnosis(Result):
     simpler_law: LawTried | None = None
     power: tuple[Power, ...] = ()
     weights: dict[str, dict[str, float]] = field(default_factory=dict)
+    machine: tuple[str, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -106,6 +110,7 @@ class Diagnosis(Result):
         return {
             **self.model.told_units(),
             "verdict": self.verdict,
+            "machine": list(self.machine),
             "effects": list(self.effects),
             "alternatives": {k: list(v) for k, v in self.alternatives.items()},
             "weights": {k: dict(v) for k, v in self.weights.items()},

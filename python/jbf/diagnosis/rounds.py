@@ -10,9 +10,17 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
-from jbf.diagnosis.selection import Follow, Names, Round, reconsider, still_needed, try_candidates
+from jbf.diagnosis.machine import TERMS
+from jbf.diagnosis.selection import (
+    Follow,
+    Names,
+    Round,
+    reconsider,
+    start_model,
+    still_needed,
+    try_candidates,
+)
 from jbf.diagnosis.shifted import DELAY
-from jbf.diagnosis.which_law import NUISANCES
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.run_start import settled_again
@@ -46,13 +54,14 @@ def select(
     start: Selected | None = None,
     follow: Follow = "promising",
 ) -> Selected:
-    """Rounds until no candidate leads, from the law alone or from effects that were there; in the
-    first of them `follow` says which candidates are fitted."""
-    present: Names = ()
+    """Rounds until no candidate leads, from the law with its machine or from effects that were
+    there; in the first of them `follow` says which candidates are fitted."""
     steps: list[Step] = []
     if start is not None and start.present:
         present = still_needed(candidates, start.present)
         steps = start.steps[:-1]
+    else:
+        present = start_model(candidates)
     visited = {frozenset(present)}
     while True:
         candidates.converge(present)
@@ -90,7 +99,7 @@ def _machine_together(candidates: Candidates, present: Names) -> Names:
     The residual of a model that lacks one of them may be as smooth as the motion, so that few of
     its samples are independent and a single effect has no evidence. With all of them it is noise.
     """
-    missing = [n for n in NUISANCES if n in candidates.names and n not in present]
+    missing = [n for n in TERMS if n in candidates.names and n not in present]
     missing = [name for name in missing if may_come(name, present)]
     if len(missing) < 2 or len(present) + len(missing) > candidates.policy.most_effects:
         return present

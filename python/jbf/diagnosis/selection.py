@@ -18,6 +18,7 @@ from scipy import special
 from jbf.diagnosis.candidates import Candidates, many_peaks
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
 from jbf.diagnosis.ledger import Outcome, Trial
+from jbf.diagnosis.machine import TERMS, machine_of
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
@@ -202,6 +203,12 @@ def still_needed(candidates: Candidates, present: Names) -> Names:
     return current
 
 
+def start_model(candidates: Candidates) -> Names:
+    """The terms of a drive's machine that these runs need, estimated together with the law."""
+    possible = tuple(name for name in TERMS if name in candidates.names)
+    return still_needed(candidates, machine_of(candidates, possible))
+
+
 def reconsider(
     candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
 ) -> Names:
@@ -232,6 +239,8 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         if evidence(candidates, whole, simpler) < 0:
             current = rest
             continue
+        if name in machine_of(candidates, current):
+            continue  # inertia and weight are no stand-ins for an effect
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
             if other in current or other in unconfirmed or not may_come(other, rest):

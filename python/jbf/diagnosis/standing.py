@@ -16,6 +16,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.machine import machine_of
 from jbf.diagnosis.verdict import name_stands
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 
@@ -35,7 +36,10 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     share, policy = effective_share(whole), candidates.policy
     largest = max((r.share for r in remains), default=0.0)
     found = []
+    machine = machine_of(candidates, present)
     for name in present:
+        if name in machine:
+            continue
         rest = candidates.converge(tuple(e for e in present if e != name))
         gain = likelihood_gain(whole, rest) * share
         own = disagreement(problem, whole, name)

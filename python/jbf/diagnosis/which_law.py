@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.machine import TERMS
 from jbf.diagnosis.policy import Policy
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
@@ -31,8 +32,6 @@ from jbf.records.rig import Rig
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-NUISANCES = ("sensor_offset", "inertia_leak", "gravity")
-"""Effects that are no friction, and that no law can say."""
 LAW_SHARE = 0.25
 """Of the work of a diagnosis, what one law may take to be compared."""
 STRETCHES = 40
@@ -126,7 +125,7 @@ def _within(campaign: Campaign, law: str, clock: Clock) -> list[Array] | None:
     own = replace(campaign, work=campaign.work.part(LAW_SHARE))
     try:
         candidates = Candidates(settled_campaign(own, law, clock), law, clock)
-        beside = tuple(effect for effect in NUISANCES if effect in candidates.names)
+        beside = tuple(effect for effect in TERMS if effect in candidates.names)
         return left_out(candidates, beside)
     except Unfinished:
         return None
@@ -172,7 +171,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     None where there is none. What several effects mend, one law may say; those that are no friction
     stay beside it."""
     policy, whole = candidates.policy, candidates.campaign
-    kept = tuple(effect for effect in effects if effect in NUISANCES)
+    kept = tuple(effect for effect in effects if effect in TERMS)
     most = len(candidates.fitted(effects).problem.open)
     left, names, counts = [left_out(candidates, effects)], [""], [most]
     for name in followed(whole, clock)[0]:

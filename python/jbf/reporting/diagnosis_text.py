@@ -17,6 +17,7 @@ from jbf.reporting.words import (
     law_words,
     noise_words,
     number,
+    step_name,
     verdict_sentence,
 )
 
@@ -82,7 +83,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"    noise floor {noise_words(bare.noise_n, unit)}"
         + (", estimated from the records alone" if bare.noise_n > 0.0 else ""),
         "",
-        f"The {BARE} ({law_words(model, ', ')})",
+        f"The {step_name(diagnosis, 0)} ({law_words(model, ', ')})",
         f"    misses by {number(bare.rms_n)} {unit} RMS, "
         f"{against_noise(bare.rms_n, bare.noise_n)}"
         + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),

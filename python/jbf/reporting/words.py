@@ -150,9 +150,12 @@ def _found(diagnosis: Diagnosis, place: str) -> str:
     added = listed(diagnosis.effects)
     fall = f"the held-out error falls from {number(first.holdout_rms_n)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":
+        law = f"the bare {diagnosis.model.law} law"
+        if diagnosis.machine:
+            terms = listed(diagnosis.machine)
+            law = f"the {diagnosis.model.law} law with the machine's own {terms}"
         return (
-            f"Nothing is missing: the bare {diagnosis.model.law} law predicts runs that it was "
-            f"not fitted to within {reached}."
+            f"Nothing is missing: {law} predicts runs that it was not fitted to within {reached}."
         )
     if diagnosis.verdict == "missing":
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."

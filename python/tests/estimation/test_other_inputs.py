@@ -56,8 +56,8 @@ def test_free_swing_without_force_gives_friction_and_weight(tmp_path: Path) -> N
     files = swings(tmp_path, [1.5, -1.2, 2.0, -1.8], seed=21)
     found = import_files(files, coast_map())
     result = diagnose(found.rig, found.runs, law="coulomb")
-    assert result.verdict == "missing"
-    assert result.model.effects == ("gravity",)
+    assert result.verdict == "adequate"
+    assert result.machine == ("gravity",)
     parameters = result.model.parameters
     for name, true in {"F_c_n": COULOMB, "F_v_n_s_m": VISCOUS, "gravity.G_n": WEIGHT}.items():
         parameter = parameters[name]

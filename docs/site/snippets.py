@@ -126,7 +126,8 @@ def _joint(folder: Path) -> None:
 
     turns, motor_n_m_a = 50.0, 0.08
     (folder / "joint").mkdir()
-    for r in axis_campaign(14, ("gravity", "inertia_leak"), swing=8.0)[0]:
+    hidden = ("gravity", "inertia_leak", "viscous_thinning")
+    for r in axis_campaign(14, hidden, swing=8.0)[0]:
         motor_rpm = r.velocity_m_s * turns * 60.0 / (2.0 * np.pi)
         current_a = r.force_n / (turns * motor_n_m_a)
         rows = np.column_stack((r.time_s, r.path, motor_rpm, current_a))

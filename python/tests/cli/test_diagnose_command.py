@@ -28,14 +28,14 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     options = ["--out", str(model), "--report", str(page)]
     result = diagnosed(slide, tmp_path / "d.json", *options)
     printed = capsys.readouterr()
-    assert printed.out.startswith("Verdict: missing")
+    assert printed.out.startswith("Verdict: adequate")
     assert printed.err == ""
-    assert result["verdict"] == "missing"
-    assert result["effects"] == ["inertia_leak"]
+    assert result["verdict"] == "adequate"
+    assert (result["machine"], result["effects"]) == (["inertia_leak"], [])
     assert set(result) >= {"alternatives", "failures", "unexplained", "next_experiment"}
     assert set(result["steps"][0]) >= {"effects", "rms_n", "holdout_rms_n", "noise_n"}
     assert jbf.Model.load(model).effects == ("inertia_leak",)
-    assert "Diagnosis: missing" in page.read_text()
+    assert "Diagnosis: adequate" in page.read_text()
     level = result["level"]
     assert level["false_alarms"] == 0.01
     assert level["blocks"] > 0

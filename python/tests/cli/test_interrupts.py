@@ -128,4 +128,4 @@ def test_interrupted_diagnosis_prints_model_if_no_file_is_given(capsys: Capture)
     assert main(["diagnose", "runs", "--law", "coulomb", "--effects-from", "own.py"]) == 130
     printed = capsys.readouterr()
     assert "F_c" in printed.out
-    assert "best so far is coulomb, RMS" in printed.err
+    assert "best so far is coulomb" in printed.err

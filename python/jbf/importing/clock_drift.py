@@ -1,0 +1,365 @@
+"""Refine the offset between two clocks to a fraction of a sample, and estimate their drift.
+
+Notes
+-----
+The time of the main record is t + offset + drift (t - pivot), where t is that of the other one. The
+signal with fewer samples is a linear function of the other one, interpolated there. Offset, drift,
+gain and zero are estimated together by least squares (Gauss-Newton). Their covariance is that of
+clustered residuals (the sandwich estimator, with windows as clusters), since residuals are
+correlated. A drift is kept where it is significant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.importing.clock_offset import MEND, Offset, span, usual_step
+from jbf.importing.spool import Stream
+
+Array = npt.NDArray[np.float64]
+
+MOST_DRIFT = 3e-4
+"""Largest drift that is searched: several times that of two quartz clocks."""
+SIGNIFICANT = 5.0
+"""Standard errors by which a drift must differ from zero."""
+LEAST_WINDOWS = 5.0
+"""Effective number of windows that a drift needs."""
+SMALLEST = 0.02
+"""Least effect of a drift over the record, in steps of the slower record."""
+WITHIN = 0.5
+"""Least absolute correlation within windows: unrelated slow records correlate as wholes."""
+WINDOWS, MOST_SLOW, MOST_FAST = 24, 2_000, 200_000
+"""Windows, and the largest number of samples of either record in each."""
+TRIED = 10_000_000
+"""Samples that are evaluated on the lattice of trial offsets and drifts."""
+LATTICE = 8
+"""Trial offsets in a step of the slower record."""
+ITERATIONS = 20
+
+
+@dataclass(frozen=True)
+class ClockFit:
+    """A clock relative to that of the main record.
+
+    Attributes
+    ----------
+    offset_s, drift, pivot_s
+        As in the Notes of this module; the pivot is the middle of the time that both cover.
+    offset_std_s
+        Standard error of the offset, s.
+    correlation
+        Coefficient of correlation of the two records of the signal after the correction.
+    """
+
+    offset_s: float
+    drift: float
+    pivot_s: float
+    offset_std_s: float
+    correlation: float
+
+
+@dataclass(frozen=True)
+class _Window:
+    """Samples of the slower record, and the faster record around them with its slope."""
+
+    slow_s: Array
+    slow: Array
+    fast_s: Array
+    fast: Array
+    slope: Array
+
+    def interpolated(self, at: Array) -> tuple[Array, Array]:
+        """The faster record and its slope at some instants, by cubics (Hermite)."""
+        left = np.clip(np.searchsorted(self.fast_s, at, side="right") - 1, 0, len(self.fast_s) - 2)
+        width = self.fast_s[left + 1] - self.fast_s[left]
+        u = np.clip((at - self.fast_s[left]) / width, 0.0, 1.0)
+        rise = self.fast[left + 1] - self.fast[left]
+        low, high = self.slope[left] * width, self.slope[left + 1] * width
+        bend, twist = 3.0 * rise - 2.0 * low - high, low + high - 2.0 * rise
+        value = self.fast[left] + u * (low + u * (bend + u * twist))
+        return value, (low + u * (2.0 * bend + 3.0 * u * twist)) / width
+
+    def thinned(self, by: int) -> _Window:
+        """Every `by`-th sample of the slower record."""
+        return replace(self, slow_s=self.slow_s[::by], slow=self.slow[::by])
+
+
+def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
+    """Estimate offset and drift from a coarse offset.
+
+    Parameters
+    ----------
+    main, other
+        Streams with the columns time, s, and signal.
+
+    Raises
+    ------
+    InputError
+        The records are alike in their slow changes only, as unrelated ones are by chance.
+    """
+    return _Problem(main, other, coarse).solved()
+
+
+class _Problem:
+    """The least-squares problem of one pair of records."""
+
+    def __init__(self, main: Stream, other: Stream, coarse: Offset) -> None:
+        self.coarse = coarse
+        self.main_is_slow = usual_step(other) < usual_step(main)
+        self.step = max(usual_step(main), usual_step(other))
+        (first_a, last_a), (first_b, last_b) = span(main), span(other)
+        first = max(first_b, first_a - coarse.offset_s)
+        last = min(last_b, last_a - coarse.offset_s)
+        whole = coarse.pivot_s == 0.5 * (first_b + last_b)
+        self.pivot_s = 0.5 * (first + last) if whole else coarse.pivot_s
+        self.first_s, self.last_s = first, last
+        self.reach_s = coarse.lobe_s + MOST_DRIFT * (last - first)
+        self.windows = self._windows(main, other)
+
+    def _windows(self, main: Stream, other: Stream) -> list[_Window]:
+        slow, fast = (main, other) if self.main_is_slow else (other, main)
+        to_slow = self.coarse.offset_s if self.main_is_slow else 0.0
+        to_fast = self.coarse.offset_s - 2.0 * to_slow
+        duration = self.last_s - self.first_s
+        margin = min(self.reach_s + 2.0 * self.step, 0.05 * duration)
+        first, last = self.first_s + margin + to_slow, self.last_s - margin + to_slow
+        count = int(np.clip(duration / (20.0 * self.step), 1, WINDOWS))
+        edges = np.linspace(first, last, count + 1)
+        longest = min(MOST_SLOW * self.step, MOST_FAST * usual_step(fast))
+        width = 2 * max(int(self.coarse.lobe_s / usual_step(fast)) // 2, 1) + 1
+        found = []
+        for low, high in pairwise(edges.tolist()):
+            half = 0.5 * min(high - low, longest)
+            middle = 0.5 * (low + high)
+            rows = _between(slow, middle - half, middle + half)
+            reach = half + self.reach_s + 2.0 * self.step
+            around = _between(fast, middle + to_fast - reach, middle + to_fast + reach)
+            if len(rows) > 1 and len(around) > 4:
+                smooth = _smoothed(around[:, 1], width)
+                slope = np.gradient(smooth, around[:, 0])
+                found.append(_Window(rows[:, 0], rows[:, 1], around[:, 0], smooth, slope))
+        return found
+
+    def solved(self) -> ClockFit:
+        """The estimate."""
+        start = self._start()
+        solution = self._descended(start, with_drift=True)
+        drift, error, clusters = solution[1], *self._drift_error(solution)
+        kept = (
+            clusters >= LEAST_WINDOWS
+            and abs(drift) > SIGNIFICANT * error
+            and abs(drift) * (self.last_s - self.first_s) > SMALLEST * self.step
+        )
+        if not kept:
+            solution = self._descended((start[0], 0.0), with_drift=False)
+        offset = self._centred(*solution)
+        within = self._correlation_within_windows(offset, solution[1])
+        if abs(within) < WITHIN:
+            problem = (
+                "the records of the common signal agree in their slow changes only "
+                f"(correlation {abs(within):.2f} within windows)"
+            )
+            raise InputError(problem=problem, mend=MEND)
+        covariance = self._covariance((offset, solution[1]), with_drift=False)
+        sampling = self._sampling_error(self._effective_windows())
+        middle = 0.5 * (self.first_s + self.last_s)
+        return ClockFit(
+            offset + solution[1] * (middle - self.pivot_s),
+            solution[1],
+            middle,
+            float(np.hypot(covariance[0, 0] ** 0.5, sampling)),
+            self._correlation(offset, solution[1]),
+        )
+
+    def _start(self) -> tuple[float, float]:
+        """The best of a lattice of offsets and drifts."""
+        lobe = self.coarse.lobe_s
+        spacing = max(self.step / LATTICE, lobe / 50.0)
+        reach = np.arange(0.0, lobe + spacing, spacing)
+        offsets = self.coarse.offset_s + np.concatenate((-reach[:0:-1], reach))
+        half = np.ceil(MOST_DRIFT * (self.last_s - self.first_s) / max(lobe, self.step))
+        drifts = np.linspace(-MOST_DRIFT, MOST_DRIFT, 2 * int(half) + 1) if half > 1 else [0.0]
+        trials = [(float(offset), float(drift)) for drift in drifts for offset in offsets]
+        every = self.windows
+        samples = sum(len(window.slow) for window in every)
+        self.windows = [w.thinned(max(samples * len(trials) // TRIED, 1)) for w in every]
+        best = min(trials, key=lambda trial: 1.0 - self._correlation(*trial) ** 2)
+        self.windows = every
+        return best
+
+    def _model(self, offset: float, drift: float) -> tuple[Array, Array, Array, Array]:
+        """Slower record, faster record there, and its slopes by offset and drift."""
+        slow, fast, by_offset, by_drift = [], [], [], []
+        for window in self.windows:
+            if self.main_is_slow:
+                at = (window.slow_s - offset + drift * self.pivot_s) / (1.0 + drift)
+                lever = -(at - self.pivot_s)
+                sign = -1.0
+            else:
+                lever = window.slow_s - self.pivot_s
+                at = window.slow_s + offset + drift * lever
+                sign = 1.0
+            value, slope = window.interpolated(at)
+            slow.append(window.slow)
+            fast.append(value)
+            by_offset.append(sign * slope)
+            by_drift.append(lever * slope)
+        return (
+            np.concatenate(slow),
+            np.concatenate(fast),
+            np.concatenate(by_offset),
+            np.concatenate(by_drift),
+        )
+
+    def _correlation(self, offset: float, drift: float) -> float:
+        slow, fast, *_ = self._model(offset, drift)
+        slow, fast = slow - slow.mean(), fast - fast.mean()
+        power = float(slow @ slow) * float(fast @ fast)
+        return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
+
+    def _correlation_within_windows(self, offset: float, drift: float) -> float:
+        """As `_correlation`, without the differences between the means of windows."""
+        slow, fast, *_ = self._model(offset, drift)
+        ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
+        slow, fast = (
+            np.concatenate([part - part.mean() for part in np.split(values, ends)])
+            for values in (slow, fast)
+        )
+        power = float(slow @ slow) * float(fast @ fast)
+        return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
+
+    def _linearised(self, at: tuple[float, float], *, with_drift: bool) -> tuple[Array, Array]:
+        """Residuals and their design matrix (zero, gain, offset, drift), shape (n, 3 or 4)."""
+        slow, fast, by_offset, by_drift = self._model(*at)
+        mean = fast.mean()
+        centred = fast - mean
+        power = float(centred @ centred)
+        gain = float(centred @ slow) / power if power > 0.0 else 0.0
+        columns = [np.ones(len(slow)), centred, gain * by_offset]
+        if with_drift:
+            columns.append(gain * by_drift)
+        return slow - slow.mean() - gain * centred, np.column_stack(columns)
+
+    def _descended(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
+        """Gauss-Newton from a start; the best point on its way."""
+        best = point = start
+        least = 1.0 - self._correlation(*start) ** 2
+        lever = max(self.last_s - self.first_s, self.step)
+        for _ in range(ITERATIONS):
+            residual, design = self._linearised(point, with_drift=with_drift)
+            change = np.linalg.lstsq(design, residual, rcond=None)[0]
+            by = np.clip(change[2], -self.step, self.step)
+            drift_by = (
+                np.clip(change[3], -self.step / lever, self.step / lever) if with_drift else 0
+            )
+            point = (
+                float(np.clip(point[0] + by, *self._offset_bounds())),
+                float(np.clip(point[1] + drift_by, -MOST_DRIFT, MOST_DRIFT)),
+            )
+            left = 1.0 - self._correlation(*point) ** 2
+            if left < least:
+                best, least = point, left
+            if abs(by) < 1e-4 * self.step and abs(drift_by) * lever < 1e-4 * self.step:
+                break
+        return best
+
+    def _offset_bounds(self) -> tuple[float, float]:
+        reach = self.coarse.lobe_s + self.step
+        return self.coarse.offset_s - reach, self.coarse.offset_s + reach
+
+    def _centred(self, offset: float, drift: float) -> float:
+        """The middle of the offsets that fit equally well, as those between two edges of a
+        square wave."""
+        if self.coarse.lobe_s >= 2.0 * self.step:
+            return offset  # a smooth signal: Gauss-Newton finds its minimum
+        around = offset + np.linspace(-1.0, 1.0, 8 * LATTICE + 1) * self.step
+        left = np.array([1.0 - self._correlation(o, drift) ** 2 for o in around])
+        level = left.min() + 0.02 * (min(left[0], left[-1]) - left.min())
+        alike = np.flatnonzero(left <= level)
+        if not alike.size or np.ptp(alike) + 1 > alike.size:
+            return offset
+        middle = offset + (float(np.mean(alike)) / (4 * LATTICE) - 1.0) * self.step
+        return middle if abs(middle - offset) > 0.1 * self.step else offset
+
+    def _covariance(self, at: tuple[float, float], *, with_drift: bool) -> Array:
+        """Covariance of the offset, and the drift, shape (1, 1) or (2, 2)."""
+        residual, design = self._linearised(at, with_drift=with_drift)
+        scores = design[:, 2:] * residual[:, None]
+        ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
+        meat = np.zeros((scores.shape[1], scores.shape[1]))
+        for part in np.split(scores, ends):
+            score = part.sum(axis=0)
+            meat += np.outer(score, score)
+        bread = np.linalg.pinv(self._curvature(at, with_drift=with_drift))
+        count = max(len(self.windows), 2)
+        found: Array = bread @ meat @ bread * count / (count - 1)
+        return found
+
+    def _curvature(self, at: tuple[float, float], *, with_drift: bool) -> Array:
+        """Second derivatives of half the sum of squares, by differences.
+
+        The squares of the slopes would count their noise, which does not determine the offset.
+        """
+        by = max(0.25 * self.step, 0.25 * self.coarse.lobe_s)
+        steps = np.diag([by, 4.0 * by / max(self.last_s - self.first_s, self.step)])
+        slow, *_ = self._model(*at)
+        power = len(slow) * float(np.var(slow))
+
+        def squares(change: Array) -> float:
+            left = 1.0 - self._correlation(at[0] + change[0], at[1] + change[1]) ** 2
+            return 0.5 * power * left
+
+        size = 2 if with_drift else 1
+        found = np.zeros((size, size))
+        for i in range(size):
+            for j in range(i + 1):
+                a, b = steps[i], steps[j]
+                mixed = squares(a + b) - squares(a - b) - squares(b - a) + squares(-a - b)
+                found[i, j] = found[j, i] = mixed / (4.0 * a[i] * b[j])
+        return found
+
+    def _drift_error(self, at: tuple[float, float]) -> tuple[float, float]:
+        """Standard error of the drift, and the effective number of windows that determine it."""
+        covariance = self._covariance(at, with_drift=True)
+        effective = self._effective_windows()
+        error = float(np.sqrt(max(covariance[1, 1], 0.0)))
+        # Edges have an error of a sample in either record.
+        sampling = 7.0 * self._sampling_error(effective) / (self.last_s - self.first_s)
+        return float(np.hypot(error, sampling)), effective
+
+    def _effective_windows(self) -> float:
+        # By the variance of the signal: its slope is mostly noise where it is constant.
+        weights = [float(np.var(window.slow)) for window in self.windows]
+        total = sum(weight**2 for weight in weights)
+        return float(sum(weights) ** 2 / total) if total > 0.0 else 0.0
+
+    def _sampling_error(self, windows: float) -> float:
+        """Standard error by edges that are known to within a sample, s."""
+        if self.coarse.lobe_s >= 2.0 * self.step:
+            return 0.0
+        return float(self.step / np.sqrt(12.0 * max(windows, 1.0)))
+
+
+def _between(stream: Stream, first_s: float, last_s: float) -> Array:
+    """Rows within two instants that have a value."""
+    rows = stream.read(*stream.rows_between(0, first_s, last_s))
+    return rows[np.isfinite(rows[:, 1])]
+
+
+def _smoothed(values: Array, width: int) -> Array:
+    """Three moving means over an odd number of samples.
+
+    The noise of interpolated values is then alike between samples and at them, which keeps the
+    estimate from being drawn to either.
+    """
+    from scipy.ndimage import uniform_filter1d
+
+    found = np.asarray(values, dtype=np.float64)
+    for _ in range(3):
+        found = uniform_filter1d(found, width, mode="nearest")
+    return found

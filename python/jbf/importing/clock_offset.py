@@ -1,0 +1,234 @@
+"""Estimate the offset between two clocks from one signal that both recorded.
+
+The correlation is computed at every lag on a common grid. At each lag it is the coefficient of
+Pearson over the samples that both records have there (D. Padfield, "Masked object registration in
+the Fourier domain", IEEE Trans. Image Process. 21, 2012). Sign, gain and offset of the signals are
+free. A slow record counts at its samples only, so that it may be aliased.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.importing.spool import Stream
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+WEAKEST = 0.8
+"""Least absolute correlation that is accepted."""
+RIVAL = 1.5
+"""Another offset is a rival if the share of the variance that it leaves unexplained is less than
+this factor times that of the best one."""
+FLOOR = 0.01
+"""Share of unexplained variance below which offsets are not distinguished by it."""
+OVERLAP = 0.25
+"""Least overlap that is searched, as a share of the largest one."""
+LEAST_SAMPLES = 20
+"""Least number of common samples of an overlap."""
+VARYING = 0.02
+"""Least variance in an overlap, as a share of that of the whole record."""
+POINTS = 1 << 20
+"""Largest number of grid points of a record."""
+PIECE_S = 600.0
+"""Duration of the pieces that are tried where a drift blurs the correlation of a long record."""
+PIECES = 8
+"""Largest number of such pieces."""
+MEND = "name another common signal under [align], or the offset in seconds"
+
+
+@dataclass(frozen=True)
+class Offset:
+    """An offset to within one lobe of the correlation.
+
+    Attributes
+    ----------
+    offset_s
+        What is added to the times of the other record, s.
+    lobe_s
+        How far from it the true offset may be, s.
+    pivot_s
+        The time of the other record for which it holds, s.
+    correlation
+        Coefficient of correlation at this offset.
+    """
+
+    offset_s: float
+    lobe_s: float
+    pivot_s: float
+    correlation: float
+
+
+def find_offset(main: Stream, other: Stream) -> Offset:
+    """Estimate the offset of the clock of `other` relative to that of `main`.
+
+    Parameters
+    ----------
+    main, other
+        Streams with the columns time, s, and signal; each one segment.
+
+    Raises
+    ------
+    InputError
+        The correlation is weak, or several offsets fit; names no file.
+    """
+    first_s, last_s = span(other)
+    refused: InputError | None = None
+    for begin_s, end_s in _pieces(first_s, last_s):
+        try:
+            return _offset_of(main, other, begin_s, end_s)
+        except InputError as error:
+            refused = refused or error
+    assert refused is not None
+    raise refused
+
+
+def span(stream: Stream) -> tuple[float, float]:
+    """First and last time of a stream, s."""
+    return stream.at(0), stream.at(stream.rows - 1)
+
+
+def usual_step(stream: Stream) -> float:
+    """Median step of a stream's times, s."""
+    times = stream.read(0, 20_000)[:, 0]
+    return float(np.median(np.diff(times))) if len(times) > 1 else 1.0
+
+
+def _pieces(first_s: float, last_s: float) -> Iterator[tuple[float, float]]:
+    yield first_s, last_s
+    if last_s - first_s > 1.5 * PIECE_S:
+        for centre in np.linspace(first_s, last_s, PIECES + 2)[1:-1].tolist():
+            yield centre - 0.5 * PIECE_S, centre + 0.5 * PIECE_S
+
+
+def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Offset:
+    """The offset by a piece of the other record."""
+    main_s, last_s = span(main)
+    longest = max(last_s - main_s, end_s - begin_s)
+    step = max(min(usual_step(main), usual_step(other)), longest / POINTS)
+    quick = usual_step(main) <= usual_step(other)
+    a, in_a = _on_grid(main, main_s, last_s, step, fill=quick)
+    b, in_b = _on_grid(other, begin_s, end_s, step, fill=not quick)
+    r, allowed = _correlations(a, in_a, b, in_b)
+    if not allowed.any():
+        raise InputError(problem="the common signal is constant or has too few samples", mend=MEND)
+    offsets: Array = main_s - begin_s + step * np.arange(-len(b) + 1.0, len(a))
+    best, low, high = _clear_peak(r, allowed, offsets)
+    lobe = step * (max(best - low, high - best) + 2)
+    return Offset(float(offsets[best]), lobe, 0.5 * (begin_s + end_s), float(r[best]))
+
+
+def _on_grid(
+    stream: Stream, first_s: float, last_s: float, step: float, *, fill: bool
+) -> tuple[Array, Mask]:
+    """Means of a signal in the cells of a grid, standardised, and which cells have samples.
+
+    Parameters
+    ----------
+    fill
+        Whether cells between two neighbouring samples are interpolated.
+    """
+    count = int(np.floor((last_s - first_s) / step + 0.5)) + 1
+    total, number = np.zeros(count), np.zeros(count)
+    for block in stream.blocks(*stream.rows_between(0, first_s, last_s)):
+        good = block[np.isfinite(block[:, 1])]
+        cell = np.clip(np.rint((good[:, 0] - first_s) / step), 0, count - 1).astype(np.intp)
+        total += np.bincount(cell, good[:, 1], count)
+        number += np.bincount(cell, minlength=count)
+    known = number > 0
+    cells = np.flatnonzero(known)
+    if len(cells) < LEAST_SAMPLES:
+        raise InputError(problem="the common signal has too few samples", mend=MEND)
+    values = total[cells] / number[cells]
+    deviation = float(values.std())
+    if deviation <= 1e-9 * float(np.abs(values).max()):
+        raise InputError(problem="the common signal is constant", mend=MEND)
+    values = (values - values.mean()) / deviation
+    signal = np.zeros(count)
+    if fill:
+        signal = np.interp(np.arange(count), cells, values)
+        widest = 3.0 * max(float(np.median(np.diff(cells))), 1.0)
+        gaps = np.flatnonzero(np.diff(cells) > widest)
+        known = np.ones(count, dtype=bool)
+        for gap in gaps:
+            known[cells[gap] + 1 : cells[gap + 1]] = False
+        known[: cells[0]] = known[cells[-1] + 1 :] = False
+        signal[~known] = 0.0
+    else:
+        signal[cells] = values
+    return signal, known
+
+
+def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Mask]:
+    """Coefficients of correlation of `b` with `a` shifted, at lags from 1 - len(b) to len(a) - 1,
+    and the lags at which they are defined."""
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    size = next_fast_len(len(a) + len(b) - 1, real=True)
+
+    def spectrum(values: Array) -> npt.NDArray[np.complex128]:
+        found: npt.NDArray[np.complex128] = rfft(values, size)
+        return found
+
+    def sums(left: npt.NDArray[np.complex128], right: npt.NDArray[np.complex128]) -> Array:
+        circular = irfft(left * right.conj(), size)
+        return np.concatenate((circular[size - len(b) + 1 :], circular[: len(a)]))
+
+    f_a, f_aa, m_a = spectrum(a), spectrum(a * a), spectrum(in_a.astype(np.float64))
+    f_b, f_bb, m_b = spectrum(b), spectrum(b * b), spectrum(in_b.astype(np.float64))
+    n = np.maximum(np.rint(sums(m_a, m_b)), 0.0)
+    allowed: Mask = n >= max(LEAST_SAMPLES, OVERLAP * float(n.max()))
+    n = np.maximum(n, 1.0)
+    mean_a, mean_b = sums(f_a, m_b) / n, sums(m_a, f_b) / n
+    var_a = sums(f_aa, m_b) / n - mean_a**2
+    var_b = sums(m_a, f_bb) / n - mean_b**2
+    # The signals are standardised: the variance of a whole record is 1.
+    allowed &= (var_a > VARYING) & (var_b > VARYING)
+    r = np.zeros(len(n))
+    both = np.sqrt(var_a[allowed] * var_b[allowed])
+    r[allowed] = (sums(f_a, f_b) / n - mean_a * mean_b)[allowed] / both
+    return np.clip(r, -1.0, 1.0), allowed
+
+
+def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]:
+    """The lag of the largest absolute correlation, and the first and the last of its lobe.
+
+    Raises
+    ------
+    InputError
+        It is weak, or a lag out of the lobe explains as much.
+    """
+    best = int(np.argmax(np.abs(r)))
+    if abs(r[best]) < WEAKEST:
+        problem = f"the signals are not proportional at any offset (correlation {abs(r[best]):.2f})"
+        raise InputError(problem=problem, mend=MEND)
+    unexplained = 1.0 - r**2
+    alike = allowed & (unexplained < RIVAL * max(float(unexplained[best]), FLOOR))
+    places = np.flatnonzero(alike)
+    edges = np.flatnonzero(np.diff(places) > 3)
+    begins = places[np.concatenate(([0], edges + 1))]
+    ends = places[np.concatenate((edges, [len(places) - 1]))]
+    lobe = int(np.flatnonzero((begins <= best) & (best <= ends))[0])
+    low, high = int(begins[lobe]), int(ends[lobe])
+    if len(begins) > 1:
+        outside = alike.copy()
+        outside[low : high + 1] = False
+        rival = int(np.argmax(np.where(outside, np.abs(r), 0.0)))
+        problem = (
+            f"the common signal repeats: offsets of {offsets[best]:.4g} s and {offsets[rival]:.4g} "
+            f"s fit alike (correlation {abs(r[best]):.3f} and {abs(r[rival]):.3f})"
+        )
+        raise InputError(problem=problem, mend=MEND)
+    reached = np.flatnonzero(allowed)
+    if low <= reached[0] + 1 or high >= reached[-1] - 1:
+        problem = (
+            "the common signal does not determine the offset: any from "
+            f"{offsets[low]:.4g} s to {offsets[high]:.4g} s fits"
+        )
+        raise InputError(problem=problem, mend=MEND)
+    return best, low, high

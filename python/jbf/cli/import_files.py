@@ -34,6 +34,12 @@ def add(commands: Commands) -> None:
         help="which columns make which, in which units (TOML); without it and --out the file is "
         "looked at and map.toml is written beside it",
     )
+    parser.add_argument(
+        "--beside",
+        metavar="FILE",
+        action="append",
+        help="a file that was recorded at the same time with a clock of its own; may be repeated",
+    )
     parser.add_argument("--out", metavar="FOLDER", help="write the runs and rig.toml there")
     parser.add_argument(
         "--joint",
@@ -74,7 +80,7 @@ def _each_joint(arguments: argparse.Namespace) -> int:
         mend = "name --out FOLDER, and no --plot"
         raise InputError(file="--joint", problem="all makes a folder of each joint", mend=mend)
     try:
-        look(arguments.files[0])
+        look(arguments.files[0], beside=arguments.beside or ())
     except JointNotChosen as several:
         joints = several.joints
     else:
@@ -102,6 +108,7 @@ def _import(arguments: argparse.Namespace, joint: str | None, out: str | None) -
                 whole=arguments.no_cut,
                 replace_folder=arguments.force,
                 joint=joint,
+                beside=arguments.beside,
                 progress=report,
             )
     except OpenQuestions as questions:
@@ -130,11 +137,14 @@ def _look(arguments: argparse.Namespace) -> int:
                 mend="jbf import FILE alone looks at the file",
             )
     file = Path(arguments.files[0])
+    if arguments.beside and len(arguments.files) > 1:
+        mend = "name one FILE, and the others with --beside"
+        raise InputError(file="--beside", problem="goes with one main file", mend=mend)
     target, kept = _map_beside(file, arguments.joint, replace=arguments.force)
     shown_path = file.parent / target.name
     if not kept:
-        outputs.check({shown_path.name: str(target)}, arguments.files)
-    found = look(file, arguments.joint)
+        outputs.check({shown_path.name: str(target)}, outputs.read_by(arguments))
+    found = look(file, arguments.joint, arguments.beside or ())
     if not kept:
         write_text(target, map_text(found, str(shown_path)))
     outputs.say(guess_report(found, str(shown_path), kept=kept), {})

@@ -14,8 +14,8 @@ from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
 _READ = (
-    "rig", "model", "runs", "map", "motion", "files", "cut", "carried", "settings", "effects_from",
-    "many",
+    "rig", "model", "runs", "map", "motion", "files", "beside", "cut", "carried", "settings",
+    "effects_from", "many",
 )  # fmt: skip
 """Arguments of all commands that name what is read."""
 

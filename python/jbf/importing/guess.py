@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.joints import JointNotChosen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
+from jbf.importing.side_by_side import file_of
 from jbf.importing.targets import FRICTION, KNOWN, MOTION, wanted_unit
 from jbf.units.table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.units.unit import parse_unit
@@ -78,6 +80,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     clocks: dict[str, str] = {}
     questions: list[Question] = []
     heads: dict[str, Values] = {}
+    made_in: dict[str, Path] = {}
     several = len(source.tables) > 1
     tables = tuple(with_units_of_joint_states(table) for table in source.tables)
     whole = Counter(column.name for table in tables for column in table.columns)
@@ -119,15 +122,21 @@ def guess(source: Source, joint: str | None = None) -> Guess:
             entry, rest, asked = _chosen(key, rivals)
             taken[key] = entry
             ignored |= dict.fromkeys(rest, f"{key} is made of another")
-            questions += asked
+            of = made_in.get(key, file_of(source, table))
+            if key in FRICTION or of == file_of(source, table):
+                questions += asked
         if not several or len(taken) > (0 if time is None else 1):
-            questions += open_
+            questions += open_ if file_of(source, table) == source.path else _placed(open_, table)
             for key, entry in taken.items():
                 if key not in entries:
                     entries[key] = entry
+                    made_in[key] = file_of(source, table)
                     other = time is not None and time is not entries.get("time_s")
                     if other and key != "time_s" and time is not None:
                         clocks[key] = time.expression
+                elif key not in (*FRICTION, "time_s") and made_in[key] != file_of(source, table):
+                    # The main file's own clock is that of the recording.
+                    ignored[column_of(entry)] = f"{key} is read from {made_in[key].name}"
                 elif key != "time_s":
                     ask = f"is in [{table.name}], too; say table under [file], or write it out"
                     questions.append(Question(key, ask))
@@ -148,7 +157,12 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         questions = [q for q in questions if q.place not in entries["time_s"].expression]
         entries["time_s"] = by_motion
         unit = by_motion.expression[by_motion.expression.rindex("[") :]
-        clocks = {key: text.replace(f"[{OPEN}]", unit) for key, text in clocks.items()}
+        # The unit of another file's times is its own.
+        of = made_in["time_s"]
+        clocks = {
+            key: text.replace(f"[{OPEN}]", unit) if made_in[key] == of else text
+            for key, text in clocks.items()
+        }
     questions += contradictions(entries, tables, heads)
     ordered = sorted(entries.values(), key=lambda e: _order(e.key))
     return Guess(
@@ -172,6 +186,11 @@ def _joints(tables: Sequence[Table]) -> list[str]:
                 found[candidate.key in FRICTION].append(candidate.header.label)
     both = [label for label in dict.fromkeys(found[False]) if label in found[True]]
     return both if len(both) > 1 else []
+
+
+def _placed(questions: list[Question], table: Table) -> list[Question]:
+    """Questions with the table's name before the column's."""
+    return [replace(question, place=f"{table.name}/{question.place}") for question in questions]
 
 
 def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
@@ -204,8 +223,10 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         return Candidate(column.name, column, header, True, "its name is jbf's own")
     header = understood(column.name, column.unit)
     if header.kind is None and not header.setpoint:
-        # `force/value`: the group says what its column does not.
-        header = understood(f"{table.name} {column.name}", column.unit)
+        # `force/value`: the group says what its column does not, unless another column does.
+        by_group = understood(f"{table.name} {column.name}", column.unit)
+        if by_group.kind not in {understood(c.name, c.unit).kind for c in table.columns}:
+            header = by_group
     if header.setpoint or header.modelled or header.kind in NEVER or is_doubtful_time(header):
         return None
     unit = None if header.unit in ASK else parse_unit(header.unit)

@@ -72,6 +72,10 @@ class Guess:
         What must be answered before it can be imported.
     clocks
         Columns with a time of their own.
+    beside
+        Further files of the recording, with separate clocks.
+    align, align_notes
+        How their clocks are aligned, and by what that is known.
     """
 
     path: Path
@@ -82,6 +86,9 @@ class Guess:
     rig: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     questions: tuple[Question, ...] = ()
     clocks: Mapping[str, str] = field(default_factory=dict)
+    beside: tuple[Path, ...] = ()
+    align: Mapping[str, str | float] = field(default_factory=dict)
+    align_notes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def sure(self) -> bool:
@@ -91,4 +98,10 @@ class Guess:
     def map(self) -> Map:
         """The guess as a map."""
         columns = {entry.key: entry.expression for entry in self.entries}
-        return Map(columns=columns, clocks=self.clocks, rig=self.rig)
+        return Map(
+            columns=columns,
+            clocks=self.clocks,
+            rig=self.rig,
+            beside=self.beside,
+            align=self.align,
+        )

@@ -14,8 +14,9 @@ from jbf.importing.campaign_folder import check_folder, write_campaign
 from jbf.importing.cutting.cut import cut
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.cutting.trims import trimmed
-from jbf.importing.formats.registry import format_of, open_source
+from jbf.importing.formats.registry import format_of
 from jbf.importing.guess import guess
+from jbf.importing.guess_align import with_alignment
 from jbf.importing.guessed import Guess
 from jbf.importing.ledger import ledger_of
 from jbf.importing.map_text import map_text
@@ -25,6 +26,7 @@ from jbf.importing.recording import check_loads
 from jbf.importing.recording import read_recording as spooled
 from jbf.importing.result import Import
 from jbf.importing.rig_columns import check_rig_columns
+from jbf.importing.side_by_side import SideBySide, open_recording
 from jbf.importing.spool import Recording
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
@@ -54,21 +56,24 @@ class OpenQuestions(InputError):
         return partial(InputError, **self._fields()), ()
 
 
-def look(path: PathLike, joint: str | None = None) -> Guess:
+def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = ()) -> Guess:
     """What a file's columns are, as far as it tells.
 
     Parameters
     ----------
     joint
         Name or number of one joint of several that the file holds.
+    beside
+        Further files that were recorded at the same time with separate clocks.
 
     Raises
     ------
     InputError
         The file is not there, is broken, or its library is not installed.
     """
-    with open_source(path) as source:
-        return guess(source, joint)
+    with open_recording(path, _further(beside)) as source:
+        found = guess(source, joint)
+        return with_alignment(found, source) if isinstance(source, SideBySide) else found
 
 
 def import_files(
@@ -80,6 +85,7 @@ def import_files(
     whole: bool = False,
     replace_folder: bool = False,
     joint: str | None = None,
+    beside: Sequence[PathLike] | None = None,
     progress: Report | None = None,
 ) -> Import:
     """Recordings as a campaign: runs and a rig.
@@ -101,6 +107,9 @@ def import_files(
         Whether an earlier import there may be replaced.
     joint : str, optional
         Name or number of one joint of several that the files hold; without a map only.
+    beside : sequence of path, optional
+        Further files of one recording, with separate clocks, in the place of the map's; `files` is
+        then one file.
     progress : callable, optional
         Called with a message, how much is done and how much there is.
 
@@ -116,15 +125,18 @@ def import_files(
     if joint is not None and map is not None:
         mend = "leave one of them out: the map names the columns"
         raise InputError(problem="a joint and a map are given", mend=mend)
-    mapping, text = _map(map, paths, joint)
+    mapping, text = _map(map, paths, joint, _further(beside or ()))
+    if beside is not None:
+        mapping = replace(mapping, beside=_further(beside))
+    _check_beside(paths, mapping)
     rig = mapping.check()
     check_rig_columns(rig, mapping)
     if cut_file is not None:
         mapping = replace(mapping, cut=replace(mapping.cut, file=path_of(cut_file)))
     if whole and mapping.cut.by is None:
         mapping = replace(mapping, cut=replace(mapping.cut, by=()))
-    beside = None if folder is None else folder.resolve().parent
-    with TemporaryDirectory(prefix=".jbf-import-", dir=beside) as spool:
+    parent = None if folder is None else folder.resolve().parent
+    with TemporaryDirectory(prefix=".jbf-import-", dir=parent) as spool:
         recordings = [
             _read(path, mapping, Path(spool) / str(number), progress)
             for number, path in enumerate(paths)
@@ -149,6 +161,7 @@ def read_recording(
     *,
     whole: bool = False,
     joint: str | None = None,
+    beside: Sequence[PathLike] | None = None,
     progress: Report | None = None,
 ) -> tuple[Rig, list[Run]]:
     """The rig and the runs of recordings, as `import_files` makes them; no folder is left.
@@ -160,7 +173,7 @@ def read_recording(
     InputError
         As `import_files`.
     """
-    found = import_files(files, map, whole=whole, joint=joint, progress=progress)
+    found = import_files(files, map, whole=whole, joint=joint, beside=beside, progress=progress)
     return found.rig, found.runs
 
 
@@ -180,14 +193,37 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
     return paths
 
 
-def _map(given: PathLike | Map | None, paths: Sequence[Path], joint: str | None) -> tuple[Map, str]:
+def _further(files: Sequence[PathLike]) -> tuple[Path, ...]:
+    """Paths of further files, each of which can be read."""
+    given = [files] if isinstance(files, str | os.PathLike) else files
+    return tuple(_paths(given)) if given else ()
+
+
+def _check_beside(paths: Sequence[Path], mapping: Map) -> None:
+    """Refuse several recordings with further files, and further files that are not there."""
+    if mapping.beside and len(paths) > 1:
+        problem = f"{len(paths)} files are given together with files recorded beside one"
+        mend = f"name one main file: {paths[0].name}, or leave the others out"
+        raise InputError(problem=problem, mend=mend)
+    if mapping.align and not mapping.beside:
+        mend = 'name the further files: beside = ["force.csv"] under [file]'
+        raise InputError(file=mapping.path, key="align", problem="has no files", mend=mend)
+    _further(mapping.beside)
+
+
+def _map(
+    given: PathLike | Map | None,
+    paths: Sequence[Path],
+    joint: str | None,
+    beside: Sequence[Path],
+) -> tuple[Map, str]:
     """The map and its text; a guess, once it is sure, where none is given."""
     if isinstance(given, Map):
         text = "" if given.path is None else read_text(given.path)
         return given, text
     if given is not None:
         return read_map(given), read_text(given)
-    found = look(paths[0], joint)
+    found = look(paths[0], joint, beside)
     if not found.sure:
         raise OpenQuestions(found)
     return found.map(), map_text(found)
@@ -195,7 +231,7 @@ def _map(given: PathLike | Map | None, paths: Sequence[Path], joint: str | None)
 
 def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Recording:
     folder.mkdir()
-    with open_source(path, mapping.options) as source:
+    with open_recording(path, mapping.beside, mapping.options) as source:
         recording = spooled(source, mapping, folder, progress)
     recording.format = format_of(path).name
     return recording

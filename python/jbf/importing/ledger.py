@@ -12,6 +12,7 @@ from typing import Any
 
 from jbf._core import __version__
 from jbf.importing.cutting.piece import Piece
+from jbf.importing.formats.registry import format_of
 from jbf.importing.mapping import Map
 from jbf.importing.spool import Recording
 
@@ -41,6 +42,7 @@ def ledger_of(
             "clocks": dict(mapping.clocks),
             "file": {k: v for k, v in asdict(mapping.options).items() if v not in (None, ())},
             "cut_by": list(mapping.cut.by or ()),
+            **({"align": dict(mapping.align)} if mapping.align else {}),
         },
         "files": [_page(recording, pieces) for recording in recordings],
     }
@@ -53,6 +55,7 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
         "sha256": file_hash(recording.path),
         "format": recording.format,
         "start": recording.start,
+        **_beside(recording),
         "channels": recording.channels,
         "dropped": [
             {k: v for k, v in asdict(d).items() if v is not None} for d in recording.dropped
@@ -60,6 +63,24 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
         "notes": recording.notes,
         "runs": [_span(piece) | {"name": piece.name} for piece in own if piece.keep],
         "left_out": [_span(piece) | {"why": piece.why} for piece in own if not piece.keep],
+    }
+
+
+def _beside(recording: Recording) -> dict[str, Any]:
+    """Further files of a recording, and how their clocks were aligned."""
+    if not recording.beside:
+        return {}
+    aligned = {alignment.file: alignment.to_dict() for alignment in recording.alignments}
+    return {
+        "beside": [
+            {
+                "file": path.name,
+                "sha256": file_hash(path),
+                "format": format_of(path).name,
+                "alignment": aligned.get(path),
+            }
+            for path in recording.beside
+        ]
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import tomlkit
 
 from jbf.importing.columns import understood
 from jbf.importing.guessed import Guess
+from jbf.text_files import real_path
 
 _HEAD = """\
 # A map: which columns of the file make which columns of a run. Made by jbf import; edit it, then
@@ -44,10 +46,16 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     if guess.questions:
         asked = "\n".join(f"#   {question}" for question in guess.questions)
         parts.append(f"# Open:\n{asked}\n")
+    if guess.beside:
+        names = ", ".join(_quoted(_relative(path, guess.path)) for path in guess.beside)
+        parts.append(
+            f"# Recorded at the same time, with separate clocks.\n[file]\nbeside = [{names}]\n"
+        )
     rates = [t.rate_hz for t in guess.tables if t.rate_hz is not None]
     if not any(e.key == "time_s" for e in guess.entries):
         if rates:
-            parts.append(f"[file]\nrate_hz = {rates[0]!r}  # stated in the file\n")
+            head = "" if guess.beside else "[file]\n"
+            parts.append(f"{head}rate_hz = {rates[0]!r}  # stated in the file\n")
         elif all(t.clock is None for t in guess.tables):
             parts.append("# [file]\n# rate_hz = 1000.0\n")
     lines = ["[columns]"]
@@ -62,6 +70,7 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     if guess.clocks:
         own = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
         parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
+    parts += _align(guess)
     parts.append(_cut(guess))
     for section, content in guess.rig.items():
         lines = tomlkit.dumps({section: dict(content)}).rstrip("\n").split("\n")
@@ -73,6 +82,32 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
             '# friction = "force"\n'
         )
     return "\n".join(parts)
+
+
+def _align(guess: Guess) -> list[str]:
+    """The section of the clocks of further files."""
+    if not guess.beside:
+        return []
+    lines = [
+        "# The clock of a further file: a common signal (column of the first file ~ column of that",
+        "# file), or the seconds that are added to its times.",
+    ]
+    entries = [
+        (f"{tomlkit.key(stem).as_string()} = {_quoted(text)}", guess.align_notes.get(stem, ""))
+        for stem, text in guess.align.items()
+        if isinstance(text, str)
+    ]
+    lines += ["[align]", *_aligned(entries)] if entries else []
+    lines += [f"# {n}: {note}" for n, note in guess.align_notes.items() if n not in guess.align]
+    return ["\n".join(lines) + "\n"]
+
+
+def _relative(path: Path, main: Path) -> str:
+    """A path as the map next to the main file has it."""
+    try:
+        return Path(os.path.relpath(path.absolute(), real_path(main).parent)).as_posix()
+    except ValueError:
+        return path.absolute().as_posix()
 
 
 def _quoted(text: str) -> str:

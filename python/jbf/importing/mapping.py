@@ -1,8 +1,9 @@
 """The map: `map.toml` says which columns of a file make which columns of a run, and on what rig.
 
-[file]      how the file is to be read, where it does not say so itself
+[file]      how the file is to be read, where it does not say so itself; files recorded with it
 [columns]   column of a run = "expression over the file's columns"
 [clocks]    column of a run = "its own time", where that is not time_s
+[align]     further file = "common signal" or seconds
 [cut]       how one recording becomes runs
 [drive] or [bearing], [lubricant], [load]   as in rig.toml
 """
@@ -23,11 +24,11 @@ from jbf.importing.targets import FRICTION, MOTION, wanted_unit
 from jbf.records.checks import LARGEST
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
-from jbf.records.toml_file import read_toml, refuse_unknown, table
+from jbf.records.toml_file import number, read_toml, refuse_unknown, table
 
 _QUOTED = re.compile(r"`[^`]*`")
 RIG = ("drive", "bearing", "lubricant", "load")
-SECTIONS = ("file", "columns", "clocks", "cut", *RIG)
+SECTIONS = ("file", "columns", "clocks", "align", "cut", *RIG)
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,10 @@ class Map:
         Sections of a `rig.toml`.
     path
         Where it was read; None of a guess.
+    beside
+        Further files of the recording, with separate clocks.
+    align
+        Stem of a further file to a common signal, or to the seconds that are added to its times.
     """
 
     columns: Mapping[str, str]
@@ -54,10 +59,17 @@ class Map:
     cut: CutSettings = field(default_factory=CutSettings)
     rig: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     path: Path | None = None
+    beside: tuple[Path, ...] = ()
+    align: Mapping[str, str | float] = field(default_factory=dict)
 
     def open_questions(self) -> Iterator[InputError]:
         """One error for each `?` that still stands in it."""
-        sections = {"columns": self.columns, "clocks": self.clocks, **self.rig}
+        sections: dict[str, Mapping[str, Any]] = {
+            "columns": self.columns,
+            "clocks": self.clocks,
+            "align": self.align,
+        }
+        sections |= self.rig
         for section, content in sections.items():
             for key, value in content.items():
                 if isinstance(value, str) and OPEN in _QUOTED.sub("", value):
@@ -130,14 +142,44 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
     if "columns" not in content:
         mend = 'add [columns] with lines such as friction_n = "Force [N]"'
         raise InputError(key="columns", problem="is missing", mend=mend)
+    file = dict(table(content.get("file", {}), "file"))
+    beside = _beside(file.pop("beside", []), path.parent)
     return Map(
         columns=_texts(content, "columns"),
         clocks=_texts(content, "clocks"),
-        options=_options(table(content.get("file", {}), "file")),
+        options=_options(file),
         cut=CutSettings.from_mapping(table(content.get("cut", {}), "cut"), path.parent),
         rig={name: dict(table(content[name], name)) for name in RIG if name in content},
         path=path,
+        beside=beside,
+        align=_align(table(content.get("align", {}), "align")),
     )
+
+
+def _beside(names: object, folder: Path) -> tuple[Path, ...]:
+    """Further files; their paths are relative to the folder of the map."""
+    if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
+        mend = 'write a list of files, such as ["force.csv"]'
+        raise InputError(key="file.beside", problem=f"{names!r} does not fit", mend=mend)
+    return tuple(folder / name for name in names)
+
+
+def _align(section: Mapping[str, Any]) -> dict[str, str | float]:
+    found: dict[str, str | float] = {}
+    for key, value in section.items():
+        if isinstance(value, str):
+            found[key] = value
+            continue
+        try:
+            seconds = number(value, f"align.{key}")
+            fits = abs(seconds) <= LARGEST
+        except InputError:
+            fits = False
+        if not fits:
+            mend = f'write a common signal, such as "drive/pos ~ {key}/pos", or seconds'
+            raise InputError(key=f"align.{key}", problem=f"{value!r} does not fit", mend=mend)
+        found[key] = seconds
+    return found
 
 
 def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
@@ -169,7 +211,7 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
 
 
 def _options(section: Mapping[str, Any]) -> Options:
-    refuse_unknown(section, [f.name for f in fields(Options)], "file.")
+    refuse_unknown(section, [*(f.name for f in fields(Options)), "beside"], "file.")
     given = dict(section)
     for key, value in given.items():
         kind, wanted = _KINDS[key]

@@ -24,8 +24,9 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
                 found[column.name] = column.name
             found[f"{table.name}/{column.name}"] = qualified(table, column.name, whole)
             name = understood(column.name).name
-            bare[name] += 1
-            shorter[name] = qualified(table, column.name, whole)
+            for short in (name, *([f"{table.name}/{name}"] if table.name else [])):
+                bare[short] += 1
+                shorter[short] = qualified(table, column.name, whole)
     for name, column_name in shorter.items():
         if bare[name] == 1:
             found.setdefault(name, column_name)

@@ -3,53 +3,45 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.importing.alignment import Alignment, align
+from jbf.importing.channels import (
+    KEPT_COLUMN,
+    OF_CUTTING,
+    RATE,
+    SIGNAL_COLUMN,
+    Channel,
+    channels_of,
+    tables_of,
+)
+from jbf.importing.clock_offset import span, usual_step
 from jbf.importing.cutting.piece import Piece
-from jbf.importing.evaluation import Quantity, converted, evaluate
-from jbf.importing.expression import Node, Reference, parse_expression, references
-from jbf.importing.formats.dates import as_date
-from jbf.importing.formats.table import Options, Source, Table, Values
+from jbf.importing.evaluation import converted, evaluate
+from jbf.importing.expression import Reference, parse_expression, references
+from jbf.importing.file_clock import FileClock
+from jbf.importing.formats.table import Source, Values
 from jbf.importing.mapping import Map
 from jbf.importing.names import column_names, column_units, located
+from jbf.importing.side_by_side import SideBySide, file_of, stem_of
 from jbf.importing.spool import Dropped, Recording, Stream
-from jbf.importing.targets import wanted_unit
 from jbf.importing.time_line import TimeLine
 from jbf.importing.turns import unwrapped
 from jbf.records.checks import LARGEST
-from jbf.units.unit import ONE, Unit
 
 Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
-CUT_COLUMN, KEPT_COLUMN = "cut", "kept"
-"""Where a set point or the number of a run, and whether a row is kept, stand until the recording is
-cut."""
 LOADED = 0.1
 """Share of the usual load below which a machine counts as unloaded, in what is suggested."""
-OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
-_RATE = "rate"
 STEADY = "none: each row is a steady state"
 """What a ledger says of the clock of steady states."""
-
-
-@dataclass(frozen=True)
-class Channel:
-    """One column of a run: its expression, the table it comes from, its time."""
-
-    key: str
-    text: str
-    node: Node
-    table: Table
-    clock: str
-    unit: Unit
 
 
 def read_recording(
@@ -62,98 +54,56 @@ def read_recording(
     InputError
         A column is not there, a unit does not fit, a cell or a time is wrong.
     """
-    recording = Recording(_stem(source.path), source.path, "", steady=mapping.options.steady)
+    recording = Recording(stem_of(source.path), source.path, "", steady=mapping.options.steady)
     try:
-        channels = _channels(source, mapping)
+        channels = channels_of(source, mapping)
+        if isinstance(source, SideBySide):
+            recording.beside = source.files[1:]
+            recording.alignments = aligned(source, mapping, channels, folder, recording.clocks)
         groups = Counter((channel.table.name, channel.clock) for channel in channels)
         for number, (name, clock) in enumerate(groups):
             own = [c for c in channels if (c.table.name, c.clock) == (name, clock)]
             _read_stream(source, mapping, own, folder / f"{number}.f64", recording, report)
         _check_segments(recording)
+        if isinstance(source, SideBySide):
+            keep_common_span(recording)
     except InputError as error:
         raise error.within(file=source.path) from None
     return recording
 
 
-def _stem(path: Path) -> str:
-    """A file's name without its end, and without `.gz` after that."""
-    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
-
-
-def _channels(source: Source, mapping: Map) -> list[Channel]:
-    tables = _tables(source, mapping.options)
-    names = column_names(tables)
-    known = [column.name for table in tables for column in table.columns]
-    places = located(tables)
-    wanted = {key: text for key, text in mapping.columns.items() if key != "time_s"}
-    if mapping.cut.by and mapping.cut.column is not None:
-        wanted[CUT_COLUMN] = mapping.cut.column
-    if mapping.cut.keep is not None:
-        wanted[KEPT_COLUMN] = mapping.cut.keep.difference
-    found = []
-    for key, text in wanted.items():
-        section = {CUT_COLUMN: "cut.column", KEPT_COLUMN: "cut.keep"}.get(key, f"columns.{key}")
-        try:
-            node = parse_expression(text, names, known)
-        except InputError as error:
-            raise InputError(key=section, problem=error.problem, mend=error.mend) from None
-        tables_of = {places[r.column][0].name for r in references(node)}
-        if len(tables_of) != 1:
-            problem = "takes columns with different clocks" if tables_of else "takes no column"
-            mend = "take columns of one group; nothing is resampled here"
-            raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
-        (of,) = tables_of
-        table = next(t for t in tables if t.name == of)
-        clock = _clock(key, table, tables, mapping, names, places)
-        unit = ONE if key in OF_CUTTING else wanted_unit(key)
-        found.append(Channel(key, text, node, table, clock, unit))
-    return found
-
-
-def _tables(source: Source, options: Options) -> tuple[Table, ...]:
-    if options.table is None:
-        return source.tables
-    for table in source.tables:
-        if table.name == options.table:
-            return (table,)
-    names = ", ".join(table.name for table in source.tables)
-    problem = f'holds no "{options.table}"'
-    raise InputError(file=source.path, problem=problem, mend=f"it holds: {names}")
-
-
-def _clock(
-    key: str,
-    table: Table,
-    tables: tuple[Table, ...],
+def aligned(
+    source: SideBySide,
     mapping: Map,
-    names: Mapping[str, str],
-    places: Mapping[str, tuple[Table, str]],
-) -> str:
-    """The expression of a column's time; `rate` where its rate alone is known."""
-    if mapping.options.steady:
-        return _RATE
-    text = mapping.clocks.get(key, mapping.columns.get("time_s"))
-    if text is not None:
-        node = parse_expression(text, names)
-        if {places[r.column][0].name for r in references(node)} == {table.name}:
-            return text
-        if key in mapping.clocks:
-            problem = "is in another group than its column"
-            raise InputError(key=f"clocks.{key}", problem=problem, mend="name a time beside it")
-    if table.clock is not None:
-        return f"`{table.name}/{table.clock}`"
-    if text is None and (mapping.options.rate_hz or table.rate_hz):
-        return _RATE
-    if text is not None:
-        problem = f"has no clock: time_s is in another group than [{table.name}]"
-        raise InputError(
-            key=f"columns.{key}", problem=problem, mend=f"name its time under [clocks] as {key}"
-        )
-    raise InputError(
-        key="columns.time_s",
-        problem="is missing",
-        mend="name the file's column of times, or say rate_hz under [file]",
-    )
+    channels: Sequence[Channel],
+    folder: Path,
+    clocks: dict[Path, FileClock] | None = None,
+) -> list[Alignment]:
+    """Align the clocks of files that were recorded at the same time.
+
+    Parameters
+    ----------
+    folder
+        Where signals are spooled.
+    clocks
+        For each file its clock, corrected in place; by default new ones.
+
+    Raises
+    ------
+    InputError
+        As `alignment.align`.
+    """
+    clocks = {} if clocks is None else clocks
+    clocks |= {file: FileClock(rounded=True) for file in source.files if file not in clocks}
+
+    def read_signal(channel: Channel) -> Stream:
+        scratch = Recording("", source.path, "", clocks=clocks)
+        file = folder / f"signal-{stem_of(source.file_of(channel.table))}.f64"
+        file.unlink(missing_ok=True)
+        _read_stream(source, mapping, [channel], file, scratch, None)
+        return scratch.streams[0]
+
+    return align(source, mapping, channels, clocks, read_signal)
 
 
 def _read_stream(
@@ -164,16 +114,35 @@ def _read_stream(
     recording: Recording,
     report: Report | None,
 ) -> None:
+    of = file_of(source, channels[0].table)
+    try:
+        _spool(source, mapping, channels, file, recording, report)
+    except InputError as error:
+        raise error.within(file=of) from None
+    if isinstance(source, SideBySide) and len(recording.streams[-1].segments) > 1:
+        problem = "its time starts again, and files recorded side by side have one stretch each"
+        raise InputError(file=of, problem=problem, mend="save its stretches as files of their own")
+
+
+def _spool(
+    source: Source,
+    mapping: Map,
+    channels: list[Channel],
+    file: Path,
+    recording: Recording,
+    report: Report | None,
+) -> None:
     table, clock = channels[0].table, channels[0].clock
     options, keep = mapping.options, mapping.cut.keep
-    tables = _tables(source, options)
+    tables = tables_of(source, options)
     names, units, places = column_names(tables), column_units(tables), located(tables)
     rate = 1.0 if options.steady else options.rate_hz or table.rate_hz
-    time_node = None if clock == _RATE else parse_expression(clock, names)
+    time_node = None if clock == RATE else parse_expression(clock, names)
     nodes = [c.node for c in channels] + ([] if time_node is None else [time_node])
     used = list(dict.fromkeys(r.column for node in nodes for r in references(node)))
     words = _Words(recording)
     stream = Stream(("time_s", *(c.key for c in channels)), file)
+    of = file_of(source, table)
     line = TimeLine(lambda row: source.row_of(table, row))
     file.touch()
     for block in source.blocks(table, [places[name][1] for name in used]):
@@ -182,8 +151,9 @@ def _read_stream(
         if time_node is None:
             assert rate is not None
             time = np.arange(line.seen, line.seen + count) / rate
+            time = recording.clock_of(of).corrected(time)
         else:
-            time = _seconds(time_node, values, units, recording)
+            time = recording.seconds(of, time_node, values, units)
         columns = [np.broadcast_to(time, (count,))]
         for channel in channels:
             column = _values(channel, values, units, words)
@@ -199,59 +169,34 @@ def _read_stream(
             done, total = source.read_bytes()
             if not total:
                 done, total = line.seen, table.rows or 0
-            report(f"reading {source.path.name}", done, total)
+            report(f"reading {of.name}", done, total)
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
         raise InputError(problem="holds no samples", mend="name another file, or correct the map")
-    recording.dropped += [Dropped(*found) for found in source.left_out()]
-    recording.dropped += line.dropped()
+    dropped = [Dropped(*found) for found in source.left_out()] + line.dropped()
     if stream.needed:
         lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
-        recording.dropped.append(Dropped(lacking, "a value is missing"))
+        dropped.append(Dropped(lacking, "a value is missing"))
+    recording.dropped += [replace(d, file=_further(of, recording)) for d in dropped]
+    stream.source = of
     recording.notes += unwrapped(stream)
     recording.streams.append(stream)
-    recording.start = recording.start or table.start
+    if of == recording.path:
+        recording.start = recording.start or table.start
     for at in stream.empty:
         key = stream.columns[at]
         recording.notes.append(f"{key} holds no value and is left out")
     recording.channels += [
-        _described(c, stream, units, rate, recording.steady)
+        _described(c, stream, units, rate, recording)
         for at, c in enumerate(channels, 1)
         if at not in stream.empty and c.key != KEPT_COLUMN
     ]
 
 
-EPOCH_S = (1e8, 1e10)
-"""Times within are seconds since 1970."""
-
-
-def _seconds(
-    node: Node, values: Mapping[str, Values], units: Mapping[str, str], recording: Recording
-) -> Array:
-    """Times, s; of seconds since 1970 the whole ones before the first are taken off, before
-    anything is rounded."""
-    wanted = wanted_unit("time_s")
-    found = evaluate(node, values, units)
-    time = converted(found, wanted, "time_s")
-    if recording.origin_s is None:
-        known = time[np.isfinite(time)]
-        late = known.size > 0 and EPOCH_S[0] < known[0] < EPOCH_S[1]
-        recording.origin_s = float(np.floor(known[0])) if late else 0.0
-        if late:
-            recording.start = as_date(int(recording.origin_s) * 10**9)
-            recording.notes.append(f"times count from {recording.origin_s:.0f} s after 1970")
-    if not recording.origin_s:
-        return time
-    if isinstance(node, Reference) and found.unit.pi == 0:
-        first = float(Fraction(int(recording.origin_s)) / found.unit.ratio)
-        return converted(Quantity(found.value - first, found.unit), wanted, "time_s")
-    return time - recording.origin_s
-
-
 def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
-    if channel.key in OF_CUTTING:
+    if channel.key in (*OF_CUTTING, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
             mend = "compare a column of numbers"
@@ -336,7 +281,7 @@ def _described(
     stream: Stream,
     units: Mapping[str, str],
     rate: float | None,
-    steady: bool,
+    recording: Recording,
 ) -> dict[str, object]:
     read = [
         {"column": r.column, "unit": units.get(r.column, "") if r.unit is None else r.unit}
@@ -345,18 +290,64 @@ def _described(
     times = stream.read(0, min(stream.rows, 20_000))[:, 0]
     steps = np.diff(times)
     usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else None
-    clock = f"{rate:g} Hz, stated" if channel.clock == _RATE else channel.clock.strip("`")
-    if steady:
+    clock = f"{rate:g} Hz, stated" if channel.clock == RATE else channel.clock.replace("`", "")
+    if recording.steady:
         clock = STEADY
+    further = _further(stream.source, recording)
     return {
         "channel": channel.key,
+        **({"file": further} if further else {}),
         "made_of": channel.text,
         "read": read,
         "unit": channel.unit.text,
         "clock": clock,
-        "rate_hz": None if usual is None or steady else float(f"{1.0 / usual:.6g}"),
+        "rate_hz": None if usual is None or recording.steady else float(f"{1.0 / usual:.6g}"),
         "samples": stream.rows,
     }
+
+
+def _further(file: Path | None, recording: Recording) -> str | None:
+    """The name of a file that is not the main one."""
+    return None if file is None or file == recording.path else file.name
+
+
+def keep_common_span(recording: Recording) -> None:
+    """Leave out the rows of each stream at times that another file does not cover.
+
+    Raises
+    ------
+    InputError
+        No time is covered by all files.
+    """
+    spans = []
+    for stream in recording.streams:
+        step = usual_step(stream)
+        first, last = span(stream)
+        spans.append((first - step, last + step))
+    begin, end = max(first for first, _ in spans), min(last for _, last in spans)
+    late = recording.streams[[first for first, _ in spans].index(begin)]
+    early = recording.streams[[last for _, last in spans].index(end)]
+    if begin >= end:
+        problem = (
+            f"it begins {begin - end:.4g} s after the end of {_name(early)}: their times do not "
+            "overlap"
+        )
+        mend = "correct the offset or the signal under [align], or leave a file out"
+        raise InputError(file=late.source, problem=problem, mend=mend)
+    for stream in recording.streams:
+        low, high = stream.rows_between(0, begin, end)
+        left_out = stream.rows - (high - low)
+        if high == low:
+            problem = f"it has no samples from {begin:.4g} s to {end:.4g} s, when all files were on"
+            raise InputError(file=stream.source, problem=problem, mend="leave it out")
+        if left_out:
+            stream.segments = [(low, high)]
+            why = "another file does not cover their time"
+            recording.dropped.append(Dropped(left_out, why, file=_name(stream)))
+
+
+def _name(stream: Stream) -> str:
+    return "" if stream.source is None else stream.source.name
 
 
 def _check_segments(recording: Recording) -> None:

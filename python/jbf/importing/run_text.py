@@ -11,9 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from jbf.importing.channels import OF_CUTTING
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
-from jbf.importing.recording import OF_CUTTING
 from jbf.importing.spool import Recording, Stream
 from jbf.records.checks import COLUMNS, POINT
 

@@ -5,15 +5,22 @@ A day at 50 Hz is as large in memory as an hour: a block.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.importing.formats.table import BLOCK
+from jbf.importing.expression import Node
+from jbf.importing.file_clock import FileClock
+from jbf.importing.formats.dates import as_date
+from jbf.importing.formats.table import BLOCK, Values
 from jbf.records.channels import OWN_CLOCK
+
+if TYPE_CHECKING:
+    from jbf.importing.alignment import Alignment
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -33,6 +40,8 @@ class Stream:
         Rows of float64; nan where a column has no sample.
     missing
         How many rows lack a value of each column.
+    source
+        The file that it was read from.
     """
 
     columns: tuple[str, ...]
@@ -40,6 +49,7 @@ class Stream:
     rows: int = 0
     segments: list[tuple[int, int]] = field(default_factory=list)
     missing: npt.NDArray[np.int64] | None = None
+    source: Path | None = None
 
     @property
     def needed(self) -> list[int]:
@@ -130,11 +140,12 @@ class Stream:
 
 @dataclass
 class Dropped:
-    """Rows that were left out, and why."""
+    """Rows that were left out, and why; the file where it is not the recording's own."""
 
     rows: int
     why: str
     first_row: int | None = None
+    file: str | None = None
 
 
 @dataclass
@@ -147,8 +158,12 @@ class Recording:
         The file's stem.
     start
         The first instant as a date, where the file tells.
-    origin_s
-        What was taken off all times, s.
+    clocks
+        The clock of each file.
+    beside
+        Further files with separate clocks.
+    alignments
+        How the clocks of further files were aligned to that of `path`.
     steady
         Whether each row is a steady state and has no time.
     """
@@ -161,7 +176,9 @@ class Recording:
     channels: list[dict[str, object]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     start: str | None = None
-    origin_s: float | None = None
+    clocks: dict[Path, FileClock] = field(default_factory=dict)
+    beside: tuple[Path, ...] = ()
+    alignments: list[Alignment] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     steady: bool = False
 
@@ -172,6 +189,22 @@ class Recording:
                 if key in stream.columns and stream.columns.index(key) not in stream.empty:
                     return stream, key
         return None
+
+    def clock_of(self, file: Path) -> FileClock:
+        """The clock of a file."""
+        return self.clocks.setdefault(file, FileClock())
+
+    def seconds(
+        self, file: Path, node: Node, values: Mapping[str, Values], units: Mapping[str, str]
+    ) -> Array:
+        """Times of a file, s."""
+        clock = self.clock_of(file)
+        time = clock.seconds(node, values, units)
+        note = f"times count from {clock.origin_s:.0f} s after 1970"
+        if clock.origin_s and file == self.path and note not in self.notes:
+            self.start = as_date(int(clock.origin_s) * 10**9)
+            self.notes.append(note)
+        return time
 
     @property
     def segments(self) -> int:

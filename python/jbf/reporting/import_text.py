@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from jbf.importing.guessed import Guess
@@ -29,7 +29,9 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
         rows = "" if table.rows is None else f", {count_of(table.rows, 'row')}"
         rate = "" if table.rate_hz is None else f", {table.rate_hz:g} Hz stated"
         held.append(f"{count_of(len(table.columns), 'column')}{name}{rows}{rate}")
-    lines = [f"{guess.path.name}: {guess.format}, {'; '.join(held)}"]
+    further = ", ".join(path.name for path in guess.beside)
+    names = f"{guess.path.name} with {further}" if further else guess.path.name
+    lines = [f"{names}: {guess.format}, {'; '.join(held)}"]
     rows_ = [(e.key, e.expression, "" if e.sure else "?", f"({e.why})") for e in guess.entries]
     if rows_:
         lines += ["", "What was found:", *columns(rows_, "<<<<")]
@@ -37,6 +39,10 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
         shown = [f"{name} ({why})" for name, why in guess.ignored.items()]
         more = [f"and {len(shown) - _MOST} more"] if len(shown) > _MOST else []
         lines += ["", *hanging("Not taken: ", ", ".join(shown[:_MOST] + more), 0)]
+    if guess.align_notes:
+        lines += ["", "Clocks:"]
+        for stem, note in guess.align_notes.items():
+            lines += hanging("- ", f"{stem}: {note}")
     if guess.questions:
         lines += ["", "Not sure:"]
         for question in guess.questions:
@@ -62,7 +68,7 @@ def import_report(found: Import) -> str:
     files = found.ledger["files"]
     steady = any(channel["clock"] == STEADY for channel in files[0]["channels"])
     length = "steady states" if steady else f"{seconds:.4g} s in all"
-    lines = [f"{count_of(len(runs), 'run')} of {length}, from {count_of(len(files), 'file')}:"]
+    lines = [f"{count_of(len(runs), 'run')} of {length}, from {_file_count(files)}:"]
     rows = [
         (piece.name, f"of {piece.file}", "", "", "")
         if steady
@@ -73,6 +79,8 @@ def import_report(found: Import) -> str:
     if len(runs) > _MOST:
         lines.append(f"  and {len(runs) - _MOST} more")
     lines += ["", "Columns:", *columns(channel_rows(files[:1]), "<<<<<")]
+    clocks = clock_lines(found.ledger)
+    lines += ["", "Clocks:", *clocks] if clocks else []
     lines += left_out_lines(found.ledger)
     if out:
         lines += ["", "Left out:"]
@@ -103,6 +111,24 @@ def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str
     return list(found)
 
 
+def _file_count(files: Sequence[Mapping[str, Any]]) -> str:
+    further = sum(len(page.get("beside", ())) for page in files)
+    if not further:
+        return count_of(len(files), "file")
+    return f"{count_of(len(files) + further, 'file')} recorded side by side"
+
+
+def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
+    """How the clock of each further file was aligned."""
+    lines = []
+    for page in ledger["files"]:
+        for further in page.get("beside", ()):
+            alignment = further["alignment"]
+            how = "nothing is taken from it" if alignment is None else alignment["text"]
+            lines += hanging("- ", f"{further['file']}: {how}")
+    return lines
+
+
 def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
     """What was done to the rows of each file."""
     said = []
@@ -110,7 +136,8 @@ def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
         for dropped in page["dropped"]:
             first = f", the first in row {dropped['first_row']}" if "first_row" in dropped else ""
             rows = count_of(dropped["rows"], "row")
-            said.append(f"{page['file']}: {rows} left out, for {dropped['why']}{first}")
+            of = dropped.get("file", page["file"])
+            said.append(f"{of}: {rows} left out, for {dropped['why']}{first}")
         said += [f"{page['file']}: {note}" for note in page["notes"]]
     return ["", "On the way:", *[line for s in said for line in hanging("- ", s)]] if said else []
 
@@ -119,8 +146,7 @@ def short_import(found: Import) -> str:
     """A line for a prompt."""
     runs = sum(piece.keep for piece in found.pieces)
     return (
-        f"Import({count_of(runs, 'run')} from {count_of(len(found.ledger['files']), 'file')}: "
-        f"{found.folder})"
+        f"Import({count_of(runs, 'run')} from {_file_count(found.ledger['files'])}: {found.folder})"
     )
 
 
@@ -143,4 +169,8 @@ def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str
             out = page["left_out"]
             left = f"; {count_of(len(out), 'piece')} left out" if out else ""
             rows.append((page["file"], page["sha256"][:12], channels + dropped + left))
+            for further in page.get("beside", ()):
+                alignment = further["alignment"]
+                how = "" if alignment is None else alignment["text"]
+                rows.append((further["file"], further["sha256"][:12], how))
     return rows

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from jbf.errors import InputError
+from jbf.importing.channels import CUT_COLUMN, KEPT_COLUMN
 from jbf.importing.cutting.changes import cut_at_changes
 from jbf.importing.cutting.cycles import cut_at_cycles, cut_into_parts
 from jbf.importing.cutting.load_steps import cut_at_load_steps
@@ -16,7 +17,6 @@ from jbf.importing.cutting.piece import Cut, Piece
 from jbf.importing.cutting.rests import cut_at_rests
 from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.formats.table import BLOCK
-from jbf.importing.recording import CUT_COLUMN, KEPT_COLUMN
 from jbf.importing.spool import Recording
 from jbf.importing.targets import FRICTION, MOTION
 from jbf.records.checks import MIN_SAMPLES

@@ -1,0 +1,305 @@
+"""Align the clocks of files that were recorded at the same time: section `[align]` of a map.
+
+    force = "drive/trigger ~ force/trigger"    two records of one signal, each an expression
+    force = 3.217                              seconds that are added to the times of force.csv
+
+The key is the stem of the file. Gain, sign and zero of the two records are free. Where the times of
+both files are dates, these align them; an entry corrects them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jbf.errors import InputError
+from jbf.importing.channels import RATE, SIGNAL_COLUMN, Channel, clock_of, tables_of
+from jbf.importing.clock_drift import refine
+from jbf.importing.clock_offset import find_offset
+from jbf.importing.expression import Node, parse_expression, references
+from jbf.importing.file_clock import FileClock
+from jbf.importing.formats.table import Table, Values
+from jbf.importing.mapping import Map
+from jbf.importing.names import column_names, column_units, located
+from jbf.importing.side_by_side import SideBySide, stem_of
+from jbf.importing.spool import Stream
+from jbf.units.unit import ONE
+
+ReadSignal = Callable[[Channel], Stream]
+"""Spools a channel with its times."""
+QUESTION = (
+    "these files have clocks of their own: write a common signal (`drive/pos ~ force/pos`) or the "
+    "offset in seconds; 0 where they were started together"
+)
+_SIDES = re.compile(r"((?:`[^`]*`|[^`~])+)~((?:`[^`]*`|[^`~])+)")
+_ZONE = re.compile(r"(Z|[+-]\d\d:?\d\d)$")
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """How the clock of a file was aligned to that of the main one.
+
+    Attributes
+    ----------
+    file, main
+        The two files.
+    by
+        `signal`, `stated` or `dates`.
+    offset_s
+        What was added to the times of the file, s; with a drift, at its time `pivot_s`.
+    drift_ppm
+        By how much the clock of the file is slow, ppm; 0 where no drift is significant.
+    dates_s
+        The part of `offset_s` that follows from the dates, s.
+    signal, offset_std_s, correlation
+        Of an alignment by a signal.
+    """
+
+    file: Path
+    main: Path
+    by: str
+    offset_s: float
+    drift_ppm: float = 0.0
+    pivot_s: float = 0.0
+    dates_s: float | None = None
+    signal: str = ""
+    offset_std_s: float | None = None
+    correlation: float | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values, for the ledger."""
+        found: dict[str, Any] = {"by": self.by, "offset_s": self.offset_s}
+        if self.signal:
+            found["signal"] = self.signal
+            found["drift_ppm"] = self.drift_ppm
+            found["pivot_s"] = self.pivot_s
+            found["offset_std_s"] = self.offset_std_s
+            found["correlation"] = self.correlation
+        if self.dates_s is not None:
+            found["dates_s"] = self.dates_s
+        return found | {"text": str(self)}
+
+    @property
+    def brief(self) -> str:
+        """The offset and the drift in words."""
+        beyond = self.offset_s - (self.dates_s or 0.0)
+        way = "behind" if beyond >= 0.0 else "ahead of"
+        digits = int(np.clip(2 - np.floor(np.log10(self.offset_std_s or 1e-2)), 1, 6))
+        found = f"{abs(beyond):.{digits}f} s {way} {self.main.name}'s"
+        if self.drift_ppm:
+            slow = "slow" if self.drift_ppm > 0.0 else "fast"
+            found += f" at mid-record and {abs(self.drift_ppm):.3g} ppm {slow}"
+        return found
+
+    def __str__(self) -> str:
+        if self.by == "dates":
+            return f"aligned to {self.main.name} by their dates"
+        if self.by == "stated":
+            return f"its clock is {self.brief}, as the map states; corrected"
+        signal = self.signal.replace("`", "")
+        error = f", standard error {self.offset_std_s:.1g} s" if self.offset_std_s else ""
+        how = f"by {signal}: correlation {abs(self.correlation or 0.0):.3f}{error}"
+        return f"its clock is {self.brief} ({how}); corrected"
+
+
+def align(
+    source: SideBySide,
+    mapping: Map,
+    channels: Sequence[Channel],
+    clocks: Mapping[Path, FileClock],
+    read_signal: ReadSignal,
+) -> list[Alignment]:
+    """Correct the clocks of all files of which columns are taken.
+
+    Parameters
+    ----------
+    channels
+        The channels of the map.
+    clocks
+        For each file its clock, which is corrected in place.
+    read_signal
+        Reads a signal, with its times corrected as far as they are.
+
+    Raises
+    ------
+    InputError
+        Nothing aligns a file, or its signal does not determine the offset.
+    """
+    _check_keys(source, mapping)
+    found = []
+    for file in source.files[1:]:
+        if any(source.file_of(channel.table) == file for channel in channels):
+            try:
+                found.append(_aligned(source, mapping, channels, clocks, read_signal, file))
+            except InputError as error:
+                raise error.within(file=file) from None
+    return found
+
+
+def _check_keys(source: SideBySide, mapping: Map) -> None:
+    stems = [stem_of(file) for file in source.files[1:]]
+    for key in mapping.align:
+        if key not in stems:
+            mend = f"the further files are: {', '.join(stems)}"
+            raise InputError(
+                file=mapping.path, key=f"align.{key}", problem="is no further file", mend=mend
+            )
+
+
+def _aligned(
+    source: SideBySide,
+    mapping: Map,
+    channels: Sequence[Channel],
+    clocks: Mapping[Path, FileClock],
+    read_signal: ReadSignal,
+    file: Path,
+) -> Alignment:
+    main, clock = source.path, clocks[file]
+    instants = [_date_ns(source, mapping, channels, clocks[of], of) for of in (main, file)]
+    dates_s = None
+    if instants[0] is not None and instants[1] is not None:
+        dates_s = (instants[1] - instants[0]) / 1e9
+    clock.offset_s = dates_s or 0.0
+    stem = stem_of(file)
+    wanted = mapping.align.get(stem)
+    if wanted is None:
+        if dates_s is None:
+            problem = f"its clock and that of {main.name} are separate"
+            mend = (
+                f'write {stem} = "A ~ B" (a common signal) under [align] in the map, or the offset '
+                "in seconds"
+            )
+            raise InputError(problem=problem, mend=mend)
+        return Alignment(file, main, "dates", dates_s, dates_s=dates_s)
+    if not isinstance(wanted, str):
+        clock.offset_s += wanted
+        return Alignment(file, main, "stated", clock.offset_s, dates_s=dates_s)
+    by_main, by_file = _signals(source, mapping, channels, file, wanted)
+    streams = read_signal(by_main), read_signal(by_file)
+    try:
+        fit = refine(*streams, find_offset(*streams))
+    except InputError as error:
+        raise InputError(
+            file=file, key=f"align.{stem}", problem=error.problem, mend=error.mend
+        ) from None
+    finally:
+        for stream in streams:
+            stream.file.unlink(missing_ok=True)
+    # The streams have the times that the dates align.
+    clock.pivot_s = fit.pivot_s - clock.offset_s
+    clock.offset_s += fit.offset_s
+    clock.drift = fit.drift
+    return Alignment(
+        file,
+        main,
+        "signal",
+        clock.offset_s,
+        1e6 * fit.drift,
+        clock.pivot_s,
+        dates_s,
+        wanted,
+        fit.offset_std_s,
+        fit.correlation,
+    )
+
+
+def _signals(
+    source: SideBySide, mapping: Map, channels: Sequence[Channel], file: Path, text: str
+) -> tuple[Channel, Channel]:
+    """The two records of a common signal: of the main file and of the other one."""
+    key = f"align.{stem_of(file)}"
+    sides = _SIDES.fullmatch(text)
+    mend = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
+    if sides is None:
+        problem = f"{text!r} is no pair of signals"
+        raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
+    tables = tables_of(source, mapping.options)
+    names, places = column_names(tables), located(tables)
+    known = [f"{table.name}/{column.name}" for table in tables for column in table.columns]
+    found: dict[Path, Channel] = {}
+    for side in sides.groups():
+        try:
+            node = parse_expression(side.strip(), names, known)
+        except InputError as error:
+            raise InputError(
+                file=mapping.path, key=key, problem=error.problem, mend=error.mend
+            ) from None
+        used = {places[reference.column][0].name for reference in references(node)}
+        if len(used) == 1:
+            table = next(t for t in tables if t.name in used)
+            of = source.file_of(table)
+            clock = _clock_of_table(source, mapping, channels, table)
+            found[of] = Channel(SIGNAL_COLUMN, side.strip(), node, table, clock, ONE)
+    if source.path not in found or file not in found:
+        problem = f"needs a signal of {source.path.name} and one of {file.name}"
+        raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
+    return found[source.path], found[file]
+
+
+def _clock_of_table(
+    source: SideBySide, mapping: Map, channels: Sequence[Channel], table: Table
+) -> str:
+    for channel in channels:
+        if channel.table.name == table.name:
+            return channel.clock
+    tables = tables_of(source, mapping.options)
+    return clock_of(SIGNAL_COLUMN, table, tables, mapping, column_names(tables), located(tables))
+
+
+def _date_ns(
+    source: SideBySide,
+    mapping: Map,
+    channels: Sequence[Channel],
+    clock: FileClock,
+    file: Path,
+) -> int | None:
+    """The instant, ns since 1970, that a file's times count from; None where they are no dates."""
+    channel = next((c for c in channels if source.file_of(c.table) == file), None)
+    if channel is None:
+        return None
+    table = channel.table
+    if channel.clock == RATE:
+        return _nanoseconds(table.start)
+    tables = tables_of(source, mapping.options)
+    names, units, places = column_names(tables), column_units(tables), located(tables)
+    node = parse_expression(channel.clock, names)
+    used = [reference.column for reference in references(node)]
+    blocks = source.blocks(table, [places[name][1] for name in used])
+    block = next(blocks, None)
+    if block is None:
+        return None
+    values: dict[str, Values] = {name: block[places[name][1]] for name in used}
+    clock.seconds(node, values, units)
+    if clock.origin_s:
+        return int(clock.origin_s) * 10**9
+    return _nanoseconds(table.start) if _counts_from_start(table, node, places) else None
+
+
+def _counts_from_start(table: Table, node: Node, places: Mapping[str, tuple[Table, str]]) -> bool:
+    """Whether times count from the date of the table's first instant."""
+    columns = [table.column(places[r.column][1]) for r in references(node)]
+    if len(columns) != 1:
+        return False
+    # With a second column of dates or times of day, either may be that of the table.
+    instants = [column for column in table.columns if column.kind == "instant"]
+    return columns[0].name == table.clock or instants == columns
+
+
+def _nanoseconds(date: str | None) -> int | None:
+    if not date:
+        return None
+    zone = _ZONE.search(date) if "T" in date or " " in date else None
+    try:
+        instant = int(np.datetime64(date[: zone.start()] if zone else date, "ns").astype(np.int64))
+    except ValueError:
+        return None
+    if zone is None or zone[1] == "Z":
+        return instant
+    digits = zone[1][1:].replace(":", "")
+    seconds = 3600 * int(digits[:2]) + 60 * int(digits[2:])
+    return instant - (seconds if zone[1][0] == "+" else -seconds) * 10**9

@@ -1,0 +1,120 @@
+"""The channels of a map: which table of a file each is in, and which expression is its time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from jbf.errors import InputError
+from jbf.importing.expression import Node, parse_expression, references
+from jbf.importing.formats.table import Options, Source, Table
+from jbf.importing.mapping import Map
+from jbf.importing.names import column_names, located
+from jbf.importing.side_by_side import SideBySide
+from jbf.importing.targets import wanted_unit
+from jbf.units.unit import ONE, Unit
+
+CUT_COLUMN, KEPT_COLUMN = "cut", "kept"
+"""Where a set point or the number of a run, and whether a row is kept, stand until the recording is
+cut."""
+SIGNAL_COLUMN = "signal"
+"""A signal that files with separate clocks have in common."""
+RATE = "rate"
+"""In the place of a clock, where the rate alone is known."""
+OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One column of a run: its expression, the table it comes from, its time."""
+
+    key: str
+    text: str
+    node: Node
+    table: Table
+    clock: str
+    unit: Unit
+
+
+def channels_of(source: Source, mapping: Map) -> list[Channel]:
+    """The channels of a map.
+
+    Raises
+    ------
+    InputError
+        A column is not there, or the columns of one expression have different clocks.
+    """
+    tables = tables_of(source, mapping.options)
+    names = column_names(tables)
+    known = [column.name for table in tables for column in table.columns]
+    places = located(tables)
+    wanted = {key: text for key, text in mapping.columns.items() if key != "time_s"}
+    if mapping.cut.by and mapping.cut.column is not None:
+        wanted[CUT_COLUMN] = mapping.cut.column
+    if mapping.cut.keep is not None:
+        wanted[KEPT_COLUMN] = mapping.cut.keep.difference
+    found = []
+    for key, text in wanted.items():
+        section = {CUT_COLUMN: "cut.column", KEPT_COLUMN: "cut.keep"}.get(key, f"columns.{key}")
+        try:
+            node = parse_expression(text, names, known)
+        except InputError as error:
+            raise InputError(key=section, problem=error.problem, mend=error.mend) from None
+        of_tables = {places[r.column][0].name for r in references(node)}
+        if len(of_tables) != 1:
+            problem = "takes columns with different clocks" if of_tables else "takes no column"
+            mend = "take columns of one group; nothing is resampled here"
+            raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
+        (of,) = of_tables
+        table = next(t for t in tables if t.name == of)
+        clock = clock_of(key, table, tables, mapping, names, places)
+        unit = ONE if key in OF_CUTTING else wanted_unit(key)
+        found.append(Channel(key, text, node, table, clock, unit))
+    return found
+
+
+def tables_of(source: Source, options: Options) -> tuple[Table, ...]:
+    """The tables that the options leave."""
+    if options.table is None or isinstance(source, SideBySide):
+        return source.tables
+    for table in source.tables:
+        if table.name == options.table:
+            return (table,)
+    names = ", ".join(table.name for table in source.tables)
+    problem = f'holds no "{options.table}"'
+    raise InputError(file=source.path, problem=problem, mend=f"it holds: {names}")
+
+
+def clock_of(
+    key: str,
+    table: Table,
+    tables: tuple[Table, ...],
+    mapping: Map,
+    names: Mapping[str, str],
+    places: Mapping[str, tuple[Table, str]],
+) -> str:
+    """The expression of a column's time; `rate` where its rate alone is known."""
+    if mapping.options.steady:
+        return RATE
+    text = mapping.clocks.get(key, mapping.columns.get("time_s"))
+    if text is not None:
+        node = parse_expression(text, names)
+        if {places[r.column][0].name for r in references(node)} == {table.name}:
+            return text
+        if key in mapping.clocks:
+            problem = "is in another group than its column"
+            raise InputError(key=f"clocks.{key}", problem=problem, mend="name a time beside it")
+    if table.clock is not None:
+        return f"`{table.name}/{table.clock}`"
+    if text is None and (mapping.options.rate_hz or table.rate_hz):
+        return RATE
+    if text is not None:
+        problem = f"has no clock: time_s is in another group than [{table.name}]"
+        raise InputError(
+            key=f"columns.{key}", problem=problem, mend=f"name its time under [clocks] as {key}"
+        )
+    raise InputError(
+        key="columns.time_s",
+        problem="is missing",
+        mend="name the file's column of times, or say rate_hz under [file]",
+    )

@@ -1,0 +1,113 @@
+"""Propose how the clocks of files that were recorded at the same time are aligned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from jbf.errors import InputError
+from jbf.importing.alignment import QUESTION
+from jbf.importing.channels import channels_of
+from jbf.importing.columns import understood
+from jbf.importing.expression import OPEN
+from jbf.importing.formats.table import Column, Table
+from jbf.importing.guessed import Guess, Question
+from jbf.importing.mapping import Map
+from jbf.importing.recording import aligned
+from jbf.importing.side_by_side import SideBySide, stem_of
+
+_NEVER = ("time", "index", "run")
+"""Quantities that are no common signal."""
+
+
+def with_alignment(guess: Guess, source: SideBySide) -> Guess:
+    """A guess with the files and a section `[align]`; what nothing determines is asked.
+
+    Dates align files without an entry. Else the one column of numbers that two files have in common
+    is proposed, and is sure if its two records determine the offset.
+    """
+    guess = replace(guess, beside=source.files[1:])
+    align: dict[str, str | float] = {}
+    notes: dict[str, str] = {}
+    questions = list(guess.questions)
+    for file in source.files[1:]:
+        stem = stem_of(file)
+        if not _is_used(guess, source, file):
+            notes[stem] = "nothing is taken from it"
+            continue
+        note = _tried(guess, source, file, {})
+        if isinstance(note, str):
+            notes[stem] = note
+            continue
+        shared = _shared(source, file)
+        if len(shared) == 1:
+            align[stem] = shared[0]
+            note = _tried(guess, source, file, {stem: shared[0]})
+            if not isinstance(note, InputError):
+                notes[stem] = note or "the one column that both files have"
+                continue
+            notes[stem] = note.problem
+            questions.append(Question(f"align.{stem}", f"{note.problem}; {note.mend}"))
+            continue
+        align[stem] = OPEN
+        notes[stem] = f"common to both files: {', '.join(shared)}" if shared else "no common column"
+        questions.append(Question(f"align.{stem}", QUESTION))
+    return replace(guess, align=align, align_notes=notes, questions=tuple(questions))
+
+
+def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
+    """Whether a column of the file is taken, as far as that is decided."""
+    try:
+        channels = channels_of(source, _decided(guess))
+    except InputError:
+        return True
+    return any(source.file_of(channel.table) == file for channel in channels)
+
+
+def _decided(guess: Guess) -> Map:
+    """The map without the lines that are open as wholes."""
+    mapping = guess.map()
+    columns = {key: text for key, text in mapping.columns.items() if text != OPEN}
+    return replace(mapping, columns=columns)
+
+
+def _tried(
+    guess: Guess, source: SideBySide, file: Path, align: Mapping[str, str | float]
+) -> str | InputError | None:
+    """How a file is aligned; the error where it is not, None where a time is still open."""
+    mapping = replace(_decided(guess), align=align)
+    try:
+        every = channels_of(source, mapping)
+        channels = [c for c in every if source.file_of(c.table) in (source.path, file)]
+        if any(f"[{OPEN}]" in channel.clock for channel in channels):
+            return None if align else InputError(problem="a time is open")
+        with TemporaryDirectory(prefix="jbf-align-") as folder:
+            (found,) = aligned(source, mapping, channels, Path(folder))
+    except InputError as error:
+        return error
+    if found.by == "dates":
+        return str(found)
+    return f"{found.brief}: correlation {abs(found.correlation or 0.0):.3f}"
+
+
+def _shared(source: SideBySide, file: Path) -> list[str]:
+    """Pairs of columns of one name in the main file and another, as the map has them."""
+    by_name: tuple[dict[str, str], dict[str, str]] = ({}, {})
+    for table in source.tables:
+        of = source.file_of(table)
+        if of in (source.path, file):
+            place = by_name[of == file]
+            for column in table.columns:
+                if _may_be_common(column, table):
+                    name = understood(column.name).name.lower()
+                    place.setdefault(name, f"`{table.name}/{column.name}`")
+    return [f"{by_name[0][name]} ~ {by_name[1][name]}" for name in by_name[0] if name in by_name[1]]
+
+
+def _may_be_common(column: Column, table: Table) -> bool:
+    if column.kind != "number" or column.name == table.clock:
+        return False
+    header = understood(column.name, column.unit)
+    return header.kind not in _NEVER and column.name != "time_s"

@@ -1,0 +1,128 @@
+"""Files that were recorded at the same time with separate clocks, as one source.
+
+Each file is a table (or several) of the source, named by the file's stem.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from jbf.errors import InputError
+from jbf.importing.formats.registry import open_source
+from jbf.importing.formats.table import Options, Source, Table, Values
+
+
+class SideBySide(Source):
+    """Several open files; the clock of the first one is that of the recording.
+
+    Attributes
+    ----------
+    files
+        Paths, the main file first.
+    """
+
+    def __init__(self, sources: Sequence[Source], stack: ExitStack, options: Options) -> None:
+        self.path = sources[0].path
+        self.files = tuple(source.path for source in sources)
+        self._stack = stack
+        self._origins: dict[str, tuple[Source, Table]] = {}
+        self._reading = sources[0]
+        tables = []
+        chosen = _chosen(sources, options.table)
+        for source, own in zip(sources, chosen, strict=True):
+            stem = stem_of(source.path)
+            for table in own:
+                name = stem if len(own) == 1 else f"{stem}/{table.name}"
+                self._origins[name] = source, table
+                tables.append(replace(table, name=name))
+        self.tables = tuple(tables)
+
+    def file_of(self, table: Table) -> Path:
+        """The file that a table is in."""
+        return self._origins[table.name][0].path
+
+    def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
+        """Blocks of the table's file; an error names that file."""
+        source, origin = self._origins[table.name]
+        self._reading = source
+        try:
+            yield from source.blocks(origin, names)
+        except InputError as error:
+            raise error.within(file=source.path) from None
+
+    def row_of(self, table: Table, sample: int) -> int | None:
+        """The row in the table's file."""
+        source, origin = self._origins[table.name]
+        return source.row_of(origin, sample)
+
+    def left_out(self) -> list[tuple[int, str, int | None]]:
+        """Rows that the last reading passed over."""
+        return self._reading.left_out()
+
+    def read_bytes(self) -> tuple[int, int]:
+        """How much of the file that is being read has been read, and its size."""
+        return self._reading.read_bytes()
+
+    def close(self) -> None:
+        """Close all files."""
+        self._stack.close()
+
+
+def file_of(source: Source, table: Table) -> Path:
+    """The file that a table of a source is in."""
+    return source.file_of(table) if isinstance(source, SideBySide) else source.path
+
+
+def stem_of(path: Path) -> str:
+    """A file's name without its end, and without `.gz` after that."""
+    return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
+
+
+def open_recording(
+    path: str | os.PathLike[str],
+    beside: Sequence[str | os.PathLike[str]] = (),
+    options: Options | None = None,
+) -> Source:
+    """Open a file, or several that were recorded at the same time.
+
+    Parameters
+    ----------
+    beside
+        Further files; their clocks are aligned to that of `path`.
+
+    Raises
+    ------
+    InputError
+        A file is not there, is broken, or its library is not installed; or two have one stem.
+    """
+    options = options or Options()
+    if not beside:
+        return open_source(path, options)
+    if options.steady:
+        mend = "leave the other files out, or steady"
+        raise InputError(key="file.steady", problem="steady states have no clock", mend=mend)
+    with ExitStack() as stack:
+        sources = [stack.enter_context(open_source(file, options)) for file in (path, *beside)]
+        stems = [stem_of(source.path) for source in sources]
+        for at, source in enumerate(sources):
+            if stems[at] in stems[:at]:
+                problem = f"another of the files is called {stems[at]}, too"
+                raise InputError(file=source.path, problem=problem, mend="rename one of them")
+        return SideBySide(sources, stack.pop_all(), options)
+
+
+def _chosen(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ...]]:
+    """The tables of each file: those of a name in the files that have it, else all."""
+    if name is None:
+        return [source.tables for source in sources]
+    named = [tuple(t for t in source.tables if t.name == name) for source in sources]
+    if not any(named):
+        known = ", ".join(t.name for source in sources for t in source.tables if t.name)
+        problem = f'no file holds "{name}"'
+        mend = f"they hold: {known}" if known else "leave it out"
+        raise InputError(key="file.table", problem=problem, mend=mend)
+    return [own or source.tables for own, source in zip(named, sources, strict=True)]

@@ -18,6 +18,7 @@ from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
 from jbf.workbench.files import Folder
 from jbf.workbench.map_form import (
+    beside_names,
     changed_by,
     cut_name,
     file_columns,
@@ -75,10 +76,11 @@ def tried(
     if form is not None:
         text = changed_by(text, list(form["rows"]), dict(form["rig"]))
     paths, cut = _paths(folder, names), _cut_file(folder, text)
+    beside = _beside(folder, text)
     told: dict[str, Any] = {"map": text, "form": form_of(text), "runs": [], "problem": None}
     try:
         with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-            told |= _told(import_files(paths, _map_file(there, text), cut_file=cut))
+            told |= _told(import_files(paths, _map_file(there, text), cut_file=cut, beside=beside))
     except InputError as error:
         told["problem"] = str(unplaced(error))
     return told
@@ -90,9 +92,10 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
     if out.exists():
         raise InputError(file=into, problem="is there already", mend="name another folder")
     paths, cut = _paths(folder, names), _cut_file(folder, text)
+    beside = _beside(folder, text)
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
         try:
-            found = import_files(paths, _map_file(there, text), out, cut_file=cut)
+            found = import_files(paths, _map_file(there, text), out, cut_file=cut, beside=beside)
         except InputError as error:
             raise unplaced(error) from None
         told = _told(found)
@@ -114,6 +117,11 @@ def _cut_file(folder: Folder, text: str) -> Path | None:
     """The trims that a map names: of the folder, as every other file that a page names."""
     name = cut_name(text)
     return None if name is None else folder.path(name)
+
+
+def _beside(folder: Folder, text: str) -> list[Path] | None:
+    """The further files that a map names: of the folder, as every other file."""
+    return [folder.path(name) for name in beside_names(text)] or None
 
 
 def _map_file(folder: str, text: str) -> Path:

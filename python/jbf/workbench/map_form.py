@@ -237,6 +237,19 @@ def cut_name(text: str) -> str | None:
     return str(_parsed(text)["cut"]["file"])
 
 
+def beside_names(text: str) -> list[str]:
+    """The further files that a map names, as they are written there.
+
+    Raises
+    ------
+    InputError
+        The text is no map.
+    """
+    if not _map_of(text).beside:
+        return []
+    return [str(name) for name in _parsed(text)["file"]["beside"]]
+
+
 def _parsed(text: str) -> Any:
     try:
         return tomlkit.parse(text)

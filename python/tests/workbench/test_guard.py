@@ -162,6 +162,8 @@ def test_map_that_names_an_outside_file_is_refused(
     run = next(path.name for path in campaign.glob("*.csv"))
     text = f'[columns]\ntime_s = "`time_s`"\n[cut]\nfile = "{name}"\n'
     assert_path_is_refused(client, address, {"files": [run], "map": text, "into": "new"})
+    text = f'[file]\nbeside = ["{name}"]\n[columns]\ntime_s = "`time_s`"\n'
+    assert_path_is_refused(client, address, {"files": [run], "map": text, "into": "new"})
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "import.md"
-BENCH_MAP, _, DRIVE_MAP, SEAL_MAP = re.findall(
+BENCH_MAP, _, DRIVE_MAP, SEAL_MAP, SIDE_BY_SIDE_MAP = re.findall(
     r"```toml[^\n]*\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL
 )
 
@@ -70,3 +70,34 @@ def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Pa
     fit = jbf.fit(imported.rig, imported.runs, ["dry_load_dependence"], law="coulomb")
     assert fit["F_c"].value == pytest.approx(2.0, abs=0.1)
     assert fit["dry_load_dependence.mu"].value == pytest.approx(1.5, abs=0.05)
+
+
+def test_files_recorded_side_by_side_are_aligned_by_their_position(tmp_path: Path) -> None:
+    """Three records of one motion; the clock of the force is 2 s behind."""
+    rates = 2.0 * np.pi * np.array([0.11, 0.23, 0.41])
+
+    def position(time: np.ndarray) -> np.ndarray:
+        return np.asarray(
+            np.sin(np.outer(time, rates) + np.array([0.3, 1.7, 4.0])) @ [20.0, 8.0, 5.0]
+        )
+
+    def write(name: str, header: str, *columns: np.ndarray) -> None:
+        path = tmp_path / name
+        table = np.column_stack(columns)
+        np.savetxt(path, table, "%.7g", ",", header=header, comments="", encoding="utf-8")
+
+    time = np.arange(6000) / 100.0
+    write("drive.csv", "time [s],pos [mm]", time, position(time))
+    sample = np.arange(500, 5500) / 100.0
+    force = 5.0 * np.sign(np.gradient(position(sample)))
+    write("force.csv", "time [s],F [N],lvdt [mm]", sample - 2.0, force, 3.0 - position(sample))
+    seconds = np.arange(60.0)
+    write("temp.csv", "time [s],temperature [°C],pos [mm]", seconds + 11.9, 20.0 + 0.0 * seconds,
+          position(seconds))  # fmt: skip
+    (tmp_path / "map.toml").write_text(SIDE_BY_SIDE_MAP, encoding="utf-8")
+    result = jbf.import_files(tmp_path / "drive.csv", tmp_path / "map.toml")
+    of_force, of_temperature = result.ledger["files"][0]["beside"]
+    assert of_force["alignment"]["offset_s"] == pytest.approx(2.0, abs=0.002)
+    assert of_temperature["alignment"]["offset_s"] == -11.9
+    (run,) = result.runs
+    np.testing.assert_allclose(run.temperature_c, 20.0)

@@ -98,7 +98,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
 def recorded(run: AxisRun, joint: bool) -> jbf.Run:
     """A run as the library takes it: a joint has an angle, a slide a position."""
     path = {"angle_rad" if joint else "position_m": run.path}
-    return jbf.Run.from_arrays(
+    made = jbf.Run.from_arrays(
         run.time_s,
         run.velocity_m_s,
         run.force_n,
@@ -107,10 +107,16 @@ def recorded(run: AxisRun, joint: bool) -> jbf.Run:
         name=run.name,
         **path,
     )
+    return replace(made, quantities=rig_of(joint).quantities)
 
 
-def simulated(task: Task) -> tuple[list[jbf.Run], float]:
-    """The runs, and the noise on them, N."""
+def rig_of(joint: bool) -> jbf.Rig:
+    """A drive of a joint or of a slide whose torque or force was read."""
+    return jbf.Rig(drive=jbf.Drive("rotary", "torque") if joint else jbf.Drive("linear", "force"))
+
+
+def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
+    """The rig, its runs, and the noise on them, N or N m."""
     joint = "gravity" in task.effects or task.seed % 2 == 0
     swing = SWING if "torque_proportional" in task.effects else 1.0
     records, truth = axis_campaign(
@@ -131,24 +137,25 @@ def simulated(task: Task) -> tuple[list[jbf.Run], float]:
             )
             for r in records
         ]
-    return [recorded(r, joint) for r in records], float(str(truth["noise_n"]))
+    return rig_of(joint), [recorded(r, joint) for r in records], float(str(truth["noise_n"]))
 
 
 def answer(task: Task) -> Answer:
     """Simulate, diagnose, judge."""
-    runs, noise_n = simulated(task)
+    rig, runs, noise_n = simulated(task)
     begun = time.process_time()
-    found = jbf.diagnose(jbf.Rig(), runs[:FITTED], law="coulomb")
+    found = jbf.diagnose(rig, runs[:FITTED], law="coulomb")
     took = time.process_time() - begun
     left = jbf.compare(found.model, runs[FITTED:]).rms_n / noise_n
-    return Answer(task, judged(task, found), found.verdict, found.effects, left, took)
+    named = (*found.machine, *found.effects)
+    return Answer(task, judged(task, found), found.verdict, named, left, took)
 
 
 def judged(task: Task, found: jbf.Diagnosis) -> str:
     """`right`, `tied`, `named falsely`, `unexplained`, `missed`."""
     if task.foreign:
         return "right" if found.verdict == "unexplained" else "not told"
-    named, true = set(found.effects), set(task.effects)
+    named, true = {*found.machine, *found.effects}, set(task.effects)
     if named == true:
         right = {"adequate", "missing", "ambiguous"} if true else {"adequate"}
         return "right" if found.verdict in right else "unexplained"

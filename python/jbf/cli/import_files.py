@@ -38,7 +38,8 @@ def add(commands: Commands) -> None:
         "--beside",
         metavar="FILE",
         action="append",
-        help="a file that was recorded at the same time with a clock of its own; may be repeated",
+        help="a file that was recorded at the same time with a clock of its own; may be repeated; "
+        "replaces [file] beside of the map",
     )
     parser.add_argument("--out", metavar="FOLDER", help="write the runs and rig.toml there")
     parser.add_argument(
@@ -144,6 +145,10 @@ def _look(arguments: argparse.Namespace) -> int:
     shown_path = file.parent / target.name
     if not kept:
         outputs.check({shown_path.name: str(target)}, outputs.read_by(arguments))
+    if kept and arguments.beside:
+        problem = f"{shown_path.name} is there and may name other files"
+        mend = f"--force replaces it; or go on with --map {shown_path}"
+        raise InputError(file=shown_path, problem=problem, mend=mend)
     found = look(file, arguments.joint, arguments.beside or ())
     if not kept:
         write_text(target, map_text(found, str(shown_path)))

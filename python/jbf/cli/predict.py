@@ -8,6 +8,7 @@ from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_own, command
 from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
+from jbf.records.checks import POINT
 
 
 def add(commands: Commands) -> None:
@@ -29,10 +30,11 @@ def run(arguments: argparse.Namespace) -> int:
         friction = model.predict(motion)
     except InputError as error:
         raise error.within(file=arguments.motion) from None
-    rows = zip(motion.time_s.tolist(), friction.tolist(), strict=True)
+    instants, clock = (motion.extra[POINT], POINT) if motion.steady else (motion.time_s, "time_s")
+    rows = zip(instants.tolist(), friction.tolist(), strict=True)
     # repr of a float is the shortest text that reads back to the same bits.
     column = model.rig.quantities.friction_column
-    lines = [f"time_s,{column}", *(f"{t!r},{f!r}" for t, f in rows)]
+    lines = [f"{clock},{column}", *(f"{t!r},{f!r}" for t, f in rows)]
     outputs.write({arguments.out: "\n".join(lines) + "\n"})
     outputs.say(f"{len(motion)} samples of friction written to {arguments.out}", wanted)
     return 0

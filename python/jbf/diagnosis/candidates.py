@@ -80,7 +80,7 @@ class Fitted:
     left_out
         Runs that were left out of the fit; empty until somebody asks.
     halves
-        The same of the halves of a run, and whether they are alternate parts.
+        Held-out predictions of two halves of a run, by (run, alternate).
     """
 
     problem: Problem

@@ -6,6 +6,8 @@ of the model from which a diagnosis of a drive starts; they are no missing effec
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from jbf.diagnosis.candidates import Candidates
 
 Names = tuple[str, ...]
@@ -14,7 +16,7 @@ TERMS = ("sensor_offset", "inertia_leak", "gravity")
 """Effects that are no friction and that no law can represent."""
 
 
-def machine_of(candidates: Candidates, present: Names) -> Names:
+def machine_of(candidates: Candidates, present: Iterable[str]) -> Names:
     """The effects of a model that are terms of its machine; none of a rig without a drive."""
     if candidates.campaign.rig.drive is None:
         return ()

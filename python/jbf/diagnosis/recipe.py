@@ -7,8 +7,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
@@ -33,7 +31,7 @@ from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.refine import motion_weights
+from jbf.estimation.refine import with_motion_errors
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock
 from jbf.models.chain import check_rig
@@ -130,7 +128,7 @@ def _diagnose(
     corrected = _without_bias(candidates, ())
     if corrected is not None:
         candidates = Candidates(corrected, law, clock, policy, progress, candidates)
-    certain = _weighed_by_motion(candidates)
+    certain = _with_errors_of_motion(candidates)
     if certain is not None:
         candidates = Candidates(certain, law, clock, policy, progress, candidates)
     before = _before(candidates)
@@ -261,17 +259,18 @@ def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:
     return without_bias(problem, solution, candidates.policy)
 
 
-def _weighed_by_motion(candidates: Candidates) -> Campaign | None:
-    """The campaign of a drive with weights by the errors of its motion; None where these are
-    negligible."""
+def _with_errors_of_motion(candidates: Candidates) -> Campaign | None:
+    """The campaign of a drive with the errors of its motion in the likelihood, and its force
+    corrected by a delay that all runs share; None where these errors are negligible."""
     if candidates.campaign.rig.drive is None:
         return None
     base = start_model(candidates)
-    weights = motion_weights(candidates.fitted(base).problem, candidates.converge(base))
-    if weights is None:
+    problem, solution = candidates.fitted(base).problem, candidates.converge(base)
+    problem, solution = with_motion_errors(problem, solution)
+    if solution.samples.motion is None:
         return None
-    samples, ones = candidates.campaign.samples, [np.ones(len(w)) for w in weights]
-    return replace(candidates.campaign, samples=samples.weighed(weights, ones, samples.between))
+    campaign = problem.campaign
+    return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
 
 
 def _before(candidates: Candidates) -> Comparison:

@@ -204,9 +204,18 @@ def still_needed(candidates: Candidates, present: Names) -> Names:
 
 
 def start_model(candidates: Candidates) -> Names:
-    """The terms of a drive's machine that these runs need, estimated together with the law."""
-    possible = tuple(name for name in TERMS if name in candidates.names)
-    return still_needed(candidates, machine_of(candidates, possible))
+    """The terms of a drive's machine that these runs need, estimated together with the law.
+
+    Each term starts from the fit without it: from their starting values all at once, a search may
+    end at a weight of zero.
+    """
+    present: Names = ()
+    for name in machine_of(candidates, [n for n in TERMS if n in candidates.names]):
+        near = candidates.converge(present)
+        present = (*present, name)
+        candidates.look(present, near)
+        candidates.converge(present)
+    return still_needed(candidates, present)
 
 
 def reconsider(

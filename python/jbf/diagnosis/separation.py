@@ -27,8 +27,8 @@ Array = npt.NDArray[np.float64]
 
 SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
 """Columns that a motion to be proposed has."""
-MOST_SAMPLES = 6000
-"""Samples of a run to be proposed."""
+MOST_SAMPLES, LEAST_SAMPLES = 6000, 200
+"""Largest and smallest number of samples of a proposed run."""
 NO_NOISE_N = 1e-100
 """Less than any noise, N, and more than nothing: records without noise part any two models."""
 
@@ -95,7 +95,3 @@ def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> 
     celsius = None if warmth is None else np.full(len(time), warmth)
     run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
     return run_on(rig, run)
-
-
-LEAST_SAMPLES = 200
-"""Samples of an imagined run, of machines that were read more seldom."""

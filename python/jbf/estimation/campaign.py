@@ -42,18 +42,18 @@ LOADS_DIFFER = 0.05
 TEMPERATURES_DIFFER_K = 2.0
 """Temperatures that differ by less, K, are one: it changes an oil by a tenth, dry friction by a
 hundredth or two, and a thermometer sits where the friction is not."""
-OF_A_READING = frozenset(
-    ("inertia_leak", "sensor_hysteresis", "sensor_nonlinearity", "sensor_lag", "time_delay")
-) | {"sensor_drift"}
-"""Effects in a force that was read: not in one that follows from the deceleration."""
-OF_TIME = (
-    OF_A_READING - {"sensor_nonlinearity"}
-    | frozenset(
-        ("drive_compliance", "backlash", "thermal_thinning", "film_memory", "wear_in", "warm_up")
-    )
-    | {"dwell_stiction", "presliding"}
-)
-"""Effects of a motion's course in time: not in steady states."""
+NEEDS_RECORDED_FORCE = frozenset((
+    "inertia_leak", "sensor_hysteresis", "sensor_nonlinearity", "sensor_lag", "time_delay",
+    "sensor_drift", "backlash", "drive_compliance",
+))  # fmt: skip
+"""Effects that are not tried without a recorded force. Play and springs act between what is driven
+and what is read; of a coast-down they would explain how its acceleration was smoothed."""
+NEEDS_TIME = frozenset((
+    "inertia_leak", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
+    "drive_compliance", "thermal_thinning", "film_memory", "wear_in", "warm_up", "dwell_stiction",
+    "presliding",
+))  # fmt: skip
+"""Effects that are not tried on steady states."""
 NOISE_SPAN = 3.29
 """Standard deviations between the quantiles of white noise at 5 % and at 95 %."""
 
@@ -172,9 +172,9 @@ class Campaign:
     def lacking(self, effect: Effect) -> str | None:
         """What these runs do not hold of what an effect needs, in words; None where nothing."""
         needs = effect.needs
-        if coasting(self.rig) is not None and effect.name in OF_A_READING:
+        if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:
             return "no force was recorded"
-        if effect.name in OF_TIME and self.steady:
+        if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not show it"
         for column in effect.columns:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):

@@ -85,6 +85,15 @@ class ErrorsInMotion:
             whole = whole[:, :-1] - np.outer(delay, share)
         return whole[:, 0], whole[:, 1:]
 
+    def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
+        """Independent residuals of standard deviation `noise`, one array a run; zero at samples
+        without weight."""
+        found = []
+        for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
+            white, _ = self._whitened(run, residual[:, None], weight)
+            found.append(white[:, 0] * (weight > 0.0))
+        return found
+
     def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
         """Minus twice the log likelihood of the residuals, up to a constant."""
         total = 0.0

@@ -34,7 +34,8 @@ Mask = npt.NDArray[np.bool_]
 
 
 APART = 2
-"""Distance of samples of an acceleration, lags at which the correlation of its errors vanishes."""
+"""Spacing of the samples of a coast-down, in lags at which the correlation of the acceleration's
+errors vanishes."""
 FINER = 1.5
 """A motion read so many times as often as the force tells more than at the force's instants."""
 
@@ -258,7 +259,11 @@ class Prepared:
 
 
 def _independent(motion: ImposedMotion) -> Mask:
-    """Samples so far apart that the errors of their accelerations are independent, shape (n,)."""
+    """Samples so far apart that the errors of their accelerations are independent, shape (n,).
+
+    The covariance of the errors at two instants is the product of the smoother's gains between them
+    and the covariance at the later one.
+    """
     count, errors = len(motion.velocity_m_s), motion.errors
     if errors is None:
         return np.ones(count, dtype=bool)

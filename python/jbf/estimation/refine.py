@@ -196,18 +196,6 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
     return replace(motion, noise=float(np.exp(found.x)))
 
 
-def motion_weights(problem: Problem, solution: Solution) -> list[Array] | None:
-    """Weights of the samples by the errors of the motion, at most 1, one array a run; None where
-    these are negligible or not known."""
-    if any(p.motion.errors is None for p in problem.campaign.prepared):
-        return None
-    motion = errors_in_motion(problem, solution)
-    if _mean_share(motion, solution.samples) < NEGLIGIBLE:
-        return None
-    count = len(problem.campaign.prepared)
-    return [1.0 / np.sqrt(1.0 + motion.variance_ratio(i)) for i in range(count)]
-
-
 def _mean_share(motion: ErrorsInMotion, samples: Samples) -> float:
     """Mean variance by the motion at the samples that count, relative to the noise's."""
     shares = [motion.variance_ratio(i)[w > 0.0] for i, w in enumerate(samples.weight)]

@@ -172,6 +172,8 @@ class Samples:
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations of weighted residuals, one array a run; zero where there is no weight."""
         left = self.without_deviations(residuals, noise)
+        if self.motion is not None:
+            return self.motion.innovations(left, self.weight)
         return [
             noise.innovations(r * w, step) * (w > 0.0)
             for r, w, step in zip(left, self.weight, self.steps_s, strict=True)
@@ -190,6 +192,9 @@ class Samples:
         """Innovations for tests, one array a run, as large everywhere as where the noise is least;
         zero where a sample does not count."""
         left = self.without_deviations(residuals, noise)
+        if self.motion is not None:
+            pairs = zip(self.counted, self.weight, strict=True)
+            return self.motion.innovations(left, [c * w for c, w in pairs])
         return [
             noise.innovations(r * (c * w), step) * c
             for r, c, w, step in zip(left, self.counted, self.weight, self.steps_s, strict=True)
@@ -199,6 +204,9 @@ class Samples:
         """The same, large ones as large as they are: for tests of those very ones."""
         left = self.without_deviations(residuals, noise)
         level = [np.ones(len(r)) for r in left] if self.level is None else self.level
+        if self.motion is not None:
+            pairs = zip(self.counted, level, strict=True)
+            return self.motion.innovations(left, [c * s for c, s in pairs])
         return [
             noise.innovations(r * (c * s), step) * c
             for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)

@@ -45,7 +45,7 @@ class Numbers:
     clock: str
     bearing: _core.BearingSizes | None
     load_n: float
-    turns: bool = False
+    units: str = ""
 
     @classmethod
     def of(cls, model: Model) -> Numbers:
@@ -79,7 +79,7 @@ class Numbers:
             clock=model.clock,
             bearing=core_bearing(model.rig),
             load_n=core_load_n(model.rig) or 1.0,
-            turns=model.rig.quantities.motion == "rotary",
+            units=_units_note(model),
         )
 
     @property
@@ -90,8 +90,16 @@ class Numbers:
     def title(self) -> str:
         """Law and effects, for people."""
         effects = ", ".join(group.name for group in self.effects)
-        units = "; of a rotary drive: N m, rad, rad/s for N, m, m/s" if self.turns else ""
-        return f"law {self.law.name}; effects: {effects or 'none'}{units}"
+        return f"law {self.law.name}; effects: {effects or 'none'}{self.units}"
+
+
+def _units_note(model: Model) -> str:
+    """What the units in the names mean; empty where they are true."""
+    quantities = model.rig.quantities
+    if quantities.force == "N" and quantities.motion != "rotary":
+        return ""
+    read = f"{quantities.force}, {quantities.length}, {quantities.speed}"
+    return f"; read {read} for N, m, m/s"
 
 
 def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:

@@ -146,7 +146,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         entries["torque_n_m"] = replace(entries.pop("load_n_m"), key="torque_n_m")
     entries = by_machine(entries)
     for key in redundant_motor_columns(entries):
-        ignored[column_of(entries.pop(key))] = "the force and the place tell enough"
+        ignored[column_of(entries.pop(key))] = "redundant: a force and a place are recorded"
     lone_motion = all(c.kind != "number" or _is_used(c, entries) for t in tables for c in t.columns)
     questions += _missing(entries, source, lone_motion)
     questions += force_as_torque(entries, ignored)
@@ -251,7 +251,7 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         ask = f"{header.unit} may be {ASK[header.unit]}; write which behind the column"
         return Candidate(key, column, header, False, why, ask)
     if kind == "voltage" and not header.motor:
-        ask = "is it the motor's voltage? then write V; friction is told in volts"
+        ask = "is this the motor's voltage? if so, replace [?] by [V]; results are then in volts"
         return Candidate(key, column, header, False, why, ask)
     if unit is None:
         said = f"the unit {header.unit!r} is not known" if header.unit else "no unit is written"

@@ -105,7 +105,7 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
         entries["torque_n_m"] = replace(force, key="torque_n_m")
         return []
     if "velocity_m_s" in entries:
-        ignored[column_of(entries.pop("velocity_m_s"))] = "the angle tells it"
+        ignored[column_of(entries.pop("velocity_m_s"))] = "redundant: the angle is recorded"
     if "torque_n_m" in entries:
         both = f"{force.expression} or {entries['torque_n_m'].expression}"
         entries["torque_n_m"] = Entry("torque_n_m", OPEN, f"one of: {both}", sure=False)

@@ -12,6 +12,7 @@ from tomlkit.items import Table
 from jbf.errors import InputError
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.vocabulary import ModelFile, Vocabulary
+from jbf.records.quantities import Quantities
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
@@ -28,6 +29,17 @@ the list has its parameters in [parameters.EFFECT]."""
 _TURNING = """\
 The rig is a rotary drive: where a parameter's name ends in n, m or kg, read N m, rad or kg m^2
 (F_v_n_s_m is in N m s/rad)."""
+
+_BY_VOLTAGE = """\
+The rig is a motor read by its voltage: where a parameter's name ends in n or kg, read V or V s^2
+over the unit of the motion (F_v_n_s_m is in {viscous}, m_e_kg in {inertia})."""
+
+
+def _units_note(quantities: Quantities) -> str:
+    """What the units in the names of parameters mean; empty where they are true."""
+    if quantities.force == "V":
+        return _BY_VOLTAGE.format(viscous=quantities.unit("N s/m"), inertia=quantities.unit("kg"))
+    return _TURNING if quantities.motion == "rotary" else ""
 
 
 def _text(content: Mapping[str, Any], key: str, default: str | None = None) -> str:
@@ -124,9 +136,8 @@ def model_file_text(model: ModelFile) -> str:
     document = tomlkit.document()
     for line in _HEADER.splitlines():
         document.add(tomlkit.comment(line))
-    if model.rig.quantities.motion == "rotary":
-        for line in _TURNING.splitlines():
-            document.add(tomlkit.comment(line))
+    for line in _units_note(model.rig.quantities).splitlines():
+        document.add(tomlkit.comment(line))
     document["format"] = FORMAT
     document["law"] = model.law
     document["clock"] = model.clock

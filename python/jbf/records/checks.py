@@ -28,7 +28,7 @@ COLUMNS = (
 POINT = "point"
 """A column in the place of `time_s`: the number of a steady state, as of a Stribeck curve."""
 POINT_S = 60.0
-"""How long a steady state is held before it is read, s."""
+"""Nominal spacing of steady states on the time axis of a run, s."""
 SLOW = "temperature_c"
 """A column that may have gaps."""
 LARGEST = 1e12

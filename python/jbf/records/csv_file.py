@@ -266,7 +266,8 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         if name in known or (name and np.isfinite(values).all()):
             columns[name] = values
     if steady and POINT in columns:
-        columns["time_s"] = frozen(POINT_S * columns[POINT])
+        speeds = ("velocity_m_s",) if of_drive is None else tuple(of_drive.speed)
+        columns = _by_speed(columns, next((s for s in speeds if s in columns), POINT))
     check_columns(name_of_run, columns, path, numbers, known)
     for name, there in gaps.items():
         columns[name] = filled(columns["time_s"], columns[name], there)
@@ -279,6 +280,16 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     read = {called.get(name, name): there for name, there in gaps.items()}
     read = {name: there for name, there in read.items() if name in columns}
     return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
+
+
+def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
+    """Steady states in the order of their speeds, on a time axis of their own.
+
+    What neighbours differ by is then their noise, in whatever order they were measured.
+    """
+    order = np.argsort(columns[speed], kind="stable")
+    found = {name: frozen(values[order]) for name, values in columns.items()}
+    return found | {"time_s": frozen(POINT_S * np.arange(len(order)))}
 
 
 def _by_its_own_clock(

@@ -93,8 +93,10 @@ class Drive:
                 raise _wrong(name, f"means nothing of a {self.motion} drive", "drop it")
         if self.friction == "none" and self.moved is None:
             name = "inertia_kg_m2" if self.motion == "rotary" else "mass_kg"
-            problem = "is missing, and makes a force of the deceleration"
-            raise _wrong(name, problem, 'friction = "none" needs it')
+            problem = 'is missing, and is required for friction = "none"'
+            raise _wrong(
+                name, problem, "write the known value; friction is it times the deceleration"
+            )
         if self.motion == "linear" and self.pitch_m is None:
             turning = self.friction == "torque" or self._of_motor is not None
             if turning or self.gear_ratio != 1.0:

@@ -14,7 +14,7 @@ PRESSURE = "pressure_pa"
 LOAD_TORQUE = "load_n_m"
 BAR_PA = 1e5
 LEAST_LOAD = 1e-9
-"""Load torque in the place of zero, N m: laws divide by the load."""
+"""Smallest load torque used, N m; avoids a division by zero."""
 
 
 def recorded_load(rig: Rig, run: Run) -> Array | None:

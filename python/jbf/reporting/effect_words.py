@@ -67,8 +67,8 @@ def known_mass(model: Model, effect: str) -> str:
     """The mass or inertia that was found beside the one that the rig tells; empty where it tells
     none."""
     drive = model.rig.drive
-    if effect != "inertia_leak" or drive is None:
-        return ""
+    if effect != "inertia_leak" or drive is None or drive.friction == "voltage":
+        return ""  # an inertia in V s^2/rad has no counterpart in kg m^2
     known = drive.inertia_kg_m2 if drive.motion == "rotary" else drive.mass_kg
     if known is None:
         return ""

@@ -154,9 +154,9 @@ def _found(diagnosis: Diagnosis, place: str) -> str:
         if diagnosis.machine:
             terms = listed(diagnosis.machine)
             law = f"the {diagnosis.model.law} law with the machine's own {terms}"
-        return (
-            f"Nothing is missing: {law} predicts runs that it was not fitted to within {reached}."
-        )
+        held_out = "runs" if len(diagnosis.before.campaign.prepared) > 1 else "parts of the run"
+        told = f"Nothing is missing: {law} predicts {held_out} that it was not fitted to"
+        return f"{told} within {reached}."
     if diagnosis.verdict == "missing":
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
@@ -214,14 +214,20 @@ def held_out_sentence(diagnosis: Diagnosis) -> str:
     runs = len(diagnosis.before.campaign.prepared)
     if runs == 1:
         return "Held out: alternate parts of the run, predicted by fits to the other parts."
-    return "Held out: each run predicted by a fit that it had no part in."
+    if diagnosis.steps[-1].extrapolations:
+        return (
+            "Held out: each run is predicted by a fit to the other runs; of runs beyond their "
+            "range, alternate parts."
+        )
+    return "Held out: each run is predicted by a fit to the other runs."
 
 
 def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
     """Of each run that goes beyond all others: its error, and how it is tested."""
     unit = diagnosis.model.rig.quantities.force
     return [
-        f"{e.run} goes beyond the other runs ({e.where}): predicted by those it errs by "
-        f"{number(e.rms_n)} {unit}, an extrapolation; held out are alternate parts of it"
+        f"{e.run} exceeds the range of the other runs ({e.where}). A fit to the others predicts it "
+        f"with an RMS error of {number(e.rms_n)} {unit} (extrapolation). The held-out error uses "
+        "alternate parts of this run"
         for e in diagnosis.steps[-1].extrapolations
     ]

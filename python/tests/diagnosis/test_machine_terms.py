@@ -83,3 +83,28 @@ def test_machine_terms_that_the_runs_do_not_need_are_left_out() -> None:
     runs = [replace(r, quantities=Drive("linear", "force").quantities) for r in runs]
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert (found.verdict, found.machine, found.effects) == ("adequate", (), ())
+
+
+def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
+    """A joint with friction 3 and 12, inertia 5.9, weight 3.9 and an offset of 0.4, noise 0.2."""
+    time = 0.01 * np.arange(2400)
+    angle = size * np.sin(2.0 * np.pi * hertz * time)
+    angle += 0.3 * size * np.sin(2.0 * np.pi * 0.37 * hertz * time + 1.0)
+    speed = np.gradient(angle, time)
+    torque = 3.0 * np.tanh(speed / 0.003) + 12.0 * speed + 5.9 * np.gradient(speed, time)
+    torque += 3.9 * np.sin(angle) + 0.4 + 0.2 * rng.normal(size=len(time))
+    read = angle + 2e-5 * rng.normal(size=len(time))
+    made = Run.from_arrays(time, speed, torque, angle_rad=read, name=f"{size}_{hertz}")
+    return replace(made, quantities=DRIVE.quantities)
+
+
+def test_weight_is_found_next_to_a_large_inertia() -> None:
+    """A search for all terms at once from their starting values ends at a weight of zero."""
+    rng = np.random.default_rng(5)
+    plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25), (0.5, 0.5), (0.3, 0.8), (0.7, 0.35))
+    found = diagnose(DRIVE, [swept(*motion, rng) for motion in plan], law="coulomb")
+    assert set(found.machine) == {"sensor_offset", "inertia_leak", "gravity"}, found.summary()
+    assert found.verdict == "adequate"
+    parameters = found.model.parameters
+    for name, true in {"gravity.G_n": 3.9, "inertia_leak.m_e_kg": 5.9, "F_c_n": 3.0}.items():
+        assert abs(parameters[name].value / true - 1.0) < 0.01, name

@@ -13,6 +13,7 @@ import pytest
 from jbf import diagnose, fit, import_files
 from jbf.cli import main
 from jbf.errors import InputError
+from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.formats.table import Options
 from jbf.importing.mapping import Map
 from jbf.records.drive import Drive
@@ -178,3 +179,46 @@ def test_friction_that_grows_with_the_transmitted_torque_is_found(tmp_path: Path
     result = diagnose(found.rig, found.runs, law="coulomb")
     assert result.model.effects == ("dry_load_dependence",)
     assert result.steps[-1].holdout_rms_n < 0.0105
+
+
+def test_order_of_steady_states_does_not_matter(tmp_path: Path) -> None:
+    file = stribeck_table(tmp_path / "curve.csv", np.random.default_rng(7))
+    header, *rows = file.read_text().splitlines()
+    shuffled = tmp_path / "shuffled.csv"
+    order = np.random.default_rng(8).permutation(len(rows))
+    shuffled.write_text("\n".join([header, *(rows[i] for i in order)]) + "\n")
+    columns = {"speed_rpm": "speed [rpm]", "torque_n_m": "torque [Nm]"}
+    rig = {"drive": {"motion": "rotary", "friction": "torque"}}
+    mapping = Map(columns=columns, rig=rig, options=Options(steady=True))
+    one, other = (
+        fit(found.rig, found.runs, law="stribeck")
+        for found in (import_files(file, mapping), import_files(shuffled, mapping))
+    )
+    assert one.noise_floor_n == pytest.approx(other.noise_floor_n)
+    assert one["F_c"].value == pytest.approx(other["F_c"].value, rel=1e-6)
+
+
+def test_steady_states_are_not_cut_at_rests_or_cycles(tmp_path: Path) -> None:
+    file = stribeck_table(tmp_path / "curve.csv", np.random.default_rng(9))
+    columns = {"speed_rpm": "speed [rpm]", "torque_n_m": "torque [Nm]"}
+    rig = {"drive": {"motion": "rotary", "friction": "torque"}}
+    cut = CutSettings(by=("cycles",))
+    mapping = Map(columns=columns, rig=rig, options=Options(steady=True), cut=cut)
+    with pytest.raises(InputError, match="steady states"):
+        import_files(file, mapping)
+
+
+def test_free_swing_is_not_explained_by_play(tmp_path: Path) -> None:
+    files = swings(tmp_path, [1.5, -1.2, 2.0], seed=22)
+    found = import_files(files, coast_map())
+    result = diagnose(found.rig, found.runs, law="coulomb")
+    assert "backlash" in result.not_tried
+    assert "backlash" not in result.effects
+
+
+def test_model_file_of_a_motor_read_by_its_voltage_states_volts(tmp_path: Path) -> None:
+    log = motor(np.random.default_rng(10))
+    header = "time [s],motor voltage [V],position [rad],velocity [rad/s]"
+    found = import_files(written(tmp_path / "log.csv", header, *log.T))
+    fit(found.rig, found.runs, law="coulomb").model.save(tmp_path / "m.toml")
+    assert "F_v_n_s_m is in V s/rad" in (tmp_path / "m.toml").read_text()

@@ -239,3 +239,16 @@ def test_recording_is_cut_into_parts_of_equal_duration(
 def test_number_of_parts_that_is_no_whole_number_is_refused(parts: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cut\.parts"):
         imported(tmp_path, f"parts = {parts}", to_and_fro())
+
+
+def test_parts_without_their_way_of_cutting_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cut\.parts"):
+        imported(tmp_path, 'by = "cycles"\nparts = 3', to_and_fro())
+
+
+def test_motion_one_way_without_cycles_is_noted(tmp_path: Path) -> None:
+    columns = to_and_fro()
+    speed = np.abs(columns["velocity_m_s"]) + 0.01
+    columns |= {"velocity_m_s": speed, "position_m": np.cumsum(speed) * 0.005}
+    result = imported(tmp_path, 'by = "cycles"', columns)
+    assert "no cycle was found" in result.summary()

@@ -114,7 +114,7 @@ def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> No
     "cell",
     [
         "2026-02-30", "31.04.2026 10:00", "noon", "10", "2026-13-01", "12:00:00 XM", "1.2",
-        "24-Foo-2026", "24 juil 2026", "9999-01-01", "२०२६-11-24", "12:00:00." + 60 * "0",
+        "24-Foo-2026", "24 jui 2026", "9999-01-01", "२०२६-11-24", "12:00:00." + 60 * "0",
         "13:05:00,000;12,125;-1234,50",
     ],
 )  # fmt: skip
@@ -157,3 +157,26 @@ def test_file_times_of_windows_keep_their_ticks(tmp_path: Path) -> None:
         head = source.head(table)
     assert table.start == "2022-05-02T13:56:24.376000100"
     np.testing.assert_allclose(head["stamp"], 12_345e-7 * np.arange(50), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("word", "month"),
+    [("Jan", 1), ("ene", 1), ("gen", 1), ("juin", 6), ("juillet", 7), ("Mär", 3), ("dic", 12)],
+)
+def test_month_is_recognised_by_its_name(word: str, month: int) -> None:
+    assert parsed(f"24-{word}-2026 10:00:00") == ns(datetime(2026, month, 24, 10))
+
+
+def test_quoted_dates_are_read_like_others(tmp_path: Path) -> None:
+    rows = [f"2026-01-24 10:00:{i / 10:06.3f},{i}.5,{i}" for i in range(40)]
+    plain = "\n".join(["Time,Force [N],Pos [mm]", *rows]) + "\n"
+    lines = [["Time", "Force [N]", "Pos [mm]"], *(row.split(",") for row in rows)]
+    quoted = "\n".join(",".join(f'"{cell}"' for cell in line) for line in lines) + "\n"
+    seen = []
+    for name, text in (("plain.csv", plain), ("quoted.csv", quoted)):
+        (tmp_path / name).write_text(text)
+        with open_source(tmp_path / name) as source:
+            (block,) = source.blocks(source.tables[0], ["Time", "Force [N]"])
+        seen.append(block)
+    for key in seen[0]:
+        np.testing.assert_array_equal(seen[0][key], seen[1][key])

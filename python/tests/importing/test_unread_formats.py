@@ -41,3 +41,9 @@ def test_look_at_an_unread_format_exits_with_2_and_one_line(tmp_path: Path) -> N
     assert "TwinCAT Scope recording (.svdx), which is not read; export it as CSV" in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert [p.name for p in tmp_path.iterdir()] == ["axis.svdx"]
+
+
+def test_text_with_the_suffix_of_an_unread_format_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "curve.raw"
+    path.write_text("time [s],force [N],position [mm]\n0.0,1.0,2.0\n0.1,1.1,2.1\n")
+    assert format_of(path).name == "text"

@@ -31,6 +31,10 @@ sticks and slips is not cut at every stop."""
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     """The pieces of a recording in the order of time, those that are left out among them."""
+    timed = [way for way in settings.by or () if way in ("rests", "cycles", "motion")]
+    if recording.steady and timed:
+        problem = f'"{timed[0]}" needs a motion in time, and the file holds steady states'
+        raise InputError(key="cut.by", problem=problem, mend="drop it")
     if settings.by is not None or recording.steady:
         return _cut(recording, settings)
     pieces = at_rests_by_default(recording, settings)
@@ -57,7 +61,10 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
         elif way == "load_step":
             cuts += cut_at_load_steps(recording)
         elif way == "cycles":
-            cuts += cut_at_cycles(recording, settings)
+            found_cycles = cut_at_cycles(recording, settings)
+            if not found_cycles:
+                recording.notes.append("no cycle was found: the motion does not go to and fro")
+            cuts += found_cycles
         elif way == "parts":
             cuts += cut_into_parts(recording, settings.parts)
         elif way == "motion":

@@ -147,6 +147,9 @@ class CutSettings:
                 if not 0.0 <= given[key] < math.inf:
                     problem = f"{given[key]} is below zero or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
+        if "parts" in given and "parts" not in (ways or ()):
+            mend = 'add "parts" to by, or drop it'
+            raise InputError(key="cut.parts", problem='is used by by = "parts" only', mend=mend)
         parts = given.get("parts", 2)
         if isinstance(parts, bool) or not isinstance(parts, int) or parts < 2:
             problem = f"{parts!r} is not a whole number of at least 2"

@@ -14,7 +14,8 @@ from jbf.records.toml_file import number, read_toml, refuse_unknown, table
 
 _KEYS = ("name", "file", "from_s", "to_s", "keep", "stretch", "why")
 _HEAD = """\
-# How the recordings were cut. Edit names, times (s) and keep, add and take away lines, and then:
+# How the recordings were cut. Edit names, times (s; numbers of steady states) and keep, add and
+# take away lines, and then:
 #   jbf import FILE... --map map.toml --cut cut.toml --out FOLDER
 # Both instants belong to the run. Where time starts again in a file, stretch counts from 1.
 """

@@ -46,11 +46,16 @@ def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
             continue  # a row that describes something else, such as the scale
         elif key in _STARTS and len(cells) > 1 and is_file_time(cells[1]):
             start = as_date(int(Instants().parse(cells[1:2], [False])[0]))
-        elif len(described) >= FEWEST:
+        elif len(described) >= FEWEST or (named is not None and _repeats_its_key(named)):
             samples.append((number, cells))
     if named is None or not samples:
         return None
     return _layout(named, described, samples, start)
+
+
+def _repeats_its_key(named: Sequence[str]) -> bool:
+    """Whether the row of names has its key above each column of times."""
+    return len(named) > 2 and sum(cell.strip().lower() == NAME for cell in named) > 1
 
 
 def _layout(

@@ -29,19 +29,18 @@ _FILE_TIME_1970 = 116_444_736 * 10**9
 _INSTANT = re.compile(
     r"(?:(?:(?P<y>\d{4})[-/.](?P<m>\d{1,2})[-/.](?P<d>\d{1,2})"
     r"|(?P<a>\d{1,2})(?P<mark>[-/.])(?P<b>\d{1,2})[-/.](?P<y2>\d{4}|\d{2})"
-    r"|(?P<d3>\d{1,2})[- ](?P<name>(?u:[^\W\d_]{3}))(?u:[^\W\d_]*)\.?[- ](?P<y3>\d{4}))"
+    r"|(?P<d3>\d{1,2})[- ](?P<name>(?u:[^\W\d_]{3,4}))(?u:[^\W\d_]*)\.?[- ](?P<y3>\d{4}))"
     r"\.?(?:\s*T?\s*|$))?"
     r"(?:(?P<h>\d{1,2}):(?P<min>\d\d)(?::(?P<s>\d\d)(?:[.,:](?P<f>\d+))?)?\s*(?P<half>[AaPp]\.?[Mm]\.?)?"
     r"\s*(?:Z|UTC|(?P<sign>[+-])(?P<zh>\d\d):?(?P<zmin>\d\d))?)?",
     re.ASCII,
 )
 _MONTHS = (
-    "jan", "feb fév", "mar mär mrz", "apr avr abr", "may mai mag", "jun jui giu", "jul lug",
-    "aug aoû ago", "sep set", "oct okt ott", "nov", "dec dez déc dic",
+    "jan ene gen", "feb fév", "mar mär mrz", "apr avr abr", "may mai mag", "jun juin giu",
+    "jul juil lug", "aug aoû ago", "sep set", "oct okt ott", "nov", "dec dez déc dic",
 )  # fmt: skip
-"""First three letters of the months in English, German, French, Spanish and Italian."""
+"""Beginnings of the months in English, German, French, Spanish and Italian."""
 _MONTH = {name: n for n, names in enumerate(_MONTHS, 1) for name in names.split()}
-del _MONTH["jui"]  # juin or juillet
 _LONGEST = 64
 _FIRST_YEAR, _LAST_YEAR = 1678, 2261
 """Years whose instants fit into 64 bits."""
@@ -62,7 +61,13 @@ def _matched(cell: str) -> re.Match[str] | None:
     # Date and time are both optional in the pattern.
     if match is None or not match[0] or len(match[0]) >= _LONGEST:
         return None
-    return match if match["name"] is None or match["name"].lower() in _MONTH else None
+    return match if match["name"] is None or _month(match["name"]) else None
+
+
+def _month(name: str) -> int | None:
+    """Number of a month by the first letters of its name."""
+    word = name.lower()
+    return _MONTH.get(word[:4]) or _MONTH.get(word[:3])
 
 
 def day_or_month_first(cells: Sequence[str]) -> str | None:
@@ -158,7 +163,7 @@ class Instants:
                 month, day = day, month
         elif match["name"]:
             year, day = number("y3"), number("d3")
-            month = np.full_like(year, _MONTH[match["name"].lower()])
+            month = np.full_like(year, _month(match["name"]) or 0)
         else:
             return of_day, np.ones(len(of_day), dtype=bool)
         first = (12 * (year - 1970) + month - 1).astype("datetime64[M]")

@@ -31,10 +31,10 @@ def plain_columns(
     -------
     tuple of array and list, or None
         Numbers, one row for each numeric column, and cells of each text column. None if a line has
-        another number of cells or a cell of a numeric column is not a finite number.
+        another number of cells, a quote, or a cell of a numeric column is not a finite number.
     """
     mark = dialect.delimiter
-    if not numeric or dialect.thousands:
+    if not numeric or dialect.thousands or any('"' in line for line in lines):
         return None
     if mark == " ":
         rows = [line.split() for line in lines]

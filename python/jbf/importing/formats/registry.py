@@ -159,11 +159,18 @@ def format_of(path: Path) -> Format:
             return known
     suffix = path.suffix.lower()
     for unread in UNREAD:
-        if suffix in unread.suffixes or begin.startswith(unread.magic):
+        by_suffix = suffix in unread.suffixes and not _is_text(begin)
+        if by_suffix or begin.startswith(unread.magic):
             problem = f"is {unread.name}{f' ({suffix})' if suffix in unread.suffixes else ''}"
             raise InputError(file=path, problem=f"{problem}, which is not read", mend=unread.mend)
     by_name = next((f for f in FORMATS if suffix in f.suffixes), None)
     return FORMATS[-1] if by_name is None else by_name
+
+
+def _is_text(begin: bytes) -> bool:
+    """Whether a file begins with printable characters only, and is no XML."""
+    xml = begin.lstrip().startswith(b"<")
+    return bool(begin) and not xml and all(byte >= 32 or byte in b"\t\r\n" for byte in begin)
 
 
 def open_source(path: str | os.PathLike[str], options: Options | None = None) -> Source:

@@ -45,7 +45,8 @@ KINDS: dict[str, tuple[Dimensions, ...]] = {
 
 _WORDS = {
     "time": "t time zeit temps tiempo tempo timestamp zeitstempel uhrzeit datum date datetime "
-    "elapsed stamp laufzeit messzeit heure horodatage durée duree timestamps",
+    "elapsed stamp laufzeit messzeit heure horodatage durée duree timestamps seconds millis "
+    "micros milliseconds microseconds nanoseconds",
     "place": "x y s pos position weg hub displacement disp stroke travel distance strecke course "
     "déplacement deplacement posición posicion auslenkung lage spostamento corsa desplazamiento "
     "posizione wegmessung encoder angle winkel theta phi drehwinkel angolo angulo ángulo "
@@ -72,6 +73,13 @@ _WORDS = {
     "coefficient": "cof mu µ μ reibwert reibzahl reibkoeffizient coefficient",
     "acceleration": "acc accel acceleration beschleunigung accélération aceleracion",
 }
+
+
+_CLOCKS = {
+    "seconds": "s", "millis": "ms", "milliseconds": "ms", "micros": "us", "microseconds": "us",
+    "nanoseconds": "ns",
+}  # fmt: skip
+"""Names of times that are units, such as those of an Arduino."""
 
 
 def _words(text: str) -> frozenset[str]:
@@ -184,8 +192,8 @@ def understood(text: str, unit: str = "") -> Header:
     name, stated = split_unit(text)
     if stated == "1" and name == " ".join(text.split()):
         stated = ""  # the number of a joint, `q_1`
-    unit = unit or stated
     words = [word.lower() for word in _SPLIT.split(name) if word]
+    unit = unit or stated or next((_CLOCKS[word] for word in words if word in _CLOCKS), "")
     if not stated or parse_unit(stated) is None:
         spoken = words
     else:

@@ -12,6 +12,7 @@ from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.table import Column, Table, Values
 from jbf.importing.guessed import Entry, Question
 from jbf.importing.plausible import OFF, PAIRS, speed_ratio
+from jbf.importing.targets import wanted_unit
 from jbf.units.table import TIME
 from jbf.units.unit import parse_unit
 
@@ -62,23 +63,37 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
 def time_by_motion(
     entries: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> Entry | None:
-    """The time whose unit is open, in the one unit in which speed and change of place agree."""
+    """The time whose unit is open, in the one unit in which speed and change of place agree.
+
+    A place and a speed without units are taken to be in units that belong together, such as rad and
+    rad/s: no other two differ by the factor of 1000 between units of time.
+    """
     time = entries.get("time_s")
     if time is None or time.sure or not time.expression.endswith(f"[{OPEN}]"):
         return None
     fitting = {}
     for pair in PAIRS:
-        if not all(key in entries and entries[key].sure for key in pair):
+        if not all(key in entries for key in pair):
             continue
+        known = [entries[key].sure for key in pair]
+        if any(known) != all(known):
+            continue
+        assumed = {key: _in_its_unit(entries[key]) for key in pair}
         for unit in ("s", "ms", "us", "min"):
             text = time.expression.replace(OPEN, unit)
             tried = replace(
                 time, expression=text, why=f"in {unit} speed and place agree", sure=True
             )
-            ratio = speed_ratio({**entries, "time_s": tried}, pair, tables, heads)
+            ratio = speed_ratio({**entries, **assumed, "time_s": tried}, pair, tables, heads)
             if ratio is not None and 1.0 / OFF < ratio < OFF:
                 fitting[unit] = tried
     return fitting.popitem()[1] if len(fitting) == 1 else None
+
+
+def _in_its_unit(entry: Entry) -> Entry:
+    """An entry whose open unit is that of its column of a run."""
+    unit = wanted_unit(entry.key).text
+    return replace(entry, expression=entry.expression.replace(f"[{OPEN}]", f"[{unit}]"))
 
 
 def is_doubtful_time(header: Header) -> bool:

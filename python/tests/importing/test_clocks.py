@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jbf import Import, import_files
+from jbf import Import, import_files, look
 from jbf.errors import InputError
 
 DRIVE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
@@ -181,3 +181,37 @@ def test_imported_sheets_of_a_workbook_keep_their_relative_times(tmp_path: Path)
     result = import_files(tmp_path / "b.xlsx")
     assert cells(result, "friction_n")[0][:2] == [0.0, 1.0]
     assert cells(result, "position_m")[0][:2] == [0.5, 1.5]
+
+
+def serial_log(folder: Path, header: str, pos_scale: float, time_scale: float) -> Path:
+    """A serial log of integers and short decimals, 100 rows a second."""
+    time = 0.01 * np.arange(400)
+    rows = [
+        f"{time_scale * t:.0f},{pos_scale * 3.0 * np.sin(1.3 * t):.4f},{3.9 * np.cos(1.3 * t):.4f},"
+        f"{0.1 * np.sign(np.cos(1.3 * t)):.2f}"
+        for t in time
+    ]
+    path = folder / "serial.csv"
+    path.write_text("\n".join([header, *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(("name", "scale"), [("millis", 1e3), ("micros", 1e6)])
+def test_clock_of_a_microcontroller_states_its_unit(
+    name: str, scale: float, tmp_path: Path
+) -> None:
+    header = f"{name},angle [rad],speed [rad/s],torque [Nm]"
+    (run,) = import_files(serial_log(tmp_path, header, 1.0, scale), whole=True).runs
+    np.testing.assert_allclose(run.time_s, 0.01 * np.arange(400), atol=1e-9)
+
+
+def test_unit_of_time_follows_from_a_place_and_a_speed_without_units(tmp_path: Path) -> None:
+    guess = look(serial_log(tmp_path, "t,pos,vel,torque", 1.0, 1e3))
+    assert "ms" in next(e.expression for e in guess.entries if e.key == "time_s")
+    assert [q.place for q in guess.questions] == ["pos", "vel", "torque"]
+
+
+def test_unit_of_time_stays_open_if_place_and_speed_do_not_agree(tmp_path: Path) -> None:
+    """A place in degrees next to a speed in rad/s."""
+    guess = look(serial_log(tmp_path, "t,pos,vel,torque", 57.3, 1e3))
+    assert "t" in [q.place for q in guess.questions]

@@ -106,7 +106,7 @@ UNCERTAIN = {
     "a time without a unit": (
         text("Zeit;Kraft [N];Weg [mm]\n", "t f x", sep=";", decimal=","), ["Zeit"]),
     "no units": (text("time,position,velocity,force\n", "t x v f"),
-        ["time", "position", "velocity", "force"]),
+        ["position", "velocity", "force"]),
     "no header": (text("", "t x f"), ["time_s", "friction", "motion"]),
     "the same name twice": (text("t [s],F [N],F [N],x [mm]\n", "t f f x"), ["friction_n"]),
     "a unit that does not fit": (text("t [s],Force [mm],x [mm]\n", "t f x"), ["Force [mm]"]),

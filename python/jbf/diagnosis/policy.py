@@ -196,6 +196,12 @@ class Policy:
         "standard deviations that a pattern must stand above chance",
         "the comparison's own",
     )
+    motion_share: float = _number(
+        0.05,
+        "share of the mean square that structure must have where errors of the motion are in the "
+        "residual: their covariance is an estimate",
+        "twelve simulated servo drives (seeds 3981 to 3992)",
+    )
     tone_chance: float = _number(
         1e-7,
         "probability at which a spectral line is no chance, over all lines of a run",

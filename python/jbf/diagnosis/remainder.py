@@ -50,6 +50,8 @@ def find_remainder(
     # Of steps as coarse as these no mean reading is right, along whatever axis and in each run.
     steps_n = problem.campaign.steps_rms_n(solution.rms_n)
     found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]
+    if samples.motion is not None:
+        found = [r for r in found if r.share >= policy.motion_share]
     return tuple(sorted(found, key=lambda r: -r.share))
 
 

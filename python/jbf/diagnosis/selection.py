@@ -207,15 +207,23 @@ def start_model(candidates: Candidates) -> Names:
     """The terms of a drive's machine that these runs need, estimated together with the law.
 
     Each term starts from the fit without it: from their starting values all at once, a search may
-    end at a weight of zero.
+    end at a weight of zero. A term without evidence stays if runs are predicted worse without it:
+    where another effect is missing, the residual is so smooth that nothing has evidence.
     """
     present: Names = ()
+    policy = candidates.policy
     for name in machine_of(candidates, [n for n in TERMS if n in candidates.names]):
         near = candidates.converge(present)
         present = (*present, name)
         candidates.look(present, near)
         candidates.converge(present)
-    return still_needed(candidates, present)
+    for name in present:
+        rest = tuple(e for e in present if e != name)
+        whole, simpler = candidates.converge(present), candidates.refit_from(rest, present)
+        worse = candidates.left_out_rms(rest) > policy.no_worse * candidates.left_out_rms(present)
+        if evidence(candidates, whole, simpler) < 0.0 and not worse:
+            present = rest
+    return present
 
 
 def reconsider(

@@ -12,7 +12,8 @@ from jbf.diagnosis.candidates import Candidates
 
 Names = tuple[str, ...]
 
-TERMS = ("sensor_offset", "inertia_leak", "gravity")
+OFFSET = "sensor_offset"
+TERMS = (OFFSET, "inertia_leak", "gravity")
 """Effects that are no friction and that no law can represent."""
 
 

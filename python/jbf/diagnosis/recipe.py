@@ -14,7 +14,7 @@ from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
-from jbf.diagnosis.machine import machine_of
+from jbf.diagnosis.machine import OFFSET, machine_of
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
 from jbf.diagnosis.reached import Reached
@@ -169,13 +169,14 @@ def _diagnose(
         # What some runs asked for and others did not, nothing asks for once it is gone.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
-    posterior = {name: w for name, w in weights(candidates, named).items() if name in missing}
+    asked = (*missing, OFFSET)
+    posterior = {name: w for name, w in weights(candidates, named).items() if name in asked}
     equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     kept = best_predicting(candidates, present, named)
     if kept != steps[-1].effects:
         steps.append(step(candidates, kept, before.noise_n, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
-    tied = {name: others for name, others in equal.items() if others}
+    tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
     strengths = () if remains else power(candidates, present)
     hidden = unseen(candidates, present, strengths)

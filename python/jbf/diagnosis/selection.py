@@ -18,7 +18,7 @@ from scipy import special
 from jbf.diagnosis.candidates import Candidates, many_peaks
 from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
 from jbf.diagnosis.ledger import Outcome, Trial
-from jbf.diagnosis.machine import TERMS, machine_of
+from jbf.diagnosis.machine import OFFSET, TERMS, machine_of
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
@@ -256,8 +256,8 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         if evidence(candidates, whole, simpler) < 0:
             current = rest
             continue
-        if name in machine_of(candidates, current):
-            continue  # inertia and weight are no stand-ins for an effect
+        if name in machine_of(candidates, current) and name != OFFSET:
+            continue  # inertia and weight are no stand-ins for an effect; an offset may be
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
             if other in current or other in unconfirmed or not may_come(other, rest):

@@ -85,6 +85,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         _found(diagnosis, place)
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
+        + _offset_sentence(diagnosis)
         + _law_sentence(diagnosis)
     )
 
@@ -113,6 +114,19 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
         return ""
     names = listed(t.effect for t in asked)
     return f" Fits better, but runs left out do not confirm it, so it is not named: {names}."
+
+
+def _offset_sentence(diagnosis: Diagnosis) -> str:
+    """The effects that fit as well as the offset of a drive; empty where none does."""
+    others = [
+        other
+        for name in diagnosis.machine
+        for other in diagnosis.alternatives.get(name, ())
+        if name == "sensor_offset"
+    ]
+    if not others:
+        return ""
+    return f" Instead of the offset it may be {listed(others, 'or')}: these runs cannot tell."
 
 
 def _law_sentence(diagnosis: Diagnosis) -> str:
@@ -163,7 +177,7 @@ def _found(diagnosis: Diagnosis, place: str) -> str:
         ties = "; ".join(
             f"{listed(_weighed(diagnosis, (effect, *others)), 'or')}"
             for effect, others in diagnosis.alternatives.items()
-            if others
+            if others and effect in diagnosis.effects
         )
         return (
             f"Something is missing, and these runs cannot tell which: {ties}. "

@@ -108,3 +108,19 @@ def test_weight_is_found_next_to_a_large_inertia() -> None:
     parameters = found.model.parameters
     for name, true in {"gravity.G_n": 3.9, "inertia_leak.m_e_kg": 5.9, "F_c_n": 3.0}.items():
         assert abs(parameters[name].value / true - 1.0) < 0.01, name
+
+
+def test_friction_that_differs_by_direction_is_an_alternative_of_the_offset() -> None:
+    """5.6 N forward and 4.4 N back are 5 N and an offset of 0.6 N while nothing else varies."""
+    rng = np.random.default_rng(4)
+    runs = []
+    for k in range(3):
+        time = 0.01 * np.arange(2000)
+        speed = (0.1 + 0.1 * k) * np.sin(1.3 * time)
+        force = np.where(speed > 0.0, 5.6, -4.4) + 8.0 * speed + 0.05 * rng.normal(size=2000)
+        runs.append(Run.from_arrays(time, speed, force, name=f"run{k}"))
+    runs = [replace(r, quantities=Drive("linear", "force").quantities) for r in runs]
+    found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
+    assert (found.verdict, found.machine) == ("adequate", ("sensor_offset",))
+    assert "dry_asymmetry" in found.alternatives["sensor_offset"]
+    assert "dry_asymmetry" in found.summary().partition("Measurement")[0]

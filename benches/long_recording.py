@@ -57,9 +57,10 @@ def main() -> int:
     found = jbf.diagnose(jbf.Rig(), runs, law=given.law, progress=told)
     wall, cpu = time.monotonic() - begun, time.process_time() - worked
     left = jbf.compare(found.model, [other]).rms_n / float(str(truth["noise_n"]))
-    print(f"{found.verdict}: {', '.join(found.effects) or 'nothing'}; held out {left:.3f}")
+    named = (*found.machine, *found.effects)
+    print(f"{found.verdict}: {', '.join(named) or 'nothing'}; held out {left:.3f}")
     print(f"{wall:.0f} s, {cpu:.0f} s of the processor, at most {_peak_gib():.2f} GiB")
-    return 0 if found.effects == hidden else 1
+    return 0 if named == hidden else 1
 
 
 def _peak_gib() -> float:

@@ -40,7 +40,7 @@ class Answer:
     draw
         Which of the draws it is.
     verdict, effects
-        Of the diagnosis; `failed` where it ended with an error.
+        Of the diagnosis, with the terms of its machine; `failed` where it ended with an error.
     alternatives
         What could stand in the place of each named effect.
     """
@@ -261,4 +261,5 @@ def _answer(task: _Task) -> Answer:
         )
     except JbfError:
         return Answer(task.hidden, task.draw, "failed", (), {})
-    return Answer(task.hidden, task.draw, found.verdict, found.effects, found.alternatives)
+    named = (*found.machine, *found.effects)
+    return Answer(task.hidden, task.draw, found.verdict, named, found.alternatives)

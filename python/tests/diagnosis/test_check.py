@@ -2,14 +2,17 @@
 
 import json
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from by_hand import coulomb, four_runs
-from jbf import InputError, Model, Rig, check, fit
+from jbf import InputError, Model, Rig, Run, check, fit
 from jbf.cli import main
 from jbf.diagnosis.check import Answer, Rate, answer_of, identity
 from jbf.diagnosis.policy import Policy
+from jbf.records.drive import Drive
 from linear_campaigns import mass
 from scipy import stats
 from shared import shared
@@ -150,3 +153,24 @@ def test_interrupted_check_continues_from_its_answers(command: list[str], tmp_pa
     assert main([*command, "-n", "2"]) == 0
     assert kept.read_text().startswith(first)
     assert len(kept.read_text().splitlines()) == 2
+
+
+def test_machine_of_a_drive_counts_as_found() -> None:
+    """A model with inertia and weight, on the runs of a joint that is driven to and fro."""
+    rig = Rig(drive=Drive("rotary", "torque"))
+    time = np.arange(0.0, 12.0, 0.02)
+    runs = []
+    for k in (5.0, 6.0, 7.0):
+        angle = 0.9 * np.sin(1.9 * time) + 0.35 * np.sin(k * time)
+        speed = 1.71 * np.cos(1.9 * time) + 0.35 * k * np.cos(k * time)
+        run = Run.from_arrays(time, speed, np.zeros(600), angle_rad=angle, name=f"run_{k}")
+        runs.append(replace(run, quantities=rig.quantities))
+    values = {"F_c_n": 0.12, "F_s_n": 0.12, "F_v_n_s_m": 0.012, "inertia_leak.m_e_kg": 0.009}
+    values |= {"gravity.G_n": 0.3, "gravity.theta_0_rad": 0.0}
+    model = Model(rig, "coulomb", ["inertia_leak", "gravity"], values)
+    rng = np.random.default_rng(2)
+    runs = [
+        replace(run, friction_n=model.predict(run) + 0.01 * rng.normal(size=600)) for run in runs
+    ]
+    found = check(model, runs, campaigns=1)
+    assert [answer.right for answer in found.answers] == [True, True]

@@ -222,3 +222,16 @@ def test_model_file_of_a_motor_read_by_its_voltage_states_volts(tmp_path: Path) 
     found = import_files(written(tmp_path / "log.csv", header, *log.T))
     fit(found.rig, found.runs, law="coulomb").model.save(tmp_path / "m.toml")
     assert "F_v_n_s_m is in V s/rad" in (tmp_path / "m.toml").read_text()
+
+
+def test_standard_errors_of_a_free_swing_contain_the_errors_of_its_acceleration(
+    tmp_path: Path,
+) -> None:
+    standardised = []
+    for seed in (31, 33, 36):
+        found = import_files(swings(tmp_path, [1.5, -1.2, 2.0, -1.8], seed), coast_map())
+        result = fit(found.rig, found.runs, ["gravity"], law="coulomb")
+        for name, true in {"F_c_n": COULOMB, "F_v_n_s_m": VISCOUS}.items():
+            parameter = result.parameters[name]
+            standardised.append((parameter.value - true) / parameter.stderr)
+    assert np.sqrt(np.mean(np.square(standardised))) < 1.6

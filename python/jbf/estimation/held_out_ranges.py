@@ -47,7 +47,7 @@ class Beyond:
 
 
 def alternate_parts(count: int) -> Mask:
-    """Every other one of `PARTS` parts of so many samples, shape (count,)."""
+    """Mask of the first, third, ... of `PARTS` equal parts of a run, shape (count,)."""
     parts: Mask = (np.arange(count) * PARTS // max(count, 1)) % 2 == 0
     return parts
 

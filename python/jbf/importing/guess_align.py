@@ -23,7 +23,7 @@ _NEVER = ("time", "index", "run")
 
 
 def with_alignment(guess: Guess, source: SideBySide) -> Guess:
-    """A guess with the files and a section `[align]`; what nothing determines is asked.
+    """A guess with the further files and an `[align]` section, or a question for each open entry.
 
     Dates align files without an entry. Else the one column of numbers that two files have in common
     is proposed, and is sure if its two records determine the offset.

@@ -69,12 +69,12 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
 
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
-    """Keys that depend on what moves: a torque beside a slide is the motor's."""
+    """Entries renamed for the machine: next to the motion of a slide, a torque is the motor's."""
     found = dict(entries)
     places = [key for key in ("position_m", "velocity_m_s") if key in found]
     of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}
     if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
-        # A place without a unit, beside a torque, is more often an angle.
+        # Next to a torque, a position without a unit is more often an angle.
         for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
             if key in found and turning not in found:
                 found[turning] = replace(found.pop(key), key=turning)

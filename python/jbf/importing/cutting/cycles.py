@@ -36,7 +36,7 @@ def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
 
 
 def cut_into_parts(recording: Recording, count: int) -> list[Cut]:
-    """Cuts into so many parts of equal duration, of each stretch of time."""
+    """Cuts that divide each stretch of increasing time into `count` parts of equal duration."""
     stream, found = recording.streams[0], list[Cut]()
     for segment, (first, end) in enumerate(stream.segments):
         from_s, to_s = stream.at(first), stream.at(end - 1)

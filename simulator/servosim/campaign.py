@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from servosim.controllers import KINDS, Demand, control_of
+from servosim.hidden import EFFECTS, UNKNOWN, Scale, Together
 from servosim.logger import FORCES, SPEEDS, STAMPS, Logger, Recorded, record
 from servosim.plant import Plant, run
 
@@ -56,8 +58,8 @@ class Campaign:
         return asdict(self.drawn)
 
 
-def draw(seed: int) -> Drawn:
-    """Draw a drive, a kind of motion and a logger."""
+def draw(seed: int, hidden: Sequence[str] = ()) -> Drawn:
+    """Draw a drive, a kind of motion and a logger; hidden effects are drawn apart from them."""
     random = np.random.default_rng([seed, 1])
     rotary = bool(random.random() < 0.6)
     kind = KINDS[int(random.integers(len(KINDS)))]
@@ -71,7 +73,13 @@ def draw(seed: int) -> Drawn:
     viscous = coulomb / top * random.uniform(0.2, 1.0)
     heavy = random.random() < 0.5
     gravity = effort * random.uniform(0.3, 1.0) if heavy else 0.0
-    plant = Plant(inertia, coulomb, viscous, gravity, rotary)
+    sizes = np.random.default_rng([seed, 3])
+    scale = Scale(coulomb, viscous, top, 0.5 * top)
+    known = {**EFFECTS, **UNKNOWN}
+    together = Together(tuple(known[name].draw(scale, sizes) for name in sorted(hidden)))
+    if "torque_proportional" in hidden and not heavy:
+        gravity = effort * sizes.uniform(0.3, 1.0)
+    plant = Plant(inertia, coulomb, viscous, gravity, rotary, together)
     limit = (coulomb + viscous * top + gravity + effort) * random.uniform(1.1, 2.0)
     rate = float(random.choice(RATES_HZ))
     stamps = STAMPS[int(random.integers(len(STAMPS)))]
@@ -102,18 +110,19 @@ def draw(seed: int) -> Drawn:
     )
 
 
-def simulate(seed: int) -> Campaign:
-    """The campaign of a seed."""
-    drawn = draw(seed)
+def simulate(seed: int, hidden: Sequence[str] = (), runs: int = RUNS) -> Campaign:
+    """The campaign of a seed, with effects of `servosim.hidden` in its drive."""
+    drawn = draw(seed, hidden)
     records = []
-    for k in range(RUNS):
+    for k in range(runs):
         random = np.random.default_rng([seed, 2, k])
         ticks = int(drawn.duration_s / drawn.tick_s)
         start = random.uniform(-0.5, 0.5) if drawn.rotary else 0.0
         control = control_of(
             drawn.kind, drawn.plant, drawn.demand, drawn.tick_s, ticks, start, random
         )
-        motion = run(drawn.plant, control, drawn.tick_s, ticks, start)
+        own = np.random.default_rng([seed, 4, k])
+        motion = run(drawn.plant, control, drawn.tick_s, ticks, start, own)
         records.append(record(drawn.logger, motion, drawn.tick_s, random))
     return Campaign(drawn, records)
 

@@ -1,8 +1,8 @@
 """A drive with inertia, gravity, viscous and set-valued Coulomb friction, driven tick by tick.
 
 Between two ticks of the controller the torque is constant, so the viscous motion is an exponential
-in closed form; a reversal, a stop and a breakaway are events. Gravity is taken at the start of each
-piece, and a piece is at most one tick long.
+in closed form; a reversal, a stop and a breakaway are events. Gravity and hidden effects are taken
+at the start of each piece, and a piece is at most one tick long.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
+from servosim.hidden import NOTHING, Course, Together
 
 Array = npt.NDArray[np.float64]
 Control = Callable[[int, float, float], float]
@@ -33,6 +35,8 @@ class Plant:
         Amplitude of the weight's torque, N m (or N).
     swings
         True where the weight acts with the sine of the angle, False where it is constant.
+    hidden
+        What else resists or pushes.
     """
 
     inertia: float
@@ -40,6 +44,7 @@ class Plant:
     viscous: float
     gravity: float
     swings: bool
+    hidden: Together = NOTHING
 
 
 @dataclass(frozen=True)
@@ -76,44 +81,62 @@ class Trajectory:
         return position, velocity, acceleration, self.torque[k]
 
 
-def run(plant: Plant, control: Control, tick_s: float, ticks: int, start: float) -> Trajectory:
-    """Drive a plant from rest at a position."""
-    m, f, d = plant.inertia, plant.coulomb, plant.viscous
-    t, x, v = 0.0, start, 0.0
+def run(
+    plant: Plant,
+    control: Control,
+    tick_s: float,
+    ticks: int,
+    start: float,
+    random: np.random.Generator | None = None,
+) -> Trajectory:
+    """Drive a plant from rest at a position; `random` draws what differs from run to run."""
+    m, d, hidden = plant.inertia, plant.viscous, plant.hidden
+    random = np.random.default_rng(0) if random is None else random
+    at = Course(0.0, start, 0.0, 0, random.uniform(0.0, 2.0 * math.pi), [])
+    at.scatter = random.normal(size=64).tolist()
+    lost, direction = hidden.lost_share(), 0.0
     rows: list[tuple[float, float, float, float, float, float]] = []
     for tick in range(ticks):
-        u = control(tick, x, v)
+        u = control(tick, at.position, at.velocity)
         left = tick_s
         while left > 1e-12:
+            t, x, v = at.time, at.position, at.velocity
             weight = plant.gravity * (math.sin(x) if plant.swings else 1.0)
-            drive = u - weight
-            if v == 0.0:
-                if abs(drive) <= f:
-                    rows.append((t, x, 0.0, 0.0, 0.0, u))
-                    t, left = t + left, 0.0
-                    continue
-                sign = math.copysign(1.0, drive)
-            else:
-                sign = math.copysign(1.0, v)
-            force = drive - sign * f
-            a0 = (force - d * v) / m
-            last = force / d  # the velocity approached
+            push, factor = hidden.push(at), hidden.factor(at)
+            drive = u - weight - push
+            sign = math.copysign(1.0, drive if v == 0.0 else v)
+            f = factor * (plant.coulomb + hidden.level(at, sign))
+            if v == 0.0 and abs(drive) <= f + lost * abs(weight):
+                rows.append((t, x, 0.0, 0.0, 0.0, u))
+                at.time, left = t + left, 0.0
+                continue
+            if sign != direction:
+                at.strokes, direction = at.strokes + 1, sign
+            # All friction but that proportional to the speed, which is integrated in closed form.
+            extra = factor * hidden.drag(at)
+            slope = factor * d
+            net = u - push - sign * f - extra
+            # Losses are a share of what the transmission carries: the weight and the mass.
+            through = 1.0 + sign * math.copysign(lost, net - slope * v)
+            force, damping = net / through - weight, slope / through
+            a0 = (force - damping * v) / m
+            last = force / damping  # the velocity approached
             h = left
             # Does the velocity reach zero within the piece?
             if v != 0.0 and sign * last < 0.0:
-                h = min(left, m / d * math.log1p(-v / last))
-            decay = math.exp(-d / m * h)
+                h = min(left, m / damping * math.log1p(-v / last))
+            decay = math.exp(-damping / m * h)
             ended = last + (v - last) * decay
             if h < left or sign * ended < 0.0:
                 ended = 0.0
-            rows.append((t, x, v, a0, (force - d * ended) / m, u))
-            x += last * h - (v - last) * m / d * math.expm1(-d / m * h)
-            t, v, left = t + h, ended, left - h
+            rows.append((t, x, v, a0, (force - damping * ended) / m, u))
+            at.position += last * h - (v - last) * m / damping * math.expm1(-damping / m * h)
+            at.time, at.velocity, left = t + h, ended, left - h
     columns = np.array(rows).T
     return Trajectory(
-        np.append(columns[0], t),
-        np.append(columns[1], x),
-        np.append(columns[2], v),
+        np.append(columns[0], at.time),
+        np.append(columns[1], at.position),
+        np.append(columns[2], at.velocity),
         columns[3],
         columns[4],
         columns[5],

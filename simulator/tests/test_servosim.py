@@ -1,11 +1,20 @@
 """The servo drives: laws of motion, and parameters by least squares with the true motion."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import servosim
 from servosim.campaign import draw
+from servosim.hidden import (
+    NOTHING,
+    Hidden,
+    StribeckExcess,
+    Together,
+    TorqueProportional,
+    WarmUp,
+)
 from servosim.plant import Plant, run
 
 SEEDS = range(1, 25)
@@ -83,3 +92,39 @@ def test_stamps_of_every_logger_increase() -> None:
     for seed in SEEDS:
         for r in servosim.simulate(seed).records:
             assert np.all(np.diff(r.time_s) > 0.0)
+
+
+def hidden_in(plant: Plant, *effects: Hidden) -> Plant:
+    return replace(plant, hidden=Together(effects))
+
+
+def test_drive_with_a_stribeck_peak_sticks_below_it_and_breaks_away_above() -> None:
+    plant = hidden_in(Plant(0.5, 0.8, 0.1, 0.0, False), StribeckExcess(0.4, 0.05, 1.0))
+    motion = run(plant, lambda tick, x, v: 1.19 if tick < 100 else 1.21, 1e-3, 300, 0.0)
+    position, *_ = motion.at(np.array([0.0999, 0.3]))
+    assert position[0] == 0.0
+    assert position[1] > 0.0
+
+
+def test_loss_in_the_transmission_adds_its_share_of_the_weight_to_a_steady_torque() -> None:
+    """Lifting takes W (1 + mu) + F_c + F_v v, lowering W (1 - mu) - F_c - F_v v."""
+    plant = hidden_in(Plant(0.5, 0.8, 2.0, 3.0, False), TorqueProportional(0.2))
+    for torque, speed in ((3.0 * 1.2 + 0.8 + 1.0, 0.5), (3.0 * 0.8 - 0.8 - 1.0, -0.5)):
+        motion = run(plant, lambda tick, x, v, u=torque: u, 1e-3, 6000, 0.0)
+        assert motion.velocity[-1] == pytest.approx(speed, rel=1e-3)
+
+
+def test_warm_up_decreases_all_friction_with_time() -> None:
+    plant = hidden_in(Plant(0.5, 0.8, 2.0, 0.0, False), WarmUp(0.5, 1.0))
+    motion = run(plant, lambda tick, x, v: 2.8, 1e-3, 12_000, 0.0)
+    _, velocity, *_ = motion.at(np.array([3.0, 11.9]))
+    factor = 1.0 + 0.5 * np.exp(-3.0)
+    assert velocity[0] == pytest.approx((2.8 / factor - 0.8) / 2.0, rel=0.03)
+    assert velocity[1] == pytest.approx(1.0, rel=1e-3)
+
+
+def test_hidden_effects_leave_the_drawn_drive_and_logger_as_they_are() -> None:
+    for seed in range(1, 6):
+        plain, other = draw(seed), draw(seed, ("cogging",))
+        assert plain.logger == other.logger
+        assert replace(other.plant, hidden=NOTHING) == plain.plant

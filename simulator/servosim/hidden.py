@@ -1,0 +1,305 @@
+"""Effects hidden in a simulated drive: friction and forces that its plain model lacks.
+
+Sizes are drawn relative to the drive's own friction, speed and stroke. The names of `EFFECTS` are
+those of the library's catalogue; no catalogue contains the others (`UNKNOWN`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+Rng = np.random.Generator
+
+
+@dataclass
+class Course:
+    """Where a run has come to.
+
+    Attributes
+    ----------
+    time
+        Since its start, s.
+    position, velocity
+        rad and rad/s, or m and m/s.
+    strokes
+        Reversals so far.
+    phase
+        Of a disturbance of the run, rad.
+    scatter
+        Standard normal numbers of the run, one a stroke.
+    """
+
+    time: float
+    position: float
+    velocity: float
+    strokes: int
+    phase: float
+    scatter: list[float]
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Sizes of the drive that effects are drawn from: Coulomb friction, viscous friction, largest
+    speed and a typical stroke."""
+
+    coulomb: float
+    viscous: float
+    top: float
+    stroke: float
+
+
+class Hidden(Protocol):
+    """What every hidden effect can add; each is evaluated at the start of a piece of the motion."""
+
+    name: ClassVar[str]
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> Hidden:
+        """An effect of a usual size."""
+
+    def level(self, at: Course, sign: float) -> float:
+        """Added to the Coulomb level."""
+
+    def drag(self, at: Course) -> float:
+        """Added to the viscous friction, along the motion."""
+
+    def factor(self, at: Course) -> float:
+        """Times all friction."""
+
+    def push(self, at: Course) -> float:
+        """Force that the drive must overcome in either direction."""
+
+    def lost_share(self) -> float:
+        """Share of the transmitted force that is lost."""
+
+
+@dataclass(frozen=True)
+class Plain:
+    """An effect that adds nothing: the others replace what they change."""
+
+    def level(self, at: Course, sign: float) -> float:
+        return 0.0
+
+    def drag(self, at: Course) -> float:
+        return 0.0
+
+    def factor(self, at: Course) -> float:
+        return 1.0
+
+    def push(self, at: Course) -> float:
+        return 0.0
+
+    def lost_share(self) -> float:
+        return 0.0
+
+
+@dataclass(frozen=True)
+class StribeckExcess(Plain):
+    """Higher friction at low speed."""
+
+    name: ClassVar[str] = "stribeck_excess"
+    height: float
+    speed: float
+    exponent: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> StribeckExcess:
+        height = scale.coulomb * random.uniform(0.3, 0.9)
+        return cls(height, scale.top * random.uniform(0.03, 0.1), random.uniform(1.0, 2.0))
+
+    def level(self, at: Course, sign: float) -> float:
+        return self.height * math.exp(-((abs(at.velocity) / self.speed) ** self.exponent))
+
+
+@dataclass(frozen=True)
+class ViscousAsymmetry(Plain):
+    """Viscous friction that is larger in one direction."""
+
+    name: ClassVar[str] = "viscous_asymmetry"
+    slope: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> ViscousAsymmetry:
+        share = random.uniform(0.2, 0.4) * random.choice([-1.0, 1.0])
+        return cls(share * (scale.viscous + 0.2 * scale.coulomb / scale.top))
+
+    def push(self, at: Course) -> float:
+        return self.slope * abs(at.velocity)
+
+
+@dataclass(frozen=True)
+class ViscousThinning(Plain):
+    """Viscous friction that grows less than the speed."""
+
+    name: ClassVar[str] = "viscous_thinning"
+    viscous: float
+    slowness: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> ViscousThinning:
+        return cls(scale.viscous, random.uniform(1.0, 3.0) / scale.top)
+
+    def drag(self, at: Course) -> float:
+        line = self.viscous * at.velocity
+        return line / (1.0 + self.slowness * abs(at.velocity)) - line
+
+
+@dataclass(frozen=True)
+class TorqueProportional(Plain):
+    """Friction that is a share of the transmitted force."""
+
+    name: ClassVar[str] = "torque_proportional"
+    share: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> TorqueProportional:
+        return cls(random.uniform(0.08, 0.2))
+
+    def lost_share(self) -> float:
+        return self.share
+
+
+@dataclass(frozen=True)
+class Cogging(Plain):
+    """A force that is periodic in the position."""
+
+    name: ClassVar[str] = "cogging"
+    amplitude: float
+    pitch: float
+    phase: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> Cogging:
+        amplitude = scale.coulomb * random.uniform(0.1, 0.3)
+        pitch = scale.stroke / random.uniform(2.0, 8.0)
+        return cls(amplitude, pitch, random.uniform(0.0, 2.0 * math.pi))
+
+    def push(self, at: Course) -> float:
+        return self.amplitude * math.sin(2.0 * math.pi * at.position / self.pitch - self.phase)
+
+
+@dataclass(frozen=True)
+class PitchRipple(Plain):
+    """Friction that is periodic in the position."""
+
+    name: ClassVar[str] = "pitch_ripple"
+    depth: float
+    pitch: float
+    phase: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> PitchRipple:
+        pitch = scale.stroke / random.uniform(2.0, 8.0)
+        return cls(random.uniform(0.1, 0.25), pitch, random.uniform(0.0, 2.0 * math.pi))
+
+    def factor(self, at: Course) -> float:
+        return 1.0 + self.depth * math.cos(2.0 * math.pi * at.position / self.pitch - self.phase)
+
+
+@dataclass(frozen=True)
+class WarmUp(Plain):
+    """Friction that decreases from the start of each run."""
+
+    name: ClassVar[str] = "warm_up"
+    excess: float
+    time_constant_s: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> WarmUp:
+        return cls(random.uniform(0.15, 0.4), random.uniform(1.5, 5.0))
+
+    def factor(self, at: Course) -> float:
+        return 1.0 + self.excess * math.exp(-at.time / self.time_constant_s)
+
+
+@dataclass(frozen=True)
+class Hum(Plain):
+    """A disturbance of one frequency, with another phase in each run."""
+
+    name: ClassVar[str] = "hum"
+    amplitude: float
+    frequency_hz: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> Hum:
+        return cls(scale.coulomb * random.uniform(0.1, 0.3), random.uniform(1.0, 6.0))
+
+    def push(self, at: Course) -> float:
+        return self.amplitude * math.sin(2.0 * math.pi * self.frequency_hz * at.time + at.phase)
+
+
+@dataclass(frozen=True)
+class LevelStep(Plain):
+    """A Coulomb level that changes at one instant of every run."""
+
+    name: ClassVar[str] = "level_step"
+    change: float
+    instant_s: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> LevelStep:
+        share = random.uniform(0.15, 0.35) * random.choice([-1.0, 1.0])
+        return cls(scale.coulomb * share, random.uniform(2.5, 4.0))
+
+    def level(self, at: Course, sign: float) -> float:
+        return self.change if at.time > self.instant_s else 0.0
+
+
+@dataclass(frozen=True)
+class StrokeScatter(Plain):
+    """A Coulomb level that differs by chance from stroke to stroke."""
+
+    name: ClassVar[str] = "stroke_scatter"
+    sd: float
+
+    @classmethod
+    def draw(cls, scale: Scale, random: Rng) -> StrokeScatter:
+        return cls(scale.coulomb * random.uniform(0.1, 0.2))
+
+    def level(self, at: Course, sign: float) -> float:
+        return self.sd * max(-2.5, min(2.5, at.scatter[at.strokes % len(at.scatter)]))
+
+
+EFFECTS: dict[str, type[Hidden]] = {
+    kind.name: kind
+    for kind in (
+        StribeckExcess,
+        ViscousAsymmetry,
+        ViscousThinning,
+        TorqueProportional,
+        Cogging,
+        PitchRipple,
+        WarmUp,
+    )
+}
+UNKNOWN: dict[str, type[Hidden]] = {kind.name: kind for kind in (Hum, LevelStep, StrokeScatter)}
+
+
+@dataclass(frozen=True)
+class Together:
+    """Effects of one drive, summed and multiplied."""
+
+    parts: tuple[Hidden, ...] = field(default=())
+
+    def level(self, at: Course, sign: float) -> float:
+        return sum(part.level(at, sign) for part in self.parts)
+
+    def drag(self, at: Course) -> float:
+        return sum(part.drag(at) for part in self.parts)
+
+    def factor(self, at: Course) -> float:
+        return math.prod(part.factor(at) for part in self.parts)
+
+    def push(self, at: Course) -> float:
+        return sum(part.push(at) for part in self.parts)
+
+    def lost_share(self) -> float:
+        return sum(part.lost_share() for part in self.parts)
+
+
+NOTHING = Together()
+"""No hidden effect."""

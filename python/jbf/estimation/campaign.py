@@ -42,12 +42,16 @@ LOADS_DIFFER = 0.05
 TEMPERATURES_DIFFER_K = 2.0
 """Temperatures that differ by less, K, are one: it changes an oil by a tenth, dry friction by a
 hundredth or two, and a thermometer sits where the friction is not."""
-NEEDS_RECORDED_FORCE = frozenset((
-    "inertia_leak", "sensor_hysteresis", "sensor_nonlinearity", "sensor_lag", "time_delay",
-    "sensor_drift", "backlash", "drive_compliance",
+SMOOTHS_FORCE = frozenset((
+    "sensor_hysteresis", "sensor_lag", "time_delay", "backlash", "drive_compliance",
 ))  # fmt: skip
+"""Effects that filter a force or a motion. They are not tried where errors of the acceleration are
+a large part of the residual: they would smooth these."""
+NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia_leak", "sensor_nonlinearity", "sensor_drift"}
 """Effects that are not tried without a recorded force. Play and springs act between what is driven
 and what is read; of a coast-down they would explain how its acceleration was smoothed."""
+MOTION_SHARE = 0.1
+"""Mean share of the motion's errors in the variance that is a large part."""
 NEEDS_TIME = frozenset((
     "inertia_leak", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
     "drive_compliance", "thermal_thinning", "film_memory", "wear_in", "warm_up", "dwell_stiction",
@@ -141,6 +145,12 @@ class Campaign:
         return not self.steady and coasting(self.rig) is None
 
     @property
+    def motion_share(self) -> float:
+        """Mean share of the motion's errors in the variance of the residuals."""
+        motion = self.samples.motion
+        return 0.0 if motion is None else motion.mean_share(self.samples.weight)
+
+    @property
     def has_loads(self) -> bool:
         """True where the loads differ, within a run or from run to run."""
         usual = self.rig.load.normal_n if self.rig.load is not None else None
@@ -176,6 +186,8 @@ class Campaign:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not show it"
+        if effect.name in SMOOTHS_FORCE and self.motion_share > MOTION_SHARE:
+            return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
                 return f"not every run has the column {column}"

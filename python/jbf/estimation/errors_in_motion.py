@@ -38,6 +38,8 @@ class ErrorsInMotion:
         run.
     noise
         Standard deviation of the force's noise, in the unit of the residuals.
+    scale
+        Standard errors of the motion, relative to those in `errors`.
     by_delay
         Derivative of the prediction by a delay of the force that all runs share, one (n,) array a
         run; None where the forces are not late. What a delay explains is projected out.
@@ -46,6 +48,7 @@ class ErrorsInMotion:
     errors: tuple[MotionErrors | None, ...]
     sensitivity: tuple[Array, ...]
     noise: float
+    scale: float = 1.0
     by_delay: tuple[Array, ...] | None = None
 
     def only(self, which: Sequence[int]) -> ErrorsInMotion:
@@ -109,7 +112,13 @@ class ErrorsInMotion:
             return np.zeros(len(sensitivity))
         covariance = errors.covariance[:, :3, :3]
         variance = np.einsum("ni,nij,nj->n", sensitivity, covariance, sensitivity)
-        return np.asarray(variance / self.noise**2)
+        return np.asarray(variance * (self.scale / self.noise) ** 2)
+
+    def mean_share(self, weights: Sequence[Array]) -> float:
+        """Mean share of the motion's errors in the variance, at the samples with weight."""
+        ratios = [self.variance_ratio(i)[w > 0.0] for i, w in enumerate(weights)]
+        ratio = np.concatenate(ratios)
+        return float(np.mean(ratio / (1.0 + ratio)))
 
     def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:
         errors = self.errors[run]
@@ -119,6 +128,6 @@ class ErrorsInMotion:
             keep = weight > 0.0
             return columns * weight[:, None], float(np.sum(np.log(variance[keep])))
         white, log_determinant = whiten_motion_errors(
-            errors.covariance, errors.gain, self.sensitivity[run], variance, columns
+            errors.covariance, errors.gain, self.scale * self.sensitivity[run], variance, columns
         )
         return self.noise * white, log_determinant

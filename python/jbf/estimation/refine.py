@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.campaign import Campaign
+from jbf.estimation.campaign import MOTION_SHARE, Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.joint_lateness import delay_slope, delay_step
 from jbf.estimation.noise import WHITE
@@ -25,7 +25,7 @@ from jbf.records.motion.imposed import ImposedMotion
 Array = npt.NDArray[np.float64]
 
 NEGLIGIBLE = 0.01
-"""Mean variance by the motion, relative to the noise's, below which the motion is exact enough."""
+"""Mean share of the motion's errors in the variance below which the motion is exact enough."""
 EXACT = 1e-3
 """The same, below which a late force is a fault of the model and not of the clocks."""
 ROUNDS = 8
@@ -36,8 +36,18 @@ EVALUATIONS = 20
 """Evaluations of each fit."""
 STEP = 0.5
 """Step of the numerical derivatives by the motion, standard errors of the motion."""
-ROUGHER = 10.0
+ROUGHER = 30.0
 """Factor of the noise's intensity with which the effect of the smoothing is looked at."""
+SCALE_KNOWN = 1.0
+"""Standard deviation of the logarithm of the scale of the motion's errors before the fit."""
+LEAST_NOISE = -7.0
+"""Logarithm of the smallest noise, relative to the residual."""
+SMOOTHER = 3.0
+"""Factor of the noise's intensity between two motions whose likelihoods are compared."""
+SMOOTHEST = 1e-4
+"""Smallest such factor."""
+SMOOTHNESS_GAIN = 10.0
+"""Decrease of the deviance that another intensity must have."""
 HUBER = 2.5
 """Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
 DELAYED = 5.0
@@ -55,9 +65,10 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     velocity were read on two clocks, the force was read on either: both are tried.
     """
     motions = [p.motion.errors for p in problem.campaign.prepared]
-    errors = [e for e in motions if e is not None]
-    if len(errors) < len(motions):
+    if any(e is None for e in motions):
         return problem, solution
+    problem, solution = _likeliest_smoothness(problem, solution)
+    errors = [e for p in problem.campaign.prepared if (e := p.motion.errors) is not None]
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
     ends = [_settled(problem, solution, clock_s) for clock_s in clocks]
@@ -78,6 +89,13 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
             changes.append(best.problem.encode(other.solution.values) - values)
     change = np.sqrt(np.sum(np.square(changes), axis=0))
     return best.problem, replace(best.solution, systematic=change)
+
+
+def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """The same for a model that explains more than that for which they were estimated: the noise,
+    the scale of the motion's errors and its smoothness."""
+    problem, solution = _likeliest_smoothness(problem, solution)
+    return problem, _fitted(problem, solution, errors_in_motion(problem, solution))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +136,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
         motion = errors_in_motion(problem, solution)
-        share = _mean_share(motion, solution.samples)
+        share = motion.mean_share(solution.samples.weight)
         if late_s == 0.0 and share < EXACT:
             break
         step_s = _delay(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
@@ -130,7 +148,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
             values = solution.values
             solution = problem.solution(values, problem.samples_at(values), WHITE)
             motion = errors_in_motion(problem, solution)
-        before, solution = solution, _fitted(problem, solution, motion, late_s != clock_s)
+        before, solution = solution, _fitted(problem, solution, motion, delayed=late_s != clock_s)
         apart = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(apart) < SETTLED * motion.noise:
             break
@@ -140,20 +158,59 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
 def _with_smoothing(end: _End) -> Array:
     """Change of each search variable where the motion is smoothed less, shape (k,)."""
     problem, solution = end.problem, end.solution
+    other = _rougher(problem, ROUGHER, same_corners=True)
+    near = other.solution(solution.values, solution.samples, WHITE)
+    near = _fitted(other, near, errors_in_motion(other, near), delayed=end.delayed)
+    return problem.encode(near.values) - problem.encode(solution.values)
+
+
+def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
+    """The problem with the intensity of the motion's noise that makes the forces likeliest.
+
+    A force tells more of an acceleration than the differences of positions do.
+    """
+    if not problem.campaign.force_has_clock:
+        return problem, solution
+    motion = errors_in_motion(problem, solution)
+    if motion.mean_share(solution.samples.weight) < MOTION_SHARE:
+        return problem, solution
+    samples = solution.samples
+
+    def deviance(tried: Problem) -> tuple[float, Solution]:
+        near = tried.solution(solution.values, samples, WHITE)
+        found = _fitted(tried, near, errors_in_motion(tried, near))
+        own = errors_in_motion(tried, found)
+        return own.deviance(found.residuals, samples.weight), replace(found, samples=samples)
+
+    first, factor = problem, 1.0
+    least, _ = deviance(problem)
+    for change in (1.0 / SMOOTHER, SMOOTHER):
+        while SMOOTHEST < factor * change < 1.0 / SMOOTHEST:
+            tried = _rougher(first, factor * change)
+            own, found = deviance(tried)
+            if own >= least - SMOOTHNESS_GAIN:
+                break
+            least, problem, solution, factor = own, tried, found, factor * change
+        if factor != 1.0:
+            break
+    return problem, solution
+
+
+def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
+    """The problem with the intensity of the motion's noise multiplied by a factor
+    (`Smoothed.rougher`)."""
     prepared = []
     for p in problem.campaign.prepared:
-        motion = p.motion.rougher(p.run.time_s, ROUGHER)
+        motion = p.motion.rougher(p.run.time_s, factor, same_corners=same_corners)
         mass = coasting(p.rig)
         if mass is not None:
             p = replace(p, friction_n=-mass * motion.acceleration_m_s2)
         recorded = p.recorded
         if recorded is not None:
-            recorded = (recorded[0], recorded[1].rougher(recorded[0], ROUGHER))
+            again = recorded[1].rougher(recorded[0], factor, same_corners=same_corners)
+            recorded = (recorded[0], again)
         prepared.append(replace(p, motion=motion, recorded=recorded))
-    other = _with(problem, replace(problem.campaign, prepared=tuple(prepared)))
-    near = other.solution(solution.values, solution.samples, WHITE)
-    near = _fitted(other, near, errors_in_motion(other, near), end.delayed)
-    return problem.encode(near.values) - problem.encode(solution.values)
+    return _with(problem, replace(problem.campaign, prepared=tuple(prepared)))
 
 
 def _with(problem: Problem, campaign: Campaign) -> Problem:
@@ -166,7 +223,12 @@ def _with(problem: Problem, campaign: Campaign) -> Problem:
 
 
 def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
-    """Sensitivities at a solution, and the noise that is likeliest next to the motion's errors."""
+    """Sensitivities at a solution, the noise, and the scale of the motion's errors.
+
+    Noise and scale have the largest likelihood. The scale corrects the smoother's standard errors,
+    which are too large where the motion is smoother than the noise process that it assumes; its
+    logarithm has a normal prior, so that it stays at 1 where the motion's errors are negligible.
+    """
     prepared = problem.campaign.prepared
     predicted = [p.friction_n - r for p, r in zip(prepared, solution.residuals, strict=True)]
     sensitivity = [np.zeros((len(f), 3)) for f in predicted]
@@ -185,24 +247,29 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
     most = max(solution.samples.rms(solution.residuals), 1e-300)
 
-    def deviance(log_noise: float) -> float:
-        tried = replace(motion, noise=float(np.exp(log_noise)))
-        return tried.deviance(solution.residuals, weights)
+    def at(x: Array) -> ErrorsInMotion:
+        return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
 
-    from scipy.optimize import minimize_scalar  # half a second to import
+    def deviance(x: Array) -> float:
+        return at(x).deviance(solution.residuals, weights) + (float(x[1]) / SCALE_KNOWN) ** 2
 
-    bounds = (np.log(most) - 7.0, np.log(most) + 0.5)
-    found = minimize_scalar(deviance, bounds=bounds, method="bounded", options={"xatol": 0.01})
-    return replace(motion, noise=float(np.exp(found.x)))
+    from scipy.optimize import minimize  # half a second to import
+
+    # Without noise the motion's errors are the largest that explain the residual: another minimum.
+    starts = [np.array([log_noise, 0.0]) for log_noise in (-1.0, -3.0, LEAST_NOISE + 1.0)]
+    found = minimize(
+        deviance,
+        min(starts, key=deviance),
+        method="Nelder-Mead",
+        bounds=[(LEAST_NOISE, 0.5), (-3.0, 3.0)],
+        options={"xatol": 0.02, "fatol": 0.1},
+    )
+    return at(found.x)
 
 
-def _mean_share(motion: ErrorsInMotion, samples: Samples) -> float:
-    """Mean variance by the motion at the samples that count, relative to the noise's."""
-    shares = [motion.variance_ratio(i)[w > 0.0] for i, w in enumerate(samples.weight)]
-    return float(np.mean(np.concatenate(shares)))
-
-
-def _fitted(problem: Problem, near: Solution, motion: ErrorsInMotion, delayed: bool) -> Solution:
+def _fitted(
+    problem: Problem, near: Solution, motion: ErrorsInMotion, *, delayed: bool = False
+) -> Solution:
     """A generalised least-squares fit near a solution, with Huber's weights."""
     prepared, values = problem.campaign.prepared, near.values
     if delayed:

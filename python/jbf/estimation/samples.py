@@ -111,6 +111,12 @@ class Samples:
         whole = tuple(a * b for a, b in zip(before, level, strict=True))
         return replace(self, weight=weight, between=between, level=whole)
 
+    def with_known_motion(self) -> Samples:
+        """The samples at which the variance by the motion's errors is at most that of the noise."""
+        if self.motion is None:
+            return self
+        return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
+
     def tested(self) -> Samples:
         """The same, those that do not count without weight in a fit."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))

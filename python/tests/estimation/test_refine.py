@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from jbf import Rig, Run, fit
 from jbf.estimation.errors_in_motion import ErrorsInMotion
@@ -63,13 +64,11 @@ def test_force_on_time_has_no_finding_of_a_delay() -> None:
     assert "late_channel" not in {finding.kind for finding in found.findings}
 
 
-def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posterior() -> None:
-    """Residuals of noise and of motion errors that are drawn backward along the Markov chain."""
-    motion = impose(drive(3), None)
-    errors: Any = motion.errors
+def drawn_residual(
+    errors: Any, sensitivity: Any, scale: float, random: np.random.Generator
+) -> npt.NDArray[np.float64]:
+    """Noise, and motion errors that are drawn backward along the Markov chain of the posterior."""
     n = len(errors.covariance)
-    sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
-    random = np.random.default_rng(1)
     residual = np.empty(n)
     state = random.multivariate_normal(np.zeros(3), errors.covariance[-1], method="svd")
     for k in range(n - 1, -1, -1):
@@ -77,7 +76,15 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
             gain = errors.gain[k]
             left = errors.covariance[k] - gain @ errors.covariance[k + 1] @ gain.T
             state = gain @ state + random.multivariate_normal(np.zeros(3), left, method="svd")
-        residual[k] = sensitivity[k] @ state + random.normal(0.0, NOISE)
+        residual[k] = scale * (sensitivity[k] @ state) + random.normal(0.0, NOISE)
+    return residual
+
+
+def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posterior() -> None:
+    errors: Any = impose(drive(3), None).errors
+    n = len(errors.covariance)
+    sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
+    residual = drawn_residual(errors, sensitivity, 1.0, np.random.default_rng(1))
     model = ErrorsInMotion((errors,), (sensitivity,), NOISE)
     weight = np.where(np.arange(n) % 7 == 0, 0.0, 1.0)
     white, _ = model.stacked([residual], [np.ones((n, 1))], [weight])
@@ -85,3 +92,21 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
     assert np.std(white) == pytest.approx(NOISE, rel=0.05)
     assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.06
     assert np.std(residual) > 1.1 * NOISE
+
+
+@pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])
+def test_likelihood_is_largest_at_the_scale_with_which_motion_errors_were_drawn(
+    scale: float,
+) -> None:
+    errors: Any = impose(drive(3), None).errors
+    n = len(errors.covariance)
+    sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
+    residual = drawn_residual(errors, sensitivity, scale, np.random.default_rng(2))
+    deviances = [
+        ErrorsInMotion((errors,), (sensitivity,), NOISE, scale * share).deviance(
+            [residual], [np.ones(n)]
+        )
+        for share in (0.5, 0.8, 1.0, 1.25, 2.0)
+    ]
+    assert abs(int(np.argmin(deviances)) - 2) <= 1
+    assert min(deviances[0], deviances[-1]) > min(deviances) + 10.0

@@ -127,8 +127,8 @@ class ImposedMotion:
         """Columns that were left aside as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
-    def rougher(self, time_s: Array, factor: float) -> ImposedMotion:
-        """Posterior mean with the noise intensity multiplied by a factor.
+    def rougher(self, time_s: Array, factor: float, *, same_corners: bool = False) -> ImposedMotion:
+        """Posterior mean with the noise intensity multiplied by a factor (`Smoothed.rougher`).
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class ImposedMotion:
         """
         if self.errors is None or self.errors.smoothed is None:
             return self
-        smoothed = self.errors.smoothed.rougher(factor)
+        smoothed = self.errors.smoothed.rougher(factor, same_corners=same_corners)
         mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
         velocity = np.where(self.resting, 0.0, mean[:, 1])
         # As in `impose`: with an unknown first sign a model starts at rest.

@@ -61,6 +61,8 @@ START_GAIN = 10.0
 """Gain of the lower bound that an additional starting value must have."""
 STAMP_GAIN = 10.0
 """Log-likelihood gain that an error of the instants must have."""
+TURN_GAIN = 3.0
+"""Log-likelihood gain that corners at all reversals must have."""
 LONGEST_DELAY = 1.5
 """Largest delay of the velocity that is searched, samples."""
 
@@ -100,10 +102,18 @@ class Smoothed:
         found = readings.smoothed(errors, corners, speed)
         return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
 
-    def rougher(self, factor: float) -> Smoothed:
-        """Posterior of the same readings with the noise's intensity multiplied by a factor."""
+    def rougher(self, factor: float, *, same_corners: bool = False) -> Smoothed:
+        """Posterior of the same readings with the noise's intensity multiplied by a factor.
+
+        Parameters
+        ----------
+        same_corners
+            Whether the corners' factors are kept, and not estimated again.
+        """
         errors = replace(self.errors, intensity=factor * self.errors.intensity)
-        return Smoothed.of(self.readings, errors, self.corners, self.speed)
+        if same_corners:
+            return Smoothed.of(self.readings, errors, self.corners, self.speed)
+        return _smoothed(self.readings, errors, self.readings.corners(errors, LONG_PASSES))
 
     def at(self, instants_s: Array) -> tuple[Array, Array, Array]:
         """Mean, covariance and gain at other instants, s, not decreasing and within the motion."""
@@ -172,8 +182,32 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
                 (errors, corners), most = end, bound
     if n > len(few.time_s):
         corners = readings.corners(errors, LONG_PASSES)
-    speed = readings.smoothed(errors, corners, np.zeros(n)).mean[:, 1]
-    return Smoothed.of(readings, errors, _located_to_a_step(corners), speed)
+    return _smoothed(readings, errors, corners)
+
+
+def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoothed:
+    """The posterior with corners located to a step, and a corner at each reversal if that is
+    likelier."""
+    mean = readings.smoothed(errors, corners, np.zeros(len(readings.time_s))).mean
+    found = _located_to_a_step(corners)
+    if errors.order == JERK:
+        turns = _of_reversals(readings, errors, mean)
+        tried = _located_to_a_step(np.maximum(corners, turns))
+        without, with_turns = (
+            readings.log_likelihood(errors, c, mean[:, 1]) for c in (found, tried)
+        )
+        if with_turns > without + TURN_GAIN:
+            found = tried
+    return Smoothed.of(readings, errors, found, mean[:, 1])
+
+
+def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Array:
+    """Factors with which the acceleration may jump by its RMS in a step in which the motion
+    reverses, where friction does; zero in the other steps."""
+    step_s = np.maximum(np.diff(readings.time_s), 1e-300)
+    reverses = mean[1:, 1] * mean[:-1, 1] <= 0.0
+    square = float(np.mean(mean[:, 2] ** 2))
+    return np.where(reverses, square / (max(errors.intensity, 1e-300) * step_s), 0.0)
 
 
 def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:

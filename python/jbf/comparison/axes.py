@@ -166,12 +166,21 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
     return Binned("run", bins, places)
 
 
-def force_axis(predictions: Sequence[Array], unit: str = "N") -> Binned:
-    """Samples by the force that a model predicts: along it a cell that is not straight shows."""
-    every = np.concatenate(list(predictions))
+def force_axis(forces: Sequence[Array], unit: str = "N", error: float = 0.0) -> Binned:
+    """Samples by a force: along it the nonlinearity of a load cell shows.
+
+    Parameters
+    ----------
+    error
+        Standard error of these forces. Bins are joined where it exchanges more than half of the
+        samples of one of them, since then they differ in the sign of the error.
+    """
+    every = np.concatenate(list(forces))
     edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))
+    if error > 0.0:
+        edges = _distinct(np.sort(every), edges, 2.0 * error)
     count = len(edges) + 1
-    places = [np.digitize(f, edges).astype(np.intp) for f in predictions]
+    places = [np.digitize(f, edges).astype(np.intp) for f in forces]
     sorted_ = np.concatenate(places)
     bins = tuple(
         Bin(centre=float(np.median(every[sorted_ == i])), unit=unit)
@@ -180,6 +189,21 @@ def force_axis(predictions: Sequence[Array], unit: str = "N") -> Binned:
         for i in range(count)
     )
     return Binned("force", bins, places, unit)
+
+
+def _distinct(values: Array, edges: Array, reach: float) -> Array:
+    """Edges of bins, at most half of whose samples lie within reach of an edge."""
+    while len(edges):
+        below = np.searchsorted(values, edges)
+        counts = np.diff(np.concatenate(([0], below, [len(values)])))
+        smaller = np.maximum(np.minimum(counts[:-1], counts[1:]), 1)
+        near = np.searchsorted(values, edges + reach) - np.searchsorted(values, edges - reach)
+        crowded = near / smaller
+        worst = int(np.argmax(crowded))
+        if crowded[worst] <= 0.5:
+            break
+        edges = np.delete(edges, worst)
+    return edges
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:

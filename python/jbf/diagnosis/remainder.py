@@ -25,6 +25,7 @@ from jbf.diagnosis.ripples import find_ripples
 from jbf.diagnosis.strokes import find_stroke_levels
 from jbf.diagnosis.tones import find_tones
 from jbf.estimation.problem import Problem
+from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
 
@@ -44,7 +45,7 @@ def find_remainder(
     found += find_ripples(problem.campaign, samples, innovations, left, policy)
     found += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
-    found += find_bursts(prepared, samples, plain, left, policy)
+    found += find_bursts(prepared, samples.with_known_motion(), plain, left, policy)
     found += find_disagreement(problem, solution, policy)
     found += find_stroke_levels(problem, solution, policy)
     # Of steps as coarse as these no mean reading is right, along whatever axis and in each run.
@@ -67,11 +68,29 @@ def find_patterns(
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
-    # Along the model's own force a cell that is not straight shows.
-    force = force_axis(problem.predict(solution.values), problem.campaign.rig.quantities.force)
+    # Along the force a cell that is not straight shows.
+    error = 0.0
+    if solution.samples.motion is not None:
+        error = robust_size(solution.samples.flat(solution.residuals))
+    unit = problem.campaign.rig.quantities.force
+    force = force_axis(_likeliest_forces(problem, solution), unit, error)
     share, sigma = policy.pattern_share, policy.pattern_sigma
     found = (
         pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
         for axis in (*all_axes(problem.campaign, u_tr), force)
     )
     return [failure for failure in found if failure is not None]
+
+
+def _likeliest_forces(problem: Problem, solution: Solution) -> list[Array]:
+    """The force of each sample by the model and the record, weighted by their precisions.
+
+    The errors of this mean are uncorrelated with the residual; in bins of the prediction alone the
+    errors of the motion would have a mean.
+    """
+    predicted, motion = problem.predict(solution.values), solution.samples.motion
+    if motion is None:
+        return predicted
+    ratios = [motion.variance_ratio(i) for i in range(len(predicted))]
+    pairs = zip(predicted, ratios, problem.campaign.prepared, strict=True)
+    return [f + ratio / (1.0 + ratio) * (p.friction_n - f) for f, ratio, p in pairs]

@@ -244,3 +244,18 @@ def test_force_axis_has_sixteen_bins_of_equal_count() -> None:
     for i, b in enumerate(axis.bins):
         assert b.centre == pytest.approx(np.median(forces[at == i]))
         assert b.unit == "N m"
+
+
+@pytest.mark.parametrize(("error", "bins"), [(0.0, 16), (0.02, 2)])
+def test_force_axis_joins_bins_that_differ_by_less_than_the_error_of_the_forces(
+    error: float, bins: int
+) -> None:
+    """A drive at its limit: bins within one constant force would separate signs of the error."""
+    rng = np.random.default_rng(1)
+    forces = np.repeat([-3.5, 3.5], 800) + 0.02 * rng.normal(size=1600)
+    assert len(force_axis([forces], "N", error).bins) == bins
+
+
+def test_force_axis_keeps_bins_that_are_wider_than_the_error_of_the_forces() -> None:
+    forces = np.linspace(-10.0, 10.0, 1600)
+    assert len(force_axis([forces], "N", 0.02).bins) == 16

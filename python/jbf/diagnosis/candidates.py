@@ -206,7 +206,6 @@ class Candidates:
         return fitted.score
 
     # ---- the level of the tests -------------------------------------------------------------
-
     @property
     def level(self) -> Level:
         """What a gain must exceed; beside the bare law, until it was calibrated."""
@@ -230,7 +229,8 @@ class Candidates:
     def _beside(self, present: Sequence[str]) -> Level:
         base = self.converge(present)
         samples = effective_share(base) * base.samples.count
-        return Level.shared(self.policy, len(self.names), samples, base.rms_n)
+        least = 0.0 if self.campaign.samples.motion is None else self.policy.motion_share
+        return Level.shared(self.policy, len(self.names), samples, base.rms_n, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit these effects well enough to rank them, from a smaller model's solution."""
@@ -352,7 +352,7 @@ class Candidates:
         halved = sorted(only_witnesses(self.fitted(richer).problem, after))
         left, richer_left = self.left_out(present, halved), self.left_out(richer, halved)
         names = tuple(self.campaign.samples.runs[i] for i in halved)
-        return Confirmation.of(before, after, left, richer_left, names)
+        return Confirmation.of(before, after, left, richer_left, names, self.campaign.prepared)
 
     def left_out(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
@@ -386,7 +386,7 @@ class Candidates:
         return dict(zip(names, near.values.tolist(), strict=True))
 
     def _least_square(self, near: Solution | None) -> float:
-        """The sum of squares from which on something beside a smaller model shows in its score."""
+        """The sum of squares from which on something next to a smaller model shows in its score."""
         if near is None:
             return np.inf
         every = self.campaign.samples

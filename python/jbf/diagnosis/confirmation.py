@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy import special
 
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.strokes import stroke_of
 from jbf.estimation.left_out import LeftOut, errors_by_run
 from jbf.estimation.predictive import mean_square, surprise
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import least_weights
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
+
+LEAST_UNITS = 6
+"""Number of independent units from which on a paired test over them decides."""
+LEAST_SAMPLES = 16
+"""Number of samples of a stroke that is a unit."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +41,11 @@ class Confirmation:
         to twice the log likelihood in the fit.
     halved
         Runs that alone tell of it: their halves took turns in being left out, in both fits.
+    units
+        Number of independent units: runs or, of fewer than `LEAST_UNITS` runs, strokes.
+    chance
+        Probability that the units are predicted so much better on average by chance (one-sided
+        t-test of the logarithms of the ratios of their mean squares); 1 of too few units.
     """
 
     before_n: float
@@ -40,6 +53,8 @@ class Confirmation:
     better: float
     density: float
     halved: Names = ()
+    units: int = 0
+    chance: float = 1.0
 
     @classmethod
     def of(
@@ -49,8 +64,15 @@ class Confirmation:
         left: Sequence[LeftOut],
         richer_left: Sequence[LeftOut],
         halved: Names = (),
+        prepared: Sequence[Prepared] = (),
     ) -> Confirmation:
-        """By fits without the candidate and with it, and by what was left out of each."""
+        """By fits without the candidate and with it, and by what was left out of each.
+
+        Parameters
+        ----------
+        prepared
+            The runs, whose strokes are units where the runs are too few.
+        """
         # At the same samples: one that sets others aside beside its jumps predicts none of them.
         counted = least_weights(simpler.samples, richer.samples).counted
         errors = [
@@ -60,7 +82,20 @@ class Confirmation:
         before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
         better = [_rms(errors[1][i]) < _rms(own) for i, own in errors[0].items() if len(own)]
         density = _density_share(simpler, richer, left, richer_left)
-        return cls(before_n, after_n, float(np.mean(better or [False])), density, halved)
+        ratios = _unit_ratios(errors[0], errors[1], prepared, counted)
+        return cls(
+            before_n,
+            after_n,
+            float(np.mean(better or [False])),
+            density,
+            halved,
+            len(ratios),
+            _chance(ratios),
+        )
+
+    def units_confirm(self, chance: float) -> bool:
+        """Whether enough units are predicted better, by more than chance."""
+        return self.chance < chance and self.after_n < self.before_n
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
         """Whether they confirm it, who gains so much in mean square (N^2) where it is fitted."""
@@ -76,6 +111,39 @@ class Confirmation:
     def lacking(self, unit: str) -> str:
         """The same, and what their density has of the gain."""
         return f"{self.said(unit)}, {self.density:.0%} of the gain in their log density"
+
+
+def _unit_ratios(
+    before: Mapping[int, Array],
+    after: Mapping[int, Array],
+    prepared: Sequence[Prepared],
+    counted: Sequence[npt.NDArray[np.bool_]],
+) -> Array:
+    """Logarithms of the ratios of the mean squares without and with a candidate, one a unit."""
+    parts: list[tuple[Array, Array]] = [(before[i], after[i]) for i in before]
+    if len(parts) < LEAST_UNITS and prepared:
+        parts = []
+        for i in before:
+            own = stroke_of(prepared[i])[counted[i]]
+            for k in range(int(np.max(own, initial=-1)) + 1):
+                if np.count_nonzero(own == k) >= LEAST_SAMPLES:
+                    parts.append((before[i][own == k], after[i][own == k]))
+    squares = np.array(
+        [(np.mean(b**2), np.mean(a**2)) for b, a in parts if len(b) and len(a)]
+    ).reshape(-1, 2)
+    squares = squares[(squares > 0.0).all(axis=1)]
+    ratios: Array = np.log(squares[:, 0] / squares[:, 1])
+    return ratios
+
+
+def _chance(ratios: Array) -> float:
+    """Probability of so large a mean by chance (Student's t, one-sided)."""
+    if len(ratios) < LEAST_UNITS:
+        return 1.0
+    error = float(np.std(ratios, ddof=1)) / np.sqrt(len(ratios))
+    if error == 0.0:
+        return 1.0
+    return float(special.stdtr(len(ratios) - 1, -float(np.mean(ratios)) / error))
 
 
 def _rms(errors: Array) -> float:

@@ -53,6 +53,17 @@ def evidence(
     return gain - price
 
 
+def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
+    """Gain of the richer of two models if all samples were independent, less what it must gain; for
+    a model that is confirmed by independent units."""
+    if set(candidates.idle(richer)) - set(simpler.effects):
+        return 0.0
+    if _within_steps(candidates.campaign, richer, simpler):
+        return 0.0
+    gain = min(likelihood_gain(richer, simpler), gain_of_most(richer, simpler))
+    return gain - price_of(candidates, richer.free - simpler.free)
+
+
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
     """Whether two models differ by no more than a converter's steps move a mean reading."""
     samples = least_weights(richer.samples, simpler.samples)

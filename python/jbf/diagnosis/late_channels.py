@@ -60,7 +60,7 @@ def on_time(
         A model that shifted runs may do without: of what it leaves, they may leave `more` times as
         much. Where not given, they must leave less than this one does, by more than chance.
     """
-    if not problem.campaign.force_has_clock:
+    if not problem.campaign.force_has_clock or problem.campaign.samples.motion is not None:
         return None
     told = {f.run: f for f in problem.campaign.more_findings if f.kind == "late_channel"}
     if any(f.kind == "drifting_clock" for f in problem.campaign.more_findings):

@@ -76,7 +76,14 @@ class Level:
     decoys_named: int = 0
 
     @classmethod
-    def shared(cls, policy: Policy, candidates: int, samples: float, noise_n: float) -> Level:
+    def shared(
+        cls,
+        policy: Policy,
+        candidates: int,
+        samples: float,
+        noise_n: float,
+        least_share: float = 0.0,
+    ) -> Level:
         """The level shared among candidates, of noise as white as it can be.
 
         Parameters
@@ -85,10 +92,12 @@ class Level:
             Independent ones.
         noise_n
             RMS of the residual, N.
+        least_share
+            Smallest share of the mean square that an effect must explain.
         """
         least = max(policy.indifference, policy.indifference_n / max(noise_n, 1e-300))
         chance = policy.false_alarms / max(candidates, 1)
-        worth = least**2 * samples
+        worth = max(least**2, least_share) * samples
         return cls(policy.false_alarms, candidates, chance, 0, policy.imperfection, worth)
 
     @property

@@ -89,6 +89,12 @@ class Policy:
         "share of the RMS below which such a candidate fits better at all",
         "what anybody sees who reads it",
     )
+    paired: int = _number(
+        5,
+        "number of candidates that leave the smallest error, of which pairs are fitted where no "
+        "single one is accepted and the residual has structure",
+        "chosen for speed",
+    )
     # ---- which candidates are fitted --------------------------------------------------------
     least_score: float = _number(
         0.3,
@@ -197,10 +203,16 @@ class Policy:
         "the comparison's own",
     )
     motion_share: float = _number(
-        0.05,
-        "share of the mean square that structure must have where errors of the motion are in the "
-        "residual: their covariance is an estimate",
-        "twelve simulated servo drives (seeds 3981 to 3992)",
+        0.08,
+        "share of the mean square that structure, an effect or another law must explain where "
+        "errors of the motion are in the residual: their covariance is an estimate",
+        "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
+    )
+    noise_changes: float = _number(
+        1.1,
+        "ratio by which the noise next to the errors of the motion must change for these to be "
+        "estimated again",
+        "a tenth of the noise",
     )
     tone_chance: float = _number(
         1e-7,

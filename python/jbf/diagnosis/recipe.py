@@ -7,6 +7,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
@@ -27,19 +29,24 @@ from jbf.diagnosis.shifted import DELAY
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
-from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
+from jbf.diagnosis.which_law import LawTried, held_out_rms, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import finish
-from jbf.estimation.refine import with_motion_errors
+from jbf.estimation.initial_state import memories
+from jbf.estimation.refine import with_motion_errors, with_motion_errors_again
 from jbf.estimation.run_start import settled_campaign
-from jbf.models.catalogue import find_clock
+from jbf.models.catalogue import find_clock, find_law
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO, Clock
 from jbf.records.arguments import check_callable, of_kind
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
+
+SIMPLEST = "coulomb"
+"""The law with the fewest parameters."""
+TOO_LONG = "takes too long to diagnose on these records"
 
 
 @one_blas_thread
@@ -119,9 +126,58 @@ def _diagnose(
     recorded = Campaign.prepare(rig, runs)
     laws: tuple[LawTried, ...] = ()
     no_law: dict[str, str] = {}
+    names = {law: 0.0}
     if law == AUTO:
-        laws, no_law = which_law(recorded, clock, policy, progress)
-        law = laws[0].law
+        laws, no_law = which_law(_comparable(recorded, clock, policy), clock, policy, progress)
+        names = _to_diagnose(laws)
+    best: tuple[Diagnosis, float] | None = None
+    for name, alone in names.items():
+        # A law with memory must predict better than one without that has its effects.
+        if best is not None and alone > best[1] / policy.no_worse:
+            continue
+        campaign = replace(recorded, work=recorded.work.part(1.0))
+        try:
+            answer = _with_law(campaign, name, clock, limits, policy, progress, reached)
+        except Unfinished:
+            if best is None:
+                raise
+            no_law[f"law {name}"] = TOO_LONG
+            continue
+        if best is None or answer[1] < best[1] / policy.no_worse:
+            best = answer
+    assert best is not None
+    first = [t for t in laws if t.law == best[0].model.law]
+    return replace(
+        best[0],
+        laws=(*first, *(t for t in laws if t not in first)),
+        simpler_law=None if laws else best[0].simpler_law,
+        not_tried=no_law | best[0].not_tried,
+        elapsed_s=time.monotonic() - begun,
+    )
+
+
+def _to_diagnose(laws: Sequence[LawTried]) -> dict[str, float]:
+    """The law that predicts best and, before it if it has a memory, the best one without; and the
+    RMS of their held-out errors without effects, N."""
+    first = laws[0]
+    best = {first.law: first.left_out_rms_n}
+    if find_law(first.law).has_film or not memories(first.law, ()):
+        return best
+    without = [t for t in laws if not memories(t.law, ())]
+    return {t.law: t.left_out_rms_n for t in without[:1]} | best
+
+
+def _with_law(
+    recorded: Campaign,
+    law: str,
+    clock: Clock,
+    limits: Limits | None,
+    policy: Policy,
+    progress: Progress | None,
+    reached: Reached,
+) -> tuple[Diagnosis, float]:
+    """A diagnosis with a given law, and the RMS of its held-out errors, N."""
+    begun = time.monotonic()
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
@@ -133,10 +189,11 @@ def _diagnose(
         candidates = Candidates(certain, law, clock, policy, progress, candidates)
     before = _before(candidates)
     selected = select(candidates, before.noise_n)
+    weighs = True
     for _ in range(policy.most_looks):
         weighed = None
         again = _seen_again(candidates, selected)
-        if again is None:
+        if again is None and weighs:
             again = weighed = _weighed(candidates, selected.present)
         if again is None:
             if not _remainder(candidates, selected.present):
@@ -155,9 +212,8 @@ def _diagnose(
         start = selected if again is selected.again else None
         selected = select(candidates, before.noise_n, start)
         if weighed is not None and _lost(last, candidates, was.present, selected.present):
-            candidates, selected = last, was
+            candidates, selected, weighs = last, was, False
             before = _before(candidates)
-            break
     campaign = candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused
     remains = (*_remainder(candidates, present), *refused)
@@ -181,7 +237,7 @@ def _diagnose(
     strengths = () if remains else power(candidates, present)
     hidden = unseen(candidates, present, strengths)
     instead = None
-    if not laws and (len(missing) > 1 or remains):
+    if len(missing) > 1 or remains:
         instead = simpler_law(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
@@ -189,7 +245,7 @@ def _diagnose(
     if tied:
         rivals = [_rivals(named, name, others) for name, others in tied.items()]
         proposal = propose(candidates, rivals, limits)
-    return Diagnosis(
+    diagnosis = Diagnosis(
         verdict=answer,
         effects=missing,
         machine=machine_of(candidates, kept),
@@ -205,15 +261,15 @@ def _diagnose(
         after=compare_prepared(fit.model, campaign),
         elapsed_s=time.monotonic() - begun,
         level=candidates.level,
-        not_tried=no_law | candidates.not_tried,
+        not_tried=candidates.not_tried,
         unseen=hidden,
         policy=policy,
         findings=candidates.campaign.findings,
         confounders=tuple(name for name in doubted if name in kept),
-        laws=laws,
         simpler_law=instead,
         power=strengths,
     )
+    return diagnosis, held_out_rms(candidates, kept)
 
 
 def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
@@ -233,6 +289,9 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
 
 def _seen_again(candidates: Candidates, selected: Selected) -> Campaign | None:
     """The campaign as a model shows what its recording did; None where it shows nothing more."""
+    again = _with_other_errors_of_motion(candidates, selected.present)
+    if again is not None:
+        return again
     again = _on_time(candidates, selected.present)
     if again is not None and _deviate_rather(candidates, selected, again):
         return selected.again
@@ -272,6 +331,29 @@ def _with_errors_of_motion(candidates: Candidates) -> Campaign | None:
         return None
     campaign = problem.campaign
     return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
+
+
+def _comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
+    """The campaign with the errors of its motion by the simplest law, to compare laws on."""
+    if campaign.rig.drive is None:
+        return campaign
+    candidates = Candidates(campaign, SIMPLEST, clock, policy)
+    return _with_errors_of_motion(candidates) or campaign
+
+
+def _with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign with the errors of its motion as a model with effects shows them; None where its
+    noise is that of the model for which they were estimated."""
+    before = candidates.campaign.samples.motion
+    if before is None:
+        return None
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    problem, solution = with_motion_errors_again(problem, solution)
+    motion, campaign = solution.samples.motion, problem.campaign
+    change = 0.0 if motion is None else abs(np.log(motion.noise / before.noise))
+    if change < np.log(candidates.policy.noise_changes):
+        return None
+    return replace(campaign, samples=replace(campaign.samples, motion=motion))
 
 
 def _before(candidates: Candidates) -> Comparison:

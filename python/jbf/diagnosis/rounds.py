@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
-from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
+from jbf.diagnosis.evidence import evidence, evidence_alone, full_gain, price_of
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.machine import TERMS
 from jbf.diagnosis.selection import (
@@ -23,6 +24,7 @@ from jbf.diagnosis.selection import (
 from jbf.diagnosis.shifted import DELAY
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import errors_by_run
+from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
 from jbf.models.catalogue import may_come
@@ -71,9 +73,11 @@ def select(
             steps.append(step(candidates, present, noise_n, ()))
             return Selected(present, steps, again=settled)
         found = try_candidates(candidates, present, follow)
-        follow = "promising"
+        every, follow = follow == "all", "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
         together = present if found.leader else _machine_together(candidates, present)
+        if every and found.leader is None and together == present:
+            together = _pair(candidates, present, found)
         if frozenset(together) not in visited:
             visited.add(frozenset(together))
             present = together
@@ -85,12 +89,26 @@ def select(
             return Selected(present, steps, _refused(candidates, present))
         if len(present) >= candidates.policy.most_effects:
             return Selected(present, steps, (_one_more(candidates, present, found.leader),))
-        candidates.search_peaks((*present, found.leader))
-        grown = reconsider(candidates, (*present, found.leader), found.unconfirmed)
+        grown = _grown(candidates, present, found)
         if frozenset(grown) in visited:
             return Selected(present, steps)
         visited.add(frozenset(grown))
         present = grown
+
+
+def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
+    """The model with the leading candidate, and without what that makes needless; with one that is
+    tied with it, if that leaves fewer effects."""
+    tied = [t.effect for t in found.trials if t.outcome == "ties"]
+    best: Names | None = None
+    for name in (found.leader, *tied) if present else (found.leader,):
+        assert name is not None
+        candidates.search_peaks((*present, name))
+        grown = reconsider(candidates, (*present, name), found.unconfirmed)
+        if best is None or len(grown) < len(best):
+            best = grown
+    assert best is not None
+    return best
 
 
 def _machine_together(candidates: Candidates, present: Names) -> Names:
@@ -109,6 +127,33 @@ def _machine_together(candidates: Candidates, present: Names) -> Names:
     if evidence(candidates, whole, base) <= 0.0 or not predicts:
         return present
     return still_needed(candidates, together)
+
+
+def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
+    """The model with the pair of effects that explains most, if it is needed.
+
+    Beside a model that lacks two effects, neither may have evidence alone: what remains is smooth.
+    """
+    policy = candidates.policy
+    if len(present) + 2 > policy.most_effects:
+        return present
+    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms_n)[: policy.paired]]
+    pairs = [
+        (*present, *pair)
+        for pair in itertools.combinations(ahead, 2)
+        if may_come(pair[0], present) and may_come(pair[1], (*present, pair[0]))
+    ]
+    if not pairs:
+        return present
+    base = candidates.converge(present)
+    candidates.rank_all(pairs, base)
+    best = max(pairs, key=lambda pair: likelihood_gain(candidates.rank(pair), base))
+    whole = candidates.converge(best)
+    if candidates.left_out_rms(best) > candidates.left_out_rms(present) / policy.no_worse:
+        return present
+    if evidence(candidates, whole, base) <= 0.0 and full_gain(candidates, whole, base) <= 0.0:
+        return present
+    return reconsider(candidates, still_needed(candidates, best))
 
 
 def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:

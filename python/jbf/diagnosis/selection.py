@@ -9,14 +9,20 @@ replace better is exchanged.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
-from jbf.diagnosis.evidence import evidence, evidence_alone, price_of, swap_cost
+from jbf.diagnosis.evidence import (
+    evidence,
+    evidence_alone,
+    full_gain,
+    price_of,
+    swap_cost,
+)
 from jbf.diagnosis.ledger import Outcome, Trial
 from jbf.diagnosis.machine import OFFSET, TERMS, machine_of
 from jbf.diagnosis.policy import Policy
@@ -106,12 +112,57 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "rejected"
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
+    if leader is None:
+        leader, trials = _by_units(candidates, present, ranked, trials)
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:
         # What it was left behind for does not lead.
         return try_candidates(candidates, present, "shown")
     ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
+
+
+def _by_units(
+    candidates: Candidates, present: Names, ranked: Sequence[Ranked], trials: list[Trial]
+) -> tuple[str | None, list[Trial]]:
+    """The candidate with the largest gain by the likelihood alone that independent units confirm.
+
+    Where the residual is smooth, few of its samples are independent, and a slow or constant effect
+    has no evidence; runs or strokes are independent whatever the residual is.
+    """
+    base = candidates.converge(present)
+    gains = {
+        r.effect: full_gain(candidates, r.solution, base) for r in ranked if not np.isfinite(r.most)
+    }
+    for name in sorted(gains, key=lambda name: -gains[name])[:AHEAD]:
+        if gains[name] > 0.0 and units_confirm(candidates, present, name):
+            out = candidates.confirmation(present, name)
+            unit = candidates.campaign.rig.quantities.force
+            reason = (
+                f"{out.units} units are predicted better, p = {out.chance:.1g}; {out.said(unit)}"
+            )
+            added = [
+                replace(t, outcome="added", reason=reason) if t.effect == name else t
+                for t in trials
+            ]
+            return name, added
+    return None, trials
+
+
+def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
+    """Whether independent units are predicted better with an effect than without, by more than
+    chance."""
+    return candidates.confirmation(rest, name).units_confirm(candidates.level.chance)
+
+
+def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
+    """Whether an effect of a model has evidence, or is confirmed by independent units."""
+    whole = candidates.converge(current)
+    if evidence(candidates, whole, simpler) >= 0.0:
+        return True
+    rest = tuple(e for e in current if e != name)
+    gains = full_gain(candidates, whole, simpler) > 0.0
+    return gains and units_confirm(candidates, rest, name)
 
 
 def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solution) -> bool:
@@ -198,7 +249,7 @@ def still_needed(candidates: Candidates, present: Names) -> Names:
             continue
         rest = tuple(e for e in current if e != name)
         simpler = candidates.refit_from(rest, current)
-        if evidence(candidates, candidates.converge(current), simpler) < 0:
+        if not needed(candidates, current, name, simpler):
             current = rest
     return current
 
@@ -219,9 +270,9 @@ def start_model(candidates: Candidates) -> Names:
         candidates.converge(present)
     for name in present:
         rest = tuple(e for e in present if e != name)
-        whole, simpler = candidates.converge(present), candidates.refit_from(rest, present)
+        simpler = candidates.refit_from(rest, present)
         worse = candidates.left_out_rms(rest) > policy.no_worse * candidates.left_out_rms(present)
-        if evidence(candidates, whole, simpler) < 0.0 and not worse:
+        if not (worse or needed(candidates, present, name, simpler)):
             present = rest
     return present
 
@@ -253,7 +304,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         candidates.search_peaks(rest)
         simpler = candidates.refit_from(rest, current)
         whole = candidates.converge(current)
-        if evidence(candidates, whole, simpler) < 0:
+        if not needed(candidates, current, name, simpler):
             current = rest
             continue
         if name in machine_of(candidates, current) and name != OFFSET:

@@ -22,8 +22,9 @@ from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
 from jbf.estimation.initial_state import memories
-from jbf.estimation.left_out import left_out_by_run
+from jbf.estimation.left_out import left_out as held_out
 from jbf.estimation.run_start import settled_campaign
+from jbf.estimation.samples import Samples
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
@@ -67,6 +68,22 @@ class LawTried:
         }
 
 
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Errors of prediction of runs that were left out of the fit.
+
+    Attributes
+    ----------
+    errors
+        Record minus prediction, N, one array a run; NaN at samples that do not count.
+    white
+        Whitened for the errors of the motion, where these are known.
+    """
+
+    errors: list[Array]
+    white: list[Array]
+
+
 def allowed(rig: Rig) -> list[str]:
     """The laws for which a rig has all that they need."""
     found = []
@@ -102,7 +119,7 @@ def which_law(
     """The laws that the rig allows, the one to take first, then by their left-out error; and those
     that were not tried to their end, each with the reason."""
     names, refused = followed(campaign, clock)
-    left: dict[str, list[Array]] = {}
+    left: dict[str, HeldOut] = {}
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
@@ -114,12 +131,25 @@ def which_law(
     if not left:
         raise Unfinished(steps=campaign.work.most, file=campaign.named)
     counts = [len(find_law(name).parameters) for name in left]
-    tried = compared(list(left), counts, list(left.values()), policy)
+    tried = _compared(list(left), counts, list(left.values()), policy, campaign)
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first)), refused
 
 
-def _within(campaign: Campaign, law: str, clock: Clock) -> list[Array] | None:
+def _compared(
+    names: Sequence[str],
+    parameters: Sequence[int],
+    left: Sequence[HeldOut],
+    policy: Policy,
+    campaign: Campaign,
+) -> list[LawTried]:
+    """`compared` with what is known of the motion of a campaign."""
+    errors, white = [h.errors for h in left], [h.white for h in left]
+    share = 0.0 if campaign.samples.motion is None else policy.motion_share
+    return compared(names, parameters, errors, policy, white=white, least_share=share)
+
+
+def _within(campaign: Campaign, law: str, clock: Clock) -> HeldOut | None:
     """Left-out errors of a law beside what is no friction; None where its share of the work is not
     enough for them."""
     own = replace(campaign, work=campaign.work.part(LAW_SHARE))
@@ -131,17 +161,37 @@ def _within(campaign: Campaign, law: str, clock: Clock) -> list[Array] | None:
         return None
 
 
-def left_out(candidates: Candidates, effects: tuple[str, ...]) -> list[Array]:
-    """Errors of prediction of every run by a fit to the others, one row a run, N; NaN at samples
-    that do not count."""
+def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
+    """Errors of prediction of every run by a fit to the others.
+
+    For a law with a bristle they include the samples at which it depends on the unknown state in
+    which a run began: another law predicts these, and who uses the law must do without that state.
+    """
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
-    rows = []
-    pairs = zip(left_out_by_run(problem, solution), solution.samples.counted, strict=True)
-    for errors, counted in pairs:
-        row = np.full(len(counted), np.nan)
-        row[counted] = errors
-        rows.append(row)
-    return rows
+    samples = solution.samples
+    if not find_law(problem.law).has_film:
+        every_sample = Samples.of(problem.campaign.prepared)
+        weight = tuple(
+            np.where(w > 0.0, w, c)
+            for w, c in zip(samples.weight, every_sample.counted, strict=True)
+        )
+        samples = replace(samples, counted=every_sample.counted, weight=weight)
+    every = [np.zeros(len(c)) for c in samples.counted]
+    for part in held_out(problem, solution):
+        for i, left, residual in zip(part.runs, part.left, part.residuals, strict=True):
+            every[i][left] = residual[left]
+    white = every if samples.motion is None else samples.innovations(every, solution.noise)
+    errors, white = (
+        [np.where(c, e, np.nan) for e, c in zip(rows, samples.counted, strict=True)]
+        for rows in (every, white)
+    )
+    return HeldOut(errors, white)
+
+
+def held_out_rms(candidates: Candidates, effects: tuple[str, ...]) -> float:
+    """RMS of the errors of `left_out`, N."""
+    errors = np.concatenate(left_out(candidates, effects).errors)
+    return float(np.sqrt(np.nanmean(errors**2)))
 
 
 def compared(
@@ -149,20 +199,38 @@ def compared(
     parameters: Sequence[int],
     left: Sequence[Sequence[Array]],
     policy: Policy,
+    *,
+    white: Sequence[Sequence[Array]] | None = None,
+    least_share: float = 0.0,
 ) -> list[LawTried]:
-    """Models by their left-out errors, best first, and which of them are tied with the best."""
-    squares = np.array([np.concatenate(rows) ** 2 for rows in left])
-    squares = squares[:, np.isfinite(squares).all(axis=0)]
+    """Models by their held-out errors, best first, and which of them are tied with the best.
+
+    Parameters
+    ----------
+    left
+        Held-out errors of each model, N, one array a run; NaN at samples that do not count.
+    white
+        The same whitened for the errors of the motion, where these are known: they decide, since
+        an elastic law would smooth the errors of the acceleration next to a reversal.
+    least_share
+        Share of the mean square by which models must differ.
+    """
+    plain, decisive = (
+        np.array([np.concatenate(rows) ** 2 for rows in kind])
+        for kind in (left, left if white is None else white)
+    )
+    shared = np.isfinite(plain).all(axis=0)
+    rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
     # Neighbouring samples err together: stretches are what is independent.
-    parts = np.array_split(squares, min(STRETCHES, squares.shape[1]), axis=1)
+    parts = np.array_split(decisive, min(STRETCHES, decisive.shape[1]), axis=1)
     means = np.array([part.mean(axis=1) for part in parts]).T
-    rms = np.sqrt(squares.mean(axis=1))
-    best = int(np.argmin(rms))
+    level = decisive.mean(axis=1)
+    best = int(np.argmin(level))
     worse = means - means[best]
     chance = policy.law_tie * worse.std(axis=1) / np.sqrt(worse.shape[1])
-    same = (policy.law_same**2 - 1.0) * rms[best] ** 2
+    same = max(policy.law_same**2 - 1.0, least_share) * level[best]
     tied = worse.mean(axis=1) <= np.maximum(chance, same)
-    order = np.argsort(rms, kind="stable")
+    order = np.argsort(level, kind="stable")
     return [LawTried(names[i], parameters[i], float(rms[i]), bool(tied[i])) for i in order]
 
 
@@ -190,7 +258,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
             left.append(errors)
             names.append(name)
             counts.append(count)
-    tried = compared(names, counts, left, policy)
+    tried = _compared(names, counts, left, policy, whole)
     here = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of two that say the same the one with fewer parameters, whichever comes out ahead by chance.

@@ -1,0 +1,54 @@
+"""The paired test over independent units: runs or, of few runs, strokes."""
+
+import numpy as np
+import pytest
+from jbf import Rig, Run
+from jbf.diagnosis.candidates import Candidates
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.left_out import errors_by_run
+from scipy import stats
+
+OFFSET = "sensor_offset"
+
+
+def candidates(runs: int, offset_n: float, seconds: float = 6.0) -> Candidates:
+    """Coulomb and viscous friction of 3 N and 20 N s/m with noise of 0.3 N."""
+    rng = np.random.default_rng([runs, 7])
+    time = 0.01 * np.arange(int(100 * seconds))
+    recorded = []
+    for k in range(runs):
+        speed = 0.1 * np.sin((2.0 + 0.2 * k) * time + 0.3)
+        force = 3.0 * np.sign(speed) + 20.0 * speed + offset_n + 0.3 * rng.normal(size=len(time))
+        recorded.append(Run.from_arrays(time, speed, force, name=f"run{k:02d}"))
+    return Candidates(Campaign.prepare(Rig(), recorded), "coulomb", "journal")
+
+
+def test_chance_is_that_of_a_t_test_over_runs() -> None:
+    tried = candidates(8, 0.03)
+    found = tried.confirmation((), OFFSET)
+    without, with_it = (
+        errors_by_run(tried.converge(effects), tried.left_out(effects))
+        for effects in ((), (OFFSET,))
+    )
+    ratios = [np.log(np.mean(without[i] ** 2) / np.mean(with_it[i] ** 2)) for i in without]
+    expected = stats.ttest_1samp(ratios, 0.0, alternative="greater").pvalue
+    assert found.units == 8
+    assert found.chance == pytest.approx(expected, rel=1e-6)
+
+
+def test_strokes_are_the_units_of_few_runs() -> None:
+    """Three runs of six seconds at 2, 2.2 and 2.4 rad/s have four or five strokes each."""
+    found = candidates(3, 0.3).confirmation((), OFFSET)
+    assert 12 <= found.units <= 15
+    assert found.units_confirm(1e-3)
+
+
+def test_effect_that_is_absent_is_not_confirmed() -> None:
+    assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(1e-3)
+
+
+def test_fewer_than_six_units_confirm_nothing() -> None:
+    """Two runs of less than two strokes each."""
+    found = candidates(2, 1.0, seconds=1.5).confirmation((), OFFSET)
+    assert found.units < 6
+    assert not found.units_confirm(0.5)

@@ -1,0 +1,80 @@
+"""Diagnoses of simulated servo drives: closed-loop motions, recorded by imperfect loggers."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import jbf
+import numpy as np
+import pytest
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.which_law import left_out
+from jbf.estimation.campaign import Campaign
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "simulator"))
+
+import servosim
+
+
+def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> jbf.Diagnosis:
+    campaign = servosim.simulate(seed, hidden)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        servosim.write(campaign, folder)
+        rig = jbf.read_rig(folder / "rig.toml")
+        runs = [jbf.read_run(path, rig) for path in sorted(folder.glob("run_*.csv"))]
+    return jbf.diagnose(rig, runs, law=law)
+
+
+@pytest.mark.parametrize(
+    ("seed", "machine"),
+    [
+        pytest.param(4014, {"inertia_leak"}, id="point to point, tachometer"),
+        pytest.param(4017, {"sensor_offset", "inertia_leak"}, id="hand, late force"),
+        pytest.param(4030, {"inertia_leak"}, id="saturated steps, command"),
+        pytest.param(4032, {"inertia_leak", "gravity"}, id="swinging, position alone"),
+    ],
+)
+def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:
+    found = diagnosed(seed)
+    assert found.verdict == "adequate", found.summary()
+    assert set(found.machine) == machine
+    assert found.effects == ()
+
+
+@pytest.mark.parametrize(("seed", "effect"), [(4049, "cogging"), (4045, "viscous_thinning")])
+def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
+    found = diagnosed(seed, (effect,))
+    assert (found.verdict, found.effects) == ("missing", (effect,)), found.summary()
+
+
+def test_level_that_differs_by_stroke_is_unexplained() -> None:
+    found = diagnosed(4045, ("stroke_scatter",))
+    assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
+
+
+def test_effects_that_filter_a_force_are_not_tried_if_the_acceleration_is_uncertain() -> None:
+    """A delay or a lag would smooth the errors of the acceleration."""
+    reasons = diagnosed(4010).not_tried
+    for name in ("sensor_lag", "time_delay", "sensor_hysteresis", "backlash", "drive_compliance"):
+        assert "errors of the acceleration" in reasons[name]
+
+
+def test_law_without_memory_is_selected_for_coulomb_friction() -> None:
+    assert diagnosed(4060, law="auto").model.law == "coulomb"
+
+
+def test_laws_are_compared_at_samples_that_remember_how_a_run_began() -> None:
+    """An elastic law does not predict them; a model in use must."""
+    rng = np.random.default_rng(4)
+    time = 0.01 * np.arange(600)
+    runs = []
+    for k in range(3):
+        speed = 0.02 * np.sin((1.0 + 0.3 * k) * time + 0.4)
+        force = 3.0 * np.sign(speed) + 20.0 * speed + 0.05 * rng.normal(size=len(time))
+        runs.append(jbf.Run.from_arrays(time, speed, force, name=f"run{k}"))
+    campaign = Campaign.prepare(jbf.Rig(), runs)
+    elastic = Candidates(campaign.without([time < 1.0] * 3), "dahl", "journal")
+    errors = left_out(elastic, ()).errors
+    for e, counted in zip(errors, campaign.samples.counted, strict=True):
+        assert np.array_equal(np.isfinite(e), counted)

@@ -82,6 +82,15 @@ def tasks(kinds: list[str], seeds: range, law: str) -> Iterator[Task]:
 
 
 def answer(task: Task) -> Answer:
+    """Simulate, diagnose, judge; an exception is an answer, too."""
+    try:
+        return diagnosed(task)
+    except Exception as error:
+        words = f"{type(error).__name__}: {error}"[:200]
+        return Answer(task, words, "error", False, "error", task.law, (), (), float("nan"), 0.0)
+
+
+def diagnosed(task: Task) -> Answer:
     """Simulate, diagnose, judge."""
     campaign = servosim.simulate(task.seed, task.hidden, FITTED + PREDICTED)
     drawn = campaign.drawn
@@ -130,7 +139,7 @@ def judged(task: Task, true: set[str], found: jbf.Diagnosis) -> str:
 
 def table(answers: list[Answer]) -> Iterator[str]:
     """A row a kind."""
-    columns = ("right", "tied", "false name", "unexplained", "missed", "not reported")
+    columns = ("right", "tied", "false name", "unexplained", "missed", "not reported", "error")
     head = ("hidden", "campaigns", *columns, "machine right", "held-out ratio, median", "worst")
     yield f"| {' | '.join(head)} |"
     yield "|---" * len(head) + "|"
@@ -139,7 +148,7 @@ def table(answers: list[Answer]) -> Iterator[str]:
         if own:
             counts = Counter(a.judged for a in own)
             numbers = " | ".join(str(counts[c]) for c in columns)
-            ratios = [a.ratio for a in own]
+            ratios = [a.ratio for a in own if np.isfinite(a.ratio)] or [float("nan")]
             yield (
                 f"| {kind} | {len(own)} | {numbers} | {sum(a.machine for a in own)} "
                 f"| {np.median(ratios):.3f} | {max(ratios):.3f} |"

@@ -55,7 +55,8 @@ class Campaign:
 
     def truth(self) -> dict[str, Any]:
         """Parameters as numbers and words, for JSON."""
-        return asdict(self.drawn)
+        hidden = {part.name: asdict(part) for part in self.drawn.plant.hidden.parts}
+        return {**asdict(self.drawn), "hidden": hidden}
 
 
 def draw(seed: int, hidden: Sequence[str] = ()) -> Drawn:

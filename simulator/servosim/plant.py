@@ -105,13 +105,13 @@ def run(
             push, factor = hidden.push(at), hidden.factor(at)
             drive = u - weight - push
             sign = math.copysign(1.0, drive if v == 0.0 else v)
+            if sign != direction and (v != 0.0 or direction == 0.0):
+                at.strokes, direction = at.strokes + (direction != 0.0), sign
             f = factor * (plant.coulomb + hidden.level(at, sign))
             if v == 0.0 and abs(drive) <= f + lost * abs(weight):
                 rows.append((t, x, 0.0, 0.0, 0.0, u))
                 at.time, left = t + left, 0.0
                 continue
-            if sign != direction:
-                at.strokes, direction = at.strokes + 1, sign
             # All friction but that proportional to the speed, which is integrated in closed form.
             extra = factor * hidden.drag(at)
             slope = factor * d

@@ -166,14 +166,15 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
     return Binned("run", bins, places)
 
 
-def force_axis(forces: Sequence[Array], unit: str = "N", error: float = 0.0) -> Binned:
+def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> Binned:
     """Samples by a force: along it the nonlinearity of a load cell shows.
 
     Parameters
     ----------
     error
-        Standard error of these forces. Bins are joined where it exchanges more than half of the
-        samples of one of them, since then they differ in the sign of the error.
+        Standard error of these forces. Edges are removed until, at each edge, the samples closer
+        to it than two standard errors are at most half of the smaller neighbouring bin: else the
+        bins would separate the signs of the error.
     """
     every = np.concatenate(list(forces))
     edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))
@@ -192,7 +193,7 @@ def force_axis(forces: Sequence[Array], unit: str = "N", error: float = 0.0) -> 
 
 
 def _distinct(values: Array, edges: Array, reach: float) -> Array:
-    """Edges of bins, at most half of whose samples lie within reach of an edge."""
+    """Edges with at most half as many samples within reach as the smaller bin next to them has."""
     while len(edges):
         below = np.searchsorted(values, edges)
         counts = np.diff(np.concatenate(([0], below, [len(values)])))

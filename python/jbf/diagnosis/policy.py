@@ -253,6 +253,27 @@ class Policy:
         "times its degrees of freedom that the chi-square of constancy must be, besides",
         "simulated campaigns: noise is never quite what it is taken for",
     )
+    # ---- what runs cannot show ------------------------------------------------------------------
+    one_direction: float = _number(
+        0.01,
+        "share of the samples in the rarer direction below which the motion has one direction",
+        "of such samples no level can be estimated",
+    )
+    one_speed: float = _number(
+        1.5,
+        "ratio of the 95 % and 5 % quantiles of the speed below which it hardly changes",
+        "a line through such speeds has an intercept with three times its error",
+    )
+    wide_speeds: float = _number(
+        10.0,
+        "ratio of these quantiles below which a law is said to be extrapolated",
+        "a Stribeck curve extends over decades",
+    )
+    sliding: float = _number(
+        3.0,
+        "length of a stroke, in presliding displacements, below which a contact does not slide",
+        "a bristle reaches 95 % of its force after three displacements (Dahl 1968)",
+    )
     # ---- the next run -----------------------------------------------------------------------
     law_tie: float = _number(
         2.0,

@@ -7,8 +7,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
 from jbf.diagnosis.converter_bias import without_bias
@@ -16,7 +14,13 @@ from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
 from jbf.diagnosis.late_channels import bought_by_lateness, on_time
 from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.limitations import limitations
 from jbf.diagnosis.machine import OFFSET, machine_of
+from jbf.diagnosis.motion_uncertainty import (
+    comparable,
+    with_errors_of_motion,
+    with_other_errors_of_motion,
+)
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
 from jbf.diagnosis.reached import Reached
@@ -32,9 +36,8 @@ from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, held_out_rms, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.fit import finish
+from jbf.estimation.fit import Fit, finish
 from jbf.estimation.initial_state import memories
-from jbf.estimation.refine import with_motion_errors, with_motion_errors_again
 from jbf.estimation.run_start import settled_campaign
 from jbf.models.catalogue import find_clock, find_law
 from jbf.models.chain import check_rig
@@ -44,8 +47,6 @@ from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
 
-SIMPLEST = "coulomb"
-"""The law with the fewest parameters."""
 TOO_LONG = "takes too long to diagnose on these records"
 
 
@@ -128,21 +129,27 @@ def _diagnose(
     no_law: dict[str, str] = {}
     names = {law: 0.0}
     if law == AUTO:
-        laws, no_law = which_law(_comparable(recorded, clock, policy), clock, policy, progress)
+        laws, no_law = which_law(comparable(recorded, clock, policy), clock, policy, progress)
         names = _to_diagnose(laws)
     best: tuple[Diagnosis, float] | None = None
     for name, alone in names.items():
-        # A law with memory must predict better than one without that has its effects.
+        # An elastic law must predict better without effects than another one with its effects.
         if best is not None and alone > best[1] / policy.no_worse:
             continue
         campaign = replace(recorded, work=recorded.work.part(1.0))
         try:
-            answer = _with_law(campaign, name, clock, limits, policy, progress, reached)
+            answer = _with_law(
+                campaign, name, clock, limits, policy, progress, reached, given=law != AUTO
+            )
         except Unfinished:
             if best is None:
                 raise
             no_law[f"law {name}"] = TOO_LONG
             continue
+        except KeyboardInterrupt:
+            if best is None:
+                raise
+            raise Stopped(best[0].fit) from None
         if best is None or answer[1] < best[1] / policy.no_worse:
             best = answer
     assert best is not None
@@ -150,18 +157,17 @@ def _diagnose(
     return replace(
         best[0],
         laws=(*first, *(t for t in laws if t not in first)),
-        simpler_law=None if laws else best[0].simpler_law,
         not_tried=no_law | best[0].not_tried,
         elapsed_s=time.monotonic() - begun,
     )
 
 
 def _to_diagnose(laws: Sequence[LawTried]) -> dict[str, float]:
-    """The law that predicts best and, before it if it has a memory, the best one without; and the
-    RMS of their held-out errors without effects, N."""
+    """The selected law and, before it if it is elastic, the best one without memory; and the RMS of
+    their held-out errors without effects, N."""
     first = laws[0]
     best = {first.law: first.left_out_rms_n}
-    if find_law(first.law).has_film or not memories(first.law, ()):
+    if not find_law(first.law).has_bristle:
         return best
     without = [t for t in laws if not memories(t.law, ())]
     return {t.law: t.left_out_rms_n for t in without[:1]} | best
@@ -175,8 +181,16 @@ def _with_law(
     policy: Policy,
     progress: Progress | None,
     reached: Reached,
+    *,
+    given: bool,
 ) -> tuple[Diagnosis, float]:
-    """A diagnosis with a given law, and the RMS of its held-out errors, N."""
+    """A diagnosis with a law, and the RMS of its held-out errors, N.
+
+    Parameters
+    ----------
+    given
+        Whether the user chose the law: then a simpler one is looked for.
+    """
     begun = time.monotonic()
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
@@ -184,7 +198,7 @@ def _with_law(
     corrected = _without_bias(candidates, ())
     if corrected is not None:
         candidates = Candidates(corrected, law, clock, policy, progress, candidates)
-    certain = _with_errors_of_motion(candidates)
+    certain = with_errors_of_motion(candidates)
     if certain is not None:
         candidates = Candidates(certain, law, clock, policy, progress, candidates)
     before = _before(candidates)
@@ -237,7 +251,7 @@ def _with_law(
     strengths = () if remains else power(candidates, present)
     hidden = unseen(candidates, present, strengths)
     instead = None
-    if len(missing) > 1 or remains:
+    if given and (len(missing) > 1 or remains):
         instead = simpler_law(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
@@ -268,8 +282,14 @@ def _with_law(
         confounders=tuple(name for name in doubted if name in kept),
         simpler_law=instead,
         power=strengths,
+        limitations=limitations(recorded, _values(fit), policy),
     )
     return diagnosis, held_out_rms(candidates, kept)
+
+
+def _values(fit: Fit) -> dict[str, float]:
+    """Parameter name to value."""
+    return {name: parameter.value for name, parameter in fit.parameters.items()}
 
 
 def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
@@ -289,7 +309,7 @@ def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
 
 def _seen_again(candidates: Candidates, selected: Selected) -> Campaign | None:
     """The campaign as a model shows what its recording did; None where it shows nothing more."""
-    again = _with_other_errors_of_motion(candidates, selected.present)
+    again = with_other_errors_of_motion(candidates, selected.present)
     if again is not None:
         return again
     again = _on_time(candidates, selected.present)
@@ -317,43 +337,6 @@ def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:
     """The campaign without the bias of coarse steps; None where it is off already."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     return without_bias(problem, solution, candidates.policy)
-
-
-def _with_errors_of_motion(candidates: Candidates) -> Campaign | None:
-    """The campaign of a drive with the errors of its motion in the likelihood, and its force
-    corrected by a delay that all runs share; None where these errors are negligible."""
-    if candidates.campaign.rig.drive is None:
-        return None
-    base = start_model(candidates)
-    problem, solution = candidates.fitted(base).problem, candidates.converge(base)
-    problem, solution = with_motion_errors(problem, solution)
-    if solution.samples.motion is None:
-        return None
-    campaign = problem.campaign
-    return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
-
-
-def _comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
-    """The campaign with the errors of its motion by the simplest law, to compare laws on."""
-    if campaign.rig.drive is None:
-        return campaign
-    candidates = Candidates(campaign, SIMPLEST, clock, policy)
-    return _with_errors_of_motion(candidates) or campaign
-
-
-def _with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign with the errors of its motion as a model with effects shows them; None where its
-    noise is that of the model for which they were estimated."""
-    before = candidates.campaign.samples.motion
-    if before is None:
-        return None
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    problem, solution = with_motion_errors_again(problem, solution)
-    motion, campaign = solution.samples.motion, problem.campaign
-    change = 0.0 if motion is None else abs(np.log(motion.noise / before.noise))
-    if change < np.log(candidates.policy.noise_changes):
-        return None
-    return replace(campaign, samples=replace(campaign.samples, motion=motion))
 
 
 def _before(candidates: Candidates) -> Comparison:

@@ -25,7 +25,6 @@ from jbf.diagnosis.ripples import find_ripples
 from jbf.diagnosis.strokes import find_stroke_levels
 from jbf.diagnosis.tones import find_tones
 from jbf.estimation.problem import Problem
-from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
 
@@ -69,11 +68,8 @@ def find_patterns(
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
     # Along the force a cell that is not straight shows.
-    error = 0.0
-    if solution.samples.motion is not None:
-        error = robust_size(solution.samples.flat(solution.residuals))
     unit = problem.campaign.rig.quantities.force
-    force = force_axis(_likeliest_forces(problem, solution), unit, error)
+    force = force_axis(*_likeliest_forces(problem, solution), unit)
     share, sigma = policy.pattern_share, policy.pattern_sigma
     found = (
         pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
@@ -82,15 +78,22 @@ def find_patterns(
     return [failure for failure in found if failure is not None]
 
 
-def _likeliest_forces(problem: Problem, solution: Solution) -> list[Array]:
-    """The force of each sample by the model and the record, weighted by their precisions.
+def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array], float]:
+    """The force of each sample by the model and the record, weighted by their precisions, and its
+    usual standard error.
 
     The errors of this mean are uncorrelated with the residual; in bins of the prediction alone the
-    errors of the motion would have a mean.
+    errors of the motion would have a mean. Without errors of the motion it is the prediction.
     """
-    predicted, motion = problem.predict(solution.values), solution.samples.motion
-    if motion is None:
-        return predicted
-    ratios = [motion.variance_ratio(i) for i in range(len(predicted))]
-    pairs = zip(predicted, ratios, problem.campaign.prepared, strict=True)
-    return [f + ratio / (1.0 + ratio) * (p.friction_n - f) for f, ratio, p in pairs]
+    predicted, samples = problem.predict(solution.values), solution.samples
+    motion = samples.motion
+    if motion is None or not problem.campaign.force_has_clock:
+        return predicted, 0.0
+    shares = [r / (1.0 + r) for r in map(motion.variance_ratio, range(len(predicted)))]
+    forces = [
+        np.where(counted, f + share * (p.friction_n - f), f)
+        for f, share, p, counted in zip(
+            predicted, shares, problem.campaign.prepared, samples.counted, strict=True
+        )
+    ]
+    return forces, motion.noise * float(np.sqrt(np.median(samples.flat(shares))))

@@ -29,6 +29,8 @@ class Diagnosis(Result):
     ----------
     verdict
         `adequate`, `missing`, `ambiguous` or `unexplained`.
+    limitations
+        Conclusions that the motions of these runs do not allow, in words.
     machine
         Terms of a drive's own machine that the runs need: inertia or mass, weight, offset. They are
         part of the model from the start, and no missing effects.
@@ -99,6 +101,7 @@ class Diagnosis(Result):
     power: tuple[Power, ...] = ()
     weights: dict[str, dict[str, float]] = field(default_factory=dict)
     machine: tuple[str, ...] = ()
+    limitations: tuple[str, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -126,6 +129,7 @@ class Diagnosis(Result):
             "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
+            "limitations": list(self.limitations),
             "level": self.level.to_dict(),
             "power": [p.to_dict() for p in self.power],
             "policy": self.policy.to_dict(),

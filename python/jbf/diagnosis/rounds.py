@@ -73,7 +73,8 @@ def select(
             steps.append(step(candidates, present, noise_n, ()))
             return Selected(present, steps, again=settled)
         found = try_candidates(candidates, present, follow)
-        every, follow = follow == "all", "promising"
+        every = follow == "all"
+        follow = "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
         together = present if found.leader else _machine_together(candidates, present)
         if every and found.leader is None and together == present:
@@ -105,7 +106,11 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
         assert name is not None
         candidates.search_peaks((*present, name))
         grown = reconsider(candidates, (*present, name), found.unconfirmed)
-        if best is None or len(grown) < len(best):
+        if best is None or (
+            len(grown) < len(best)
+            # A tied candidate has not been confirmed by runs left out.
+            and candidates.left_out_rms(grown) <= candidates.left_out_rms(best)
+        ):
             best = grown
     assert best is not None
     return best
@@ -241,7 +246,10 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     if not found:
         return ()
     rms, name = min(found)
+    share = max(1.0 - (rms / base.rms_n) ** 2, 0.0)
+    if base.samples.motion is not None and share < policy.motion_share:
+        return ()
     unit = candidates.campaign.rig.quantities.force
     fits = f"{name} fits {base.rms_n:.3g} {unit} down to {rms:.3g} {unit}"
     where = f"{fits} but predicts runs left out no better"
-    return (Remainder("run", where, max(1.0 - (rms / base.rms_n) ** 2, 0.0)),)
+    return (Remainder("run", where, share),)

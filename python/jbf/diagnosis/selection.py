@@ -112,12 +112,13 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             outcome = "rejected"
             reason = f"{leader} leads by {best - gain:.0f} in evidence"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
-    if leader is None:
-        leader, trials = _by_units(candidates, present, ranked, trials)
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:
         # What it was left behind for does not lead.
         return try_candidates(candidates, present, "shown")
+    if leader is None:
+        tried = [r for r in ranked if r.effect not in unconfirmed]
+        leader, trials = _by_units(candidates, present, tried, trials)
     ordered = tuple(sorted(trials, key=lambda t: -t.evidence))
     return Round(ordered, leader, frozenset(unconfirmed))
 

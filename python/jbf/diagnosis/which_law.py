@@ -169,13 +169,8 @@ def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
     """
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
-    if not find_law(problem.law).has_film:
-        every_sample = Samples.of(problem.campaign.prepared)
-        weight = tuple(
-            np.where(w > 0.0, w, c)
-            for w, c in zip(samples.weight, every_sample.counted, strict=True)
-        )
-        samples = replace(samples, counted=every_sample.counted, weight=weight)
+    if find_law(problem.law).has_bristle:
+        samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
     for part in held_out(problem, solution):
         for i, left, residual in zip(part.runs, part.left, part.residuals, strict=True):
@@ -186,6 +181,16 @@ def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
         for rows in (every, white)
     )
     return HeldOut(errors, white)
+
+
+def _with_starts(samples: Samples, every: Samples) -> Samples:
+    """Samples with those of another selection that come before the first of theirs in a run."""
+    counted = []
+    for own, other in zip(samples.counted, every.counted, strict=True):
+        before = np.arange(len(own)) < (int(np.argmax(own)) if own.any() else 0)
+        counted.append(own | (other & before))
+    weight = [np.where(w > 0.0, w, c) for w, c in zip(samples.weight, counted, strict=True)]
+    return replace(samples, counted=tuple(counted), weight=tuple(weight))
 
 
 def held_out_rms(candidates: Candidates, effects: tuple[str, ...]) -> float:
@@ -220,6 +225,9 @@ def compared(
         for kind in (left, left if white is None else white)
     )
     shared = np.isfinite(plain).all(axis=0)
+    if not shared.any():
+        own = [float(np.sqrt(np.nanmean(rows))) for rows in plain]
+        return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, own, strict=True)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
     # Neighbouring samples err together: stretches are what is independent.
     parts = np.array_split(decisive, min(STRETCHES, decisive.shape[1]), axis=1)

@@ -118,7 +118,7 @@ class ErrorsInMotion:
         """Mean share of the motion's errors in the variance, at the samples with weight."""
         ratios = [self.variance_ratio(i)[w > 0.0] for i, w in enumerate(weights)]
         ratio = np.concatenate(ratios)
-        return float(np.mean(ratio / (1.0 + ratio)))
+        return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
 
     def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:
         errors = self.errors[run]

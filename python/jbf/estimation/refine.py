@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -40,12 +41,16 @@ ROUGHER = 30.0
 """Factor of the noise's intensity with which the effect of the smoothing is looked at."""
 SCALE_KNOWN = 1.0
 """Standard deviation of the logarithm of the scale of the motion's errors before the fit."""
+SIMPLEX = 0.3
+"""Size of the first simplex in the logarithms of noise and scale."""
+EXACT_RECORD = 1e-12
+"""Smallest residual relative to the largest force."""
 LEAST_NOISE = -7.0
 """Logarithm of the smallest noise, relative to the residual."""
-SMOOTHER = 3.0
+INTENSITY_STEP = 3.0
 """Factor of the noise's intensity between two motions whose likelihoods are compared."""
-SMOOTHEST = 1e-4
-"""Smallest such factor."""
+LEAST_INTENSITY = 1e-4
+"""Smallest factor of the intensity, and the reciprocal of the largest."""
 SMOOTHNESS_GAIN = 10.0
 """Decrease of the deviance that another intensity must have."""
 HUBER = 2.5
@@ -92,10 +97,13 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """The same for a model that explains more than that for which they were estimated: the noise,
-    the scale of the motion's errors and its smoothness."""
+    """Estimate noise, scale and smoothness of the motion's errors again, for a model with more
+    effects, and fit once; a delay that was corrected is projected out as before."""
+    before = problem.campaign.samples.motion
+    delayed = before is not None and before.by_delay is not None
     problem, solution = _likeliest_smoothness(problem, solution)
-    return problem, _fitted(problem, solution, errors_in_motion(problem, solution))
+    motion = errors_in_motion(problem, solution)
+    return problem, _fitted(problem, solution, motion, delayed=delayed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,18 +184,19 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         return problem, solution
     samples = solution.samples
 
-    def deviance(tried: Problem) -> tuple[float, Solution]:
+    def fitted_with(tried: Problem) -> tuple[float, Solution]:
         near = tried.solution(solution.values, samples, WHITE)
         found = _fitted(tried, near, errors_in_motion(tried, near))
         own = errors_in_motion(tried, found)
-        return own.deviance(found.residuals, samples.weight), replace(found, samples=samples)
+        deviance = _penalised(own, found.residuals, samples.weight)
+        return deviance, replace(found, samples=samples)
 
     first, factor = problem, 1.0
-    least, _ = deviance(problem)
-    for change in (1.0 / SMOOTHER, SMOOTHER):
-        while SMOOTHEST < factor * change < 1.0 / SMOOTHEST:
+    least, _ = fitted_with(problem)
+    for change in (1.0 / INTENSITY_STEP, INTENSITY_STEP):
+        while LEAST_INTENSITY < factor * change < 1.0 / LEAST_INTENSITY:
             tried = _rougher(first, factor * change)
-            own, found = deviance(tried)
+            own, found = fitted_with(tried)
             if own >= least - SMOOTHNESS_GAIN:
                 break
             least, problem, solution, factor = own, tried, found, factor * change
@@ -245,26 +254,44 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
     weights = solution.samples.weight
     errors = tuple(p.motion.errors for p in prepared)
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
-    most = max(solution.samples.rms(solution.residuals), 1e-300)
+    largest = max(float(np.max(np.abs(f), initial=0.0)) for f in predicted)
+    most = max(solution.samples.rms(solution.residuals), EXACT_RECORD * largest, 1e-150)
 
     def at(x: Array) -> ErrorsInMotion:
         return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
 
     def deviance(x: Array) -> float:
-        return at(x).deviance(solution.residuals, weights) + (float(x[1]) / SCALE_KNOWN) ** 2
+        return _penalised(at(x), solution.residuals, weights)
 
     from scipy.optimize import minimize  # half a second to import
 
-    # Without noise the motion's errors are the largest that explain the residual: another minimum.
-    starts = [np.array([log_noise, 0.0]) for log_noise in (-1.0, -3.0, LEAST_NOISE + 1.0)]
+    # With little noise the motion's errors explain the whole residual: a second minimum.
+    starts = [
+        np.array([noise, scale])
+        for noise in (-1.0, -3.0, LEAST_NOISE + 1.0)
+        for scale in (-0.5, 0.0, 0.7)
+    ]
+    start = min(starts, key=deviance)
     found = minimize(
         deviance,
-        min(starts, key=deviance),
+        start,
         method="Nelder-Mead",
         bounds=[(LEAST_NOISE, 0.5), (-3.0, 3.0)],
-        options={"xatol": 0.02, "fatol": 0.1},
+        options={
+            "xatol": 0.02,
+            "fatol": 0.1,
+            "initial_simplex": start + SIMPLEX * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
+        },
     )
     return at(found.x)
+
+
+def _penalised(
+    motion: ErrorsInMotion, residuals: Sequence[Array], weights: Sequence[Array]
+) -> float:
+    """Deviance with the prior of the scale."""
+    prior = (float(np.log(motion.scale)) / SCALE_KNOWN) ** 2
+    return motion.deviance(residuals, weights) + prior
 
 
 def _fitted(

@@ -52,7 +52,7 @@ def means_along(comparison: Comparison, axis: str | None) -> Failure:
     model = comparison.model
     u_tr = transition_speed(model.law, model.values.tolist())
     found = {a.axis: a for a in all_axes(comparison.campaign, u_tr)}
-    found["force"] = force_axis(comparison.predictions, said_by(comparison).force)
+    found["force"] = force_axis(comparison.predictions, unit=said_by(comparison).force)
     binned = next((a for name, a in found.items() if name == axis), found["velocity"])
     means, counts = patterns.bin_means(binned, comparison.samples, comparison.residuals)
     return patterns.Failure(binned.axis, "no pattern", 0.0, binned.bins, means, counts)

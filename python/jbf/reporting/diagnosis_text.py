@@ -46,6 +46,10 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
     if diagnosis.unseen:
         lines += ["", "Could be there at a usual strength and hide in these runs"]
         lines += hanging("    ", ", ".join(diagnosis.unseen), 0)
+    if diagnosis.limitations:
+        lines += ["", "What these runs cannot show"]
+        for sentence in diagnosis.limitations:
+            lines += hanging("    ", sentence)
     return lines
 
 

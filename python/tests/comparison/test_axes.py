@@ -238,7 +238,7 @@ def test_axis_of_time_since_a_rest_needs_100_samples_after_it(count: int, exists
 
 def test_force_axis_has_sixteen_bins_of_equal_count() -> None:
     forces = np.random.default_rng(3).normal(0.0, 1.0, 1600)
-    axis = force_axis([forces[:700], forces[700:]], "N m")
+    axis = force_axis([forces[:700], forces[700:]], unit="N m")
     at = np.concatenate(axis.places)
     assert np.bincount(at).tolist() == [100] * 16
     for i, b in enumerate(axis.bins):
@@ -253,9 +253,9 @@ def test_force_axis_joins_bins_that_differ_by_less_than_the_error_of_the_forces(
     """A drive at its limit: bins within one constant force would separate signs of the error."""
     rng = np.random.default_rng(1)
     forces = np.repeat([-3.5, 3.5], 800) + 0.02 * rng.normal(size=1600)
-    assert len(force_axis([forces], "N", error).bins) == bins
+    assert len(force_axis([forces], error).bins) == bins
 
 
 def test_force_axis_keeps_bins_that_are_wider_than_the_error_of_the_forces() -> None:
     forces = np.linspace(-10.0, 10.0, 1600)
-    assert len(force_axis([forces], "N", 0.02).bins) == 16
+    assert len(force_axis([forces], 0.02).bins) == 16

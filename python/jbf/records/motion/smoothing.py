@@ -40,7 +40,7 @@ certain."""
 SNAP_GAIN = 0.02
 """Minimum gain in the lower bound, per sample, for the snap: it makes a curve of a corner."""
 LONG_PASSES = 12
-"""Passes for the corners of such a record."""
+"""Passes in which the corners are estimated with known errors of the readings."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
 """Steps of the intensity's logarithm in a first search, and the most of them."""
 FLAT = 0.5
@@ -110,6 +110,8 @@ class Smoothed:
         same_corners
             Whether the corners' factors are kept, and not estimated again.
         """
+        if self.errors.intensity <= 0.0:
+            return self
         errors = replace(self.errors, intensity=factor * self.errors.intensity)
         if same_corners:
             return Smoothed.of(self.readings, errors, self.corners, self.speed)
@@ -205,7 +207,8 @@ def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Arr
     """Factors with which the acceleration may jump by its RMS in a step in which the motion
     reverses, where friction does; zero in the other steps."""
     step_s = np.maximum(np.diff(readings.time_s), 1e-300)
-    reverses = mean[1:, 1] * mean[:-1, 1] <= 0.0
+    at_rest = readings.velocity_shape <= AT_REST
+    reverses = (mean[1:, 1] * mean[:-1, 1] <= 0.0) & ~(at_rest[1:] & at_rest[:-1])
     square = float(np.mean(mean[:, 2] ** 2))
     return np.where(reverses, square / (max(errors.intensity, 1e-300) * step_s), 0.0)
 

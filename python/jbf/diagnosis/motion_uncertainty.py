@@ -1,0 +1,59 @@
+"""Campaigns of drives with the errors of their motion in the likelihood."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.selection import Names, start_model
+from jbf.errors import Unfinished
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.refine import with_motion_errors, with_motion_errors_again
+from jbf.models.vocabulary import Clock
+
+SIMPLEST = "coulomb"
+"""The law with the fewest parameters."""
+
+
+def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
+    """The campaign of a drive with the errors of its motion in the likelihood, and its force
+    corrected by a delay that all runs share; None where these errors are negligible."""
+    if candidates.campaign.rig.drive is None:
+        return None
+    base = start_model(candidates)
+    problem, solution = candidates.fitted(base).problem, candidates.converge(base)
+    problem, solution = with_motion_errors(problem, solution)
+    if solution.samples.motion is None:
+        return None
+    campaign = problem.campaign
+    return replace(campaign, samples=replace(campaign.samples, motion=solution.samples.motion))
+
+
+def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
+    """The campaign with the errors of its motion by the simplest law, to compare laws on."""
+    if campaign.rig.drive is None:
+        return campaign
+    own = replace(campaign, work=campaign.work.part(1.0))
+    try:
+        return with_errors_of_motion(Candidates(own, SIMPLEST, clock, policy)) or campaign
+    except Unfinished:
+        return campaign
+
+
+def with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campaign | None:
+    """The campaign with the errors of its motion as a model with effects shows them; None where its
+    noise is that of the model for which they were estimated."""
+    before = candidates.campaign.samples.motion
+    if before is None:
+        return None
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    problem, solution = with_motion_errors_again(problem, solution)
+    motion, campaign = solution.samples.motion, problem.campaign
+    assert motion is not None
+    change = abs(np.log(motion.noise / before.noise))
+    if change < np.log(candidates.policy.noise_changes):
+        return None
+    return replace(campaign, samples=replace(campaign.samples, motion=motion))

@@ -1,0 +1,46 @@
+"""Conclusions that motions do not allow: one direction, few speeds, no sliding."""
+
+import numpy as np
+import pytest
+from jbf import Policy, Rig, Run
+from jbf.diagnosis.limitations import limitations
+from jbf.estimation.campaign import Campaign
+
+TIME_S = 0.01 * np.arange(1200)
+
+
+def said(speed: np.ndarray, **parameters: float) -> str:
+    force = 3.0 * np.sign(speed) + 5.0 * speed
+    force = force + 0.05 * np.random.default_rng(1).normal(size=len(speed))
+    campaign = Campaign.prepare(Rig(), [Run.from_arrays(TIME_S, speed, force, name="run")])
+    return " ".join(limitations(campaign, parameters, Policy()))
+
+
+def to_and_fro(low: float, high: float) -> np.ndarray:
+    """Strokes at constant speeds from low to high, both ways."""
+    speeds = np.geomspace(low, high, 12) * (-1.0) ** np.arange(12)
+    return np.repeat(speeds, 100)
+
+
+@pytest.mark.parametrize(("sign", "expected"), [(1.0, True), (-1.0, True), (0.0, False)])
+def test_one_direction_is_reported(sign: float, expected: bool) -> None:
+    speed = to_and_fro(0.001, 0.2)
+    speed = sign * np.abs(speed) if sign else speed
+    assert ("one direction" in said(speed)) == expected
+
+
+@pytest.mark.parametrize(
+    ("high", "expected"), [(0.0011, "hardly changes"), (0.005, "less than a decade"), (0.2, "")]
+)
+def test_narrow_range_of_speeds_is_reported(high: float, expected: str) -> None:
+    found = said(to_and_fro(0.001, high))
+    assert expected in found
+    assert bool(found) == bool(expected)
+
+
+@pytest.mark.parametrize(("stiffness", "expected"), [(1.0e2, True), (1.0e6, False)])
+def test_strokes_within_the_presliding_displacement_are_reported(
+    stiffness: float, expected: bool
+) -> None:
+    found = said(to_and_fro(0.001, 0.2), F_c_n=3.0, sigma_0_n_m=stiffness)
+    assert ("presliding" in found) == expected

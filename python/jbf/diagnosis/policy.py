@@ -90,9 +90,10 @@ class Policy:
         "what anybody sees who reads it",
     )
     paired: int = _number(
-        5,
-        "number of candidates that leave the smallest error, of which pairs are fitted where no "
-        "single one is accepted and the residual has structure",
+        4,
+        "number of candidates that leave the smallest error, and of those with the largest scores "
+        "next to the best two, of which pairs are fitted where no single one is accepted and the "
+        "residual has structure",
         "chosen for speed",
     )
     # ---- which candidates are fitted --------------------------------------------------------

@@ -11,7 +11,6 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.deviations import allowing_for, deviation
 from jbf.diagnosis.evidence import evidence, evidence_alone, full_gain, price_of
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
-from jbf.diagnosis.machine import TERMS
 from jbf.diagnosis.selection import (
     Follow,
     Names,
@@ -76,13 +75,12 @@ def select(
         every = follow == "all"
         follow = "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
-        together = present if found.leader else _machine_together(candidates, present)
-        if every and found.leader is None and together == present:
+        if every and found.leader is None:
             together = _pair(candidates, present, found)
-        if frozenset(together) not in visited:
-            visited.add(frozenset(together))
-            present = together
-            continue
+            if frozenset(together) not in visited:
+                visited.add(frozenset(together))
+                present = together
+                continue
         differ = _differ_more(candidates, present, found)
         if differ is not None:
             return Selected(present, steps, again=differ)
@@ -116,24 +114,6 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
     return best
 
 
-def _machine_together(candidates: Candidates, present: Names) -> Names:
-    """Add mass, weight and zero jointly, and keep those that are needed.
-
-    The residual of a model that lacks one of them may be as smooth as the motion, so that few of
-    its samples are independent and a single effect has no evidence. With all of them it is noise.
-    """
-    missing = [n for n in TERMS if n in candidates.names and n not in present]
-    missing = [name for name in missing if may_come(name, present)]
-    if len(missing) < 2 or len(present) + len(missing) > candidates.policy.most_effects:
-        return present
-    together = (*present, *missing)
-    base, whole = candidates.converge(present), candidates.converge(together)
-    predicts = candidates.left_out_rms(together) < candidates.left_out_rms(present)
-    if evidence(candidates, whole, base) <= 0.0 or not predicts:
-        return present
-    return still_needed(candidates, together)
-
-
 def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     """The model with the pair of effects that explains most, if it is needed.
 
@@ -143,10 +123,14 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     if len(present) + 2 > policy.most_effects:
         return present
     ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms_n)[: policy.paired]]
+    pairs = [(*present, *pair) for pair in itertools.combinations(ahead, 2)]
+    pairs += [
+        (*present, name, other)
+        for name in ahead[:2]
+        for other in _promising(candidates, (*present, name))
+    ]
     pairs = [
-        (*present, *pair)
-        for pair in itertools.combinations(ahead, 2)
-        if may_come(pair[0], present) and may_come(pair[1], (*present, pair[0]))
+        pair for pair in pairs if may_come(pair[-2], present) and may_come(pair[-1], pair[:-1])
     ]
     if not pairs:
         return present
@@ -159,6 +143,16 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     if evidence(candidates, whole, base) <= 0.0 and full_gain(candidates, whole, base) <= 0.0:
         return present
     return reconsider(candidates, still_needed(candidates, best))
+
+
+def _promising(candidates: Candidates, present: Names) -> list[str]:
+    """The candidates with the largest scores next to a model."""
+    near = candidates.converge(present)
+    names = [n for n in candidates.names if n not in present and may_come(n, present)]
+    candidates.score_all([(*present, name) for name in names], near)
+    scores = {name: candidates.score_test((*present, name), near) for name in names}
+    finite = [name for name in names if np.isfinite(scores[name])]
+    return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.paired]
 
 
 def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:

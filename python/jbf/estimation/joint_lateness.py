@@ -183,7 +183,8 @@ def _step(
     left = y - x @ (step / scale)
     inverse = np.linalg.pinv(x / scale, rcond=RANK)
     covariance = float(left @ left) / max(samples, 1) * (inverse @ inverse.T)
-    covariance /= np.outer(scale, scale)
+    with np.errstate(over="ignore"):
+        covariance /= np.outer(scale, scale)  # infinite where a clock is not told
     of_later = covariance[width:, width:]
     return (step / scale)[width:], np.where(np.outer(tells, tells), of_later, 0.0)
 

@@ -10,6 +10,9 @@ import pytest
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.which_law import left_out
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import minimum
+from jbf.estimation.problem import Problem
+from jbf.estimation.refine import with_motion_errors
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "simulator"))
 
@@ -78,3 +81,57 @@ def test_laws_are_compared_at_samples_that_remember_how_a_run_began() -> None:
     errors = left_out(elastic, ()).errors
     for e, counted in zip(errors, campaign.samples.counted, strict=True):
         assert np.array_equal(np.isfinite(e), counted)
+
+
+def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:
+    simulated = servosim.simulate(seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        servosim.write(simulated, folder)
+        rig = jbf.read_rig(folder / "rig.toml")
+        runs = [jbf.read_run(path, rig) for path in sorted(folder.glob("run_*.csv"))]
+    return simulated, Campaign.prepare(rig, runs)
+
+
+def test_noise_of_the_force_is_found_next_to_the_errors_of_the_motion() -> None:
+    """A smooth motion between corners, whose errors the smoother overestimates."""
+    simulated, campaign = campaign_of(4013)
+    problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
+    _, solution = with_motion_errors(problem, minimum(problem, [{}]))
+    motion = solution.samples.motion
+    assert motion is not None
+    assert motion.noise == pytest.approx(simulated.drawn.logger.force_noise, rel=0.15)
+
+
+def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_acceleration() -> None:
+    simulated, campaign = campaign_of(4013)
+    problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
+    problem, solution = with_motion_errors(problem, minimum(problem, [{}]))
+    motion = solution.samples.motion
+    assert motion is not None
+    ratios = []
+    for p, counted, record in zip(
+        problem.campaign.prepared, solution.samples.counted, simulated.records, strict=True
+    ):
+        true = np.interp(p.run.time_s, record.time_s, record.true_acceleration)
+        assert p.motion.errors is not None
+        sd = np.sqrt(p.motion.errors.covariance[:, 2, 2])
+        ratios.append(((p.motion.acceleration_m_s2 - true) / sd)[counted])
+    true_scale = float(np.sqrt(np.mean(np.concatenate(ratios) ** 2)))
+    assert true_scale < 0.8
+    assert motion.scale == pytest.approx(true_scale, rel=0.2)
+
+
+def test_acceleration_jumps_at_reversals_of_a_hand_guided_drive() -> None:
+    """Friction jumps by twice its Coulomb level, and the acceleration with it."""
+    simulated, campaign = campaign_of(4012)
+    plant = simulated.drawn.plant
+    jump = 2.0 * plant.coulomb / plant.inertia
+    squares = []
+    for p, counted, record in zip(
+        campaign.prepared, campaign.samples.counted, simulated.records, strict=True
+    ):
+        true = np.interp(p.run.time_s, record.time_s, record.true_acceleration)
+        squares.append((p.motion.acceleration_m_s2 - true)[counted] ** 2)
+    error = float(np.sqrt(np.mean(np.concatenate(squares))))
+    assert error < 0.062 * jump

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.selection import Names, start_model
@@ -44,8 +42,8 @@ def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
 
 
 def with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign with the errors of its motion as a model with effects shows them; None where its
-    noise is that of the model for which they were estimated."""
+    """The campaign with the errors of its motion as a model with effects shows them; None where it
+    leaves no less noise than the model for which they were estimated."""
     before = candidates.campaign.samples.motion
     if before is None:
         return None
@@ -53,7 +51,6 @@ def with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campa
     problem, solution = with_motion_errors_again(problem, solution)
     motion, campaign = solution.samples.motion, problem.campaign
     assert motion is not None
-    change = abs(np.log(motion.noise / before.noise))
-    if change < np.log(candidates.policy.noise_changes):
+    if motion.noise * candidates.policy.noise_changes > before.noise:
         return None
     return replace(campaign, samples=replace(campaign.samples, motion=motion))

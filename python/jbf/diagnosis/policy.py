@@ -211,7 +211,7 @@ class Policy:
     )
     noise_changes: float = _number(
         1.1,
-        "ratio by which the noise next to the errors of the motion must change for these to be "
+        "ratio by which the noise next to the errors of the motion must decrease for these to be "
         "estimated again",
         "a tenth of the noise",
     )

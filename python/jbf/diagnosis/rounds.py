@@ -241,7 +241,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         return ()
     rms, name = min(found)
     share = max(1.0 - (rms / base.rms_n) ** 2, 0.0)
-    if base.samples.motion is not None and share < policy.motion_share:
+    if candidates.campaign.motion_uncertain and share < policy.motion_share:
         return ()
     unit = candidates.campaign.rig.quantities.force
     fits = f"{name} fits {base.rms_n:.3g} {unit} down to {rms:.3g} {unit}"

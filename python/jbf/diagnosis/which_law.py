@@ -145,7 +145,7 @@ def _compared(
 ) -> list[LawTried]:
     """`compared` with what is known of the motion of a campaign."""
     errors, white = [h.errors for h in left], [h.white for h in left]
-    share = 0.0 if campaign.samples.motion is None else policy.motion_share
+    share = policy.motion_share if campaign.motion_uncertain else 0.0
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 

@@ -151,6 +151,11 @@ class Campaign:
         return 0.0 if motion is None else motion.mean_share(self.samples.weight)
 
     @property
+    def motion_uncertain(self) -> bool:
+        """Whether the motion's errors are a large part of the variance."""
+        return self.motion_share > MOTION_SHARE
+
+    @property
     def has_loads(self) -> bool:
         """True where the loads differ, within a run or from run to run."""
         usual = self.rig.load.normal_n if self.rig.load is not None else None
@@ -186,7 +191,7 @@ class Campaign:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
             return "steady states do not show it"
-        if effect.name in SMOOTHS_FORCE and self.motion_share > MOTION_SHARE:
+        if effect.name in SMOOTHS_FORCE and self.motion_uncertain:
             return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):

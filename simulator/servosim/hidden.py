@@ -61,7 +61,7 @@ class Hidden(Protocol):
     def draw(cls, scale: Scale, random: Rng) -> Hidden:
         """An effect of a usual size."""
 
-    def level(self, at: Course, sign: float) -> float:
+    def level(self, at: Course) -> float:
         """Added to the Coulomb level."""
 
     def drag(self, at: Course) -> float:
@@ -81,7 +81,7 @@ class Hidden(Protocol):
 class Plain:
     """An effect that adds nothing: the others replace what they change."""
 
-    def level(self, at: Course, sign: float) -> float:
+    def level(self, at: Course) -> float:
         return 0.0
 
     def drag(self, at: Course) -> float:
@@ -111,7 +111,7 @@ class StribeckExcess(Plain):
         height = scale.coulomb * random.uniform(0.3, 0.9)
         return cls(height, scale.top * random.uniform(0.03, 0.1), random.uniform(1.0, 2.0))
 
-    def level(self, at: Course, sign: float) -> float:
+    def level(self, at: Course) -> float:
         return self.height * math.exp(-((abs(at.velocity) / self.speed) ** self.exponent))
 
 
@@ -245,7 +245,7 @@ class LevelStep(Plain):
         share = random.uniform(0.15, 0.35) * random.choice([-1.0, 1.0])
         return cls(scale.coulomb * share, random.uniform(2.5, 4.0))
 
-    def level(self, at: Course, sign: float) -> float:
+    def level(self, at: Course) -> float:
         return self.change if at.time > self.instant_s else 0.0
 
 
@@ -260,7 +260,7 @@ class StrokeScatter(Plain):
     def draw(cls, scale: Scale, random: Rng) -> StrokeScatter:
         return cls(scale.coulomb * random.uniform(0.1, 0.2))
 
-    def level(self, at: Course, sign: float) -> float:
+    def level(self, at: Course) -> float:
         return self.sd * max(-2.5, min(2.5, at.scatter[at.strokes % len(at.scatter)]))
 
 
@@ -285,8 +285,8 @@ class Together:
 
     parts: tuple[Hidden, ...] = field(default=())
 
-    def level(self, at: Course, sign: float) -> float:
-        return sum(part.level(at, sign) for part in self.parts)
+    def level(self, at: Course) -> float:
+        return sum(part.level(at) for part in self.parts)
 
     def drag(self, at: Course) -> float:
         return sum(part.drag(at) for part in self.parts)

@@ -107,7 +107,7 @@ def run(
             sign = math.copysign(1.0, drive if v == 0.0 else v)
             if sign != direction and (v != 0.0 or direction == 0.0):
                 at.strokes, direction = at.strokes + (direction != 0.0), sign
-            f = factor * (plant.coulomb + hidden.level(at, sign))
+            f = factor * (plant.coulomb + hidden.level(at))
             if v == 0.0 and abs(drive) <= f + lost * abs(weight):
                 rows.append((t, x, 0.0, 0.0, 0.0, u))
                 at.time, left = t + left, 0.0

@@ -205,8 +205,9 @@ class Policy:
     )
     motion_share: float = _number(
         0.08,
-        "share of the mean square that structure, an effect or another law must explain where "
-        "errors of the motion are in the residual: their covariance is an estimate",
+        "share of the mean square that structure must have where errors of the motion are in the "
+        "residual, and that an effect or another law must explain where they exceed a tenth of "
+        "the variance: their covariance is an estimate",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
     )
     noise_changes: float = _number(

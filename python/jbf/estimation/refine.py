@@ -13,6 +13,7 @@ import numpy.typing as npt
 from jbf.estimation.campaign import MOTION_SHARE, Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.joint_lateness import delay_slope, delay_step
+from jbf.estimation.minimum import MOST_FORGIVEN
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared, coasting
 from jbf.estimation.problem import Problem
@@ -72,6 +73,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motions = [p.motion.errors for p in problem.campaign.prepared]
     if any(e is None for e in motions):
         return problem, solution
+    plain, plain_fit = problem, solution
     problem, solution = _likeliest_smoothness(problem, solution)
     errors = [e for p in problem.campaign.prepared if (e := p.motion.errors) is not None]
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
@@ -84,8 +86,12 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
         if e.delayed
     ]
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
-    if best.solution.samples.motion is None:
+    motion = best.solution.samples.motion
+    if motion is None:
         return best.problem, best.solution
+    large = motion.mean_share(best.solution.samples.weight) > MOTION_SHARE
+    if not large and best.solution.rms_n > MOST_FORGIVEN * plain_fit.rms_n:
+        return plain, plain_fit
     changes = [_with_smoothing(best)]
     for other in ends:
         # The difference between fits of similar likelihood is part of the standard errors.

@@ -213,7 +213,8 @@ impl<T: Real, I: InstructionSet> EffectSet<T> for Outlined<'_, T, I> {
         all_n: &mut Friction<T>,
         transmitted_n: &mut T,
     ) {
-        if self.occupied.other {
+        let constant = self.occupied.instrument && self.occupied.transmission;
+        if self.occupied.other || constant {
             let (journal, before) = (*journal, (*all_n, *transmitted_n));
             (*all_n, *transmitted_n) = self.call(
                 #[inline(always)]

@@ -45,7 +45,10 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
     assert found.effects == ()
 
 
-@pytest.mark.parametrize(("seed", "effect"), [(4049, "cogging"), (4045, "viscous_thinning")])
+@pytest.mark.parametrize(
+    ("seed", "effect"),
+    [(4049, "cogging"), (4045, "viscous_thinning"), (4315, "torque_proportional")],
+)
 def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
     found = diagnosed(seed, (effect,))
     assert (found.verdict, found.effects) == ("missing", (effect,)), found.summary()

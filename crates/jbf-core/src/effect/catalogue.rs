@@ -215,6 +215,8 @@ impl<T: Real> EffectSet<T> for Effects<T> {
         transmitted_n: &mut T,
     ) {
         self.other.other(&s.other, journal, all_n, transmitted_n);
+        self.instrument
+            .other(&s.instrument, journal, all_n, transmitted_n);
     }
     #[cfg_attr(debug_assertions, inline(never))]
     #[cfg_attr(not(debug_assertions), inline(always))]

@@ -284,6 +284,17 @@ impl<T: Real, E: OtherFriction<T>> EffectSet<T> for Beside<E> {
 impl<T: Real, E: Instrument<T>> EffectSet<T> for InInstrument<E> {
     type State = E::State;
 
+    #[inline(always)]
+    fn other(
+        &self,
+        _state: &Self::State,
+        _journal: &JournalMotion<T>,
+        _all_n: &mut Friction<T>,
+        transmitted_n: &mut T,
+    ) {
+        *transmitted_n += self.0.constant_n();
+    }
+
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State {
         self.0.start(motion, rig)
     }

@@ -1,4 +1,5 @@
-//! `+ b`: the zero of the load cell.
+//! `+ b`: the zero of the load cell; on a drive also a constant load, such as the weight on an
+//! inclined axis, which the transmission carries.
 //!
 //! Source: any strain-gauge bridge; Cohn (1998), section 4.1.
 
@@ -18,7 +19,10 @@ impl<T: Real> Effect<T> for SensorOffset<T> {
         .summary("the load cell's zero is off")
         .equation("r -> r + b")
         .source("Cohn 1998, section 4.1 (strain gauges)")
-        .limits("one offset for all runs; a zero that is set anew for each run is not this one")
+        .limits(
+            "one offset for all runs; a zero that is set anew for each run is not this one. On a \
+             drive the offset is a constant load as well, which `torque_proportional` counts",
+        )
         .parameters(&[
             Parameter::new("b_n", "N", "reading without force", [-1e5, 1e5], &[0.3])
                 .null(0.0)
@@ -39,6 +43,10 @@ impl<T: Real> Effect<T> for SensorOffset<T> {
 impl<T: Real> Instrument<T> for SensorOffset<T> {
     fn first(&self, _state: &mut (), force_n: T) -> T {
         force_n + self.offset_n
+    }
+
+    fn constant_n(&self) -> T {
+        self.offset_n
     }
 
     #[inline(always)]

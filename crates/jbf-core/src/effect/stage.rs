@@ -150,6 +150,12 @@ impl<T: Real> Signal<T> {
 
 /// Between the force and its record.
 pub trait Instrument<T: Real>: Effect<T> {
+    /// Constant force in the readings, N, which a drive's transmission may carry.
+    #[inline(always)]
+    fn constant_n(&self) -> T {
+        T::ZERO
+    }
+
     /// The first reading of a run that begins with `force_n`.
     fn first(&self, state: &mut Self::State, force_n: T) -> T;
     /// What the instrument makes of the signal of a step of `dt_s` that ends at `time_s`.

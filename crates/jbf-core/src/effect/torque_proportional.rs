@@ -1,7 +1,7 @@
 //! Friction that is a share of what the drive transmits: `+ mu |F_t| sgn(v)`.
 //!
 //! `F_t` is what other effects of the chain let the transmission carry: a weight (`gravity`), a mass
-//! (`inertia_leak`). A load on record has `dry_load_dependence`, and a push `k L` has no friction here
+//! (`inertia_leak`), a constant load (`sensor_offset`). A load on record has `dry_load_dependence`, and a push `k L` has no friction here
 //! that it has not there; this is for the load that nobody records, and that the model finds as well.
 //!
 //! Gears and screws lose one share `mu_d` of `F_t` where they drive (`F_t v > 0`) and another `mu_b`
@@ -29,11 +29,14 @@ pub struct TorqueProportional<T> {
 impl<T: Real> Effect<T> for TorqueProportional<T> {
     const INFO: Info = Info::new("torque_proportional", Stage::Contact)
         .summary("friction that is a share of the torque or force that the drive transmits")
-        .equation("F -> F + mu |F_t| sgn(v), F_t the weight and the mass that other effects add")
+        .equation(
+            "F -> F + mu |F_t| sgn(v), F_t the weight, mass and offset that other effects add",
+        )
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")
         .limits(
             "what driving loses more than being driven back is in the size of the weight itself; \
-             all of a mass counts, that of a rotor before the gear too",
+             all of a mass counts, that of a rotor before the gear too, and an offset counts as a \
+             constant load: a zero of the sensor that is large next to the weight is an error",
         )
         .parameters(&[Parameter::new(
             "mu",

@@ -60,11 +60,11 @@ fn at_rest_it_holds_by_the_load() {
     }
 }
 
-/// What a transmission does not carry is not in it: an offset of the cell, a drag.
+/// Drag is not transmitted.
 #[test]
-fn knows_no_load_but_what_is_carried() {
+fn excludes_drag() {
     let sines = Sines::two_way(1.0);
-    let beside: [(&str, &[f64]); 2] = [("coulomb_drag", &[3.0]), ("sensor_offset", &[20.0])];
+    let beside: [(&str, &[f64]); 1] = [("coulomb_drag", &[3.0])];
     let with = [beside.as_slice(), &[("torque_proportional", &[SHARE])]].concat();
     let [with, without] = [with.as_slice(), &beside].map(|effects| {
         readings(&chain_round(newtons(F_C_N, 1.0), effects), 0.01, 300, |t| {
@@ -72,6 +72,27 @@ fn knows_no_load_but_what_is_carried() {
         })
     });
     assert_eq!(with, without);
+}
+
+/// On an inclined axis the weight is a constant, and adds to what accelerates the mass.
+#[test]
+fn includes_a_constant_weight() {
+    let (sines, weight) = (Sines::two_way(1.0), 4.0);
+    let chain = chain_round(
+        newtons(F_C_N, 0.0),
+        &[
+            ("inertia_leak", &[MASS_KG]),
+            ("sensor_offset", &[weight]),
+            ("torque_proportional", &[SHARE]),
+        ],
+    );
+    let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
+    for (i, f) in got.iter().enumerate().skip(1) {
+        let t = 0.01 * i as f64;
+        let carried = weight + MASS_KG * 0.127 * t.cos();
+        let expected = carried + (F_C_N + SHARE * carried.abs()) * t.sin().signum();
+        assert!((f - expected).abs() < 1e-10, "{i}: {f} {expected}");
+    }
 }
 
 /// A bristle takes this level's place, too: past a reversal it slopes as the law's own does.

@@ -132,6 +132,11 @@ class Candidates:
         self._level: Level | None = None
         self._levels: dict[frozenset[str], Level] = {}
 
+    def of(self, campaign: Campaign) -> Candidates:
+        """The candidates of another campaign of the same runs, whose fits start from these."""
+        self.before = None
+        return Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
+
     # ---- which effects ----------------------------------------------------------------------
 
     @cached_property

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.selection import Names, start_model
+from jbf.diagnosis.selection import start_model
 from jbf.errors import Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.refine import with_motion_errors, with_motion_errors_again
+from jbf.estimation.refine import with_motion_errors
 from jbf.models.vocabulary import Clock
 
 SIMPLEST = "coulomb"
@@ -39,18 +39,3 @@ def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
         return with_errors_of_motion(Candidates(own, SIMPLEST, clock, policy)) or campaign
     except Unfinished:
         return campaign
-
-
-def with_other_errors_of_motion(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign with the errors of its motion as a model with effects shows them; None where it
-    leaves no less noise than the model for which they were estimated."""
-    before = candidates.campaign.samples.motion
-    if before is None:
-        return None
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    problem, solution = with_motion_errors_again(problem, solution)
-    motion, campaign = solution.samples.motion, problem.campaign
-    assert motion is not None
-    if motion.noise * candidates.policy.noise_changes > before.noise:
-        return None
-    return replace(campaign, samples=replace(campaign.samples, motion=motion))

@@ -136,10 +136,10 @@ class Policy:
         "chosen for speed",
     )
     # ---- what the recording did -------------------------------------------------------------
-    most_looks: int = _number(
-        6,
-        "times that what the residuals tell of the recording sends selection to its beginning",
-        "one for each of the things that are looked for",
+    most_terms: int = _number(
+        12,
+        "number of times that a term of the observation model is added or estimated again",
+        "ten terms; delays are estimated again next to a better model",
     )
     most_shifts: int = _number(
         3, "times that the runs' lateness is estimated", "a second look sees it sharper"

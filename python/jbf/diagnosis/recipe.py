@@ -9,27 +9,20 @@ from dataclasses import replace
 
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.excitations import Limits
 from jbf.diagnosis.experiment import Experiment, propose
-from jbf.diagnosis.late_channels import bought_by_lateness, on_time
-from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.limitations import limitations
 from jbf.diagnosis.machine import OFFSET, machine_of
 from jbf.diagnosis.motion_uncertainty import (
     comparable,
     with_errors_of_motion,
-    with_other_errors_of_motion,
 )
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
 from jbf.diagnosis.reached import Reached
-from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.result import Diagnosis
-from jbf.diagnosis.rounds import Selected, select, step
-from jbf.diagnosis.second_look import second_look
+from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
-from jbf.diagnosis.shifted import DELAY
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
@@ -195,47 +188,20 @@ def _with_law(
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
-    corrected = _without_bias(candidates, ())
-    if corrected is not None:
-        candidates = Candidates(corrected, law, clock, policy, progress, candidates)
     certain = with_errors_of_motion(candidates)
     if certain is not None:
-        candidates = Candidates(certain, law, clock, policy, progress, candidates)
+        candidates = candidates.of(certain)
+    selected = select(candidates, _before(candidates).noise_n)
+    candidates = selected.candidates
     before = _before(candidates)
-    selected = select(candidates, before.noise_n)
-    weighs = True
-    for _ in range(policy.most_looks):
-        weighed = None
-        again = _seen_again(candidates, selected)
-        if again is None and weighs:
-            again = weighed = _weighed(candidates, selected.present)
-        if again is None:
-            if not _remainder(candidates, selected.present):
-                break
-            # Of a strong effect the score at its null may show nothing: before anything is left
-            # unexplained, every candidate is fitted.
-            was, selected = selected, select(candidates, before.noise_n, selected, "all")
-            if selected.present == was.present and selected.again is None:
-                break
-            continue
-        last, was = candidates, selected
-        candidates.before = None
-        candidates = Candidates(again, law, clock, policy, progress, candidates)
-        before = _before(candidates)
-        # That was seen beside the effects: they stay if they are needed.
-        start = selected if again is selected.again else None
-        selected = select(candidates, before.noise_n, start)
-        if weighed is not None and _lost(last, candidates, was.present, selected.present):
-            candidates, selected, weighs = last, was, False
-            before = _before(candidates)
     campaign = candidates.campaign
     present, steps, refused = selected.present, selected.steps, selected.refused
-    remains = (*_remainder(candidates, present), *refused)
+    remains = (*remainder_of(candidates, present), *refused)
     doubted = confounders(candidates, present, remains) if remains else ()
     machine = machine_of(candidates, present)
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
-    if doubted and not _remainder(candidates, named):
+    if doubted and not remainder_of(candidates, named):
         # What some runs asked for and others did not, nothing asks for once it is gone.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
@@ -292,53 +258,6 @@ def _values(fit: Fit) -> dict[str, float]:
     return {name: parameter.value for name, parameter in fit.parameters.items()}
 
 
-def _on_time(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign with each run's force where it belongs; None where it is there already."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    shifted = on_time(problem, solution, candidates.policy)
-    bought = bought_by_lateness(present)
-    if shifted is None and bought:
-        # What several effects together make of runs that are late, the lateness says alone.
-        rest = tuple(name for name in present if name not in bought)
-        simpler, near = candidates.fitted(rest).problem, candidates.converge(rest)
-        # One delay of all runs is simpler than one of each: there the shifts must leave less.
-        more = 1.0 if bought == (DELAY,) else candidates.policy.no_worse
-        shifted = on_time(simpler, near, candidates.policy, solution, more)
-    return shifted
-
-
-def _seen_again(candidates: Candidates, selected: Selected) -> Campaign | None:
-    """The campaign as a model shows what its recording did; None where it shows nothing more."""
-    again = with_other_errors_of_motion(candidates, selected.present)
-    if again is not None:
-        return again
-    again = _on_time(candidates, selected.present)
-    if again is not None and _deviate_rather(candidates, selected, again):
-        return selected.again
-    return again or _without_bias(candidates, selected.present) or selected.again
-
-
-def _deviate_rather(candidates: Candidates, selected: Selected, shifted: Campaign) -> bool:
-    """Whether the runs deviate from one another, and are not late: what of both leaves less."""
-    differ = selected.again
-    if differ is None or differ.samples.between is candidates.campaign.samples.between:
-        return False
-    law, clock, policy = candidates.law, candidates.clock, candidates.policy
-    left_n = []
-    for campaign in (differ, shifted):
-        there = Candidates(campaign, law, clock, policy, None, candidates)
-        solution = there.converge(selected.present)
-        apart = solution.samples.without_deviations(solution.residuals, solution.noise)
-        left_n.append(solution.samples.rms(apart))
-    return left_n[0] < left_n[1]
-
-
-def _without_bias(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign without the bias of coarse steps; None where it is off already."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    return without_bias(problem, solution, candidates.policy)
-
-
 def _before(candidates: Candidates) -> Comparison:
     """The law with its machine, next to the records."""
     base = start_model(candidates)
@@ -346,29 +265,7 @@ def _before(candidates: Candidates) -> Comparison:
     return compare_prepared(bare.model, candidates.campaign)
 
 
-def _lost(last: Candidates, now: Candidates, was: Names, present: Names) -> bool:
-    """Whether weights led to the same effects, and to a fit that is worse where all count alike: on
-    its way to its end it went astray."""
-    if frozenset(was) != frozenset(present):
-        return False
-    before, after = last.converge(was), now.converge(present)
-    samples = before.samples.within(after.samples.counted)
-    return samples.rms(after.residuals) > now.policy.no_worse * samples.rms(before.residuals)
-
-
-def _weighed(candidates: Candidates, present: Names) -> Campaign | None:
-    """The campaign as the residuals of a model ask for it; None where they ask for nothing more."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    again = second_look(problem, solution, candidates.policy)
-    return again.campaign if again.found else None
-
-
 def _rivals(present: Names, name: str, others: Names) -> list[Names]:
     """The models that fit equally well: with this effect, or another in its place."""
     rest = tuple(e for e in present if e != name)
     return [present, *((*rest, other) for other in others)]
-
-
-def _remainder(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    return find_remainder(problem, solution, candidates.policy)

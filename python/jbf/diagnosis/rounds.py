@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.deviations import allowing_for, deviation
-from jbf.diagnosis.evidence import evidence, evidence_alone, full_gain, price_of
+from jbf.diagnosis.evidence import evidence, evidence_alone, full_gain
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
+from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.selection import (
     Follow,
     Names,
@@ -20,8 +20,8 @@ from jbf.diagnosis.selection import (
     still_needed,
     try_candidates,
 )
-from jbf.diagnosis.shifted import DELAY
-from jbf.estimation.campaign import Campaign
+from jbf.diagnosis.terms import leading_term
+from jbf.diagnosis.terms.shifts import DELAY
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.run_start import settled_again
@@ -31,68 +31,79 @@ from jbf.models.catalogue import may_come
 
 @dataclass(frozen=True)
 class Selected:
-    """What rounds of selection led to.
+    """Result of the selection.
 
     Attributes
     ----------
-    present, steps, refused
-        The effects added, the ledger, and what was refused.
-    again
-        The campaign as what was found so far shows it, where selection is to go on with that: with
-        a deviation of its runs allowed for, which the data ask for more than for any effect, or
-        without samples at which the film of the effects present is not settled.
+    candidates
+        The fits to the campaign with the terms of the observation model that were accepted.
+    present
+        The effects that were accepted.
+    steps
+        The ledger, one step a round.
+    refused
+        Effects that fit better and predict runs left out no better.
     """
 
+    candidates: Candidates
     present: Names
     steps: list[Step]
     refused: tuple[Remainder, ...] = ()
-    again: Campaign | None = None
 
 
-def select(
-    candidates: Candidates,
-    noise_n: float,
-    start: Selected | None = None,
-    follow: Follow = "promising",
-) -> Selected:
-    """Rounds until no candidate leads, from the law with its machine or from effects that were
-    there; in the first of them `follow` says which candidates are fitted."""
-    steps: list[Step] = []
-    if start is not None and start.present:
-        present = still_needed(candidates, start.present)
-        steps = start.steps[:-1]
-    else:
-        present = start_model(candidates)
+def select(candidates: Candidates, noise_n: float) -> Selected:
+    """Add effects and terms of the observation model, the largest evidence first, until none is
+    accepted.
+
+    The start model is the law with the machine of a drive. If none is accepted and the residual has
+    structure, all candidates are fitted once (the score of a strong effect at its null may be
+    small), and then pairs of them.
+    """
+    policy = candidates.policy
+    present, steps = start_model(candidates), []
+    follow: Follow = "promising"
     visited = {frozenset(present)}
+    terms = 0
     while True:
         candidates.converge(present)
         candidates.reached.candidates, candidates.reached.present = candidates, present
         settled = settled_again(candidates.fitted(present).problem, candidates.converge(present))
         if settled is not None:
-            steps.append(step(candidates, present, noise_n, ()))
-            return Selected(present, steps, again=settled)
+            candidates = candidates.of(settled)
+            present = still_needed(candidates, present)
         found = try_candidates(candidates, present, follow)
-        every = follow == "all"
-        follow = "promising"
         steps.append(step(candidates, present, noise_n, found.trials))
-        if every and found.leader is None:
-            together = _pair(candidates, present, found)
-            if frozenset(together) not in visited:
-                visited.add(frozenset(together))
-                present = together
-                continue
-        differ = _differ_more(candidates, present, found)
-        if differ is not None:
-            return Selected(present, steps, again=differ)
-        if found.leader is None:
-            return Selected(present, steps, _refused(candidates, present))
-        if len(present) >= candidates.policy.most_effects:
-            return Selected(present, steps, (_one_more(candidates, present, found.leader),))
-        grown = _grown(candidates, present, found)
+        led = max((t.evidence for t in found.trials if t.outcome == "added"), default=None)
+        term = leading_term(candidates, present, led) if terms < policy.most_terms else None
+        if term is not None:
+            terms += 1
+            candidates = candidates.of(term.campaign)
+            kept = tuple(name for name in present if name in term.problem.effects)
+            present = still_needed(candidates, kept)
+            visited, follow = {frozenset(present)}, "promising"
+            steps.pop()
+            continue
+        if found.leader is not None:
+            if len(present) >= policy.most_effects:
+                refused = (_one_more(candidates, present, found.leader),)
+                return Selected(candidates, present, steps, refused)
+            grown = _grown(candidates, present, found)
+        elif follow == "promising" and remainder_of(candidates, present):
+            follow = "all"
+            steps.pop()
+            continue
+        else:
+            grown = _pair(candidates, present, found) if follow == "all" else present
         if frozenset(grown) in visited:
-            return Selected(present, steps)
+            return Selected(candidates, present, steps, _refused(candidates, present))
         visited.add(frozenset(grown))
-        present = grown
+        present, follow = grown, "promising"
+
+
+def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
+    """Structure in the residual of a model."""
+    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
+    return find_remainder(problem, solution, candidates.policy)
 
 
 def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
@@ -164,34 +175,6 @@ def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
         f"{len(present)} effects, and no more are searched for"
     )
     return Remainder("effects", where, max(1.0 - (richer.rms_n / base.rms_n) ** 2, 0.0))
-
-
-def _differ_more(candidates: Candidates, present: Names, found: Round) -> Campaign | None:
-    """The campaign with a deviation of its runs that has more evidence than the leading effect."""
-    problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    campaign, policy = candidates.campaign, candidates.policy
-    # More than chance would, and more than any effect.
-    least = price_of(candidates, 1) + max(
-        (t.evidence for t in found.trials if t.evidence > 0.0), default=0.0
-    )
-    differ = deviation(problem, solution, campaign.samples, policy, least)
-    if differ is None:
-        return None
-    allowed = allowing_for(campaign, differ)
-    if found.leader is not None:
-        # One number that says of all runs what each would say of itself.
-        leads_n = candidates.converge((*present, found.leader)).rms_n
-        apart = allowed.samples.without_deviations(solution.residuals, solution.noise)
-        if _says_as_much(solution.rms_n, leads_n, solution.samples.rms(apart), policy.no_worse):
-            return None
-    return allowed
-
-
-def _says_as_much(before_n: float, effect_n: float, apart_n: float, most: float) -> bool:
-    """Whether an effect leaves as little as the deviations of the runs do, N RMS, and explains as
-    much of what both may: where that is little beside the noise, all leave as little."""
-    left, explained = effect_n**2 - apart_n**2, before_n**2 - apart_n**2
-    return effect_n <= most * apart_n and left <= (most**2 - 1.0) * max(explained, 0.0)
 
 
 def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:

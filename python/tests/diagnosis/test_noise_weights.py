@@ -8,8 +8,16 @@ import pytest
 from by_hand import LAW, Array, assert_recovered, coulomb
 from jbf import Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.second_look import SecondLook, second_look
-from jbf.diagnosis.uneven_noise import HUBER, noise_sizes, robust_weights
+from jbf.diagnosis.terms.noise_variance import (
+    HUBER,
+    force_weights,
+    heavy_tails,
+    robust_weights,
+    run_weights,
+    variance_by_force,
+    variance_by_run,
+)
+from jbf.diagnosis.terms.proposal import Model, accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -29,32 +37,48 @@ def fitted(change: Change, *, seed: int = 0) -> tuple[Problem, Solution]:
     return fit_from_truth(Campaign.prepare(Rig(), runs))
 
 
-def second_look_after_fit(change: Change, seed: int = 0) -> tuple[SecondLook, Solution]:
+def weighted_after_fit(change: Change, seed: int = 0) -> tuple[Campaign, Solution]:
+    """The campaign with every accepted term of the residual-error model, and the first fit."""
     problem, solution = fitted(change, seed=seed)
-    return second_look(problem, solution, DEFAULT), solution
+    return weighted(problem, solution), solution
+
+
+def weighted(problem: Problem, solution: Solution) -> Campaign:
+    """The campaign with the accepted terms, one after another."""
+    campaign = problem.campaign
+    for term in (variance_by_force, variance_by_run, heavy_tails):
+        model = Model.of(problem, solution)
+        found = term(model)
+        if found is not None and accepted(found, model):
+            campaign = found.campaign
+            problem, solution = fit_from_truth(campaign)
+    return campaign
 
 
 def white(i: int, f: Array, random: np.random.Generator) -> Array:
     return np.asarray(f + NOISE_N * random.standard_normal(len(f)))
 
 
-def noise_sizes_of(draw: Callable[[int, Array], Array]) -> tuple[list[Array], list[str]]:
-    """Weights and kinds of findings for residuals from the number of the run and its friction."""
+def kinds_of(draw: Callable[[int, Array], Array]) -> list[str]:
+    """Kinds of findings for residuals from the number of the run and its friction."""
     problem, solution = fitted(lambda i, f, random: f)
     residuals = [draw(i, f) for i, f in enumerate(problem.predict(solution.values))]
-    drawn = replace(solution, residuals=residuals, noise=WHITE)
-    weights, findings = noise_sizes(problem, drawn, DEFAULT)
-    return weights, [finding.kind for finding in findings]
+    return kinds(problem, replace(solution, residuals=residuals, noise=WHITE))
+
+
+def kinds(problem: Problem, solution: Solution) -> list[str]:
+    """Kinds of findings on the variance."""
+    found = [w(problem, solution, DEFAULT) for w in (force_weights, run_weights)]
+    return [f[1].kind for f in found if f is not None]
 
 
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1, 6))]
 )
 def test_samples_with_white_gaussian_noise_get_no_weights(seed: int) -> None:
-    seen, _ = second_look_after_fit(white, seed)
-    assert not seen.found
-    assert seen.campaign.more_findings == ()
-    assert seen.campaign.samples.level is None
+    campaign, _ = weighted_after_fit(white, seed)
+    assert campaign.more_findings == ()
+    assert campaign.samples.level is None
 
 
 def test_chance_differences_of_noise_between_short_runs_are_rarely_reported() -> None:
@@ -66,8 +90,7 @@ def test_chance_differences_of_noise_between_short_runs_are_rarely_reported() ->
         random = np.random.default_rng(seed)
         draws = [random.standard_normal(len(r)) for r in solution.residuals]
         drawn = replace(solution, residuals=draws, noise=WHITE, samples=samples)
-        _, findings = noise_sizes(problem, drawn, DEFAULT)
-        uneven += bool(findings)
+        uneven += bool(kinds(problem, drawn))
         sizes = [np.std(r[c]) for r, c in zip(draws, samples.counted, strict=True)]
         differ += max(sizes) > 1.1 * min(sizes)
     assert differ > 20
@@ -76,14 +99,14 @@ def test_chance_differences_of_noise_between_short_runs_are_rarely_reported() ->
 
 @pytest.mark.parametrize("share", [0.03, 0.06])
 def test_noise_proportional_to_the_force_is_estimated_and_weighted(share: float) -> None:
-    seen, solution = second_look_after_fit(
+    campaign, solution = weighted_after_fit(
         lambda i, f, random: f + np.hypot(0.05, share * f) * random.standard_normal(len(f))
     )
-    (found,) = seen.campaign.more_findings
+    (found,) = campaign.more_findings
     assert (found.kind, found.unit) == ("noise_with_force", "1")
     assert found.size == pytest.approx(share, rel=0.15)
-    samples = seen.campaign.samples
-    force = samples.flat([np.abs(p.friction_n) for p in seen.campaign.prepared])
+    samples = campaign.samples
+    force = samples.flat([np.abs(p.friction_n) for p in campaign.prepared])
     weighted = samples.flat(solution.residuals) * samples.flat(samples.weight)
     large = force > np.median(force)
     assert np.std(weighted[large]) == pytest.approx(np.std(weighted[~large]), rel=0.06)
@@ -101,7 +124,7 @@ def test_inverse_squared_weights_are_linear_in_the_squared_force(unit: float) ->
     random = np.random.default_rng(1)
     residuals = [unit * np.hypot(0.5, 0.05 * f) * random.standard_normal(len(f)) for f in force]
     drawn = replace(solution, residuals=residuals, noise=WHITE)
-    weights, (found,) = noise_sizes(problem, drawn, DEFAULT)
+    weights, found = force_weights(problem, drawn, DEFAULT)
     squares = np.concatenate(force) ** 2
     inverse = np.concatenate(weights) ** -2.0
     slope, level = np.polyfit(squares, inverse, 1)
@@ -113,24 +136,20 @@ def test_inverse_squared_weights_are_linear_in_the_squared_force(unit: float) ->
 
 def test_noise_that_decreases_with_the_force_gets_no_weights() -> None:
     random = np.random.default_rng(2)
-    weights, kinds = noise_sizes_of(
-        lambda i, f: np.sqrt(81.0 - f**2) * random.standard_normal(len(f))
-    )
-    assert kinds == []
-    assert all(np.all(w == 1.0) for w in weights)
+    assert kinds_of(lambda i, f: np.sqrt(81.0 - f**2) * random.standard_normal(len(f))) == []
 
 
 @pytest.mark.parametrize("ratio", [1.5, 4.0])
 def test_ratio_of_noise_between_runs_is_estimated_and_weighted(ratio: float) -> None:
     sizes_n = [NOISE_N * (ratio if i == 2 else 1.0) for i in range(6)]
-    seen, _ = second_look_after_fit(
+    campaign, _ = weighted_after_fit(
         lambda i, f, random: f + sizes_n[i] * random.standard_normal(len(f))
     )
-    (found,) = seen.campaign.more_findings
+    (found,) = campaign.more_findings
     assert (found.kind, found.unit) == ("noise_by_run", "1")
     # Ratio of the extremes of six sizes, each known to about 4 %.
     assert found.size == pytest.approx(ratio, rel=0.2)
-    samples = seen.campaign.samples
+    samples = campaign.samples
     weights = [w[c] for w, c in zip(samples.weight, samples.counted, strict=True)]
     for weight in weights:
         np.testing.assert_allclose(weight, weight[0], rtol=1e-12)
@@ -138,19 +157,17 @@ def test_ratio_of_noise_between_runs_is_estimated_and_weighted(ratio: float) -> 
     assert others / weights[2][0] == pytest.approx(ratio, rel=0.1)
 
 
-@pytest.mark.parametrize(("ratio", "kinds"), [(1.15, []), (1.4, ["noise_by_run"])])
-def test_runs_are_weighted_if_noise_differs_by_a_quarter(ratio: float, kinds: list[str]) -> None:
+@pytest.mark.parametrize(("ratio", "expected"), [(1.15, []), (1.4, ["noise_by_run"])])
+def test_runs_are_weighted_if_noise_differs_by_a_quarter(ratio: float, expected: list[str]) -> None:
     # The same draws in every run: only the ratio differs.
     noise = np.random.default_rng(3).standard_normal(10_000)
-    assert noise_sizes_of(lambda i, f: (ratio if i == 2 else 1.0) * noise[: len(f)])[1] == kinds
+    assert kinds_of(lambda i, f: (ratio if i == 2 else 1.0) * noise[: len(f)]) == expected
 
 
 def test_smooth_model_error_in_one_run_is_not_noise_of_that_run() -> None:
     random, wave = np.random.default_rng(4), 5.0 * np.sin(0.01 * np.arange(10_000))
-    _, kinds = noise_sizes_of(
-        lambda i, f: random.standard_normal(len(f)) + (i == 2) * wave[: len(f)]
-    )
-    assert "noise_by_run" not in kinds
+    found = kinds_of(lambda i, f: random.standard_normal(len(f)) + (i == 2) * wave[: len(f)])
+    assert "noise_by_run" not in found
 
 
 def test_equal_readings_of_a_coarse_converter_are_not_taken_for_low_noise() -> None:
@@ -161,7 +178,7 @@ def test_equal_readings_of_a_coarse_converter_are_not_taken_for_low_noise() -> N
         return 10.0 * NOISE_N * np.round(read / (10.0 * NOISE_N)) if i == 2 else read
 
     problem, solution = fitted(coarse, seed=3)
-    weights, _ = noise_sizes(problem, solution, DEFAULT)
+    weights, _ = run_weights(problem, solution, DEFAULT)
     least = [float(np.min(w)) for w in weights]
     assert least[2] == min(least)
     assert min(least) > 0.2
@@ -183,8 +200,8 @@ def _weights_of(residuals: list[Array], heavy: float = 6.0) -> tuple[list[Array]
     ]
     _, solution = fit_from_truth(Campaign.prepare(Rig(), runs))
     solution = replace(solution, residuals=residuals, noise=WHITE)
-    weights, findings = robust_weights(solution, [np.ones(len(e)) for e in residuals], heavy)
-    return weights, [finding.size for finding in findings]
+    found = robust_weights(solution, replace(DEFAULT, heavy_tails=heavy))
+    return ([], []) if found is None else (list(found[0]), [found[1].size])
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
@@ -216,21 +233,21 @@ def test_heavy_tails_require_a_least_number_and_share_of_outliers(
 
 
 def test_heavy_tails_of_student_noise_are_weighted_once() -> None:
-    seen, solution = second_look_after_fit(
+    campaign, solution = weighted_after_fit(
         lambda i, f, random: f + NOISE_N * random.standard_t(3.0, len(f))
     )
-    found = {f.kind: f for f in seen.campaign.more_findings}["heavy_tails"]
+    found = {f.kind: f for f in campaign.more_findings}["heavy_tails"]
     robust_sd = stats.t.ppf(stats.norm.cdf(0.6745), 3.0) / 0.6745
     assert found.size == pytest.approx(2.0 * stats.t.sf(4.0 * robust_sd, 3.0), rel=0.2)
     sigma = robust_size(solution.samples.flat(solution.residuals))
-    samples = seen.campaign.samples
+    samples = campaign.samples
     assert samples.level is not None
     for weight, counted, level, residual in zip(
         samples.weight, samples.counted, samples.level, solution.residuals, strict=True
     ):
         huber = np.minimum(1.0, HUBER * sigma / np.abs(residual[counted] * level[counted]))
         np.testing.assert_allclose((weight[counted] / level[counted]) ** 2, huber, rtol=0.05)
-    assert not second_look(*fit_from_truth(seen.campaign), DEFAULT).found
+    assert weighted(*fit_from_truth(campaign)) is campaign
 
 
 def test_diagnosis_recovers_the_law_in_noise_with_heavy_tails() -> None:

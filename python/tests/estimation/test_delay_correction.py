@@ -1,8 +1,5 @@
-"""Correction of delays and clock drifts: when runs are shifted, by how much, and when they are not.
-
-`late_channels.on_time` returns the campaign with the force of every run shifted to the instant at
-which it acted, or None.
-"""
+"""Correction of delays and clock drifts: when runs are shifted, by how much, and when they are
+not."""
 
 from dataclasses import replace
 
@@ -23,9 +20,9 @@ from delayed_runs import (
     value,
 )
 from jbf import Rig, Run
-from jbf.diagnosis import shifted
-from jbf.diagnosis.late_channels import bought_by_lateness, on_time
-from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.terms import shifts
+from jbf.diagnosis.terms.delays import delays, explained_by_delays
+from jbf.diagnosis.terms.proposal import Model, accepted
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, drift_step
@@ -38,8 +35,31 @@ LARGE_DELAYS_S = (24e-3, -6e-3, 31e-3, 9e-3)
 EXTENDED = pytest.mark.extended
 
 
-def unshifted(problem: Problem, solution: Solution) -> shifted.Shifted:
-    return shifted.Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+PRICE_OF_EFFECT = 30.0
+"""Typical gain in twice the log likelihood that an effect needs."""
+
+
+def corrected(
+    problem: Problem, solution: Solution, before: Solution | None = None
+) -> Campaign | None:
+    """The campaign with its delays corrected; None if the correction is not accepted.
+
+    Parameters
+    ----------
+    before
+        A fit with more effects, which delays would replace.
+    """
+    model = replace(
+        Model.of(problem, solution),
+        before=solution if before is None else before,
+        price_of_effect=PRICE_OF_EFFECT,
+    )
+    found = delays(model)
+    return found.campaign if found is not None and accepted(found, model) else None
+
+
+def unshifted(problem: Problem, solution: Solution) -> shifts.Shifted:
+    return shifts.Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
 
 
 def sizes(campaign: Campaign | None, kind: str) -> list[float]:
@@ -54,7 +74,7 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
     drift = 4e-4
     middles = np.array(DELAYS_S) + 0.5 * drift * DURATION_S
     problem = fitted(reversing_campaign(middles.tolist(), drift))[0]
-    again = shifted.moved(problem, middles, drift)
+    again = shifts.moved(problem, middles, drift)
     for p, q, middle in zip(problem.campaign.prepared, again.prepared, middles, strict=True):
         t = p.run.time_s
         acted = t - middle - drift * (t - 10.0)
@@ -79,7 +99,7 @@ def test_clocks_differ_by_a_tenth_of_each_run_and_drift_by_two_parts_in_a_thousa
 ) -> None:
     """Runs of 10 s and 20 s; at its ends a drift adds half the duration times the drift."""
     problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
-    assert shifted.possible_clocks(problem, np.array(late_s), drift) == possible
+    assert shifts.possible_clocks(problem, np.array(late_s), drift) == possible
 
 
 @pytest.mark.parametrize(
@@ -87,8 +107,8 @@ def test_clocks_differ_by_a_tenth_of_each_run_and_drift_by_two_parts_in_a_thousa
 )
 def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[float, ...]) -> None:
     problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
-    found = shifted.jointly(
-        problem, shifted.Shifted(*fitted(shifted.moved(problem, start, 0.0)), start, 0.0)
+    found = shifts.jointly(
+        problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
     )
     assert max(LARGE_DELAYS_S) > 3.0 * LINEAR_S
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
@@ -97,7 +117,7 @@ def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[fl
 
 def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() -> None:
     fit = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
-    found = shifted.jointly(fit[0], unshifted(*fit))
+    found = shifts.jointly(fit[0], unshifted(*fit))
     assert found.problem.effects == ()
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
 
@@ -113,8 +133,8 @@ def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
         runs.append(Run.from_arrays(t, v, force, name=f"run {i}"))
     problem, solution = fitted(Campaign.prepare(Rig(), runs))
     before = unshifted(problem, solution)
-    assert shifted.jointly(problem, before) is before
-    assert on_time(problem, solution, DEFAULT) is None
+    assert shifts.jointly(problem, before) is before
+    assert corrected(problem, solution) is None
 
 
 @pytest.mark.parametrize("drift", [1.2e-4, pytest.param(3e-3, marks=pytest.mark.extended)])
@@ -122,47 +142,47 @@ def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     """At the end of the longer run the error is 2.4 ms or 60 ms, of at most 8 ms a step."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
-    found = shifted.by_one_clock(problem, unshifted(problem, solution))
+    found = shifts.by_one_clock(problem, unshifted(problem, solution))
     step = drift_step(found.problem, found.solution)
     assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
     np.testing.assert_allclose(found.late_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
-    assert step.square <= shifted.SETTLED**2
+    assert step.square <= shifts.SETTLED**2
     assert found.solution.rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
 def test_delays_that_differ_between_runs_are_corrected_and_reported() -> None:
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
-    again = on_time(problem, solution, DEFAULT)
+    again = corrected(problem, solution)
     # One standard error is 0.2 ms.
     np.testing.assert_allclose(sizes(again, "late_channel"), DELAYS_S, atol=0.6e-3)
     there = fitted(again)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
     assert fitted(problem.campaign)[1].rms_n > 5.0 * there[1].rms_n
-    assert on_time(*there, DEFAULT) is None
+    assert corrected(*there) is None
 
 
 def test_clock_drift_common_to_all_runs_is_corrected_and_reported() -> None:
     drift = 1e-3
     delays = (0.5 * drift * DURATION_S,) * 4
-    again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
+    again = corrected(*fitted(reversing_campaign(delays, drift), DELAY))
     found = sizes(again, "drifting_clock")
     np.testing.assert_allclose(found, drift, rtol=0.03)
     assert np.ptp(found) == 0.0
     there = fitted(again)
     assert there[1].rms_n == pytest.approx(NOISE_N, rel=0.1)
-    assert on_time(*there, DEFAULT) is None
+    assert corrected(*there) is None
 
 
 def test_drift_larger_than_that_of_any_clock_is_not_corrected() -> None:
     drift = 1e-2
-    again = on_time(*fitted(reversing_campaign((0.5 * drift * DURATION_S,) * 4, drift)), DEFAULT)
+    again = corrected(*fitted(reversing_campaign((0.5 * drift * DURATION_S,) * 4, drift)))
     assert again is None or all(f.kind != "drifting_clock" for f in again.more_findings)
 
 
 def test_common_delay_is_estimated_by_the_model_after_clock_drift_is_corrected() -> None:
     drift, delay_s = 5e-4, 15e-3
     delays = [0.5 * drift * DURATION_S + delay_s] * 4
-    again = on_time(*fitted(reversing_campaign(delays, drift), DELAY), DEFAULT)
+    again = corrected(*fitted(reversing_campaign(delays, drift), DELAY))
     np.testing.assert_allclose(sizes(again, "drifting_clock"), drift, rtol=0.05)
     there = fitted(again, DELAY)
     assert value(*there, TAU) == pytest.approx(delay_s, rel=0.03)
@@ -171,17 +191,17 @@ def test_common_delay_is_estimated_by_the_model_after_clock_drift_is_corrected()
 
 @pytest.mark.parametrize(("delay_s", "effects"), [(0.0, ()), (25e-3, DELAY)])
 def test_delay_equal_in_all_runs_is_not_corrected(delay_s: float, effects: tuple[str, ...]) -> None:
-    assert on_time(*fitted(reversing_campaign((delay_s,) * 4), effects), DEFAULT) is None
+    assert corrected(*fitted(reversing_campaign((delay_s,) * 4), effects)) is None
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=EXTENDED) for s in (1, 2))])
 def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> None:
     """Intermediate estimates on the way to 30 ms differ between the runs."""
-    assert on_time(*fitted(one_way_campaign((30e-3,) * 4, seed=seed)), DEFAULT) is None
+    assert corrected(*fitted(one_way_campaign((30e-3,) * 4, seed=seed))) is None
 
 
 def test_force_that_leads_the_motion_in_all_runs_is_corrected() -> None:
-    again = on_time(*fitted(reversing_campaign((-6e-3,) * 4)), DEFAULT)
+    again = corrected(*fitted(reversing_campaign((-6e-3,) * 4)))
     np.testing.assert_allclose(sizes(again, "late_channel"), -6e-3, atol=0.6e-3)
 
 
@@ -191,7 +211,7 @@ def test_noise_that_grows_with_the_force_is_not_corrected_as_a_delay() -> None:
         sd = 0.3 * np.maximum(np.abs(p.friction_n) - 5.0, 0.0)
         noise = sd * random.standard_normal(len(sd))
         runs.append(replace(p.run, friction_n=p.friction_n + noise))
-    assert on_time(*fitted(Campaign.prepare(Rig(), runs)), DEFAULT) is None
+    assert corrected(*fitted(Campaign.prepare(Rig(), runs))) is None
 
 
 @pytest.mark.extended
@@ -200,7 +220,7 @@ def test_accurate_clocks_are_never_corrected_in_forty_simulated_campaigns() -> N
     for seed in range(40):
         there = fitted(one_way_campaign((0.0, 0.0), seed=seed, durations_s=(20.0, 10.0)))
         squares.append(drift_step(*there).square)
-        assert on_time(*there, DEFAULT) is None
+        assert corrected(*there) is None
     # Wald's statistic is chi-square of one degree: its mean is 1, its median 0.45.
     assert 0.5 < np.mean(squares) < 1.7
     assert 0.2 < np.median(squares) < 0.9
@@ -213,28 +233,24 @@ def test_delays_of_a_second_correction_are_added_to_those_already_reported() -> 
     wrong = np.array(LARGE_DELAYS_S) - np.array((3e-3, -2e-3, 1e-3, 0.0))
     late = zip((p.run.name for p in campaign.prepared), wrong.tolist(), strict=True)
     findings = [Finding("late_channel", "friction_n", *x, "s", "shifted", "") for x in late]
-    before = shifted.moved(problem, wrong, 0.0).with_findings(findings)
-    again = on_time(*fitted(before), DEFAULT)
+    before = shifts.moved(problem, wrong, 0.0).with_findings(findings)
+    again = corrected(*fitted(before))
     np.testing.assert_allclose(sizes(again, "late_channel"), LARGE_DELAYS_S, atol=4e-4)
     assert fitted(again)[1].rms_n == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 
 
 def test_runs_are_shifted_instead_of_a_delay_effect_only_if_their_delays_differ() -> None:
-    for delays, corrected in (((12e-3,) * 4, False), (DELAYS_S, True)):
-        campaign = reversing_campaign(delays)
-        again = on_time(*fitted(campaign), DEFAULT, richer=fitted(campaign, DELAY)[1])
-        assert (again is not None) == corrected
+    for delays_s, expected in (((12e-3,) * 4, False), (DELAYS_S, True)):
+        campaign = reversing_campaign(delays_s)
+        again = corrected(*fitted(campaign), fitted(campaign, DELAY)[1])
+        assert (again is not None) == expected
 
 
-@pytest.mark.parametrize(("share", "shifts"), [(0.7, False), (1.5, True)])
-def test_small_delays_explained_by_an_effect_are_not_corrected(share: float, shifts: bool) -> None:
-    """Half of the runs differ from the median delay by at least that share of a step."""
-    apart_s = share * DEFAULT.late_apart * 0.02
-    delays = 5e-3 + apart_s * np.array([1.0, -1.0, 1.0, -1.0])
-    campaign = one_way_campaign(delays.tolist(), noise_n=5e-4)
-    lagging = fitted(campaign, ("sensor_lag",))[1]
-    again = on_time(*fitted(campaign), DEFAULT, richer=lagging, more=10.0)
-    assert (again is not None) == shifts
+def test_delays_that_differ_are_not_corrected_if_a_sensor_lag_explains_them_as_well() -> None:
+    """The runs differ by a hundredth of a sample from a common delay."""
+    delays_s = 5e-3 + 2e-4 * np.array([1.0, -1.0, 1.0, -1.0])
+    campaign = one_way_campaign(delays_s.tolist())
+    assert corrected(*fitted(campaign), fitted(campaign, ("sensor_lag",))[1]) is None
 
 
 @pytest.mark.parametrize("explained", [True, False])
@@ -249,14 +265,14 @@ def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explain
     campaign = replace(problem.campaign, samples=samples)
     there = Problem(campaign, "coulomb", "journal", (), problem.fixed)
     given = there.solution(solution.values, samples, solution.noise)
-    assert (on_time(there, given, DEFAULT) is None) == explained
+    assert (corrected(there, given) is None) == explained
 
 
 def test_instrument_and_jump_effects_are_listed_as_confounded_with_a_delay() -> None:
-    found = set(bought_by_lateness(("sensor_offset", "time_delay", "sensor_lag", "backlash")))
+    found = set(explained_by_delays(("sensor_offset", "time_delay", "sensor_lag", "backlash")))
     assert {"time_delay", "sensor_lag", "sensor_offset", "backlash"} <= found
-    assert bought_by_lateness(("quadratic_drag", "inertia_leak")) == ()
-    assert shifted.without_delay(("sensor_lag", "time_delay", "backlash")) == (
+    assert explained_by_delays(("quadratic_drag", "inertia_leak")) == ()
+    assert shifts.without_delay(("sensor_lag", "time_delay", "backlash")) == (
         "sensor_lag",
         "backlash",
     )

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from by_hand import LAW, Array, coulomb
 from jbf import Rig, Run
-from jbf.diagnosis.converter_bias import without_bias
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.terms.quantiser import without_bias
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import MOST_NOISE, bias_n, curve_rms_n, noise_before, origin_n
 from jbf.estimation.noise import WHITE
@@ -114,7 +114,7 @@ def test_quantisation_bias_is_removed_if_the_model_is_the_true_one() -> None:
     """Its size depends on the noise before the converter, which is estimated from the bias."""
     problem, forces = quantised()
     assert problem.campaign.step_n == pytest.approx(STEP_N)
-    corrected = without_bias(problem, at_truth(problem), DEFAULT)
+    corrected = without_bias(problem, at_truth(problem), DEFAULT)[0]
     coarse, fine = corrected.prepared
     removed = coarse.readings_n - coarse.friction_n
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
@@ -134,7 +134,8 @@ def test_quantisation_bias_is_removed_iteratively_if_the_model_is_fitted() -> No
     problem, forces = quantised()
     free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
     start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]
-    corrected = without_bias(free, free.solution(start, free.campaign.samples, WHITE), DEFAULT)
+    start_fit = free.solution(start, free.campaign.samples, WHITE)
+    corrected = without_bias(free, start_fit, DEFAULT)[0]
     removed = corrected.prepared[0].readings_n - corrected.prepared[0].friction_n
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
     np.testing.assert_allclose(removed, expected, atol=0.03 * STEP_N)
@@ -143,7 +144,7 @@ def test_quantisation_bias_is_removed_iteratively_if_the_model_is_fitted() -> No
 def test_quantisation_bias_is_kept_if_its_correction_is_below_the_policy_limit() -> None:
     problem, _ = quantised()
     solution = at_truth(problem)
-    corrected = without_bias(problem, solution, DEFAULT)
+    corrected = without_bias(problem, solution, DEFAULT)[0]
     off = [p.readings_n - p.friction_n for p in corrected.prepared]
     moves = corrected.samples.rms(off) / problem.campaign.step_n
     for share, removed in ((0.95, True), (1.05, False)):

@@ -1,4 +1,4 @@
-"""Runs compared with the motion so much earlier, and the model on them."""
+"""Runs whose force is shifted in time, and the model fitted to them: estimation of the shifts."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, drift_step, lateness_step
-from jbf.estimation.lateness import RANGES
+from jbf.estimation.lateness import RANGES, lateness
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.prepared import Prepared
@@ -23,6 +24,9 @@ from jbf.estimation.starts import LATEST
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 DELAY = "time_delay"
+TAU = "time_delay.tau_s"
+AHEAD_S = 20e-3
+"""So much too little the runs are shifted when their common delay is estimated, or a sample."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 LARGEST_DRIFT = 2e-3
@@ -118,7 +122,7 @@ def jointly(first: Problem, start: Shifted) -> Shifted:
             continue
         # Where runs differ in it, a delay that they share is the recording's as well.
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
-        later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(f"{DELAY}.tau_s", 0.0)
+        later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(TAU, 0.0)
         late_s = now.late_s + later_s
         late_s[~step.told] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
@@ -169,3 +173,67 @@ def _coloured(shifted: Shifted) -> Shifted:
     problem, values, samples = shifted.problem, shifted.solution.values, shifted.solution.samples
     noise = noise_at(problem, samples, values)
     return replace(shifted, solution=problem.solution(values, samples, noise))
+
+
+def searched(
+    problem: Problem, solution: Solution, policy: Policy, *, at_jumps: bool
+) -> Shifted | None:
+    """The runs shifted to where their squares are smallest (`lateness`), repeatedly; None if the
+    delays do not differ, do not grow, and are not negative.
+
+    Parameters
+    ----------
+    at_jumps
+        Whether samples next to reversals are used as well.
+    """
+    campaign = problem.campaign
+    old, first = campaign, problem
+    late_s, drift = np.zeros(len(campaign.prepared)), 0.0
+    for look in range(policy.most_shifts):
+        found = lateness(problem, solution, look, policy.deviation_chance, at_jumps)
+        if found is None:
+            break
+        # If the runs differ in it, a delay that they share belongs to the recording as well.
+        known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+        shared = known.get(TAU, 0.0) if found.spread_s > 0.0 else 0.0
+        later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
+        if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
+            # A clock that drifts was corrected in the middle of the runs.
+            later_s = late_s
+        if not possible_clocks(first, later_s, drifted):
+            break
+        late_s, drift = later_s, drifted
+        campaign = moved(first, late_s, drift)
+        effects = without_delay(problem.effects)
+        problem, solution = refitted(problem, campaign, effects, known, solution)
+    return None if campaign is old else Shifted(problem, solution, late_s, drift)
+
+
+def all_alike(problem: Problem, found: Shifted) -> Shifted:
+    """The runs shifted by what all of them are late besides.
+
+    A law takes a delay of all runs for its own memory, nearly: how late each is tells how they
+    differ, and little of what they share. That is fitted together with the law, on runs shifted
+    too little, so that none is early.
+    """
+    steps = [p.step_s for p in problem.campaign.prepared]
+    ahead_s = max(AHEAD_S, float(np.median(steps)))
+    late_s = found.late_s - ahead_s
+    campaign = moved(problem, late_s, 0.0)
+    effects = without_delay(problem.effects)
+    late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
+    last = Problem(found.campaign, problem.law, problem.clock, effects)
+    known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
+    start = np.array([known[name] for name in late.names])
+    samples = late.samples_at(start)
+    values = search(late, samples, start, found.solution.noise, EVALUATIONS).values
+    shared_s = float(values[late.names.index(TAU)]) - ahead_s
+    late_s = found.late_s + shared_s
+    if not possible_clocks(problem, late_s, 0.0):
+        return found
+    campaign = moved(problem, late_s, 0.0)
+    near = dict(zip(late.names, values.tolist(), strict=True))
+    again, solution = refitted(problem, campaign, effects, near, found.solution)
+    if solution.rms_n >= found.solution.rms_n:
+        return found
+    return Shifted(again, solution, late_s, 0.0)

@@ -1,0 +1,162 @@
+"""Delay of the force by run, and drift of the clock by which it was read.
+
+The force is compared with the motion at the instants at which it was read. A delay that all runs
+share is the effect `time_delay`; a force that is early in all runs is part of the recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy import special
+
+from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
+from jbf.diagnosis.terms.shifts import (
+    Shifted,
+    all_alike,
+    by_one_clock,
+    jointly,
+    searched,
+)
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.joint_lateness import drift_step, lateness_step
+from jbf.estimation.jumps import samples_beside_jumps
+from jbf.estimation.likelihood import independent_share
+from jbf.estimation.solution import Solution
+from jbf.models.catalogue import find_effect
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+LATE, DRIFT = "late_channel", "drifting_clock"
+HINT = 0.05
+"""Probability of a drift by chance below which it is estimated by iteration."""
+
+
+def delays(model: Model) -> Proposal | None:
+    """Delays by run or a drift of the clock, whichever has the larger evidence; None if the runs
+    show neither."""
+    campaign = model.campaign
+    if not campaign.force_has_clock or campaign.samples.motion is not None:
+        return None
+    if any(f.kind == DRIFT for f in campaign.more_findings):
+        return None
+    proposals, estimates = [], _estimates(model)
+    if not estimates:
+        return None
+    least = min((found.solution for found in estimates), key=lambda s: s.rms_n)
+    share = min(independent_share(least.residuals, least.samples.steps_s), 1.0)
+    for found in estimates:
+        price = price_of_term(model.policy)
+        if found.drift == 0.0 and np.mean(found.late_s) > 0.0:
+            # The mean delay is that of the effect, and must gain as much.
+            price += model.price_of_effect
+        price -= model.price_of_effect * max(model.before.free - found.solution.free, 0)
+        shifted = found.campaign.with_findings(_findings(known_delays(campaign), found))
+        gain = _gain(found, model.before, share)
+        proposals.append(Proposal("delays", shifted, found.problem, found.solution, gain, price))
+    return max(proposals, key=lambda p: p.evidence)
+
+
+def known_delays(campaign: Campaign) -> dict[str, float]:
+    """Delay of each run that was corrected before, s."""
+    return {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
+
+
+def explained_by_delays(effects: Sequence[str]) -> tuple[str, ...]:
+    """The effects that delays by run may explain: those of the instrument, and those that move the
+    instants of jumps."""
+    pages = {name: find_effect(name) for name in effects}
+    return tuple(n for n, e in pages.items() if e.stage == "instrument" or e.moves_jumps)
+
+
+def _estimates(model: Model) -> list[Shifted]:
+    """The runs shifted by the estimates of several searches: from no delay jointly with the model,
+    along one clock, and from the delays at which the squares of each run are smallest."""
+    problem, solution, policy = model.problem, model.solution, model.policy
+    start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
+    by_run, others = [], []
+    if lateness_step(problem, solution).chance < policy.deviation_chance:
+        by_run.append(jointly(problem, start))
+    if not known_delays(problem.campaign):
+        # The parameters of the model follow a drift slowly.
+        if special.chdtrc(1, drift_step(problem, solution).square) < HINT:
+            others.append(by_one_clock(problem, start))
+        for at_jumps in (False, True):
+            coarse = searched(problem, solution, policy, at_jumps=at_jumps)
+            if coarse is not None and coarse.drift != 0.0:
+                others.append(coarse)
+            elif coarse is not None and (at_jumps or np.ptp(coarse.late_s) == 0.0):
+                others.append(all_alike(problem, coarse))
+            elif coarse is not None:
+                by_run.append(jointly(problem, coarse))
+    differing = [found for found in by_run if _differ(found, policy)]
+    return [found for found in (*differing, *others) if found is not start]
+
+
+def _differ(found: Shifted, policy: Policy) -> bool:
+    """Whether the delays of runs differ by more than chance; a delay that is equal in all runs is
+    the effect's."""
+    step = lateness_step(found.problem, found.solution)
+    return step.differ_chance(found.late_s, 1.0) < policy.deviation_chance
+
+
+def _gain(found: Shifted, other: Solution, share: float) -> float:
+    """Gain of shifted runs over another model in twice the log marginal likelihood.
+
+    The delays that differ between runs are a random effect: their number of parameters is in the
+    determinant of its covariance.
+
+    Parameters
+    ----------
+    share
+        Number of independent samples a sample counts for.
+    """
+    here = found.solution
+    prepared = found.campaign.prepared
+    forces = [p.friction_n - r for p, r in zip(prepared, here.residuals, strict=True)]
+    # Samples that the other model excludes next to jumps are excluded here as well.
+    samples = samples_beside_jumps(here.samples, prepared, forces, other.effects)
+    after = samples.without_deviations(here.residuals, here.noise)
+    before = other.samples.without_deviations(other.residuals, other.noise)
+    ratio = other.samples.rms(before) / max(samples.rms(after), 1e-300)
+    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _volume(found)
+
+
+def _volume(found: Shifted) -> float:
+    """Logarithm of the determinant of the covariance of delays that differ between runs."""
+    if found.drift != 0.0 or np.ptp(found.late_s) == 0.0:
+        return 0.0
+    step = lateness_step(found.problem, found.solution)
+    known = found.late_s[step.told]
+    if len(known) < 2:
+        return 0.0
+    variance = float(np.var(known, ddof=1))
+    return float(np.sum(np.log1p(variance / np.diag(step.covariance_s2))))
+
+
+def _findings(before_s: dict[str, float], found: Shifted) -> list[Finding]:
+    late_s = [
+        late + before_s.get(p.run.name, 0.0)
+        for p, late in zip(found.campaign.prepared, found.late_s.tolist(), strict=True)
+    ]
+    return [
+        _finding(p.run.name, late, found.drift)
+        for p, late in zip(found.campaign.prepared, late_s, strict=True)
+    ]
+
+
+def _finding(run: str, late_s: float, drift: float) -> Finding:
+    if drift == 0.0:
+        way = "late" if late_s > 0.0 else "early"
+        words = f"the force is {1e3 * abs(late_s):.2g} ms {way} against the motion"
+        return Finding(LATE, "friction_n", run, late_s, "s", "shifted", words)
+    way = "slower" if drift > 0.0 else "faster"
+    words = (
+        f"the force's clock runs {way} than the motion's by {1e6 * abs(drift):.0f} parts in a "
+        f"million: {1e3 * late_s:+.2g} ms in the middle of the run"
+    )
+    return Finding(DRIFT, "friction_n", run, drift, "1", "shifted", words)

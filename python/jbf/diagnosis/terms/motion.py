@@ -1,0 +1,28 @@
+"""Errors of the estimated motion in the likelihood of a drive."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
+from jbf.estimation.refine import with_motion_errors_again
+
+
+def errors_of_motion(model: Model) -> Proposal | None:
+    """Noise, scale and smoothness of the motion's errors, estimated again for a model with other
+    effects; None if the model leaves no less noise than the one for which they were estimated."""
+    before = model.campaign.samples.motion
+    if before is None:
+        return None
+    solution = model.solution
+    again, after = with_motion_errors_again(model.problem, solution)
+    motion = after.samples.motion
+    assert motion is not None
+    if motion.noise * model.policy.noise_changes > before.noise:
+        return None
+    weights = solution.samples.weight
+    gain = before.deviance(solution.residuals, weights) - motion.deviance(after.residuals, weights)
+    samples = replace(model.campaign.samples, motion=motion)
+    campaign = replace(again.campaign, samples=samples)
+    price = price_of_term(model.policy, 2)
+    return Proposal("errors_of_motion", campaign, again, after, gain, price)

@@ -1,0 +1,248 @@
+"""Residual-error model: variance that depends on the force or on the run, and heavy tails.
+
+The samples get weights, 0 to 1, relative to where the noise is smallest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize, special
+
+from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
+from jbf.estimation.likelihood import effective_share
+from jbf.estimation.noise_at import noise_at
+from jbf.estimation.problem import Problem
+from jbf.estimation.robust import robust_size
+from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
+from jbf.estimation.solution import Solution
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+Weights = Sequence[Array]
+
+FORCE_BINS = 6
+"""Number of bins of the force in which the variance is estimated."""
+HUBER = 2.5
+"""Standard deviations of an innovation beyond which it has less weight (Huber 1964)."""
+TAILS = 4.0
+"""Standard deviations beyond which innovations are counted as tails."""
+LEAST_TAILS = 5.0
+"""Number of innovations in the tails from which on these are heavy."""
+LEAST = 200
+"""Number of samples from which on a variance is estimated."""
+ERROR = 1.9
+"""Relative standard error of a size by the median of third differences, times the square root of
+the number of samples: 1.17 for independent ones (Rousseeuw & Croux 1993); these share readings."""
+START_FREEDOM = 5.0
+"""Degrees of freedom of Student's t distribution at the start of its fit."""
+EVALUATIONS = 8
+"""Evaluations of a fit with weights."""
+
+
+def variance_by_force(model: Model) -> Proposal | None:
+    """A variance that increases with the square of the force."""
+    return _weighted(model, "noise_with_force", force_weights, 1)
+
+
+def variance_by_run(model: Model) -> Proposal | None:
+    """A variance that differs between runs."""
+    runs = len(model.campaign.prepared)
+    return _weighted(model, "noise_by_run", run_weights, max(runs - 1, 1))
+
+
+def _weighted(
+    model: Model,
+    kind: str,
+    weights: Callable[[Problem, Solution, Policy], tuple[Weights, Finding] | None],
+    parameters: int,
+) -> Proposal | None:
+    """The campaign with weights by a variance function, unless it has them."""
+    problem, solution, campaign, policy = (
+        model.problem,
+        model.solution,
+        model.campaign,
+        model.policy,
+    )
+    if any(f.kind == kind for f in campaign.more_findings):
+        return None
+    found = weights(problem, solution, policy)
+    if found is None:
+        return None
+    levels, finding = found
+    ones = [np.ones(len(w)) for w in levels]
+    samples = campaign.samples.weighed(levels, ones, campaign.samples.between)
+    after = _refitted(problem, solution, samples)
+    # The likelihood of a sample has the factor 1 / (standard deviation).
+    fitted = [w > 0.0 for w in after.samples.weight]
+    logs = sum(float(np.sum(np.log(w[at]))) for w, at in zip(levels, fitted, strict=True))
+    gain = solution.cost - after.cost + 2.0 * logs
+    again = replace(campaign, samples=samples).with_findings([finding])
+    price = price_of_term(policy, parameters)
+    return Proposal(kind, again, problem, after, effective_share(after) * gain, price)
+
+
+def heavy_tails(model: Model) -> Proposal | None:
+    """Huber's weights, if Student's t distribution is more likely than the normal one.
+
+    Not proposed if the steps of a converter are the tails.
+    """
+    problem, solution, campaign, policy = (
+        model.problem,
+        model.solution,
+        model.campaign,
+        model.policy,
+    )
+    if any(f.kind == "heavy_tails" for f in campaign.more_findings):
+        return None
+    if campaign.step_n >= policy.coarse_steps * solution.rms_n:
+        return None
+    found = robust_weights(solution, policy)
+    if found is None:
+        return None
+    weights, finding, gain = found
+    ones = [np.ones(len(w)) for w in weights]
+    samples = campaign.samples.weighed(ones, weights, campaign.samples.between)
+    after = _refitted(problem, solution, samples)
+    again = replace(campaign, samples=samples).with_findings([finding])
+    gain *= effective_share(solution)
+    price = price_of_term(policy)
+    return Proposal("heavy_tails", again, problem, after, gain, price)
+
+
+def _refitted(problem: Problem, solution: Solution, samples: Samples) -> Solution:
+    """A few steps of a fit with weights."""
+    within = samples.within(solution.samples.counted)
+    values = search(problem, within, solution.values, solution.noise, EVALUATIONS).values
+    return problem.solution(values, within, noise_at(problem, within, values))
+
+
+def force_weights(
+    problem: Problem, solution: Solution, policy: Policy
+) -> tuple[Weights, Finding] | None:
+    """A weight for each sample by a line through the variance over the square of the force; None
+    if the variance does not depend on the force."""
+    samples = solution.samples
+    # The white part alone: the error of a model is smooth.
+    e = _white_parts(solution)
+    force = [np.abs(f) for f in problem.predict(solution.values)]
+    flat_e, flat_f = samples.flat(e), samples.flat(force)
+    if robust_size(flat_e) <= 0.0 or len(flat_e) < LEAST * FORCE_BINS:
+        return None
+    edges = np.quantile(flat_f, np.linspace(0.0, 1.0, FORCE_BINS + 1))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
+    counts = np.bincount(which, minlength=FORCE_BINS)
+    # Many forces are the same if the shaft rests.
+    full = np.flatnonzero(counts)
+    counts, middle = counts[full], middle[full]
+    sizes = np.array([robust_size(flat_e[which == k]) for k in full])
+    if not _uneven(sizes, counts, policy):
+        return None
+    slope, level = np.polyfit(middle**2, sizes**2, 1)
+    largest = level + slope * middle[-1] ** 2
+    if slope <= 0.0 or largest <= policy.uneven_noise**2 * sizes.min() ** 2:
+        return None
+    least = max(level, 0.25 * sizes.min() ** 2)
+    sd = [np.sqrt(least + slope * f**2) for f in force]
+    low = min(float(s.min()) for s in sd)
+    share = float(np.sqrt(slope))
+    words = f"the noise grows with the force, by {100.0 * share:.2g} % of it"
+    names = ", ".join(samples.runs)
+    finding = Finding("noise_with_force", "friction_n", names, share, "1", "weighed", words)
+    return [low / s for s in sd], finding
+
+
+def run_weights(
+    problem: Problem, solution: Solution, policy: Policy
+) -> tuple[Weights, Finding] | None:
+    """A weight for the samples of each run; None if the noise does not differ between runs.
+
+    Both the white part and the innovations must differ: a smooth channel has no white noise, and
+    the innovations of a wrong model are larger than the noise.
+    """
+    samples = solution.samples
+    e = _white_parts(solution)
+    innovations = samples.innovations(solution.residuals, solution.noise)
+    white, whole = (
+        np.array([robust_size(x[c]) for x, c in zip(v, samples.counted, strict=True)])
+        for v in (e, innovations)
+    )
+    # Equal readings of a coarse converter have no differences.
+    rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
+    white, whole = np.maximum(white, rounding), np.maximum(whole, rounding)
+    counts = np.array([int(c.sum()) for c in samples.counted])
+    some = (counts > LEAST) & (white > 0.0) & (whole > 0.0)
+    if not some.any() or not all(_uneven(x[some], counts[some], policy) for x in (white, whole)):
+        return None
+    by_run = np.ones(len(some))
+    by_run[some] = np.maximum(*(x[some].min() / x[some] for x in (white, whole)))
+    ratio = float(by_run.max() / by_run.min())
+    words = f"the noise differs by run, up to {ratio:.2g} times"
+    names = ", ".join(samples.runs)
+    finding = Finding("noise_by_run", "friction_n", names, ratio, "1", "weighed", words)
+    weights = [np.full(len(x), w) for x, w in zip(e, by_run.tolist(), strict=True)]
+    return weights, finding
+
+
+def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding, float] | None:
+    """A weight against heavy tails for each sample, and the gain of Student's t distribution over
+    the normal one in twice the log likelihood; None if the tails are not heavy."""
+    samples = solution.samples
+    e = samples.innovations(solution.residuals, solution.noise)
+    flat = samples.flat(e)
+    sigma = robust_size(flat)
+    if sigma <= 0.0 or not len(flat):
+        return None
+    beyond = float(np.mean(np.abs(flat) > TAILS * sigma))
+    usual = 2.0 * float(special.ndtr(-TAILS))
+    if beyond < max(policy.heavy_tails * usual, LEAST_TAILS / len(flat)):
+        return None
+    # The square of a weight on the residual is Huber's weight on its square.
+    weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
+    words = f"{100.0 * beyond:.2g} % of the noise is beyond four of its standard deviations"
+    names = ", ".join(samples.runs)
+    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighed", words)
+    return weights, finding, _student_gain(flat, sigma)
+
+
+def _student_gain(innovations: Array, sigma: float) -> float:
+    """Twice the log likelihood of Student's t distribution, less that of the normal one, each with
+    its most likely parameters (Lange, Little & Taylor 1989)."""
+
+    def minus_twice(x: Array) -> float:
+        freedom, scale = np.exp(x)
+        constant = special.betaln(0.5, 0.5 * freedom) + 0.5 * np.log(freedom) + x[1]
+        tails = np.log1p((innovations / scale) ** 2 / freedom)
+        return float(2.0 * len(innovations) * constant + (freedom + 1.0) * np.sum(tails))
+
+    start = np.log([START_FREEDOM, sigma])
+    found = optimize.minimize(minus_twice, start, method="Nelder-Mead", options={"fatol": 0.1})
+    normal = len(innovations) * (1.0 + np.log(2.0 * np.pi * np.mean(innovations**2)))
+    return float(normal - found.fun)
+
+
+def _white_parts(solution: Solution) -> list[Array]:
+    """The white part of each residual, from its third differences, with the variances known."""
+    levels = solution.samples.level or [np.ones(len(r)) for r in solution.residuals]
+    found = []
+    for residual, level in zip(solution.residuals, levels, strict=True):
+        third = np.diff(residual, 3) / np.sqrt(20.0)
+        found.append(np.pad(third, (1, len(residual) - len(third) - 1), mode="edge") * level)
+    return found
+
+
+def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
+    """Whether standard deviations differ by a relevant ratio, and by more than chance."""
+    if float(sizes.min()) <= 0.0 or sizes.max() <= policy.uneven_noise * sizes.min():
+        return False
+    error = ERROR / np.sqrt(counts)
+    logs = np.log(sizes)
+    middle = float(np.sum(logs / error**2) / np.sum(1.0 / error**2))
+    square = float(np.sum(((logs - middle) / error) ** 2))
+    return bool(special.chdtrc(len(sizes) - 1, square) < policy.deviation_chance)

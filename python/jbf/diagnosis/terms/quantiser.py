@@ -1,0 +1,108 @@
+"""Mean reading of a converter whose steps are as large as the noise.
+
+The difference between the mean reading and the force is a periodic function of the force (Widrow
+1956). Averaging does not remove it, and an effect that bends over the force would explain it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize
+
+from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.terms.proposal import Model, Proposal, independent_samples, price_of_term
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.converter import bias_n, origin_n
+from jbf.estimation.noise_at import noise_at
+from jbf.estimation.problem import Problem
+from jbf.estimation.search import search
+from jbf.estimation.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+EVALUATIONS = 8
+"""Evaluations of each fit to corrected readings."""
+MOST_ITERATIONS = 8
+"""Largest number of corrections and fits."""
+NO_BIAS = 0.8
+"""Standard deviation of the noise, in steps, beside which the mean reading has no bias."""
+
+
+def quantiser(model: Model) -> Proposal | None:
+    """Readings without the bias of their steps; None if the converter is fine enough, or the bias
+    changes by less than the policy's limit."""
+    solution = model.solution
+    corrected = without_bias(model.problem, solution, model.policy)
+    if corrected is None:
+        return None
+    campaign, again, after = corrected
+    after = again.solution(
+        after.values, after.samples, noise_at(again, after.samples, after.values)
+    )
+    gain = after.samples.cost(solution.residuals, solution.noise) - after.cost
+    share = independent_samples(after, solution)
+    price = price_of_term(model.policy)
+    return Proposal("quantiser", campaign, again, after, share * gain, price)
+
+
+def without_bias(
+    problem: Problem, solution: Solution, policy: Policy
+) -> tuple[Campaign, Problem, Solution] | None:
+    """The campaign without the bias of its steps, and the model fitted to it.
+
+    The fit to biased readings predicts another force, which has another bias: correction and fit
+    are repeated until the bias changes no more.
+    """
+    found = None
+    for _ in range(MOST_ITERATIONS):
+        campaign = _corrected(problem, solution, policy)
+        if campaign is None:
+            break
+        problem = Problem(campaign, problem.law, problem.clock, problem.effects, problem.fixed)
+        samples, noise = problem.samples_at(solution.values), solution.noise
+        end = search(problem, samples, solution.values, noise, EVALUATIONS)
+        solution = problem.solution(end.values, samples, noise, end.converged, end.message)
+        found = campaign, problem, solution
+    return found
+
+
+def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
+    """The campaign corrected once, with the noise before the converter by least squares."""
+    campaign = problem.campaign
+    steps = {f.run: f.size for f in campaign.findings if f.kind == "steps"}
+    if not steps:
+        return None
+    # Mean readings by the model: the correction so far is part of the residual.
+    expected = [
+        p.friction_n - e for p, e in zip(campaign.prepared, solution.residuals, strict=True)
+    ]
+    raw = [p.readings_n for p in campaign.prepared]
+    flat = solution.samples.flat
+    left = flat([r - f for r, f in zip(raw, expected, strict=True)])
+
+    def bias(noise: float) -> list[Array]:
+        return [
+            bias_n(step, noise * step, f - origin_n(step, r)) if step else np.zeros(len(r))
+            for step, f, r in zip(
+                (steps.get(p.run.name, 0.0) for p in campaign.prepared), expected, raw, strict=True
+            )
+        ]
+
+    def square(noise: float) -> float:
+        e = left - flat(bias(noise))
+        return float(e @ e)
+
+    noise = float(optimize.minimize_scalar(square, bounds=(0.0, NO_BIAS), method="bounded").x)
+    corrected = [r - b for r, b in zip(raw, bias(noise), strict=True)]
+    moved = [p.friction_n - c for p, c in zip(campaign.prepared, corrected, strict=True)]
+    if solution.samples.rms(moved) < policy.bias_moves * campaign.step_n:
+        return None
+    return replace(
+        campaign,
+        prepared=tuple(
+            replace(p, friction_n=c) for p, c in zip(campaign.prepared, corrected, strict=True)
+        ),
+    )

@@ -144,15 +144,9 @@ class Policy:
     most_shifts: int = _number(
         3, "times that the runs' lateness is estimated", "a second look sees it sharper"
     )
-    late_apart: float = _number(
-        0.08,
-        "share of a sample by which half of the runs must be off the middle one, where a delay "
-        "that they share could say it as well",
-        "below it the lateness of most runs is one",
-    )
     deviation_chance: float = _number(
         1e-4,
-        "probability at which runs that deviate from one another alike are chance",
+        "probability of a false term of the observation model, shared among their kinds",
         "one campaign in ten thousand",
     )
     bias_moves: float = _number(
@@ -163,8 +157,8 @@ class Policy:
     )
     no_worse: float = _number(
         1.03,
-        "times the error that weights, shifts in time and deviations of the runs may leave more "
-        "than the model before them",
+        "ratio of held-out errors up to which a term of the observation model predicts no worse, "
+        "and from which on a law or a term of the machine predicts better",
         "what a fit of the same model differs by from one half of a recording to the other",
     )
     uneven_noise: float = _number(

@@ -20,7 +20,7 @@ from jbf.diagnosis.selection import (
     still_needed,
     try_candidates,
 )
-from jbf.diagnosis.terms import leading_term
+from jbf.diagnosis.terms import changed_terms
 from jbf.diagnosis.terms.shifts import DELAY
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
@@ -74,12 +74,11 @@ def select(candidates: Candidates, noise_n: float) -> Selected:
         found = try_candidates(candidates, present, follow)
         steps.append(step(candidates, present, noise_n, found.trials))
         led = max((t.evidence for t in found.trials if t.outcome == "added"), default=None)
-        term = leading_term(candidates, present, led) if terms < policy.most_terms else None
-        if term is not None:
+        other = changed_terms(candidates, present, led) if terms < policy.most_terms else None
+        if other is not None:
             terms += 1
-            candidates = candidates.of(term.campaign)
-            kept = tuple(name for name in present if name in term.problem.effects)
-            present = still_needed(candidates, kept)
+            candidates = candidates.of(other.campaign)
+            present = still_needed(candidates, [n for n in present if n in other.effects])
             visited, follow = {frozenset(present)}, "promising"
             steps.pop()
             continue

@@ -242,10 +242,10 @@ def _left_behind(
     return {name: gain for name, gain in most.items() if gain < line}
 
 
-def still_needed(candidates: Candidates, present: Names) -> Names:
+def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
     """The effects that have evidence yet, now that the samples are seen in another light."""
-    current = present
-    for name in present:
+    current = tuple(effects)
+    for name in effects:
         if not may_go(name, current):
             continue
         rest = tuple(e for e in current if e != name)

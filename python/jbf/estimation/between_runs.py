@@ -42,6 +42,14 @@ class BetweenRuns:
         """Those of some of the runs."""
         return replace(self, directions=tuple(self.directions[i] for i in which))
 
+    def without(self, name: str) -> BetweenRuns | None:
+        """The others; None if there are none."""
+        kept = [k for k, own in enumerate(self.names) if own != name]
+        if not kept:
+            return None
+        directions = tuple(d[:, kept] for d in self.directions)
+        return replace(self, names=tuple(self.names[k] for k in kept), directions=directions)
+
     def whitened(
         self, run: int, stacked: Sequence[Array], weight: Array, step_s: float, noise: Noise
     ) -> list[Array]:

@@ -15,14 +15,17 @@ larger evidence.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, variance_by_run
-from jbf.diagnosis.terms.proposal import Model, Proposal, Term, accepted
+from jbf.diagnosis.terms.proposal import Model, Term, accepted
 from jbf.diagnosis.terms.quantiser import quantiser
-from jbf.diagnosis.terms.random_effects import random_effect
+from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
+from jbf.estimation.campaign import Campaign
 
 Names = tuple[str, ...]
 
@@ -42,10 +45,19 @@ TERMS: tuple[Term, ...] = (
 lacks an effect resembles most of them: they are estimated where no effect is accepted."""
 
 
-def leading_term(
+@dataclass(frozen=True)
+class Changed:
+    """A campaign with other terms, and the effects that remain beside them."""
+
+    campaign: Campaign
+    effects: Names
+
+
+def changed_terms(
     candidates: Candidates, present: Names, least: float | None = None
-) -> Proposal | None:
-    """The term with the largest evidence beside a model; None if none is accepted.
+) -> Changed | None:
+    """The campaign with the term that has the largest evidence beside a model, or without a random
+    effect that the model no longer needs; None if no term changes.
 
     Parameters
     ----------
@@ -53,23 +65,26 @@ def leading_term(
         Evidence for the effect that is accepted, with which random effects between runs compete;
         None if no effect is.
     """
-    before = candidates.converge(present)
-
-    def model(effects: Names) -> Model:
-        return Model(
-            candidates.fitted(effects).problem,
-            candidates.converge(effects),
-            before,
-            candidates.policy,
-            price_of(candidates, 1),
-        )
-
-    whole = model(present)
+    whole = _model(candidates, present, present)
     found = [(term(whole), whole) for term in (TERMS if least is None else BETWEEN_RUNS)]
     explained = explained_by_delays(present)
     if explained and least is None:
-        rest = model(tuple(name for name in present if name not in explained))
+        rest = _model(candidates, tuple(n for n in present if n not in explained), present)
         found.append((delays(rest), rest))
     proposals = [(p, m) for p, m in found if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
-    return next((p for p, beside in proposals if accepted(p, beside, least or 0.0)), None)
+    for proposal, beside in proposals:
+        if accepted(proposal, beside, least or 0.0):
+            return Changed(proposal.campaign, proposal.problem.effects)
+    fewer = without_random_effect(whole) if least is None else None
+    return None if fewer is None else Changed(fewer, present)
+
+
+def _model(candidates: Candidates, effects: Names, present: Names) -> Model:
+    return Model(
+        candidates.fitted(effects).problem,
+        candidates.converge(effects),
+        candidates.converge(present),
+        candidates.policy,
+        price_of(candidates, 1),
+    )

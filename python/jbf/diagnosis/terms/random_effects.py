@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from jbf.diagnosis.terms.proposal import Model, Proposal, independent_samples, price_of_term
 from jbf.estimation.between_runs import BetweenRuns
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
@@ -39,25 +40,49 @@ def random_effect(model: Model) -> Proposal | None:
     if found is None:
         return None
     between, finding = found
-    allowed = replace(counted, between=between)
-    values = search(problem, allowed, solution.values, solution.noise, EVALUATIONS).values
-    # The deviations between runs were part of the coloured noise before.
-    after = problem.solution(values, allowed, noise_at(problem, allowed, values))
-    before = replace(solution, samples=counted)
-    gain = counted.cost(solution.residuals, solution.noise) - after.cost
-    volume = _log_determinant(allowed, after) - _log_determinant(counted, solution)
+    after = _fitted(problem, solution, replace(counted, between=between))
     samples = replace(campaign.samples, between=between)
-    return Proposal(
-        finding.kind,
-        replace(campaign, samples=samples).with_findings([finding]),
-        problem,
-        after,
-        independent_samples(after, before) * gain - volume,
-        price_of_term(model.policy),
-    )
+    again = replace(campaign, samples=samples).with_findings([finding])
+    gain = _gain(after, replace(solution, samples=counted))
+    return Proposal(finding.kind, again, problem, after, gain, price_of_term(model.policy))
 
 
-def _log_determinant(samples: Samples, solution: Solution) -> float:
+def without_random_effect(model: Model) -> Campaign | None:
+    """The campaign without the random effect that has the least evidence beside the others; None if
+    all of them are needed."""
+    problem, solution, campaign = model.problem, model.solution, model.campaign
+    between = campaign.samples.between
+    if between is None:
+        return None
+    evidence = {}
+    for name in between.names:
+        fewer = replace(solution.samples, between=between.without(name))
+        gain = _gain(solution, _fitted(problem, solution, fewer))
+        evidence[name] = gain - price_of_term(model.policy)
+    name = min(evidence, key=lambda name: evidence[name])
+    if evidence[name] >= 0.0:
+        return None
+    samples = replace(campaign.samples, between=between.without(name))
+    kind, _ = _words(name, 0.0, "")
+    findings = tuple(f for f in campaign.more_findings if f.kind != kind)
+    return replace(campaign, samples=samples, more_findings=findings)
+
+
+def _fitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
+    """A few steps of a fit with other random effects, with the noise that they leave."""
+    values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
+    return problem.solution(values, samples, noise_at(problem, samples, values))
+
+
+def _gain(richer: Solution, simpler: Solution) -> float:
+    """Gain of random effects in twice the log marginal likelihood."""
+    volume = _log_determinant(richer) - _log_determinant(simpler)
+    gain = simpler.samples.cost(simpler.residuals, simpler.noise) - richer.cost
+    return independent_samples(richer, simpler) * gain - volume
+
+
+def _log_determinant(solution: Solution) -> float:
+    samples = solution.samples
     if samples.between is None:
         return 0.0
     return samples.between.log_determinant(samples.weight, samples.steps_s, solution.noise)

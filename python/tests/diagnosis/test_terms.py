@@ -1,0 +1,95 @@
+"""Terms of the observation model: their gains against likelihoods of SciPy; their acceptance."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from by_hand import Array
+from jbf import Rig
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.terms import TERMS
+from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
+from jbf.diagnosis.terms.proposal import Model, Proposal, accepted, price_of_term
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.noise import WHITE
+from linear_campaigns import fit_from_truth, reversing_runs
+from scipy import stats
+
+NOISE_N = 0.1
+Draw = Callable[[int, int, np.random.Generator], Array]
+"""Noise, N, from the number of the run, the number of samples and a random generator."""
+
+
+def model(draw: Draw, *, seed: int = 0) -> Model:
+    """Coulomb friction with this noise, fitted."""
+    runs = reversing_runs(lambda i, t, f, random: f + draw(i, len(t), random), seed=seed)
+    return Model.of(*fit_from_truth(Campaign.prepare(Rig(), runs)))
+
+
+def white(i: int, n: int, random: np.random.Generator) -> Array:
+    return NOISE_N * random.standard_normal(n)
+
+
+def residuals(fitted: Model) -> list[Array]:
+    """Residuals at the samples that count, one array a run."""
+    solution = fitted.solution
+    return [r[c] for r, c in zip(solution.residuals, solution.samples.counted, strict=True)]
+
+
+def proposed(found: Proposal | None) -> Proposal:
+    assert found is not None
+    return found
+
+
+def test_price_of_a_term_shares_the_probability_among_ten_kinds() -> None:
+    for parameters in (1, 5):
+        expected = stats.chi2.isf(DEFAULT.deviation_chance / 10.0, parameters)
+        assert price_of_term(DEFAULT, parameters) == pytest.approx(expected)
+
+
+def test_gain_of_variances_by_run_is_that_of_normal_likelihoods() -> None:
+    fitted = model(lambda i, n, random: (1.0 + i) * white(i, n, random))
+    fitted = replace(fitted, solution=replace(fitted.solution, noise=WHITE))
+    own = residuals(fitted)
+    every = np.concatenate(own)
+    by_run = sum(float(np.sum(stats.norm.logpdf(r, scale=np.std(r)))) for r in own)
+    pooled = float(np.sum(stats.norm.logpdf(every, scale=np.std(every))))
+    # The variances are estimated robustly, from differences.
+    assert proposed(variance_by_run(fitted)).gain == pytest.approx(
+        2.0 * (by_run - pooled), rel=0.05
+    )
+
+
+def test_gain_of_heavy_tails_is_that_of_the_student_distribution() -> None:
+    fitted = model(lambda i, n, random: NOISE_N * random.standard_t(4.0, n))
+    every = np.concatenate(residuals(fitted))
+    freedom, _, scale = stats.t.fit(every, floc=0.0)
+    student = float(np.sum(stats.t.logpdf(every, freedom, scale=scale)))
+    normal = float(np.sum(stats.norm.logpdf(every, scale=np.sqrt(np.mean(every**2)))))
+    gain = proposed(heavy_tails(fitted)).gain
+    assert gain == pytest.approx(2.0 * (student - normal), rel=0.02)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_no_term_is_accepted_in_white_noise(seed: int) -> None:
+    fitted = model(white, seed=seed)
+    assert [term.__name__ for term in TERMS if accepted(term(fitted), fitted)] == []
+
+
+def test_term_is_not_accepted_if_held_out_runs_are_predicted_worse() -> None:
+    """A fit that is off by the noise in every run has 1.4 times the error."""
+    fitted = model(white)
+    found = replace(
+        proposed(variance_by_run(model(lambda i, n, random: (1.0 + i) * white(i, n, random)))),
+        problem=fitted.problem,
+        solution=fitted.solution,
+        gain=1e3,
+    )
+    assert accepted(found, fitted)
+    off = fitted.solution.values + np.array([NOISE_N, 0.0, 0.0])
+    held = {name: float(value) for name, value in zip(fitted.problem.names, off, strict=True)}
+    problem, _ = fit_from_truth(fitted.campaign)
+    problem = type(problem)(problem.campaign, problem.law, problem.clock, (), held)
+    worse = problem.solution(off, fitted.solution.samples, WHITE)
+    assert not accepted(replace(found, problem=problem, solution=worse), fitted)

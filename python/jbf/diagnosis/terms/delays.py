@@ -74,33 +74,34 @@ def explained_by_delays(effects: Sequence[str]) -> tuple[str, ...]:
 
 
 def _estimates(model: Model) -> list[Shifted]:
-    """The runs shifted by the estimates of several searches: from no delay jointly with the model,
-    along one clock, and from the delays at which the squares of each run are smallest."""
+    """The runs shifted by several estimates: jointly with the model, along one clock, and by the
+    delays at which the squares of each run are smallest."""
     problem, solution, policy = model.problem, model.solution, model.policy
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
-    by_run, others = [], []
+    estimates = []
     if lateness_step(problem, solution).chance < policy.deviation_chance:
-        by_run.append(jointly(problem, start))
+        estimates.append(jointly(problem, start))
     if not known_delays(problem.campaign):
         # The parameters of the model follow a drift slowly.
         if special.chdtrc(1, drift_step(problem, solution).square) < HINT:
-            others.append(by_one_clock(problem, start))
-        for at_jumps in (False, True):
-            coarse = searched(problem, solution, policy, at_jumps=at_jumps)
-            if coarse is not None and coarse.drift != 0.0:
-                others.append(coarse)
-            elif coarse is not None and (at_jumps or np.ptp(coarse.late_s) == 0.0):
-                others.append(all_alike(problem, coarse))
-            elif coarse is not None:
-                by_run.append(jointly(problem, coarse))
-    differing = [found for found in by_run if _differ(found, policy)]
-    return [found for found in (*differing, *others) if found is not start]
+            estimates.append(by_one_clock(problem, start))
+        coarse = searched(problem, solution, policy)
+        if coarse is not None:
+            estimates.append(all_alike(problem, coarse) if coarse.drift == 0.0 else coarse)
+    return [f for f in estimates if f is not start and _significant(f, policy)]
 
 
-def _differ(found: Shifted, policy: Policy) -> bool:
-    """Whether the delays of runs differ by more than chance; a delay that is equal in all runs is
-    the effect's."""
-    step = lateness_step(found.problem, found.solution)
+def _significant(found: Shifted, policy: Policy) -> bool:
+    """Whether a drift, or the differences between the delays of runs, exceed chance; a delay that
+    is equal in all runs is the effect's, unless the force is early."""
+    problem, solution = found.problem, found.solution
+    if found.drift != 0.0:
+        # The residual of a wrong model is not white: half of Wald's statistic is used.
+        square = 0.5 * found.drift**2 / drift_step(problem, solution).variance
+        return bool(special.chdtrc(1, square) < policy.deviation_chance)
+    if np.ptp(found.late_s) == 0.0:
+        return True
+    step = lateness_step(problem, solution)
     return step.differ_chance(found.late_s, 1.0) < policy.deviation_chance
 
 

@@ -175,22 +175,14 @@ def _coloured(shifted: Shifted) -> Shifted:
     return replace(shifted, solution=problem.solution(values, samples, noise))
 
 
-def searched(
-    problem: Problem, solution: Solution, policy: Policy, *, at_jumps: bool
-) -> Shifted | None:
+def searched(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """The runs shifted to where their squares are smallest (`lateness`), repeatedly; None if the
-    delays do not differ, do not grow, and are not negative.
-
-    Parameters
-    ----------
-    at_jumps
-        Whether samples next to reversals are used as well.
-    """
+    delays do not differ, do not grow, and are not negative."""
     campaign = problem.campaign
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.most_shifts):
-        found = lateness(problem, solution, look, policy.deviation_chance, at_jumps)
+        found = lateness(problem, solution, look, policy.deviation_chance, True)
         if found is None:
             break
         # If the runs differ in it, a delay that they share belongs to the recording as well.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Outcome = Literal["added", "ties", "rejected", "no gain", "confounder", "replaced"]
+Outcome = Literal["added", "ties", "rejected", "negligible", "no gain", "confounder", "replaced"]
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,10 @@ class Trial:
         Twice the gain in log likelihood, less what chance and the candidate's parameters would
         gain; above zero it is better than nothing.
     outcome
-        `added`, `ties`, `rejected`, `no gain` (no more than chance gives), or `confounder` (added,
-        but the runs disagree on its parameters), or `replaced` (added, and taken out again when a
-        later one did better in its place).
+        `added`, `ties`, `rejected`, `negligible` (significant, but smaller than the smallest effect
+        that is worth reporting), `no gain` (no more than chance gives), `confounder` (added, but
+        the runs disagree on its parameters), or `replaced` (added, and removed when a later one did
+        better in its place).
     reason
         Why, in words.
     """

@@ -110,11 +110,15 @@ class Level:
         """The same of white noise: what the level alone asks, shared among the candidates."""
         return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
 
+    @property
+    def significant(self) -> float:
+        """Gain of one parameter that neither noise nor the recording makes."""
+        return max(self.critical, self.white + self.imperfection)
+
     def price(self, parameters: int, samples: int) -> float:
         """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
         more = max(parameters, 1) - 1
-        least = max(self.critical, self.white + self.imperfection, self.worth)
-        return least + more * float(np.log(max(samples, 1)))
+        return max(self.significant, self.worth) + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -104,6 +104,12 @@ class Diagnosis(Result):
     limitations: tuple[str, ...] = ()
 
     @property
+    def negligible(self) -> tuple[str, ...]:
+        """Effects that are significant beside the final model and too small to be worth reporting
+        (`indifference` of the policy)."""
+        return tuple(t.effect for t in self.steps[-1].trials if t.outcome == "negligible")
+
+    @property
     def model(self) -> Model:
         """The final model."""
         return self.fit.model
@@ -129,6 +135,7 @@ class Diagnosis(Result):
             "parameters": self.model.told_parameters(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
+            "negligible": list(self.negligible),
             "limitations": list(self.limitations),
             "level": self.level.to_dict(),
             "power": [p.to_dict() for p in self.power],

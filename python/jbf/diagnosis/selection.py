@@ -87,6 +87,9 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         reason = SMOOTH if rms < LESS * bare else CHANCE
         if gain > candidates.level.critical - price_of(candidates, 1):
             reason = SLIGHT
+        if gain <= 0.0 and gain > candidates.level.significant - price_of(candidates, 1):
+            outcome = "negligible"
+            reason = f"possible, but it reduces the error by {1.0 - rms / bare:.1%} only"
         if np.isfinite(found.most):
             outcome = "rejected"
             reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"

@@ -107,6 +107,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         remains=bool(diagnosis.unexplained),
         not_tried=list(diagnosis.not_tried.items()),
         unseen=listed(diagnosis.unseen),
+        negligible=listed(diagnosis.negligible),
         limitations=diagnosis.limitations,
         run_head=head,
         runs=runs,

@@ -43,6 +43,9 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
         lines += ["", "Not tried: these runs cannot show"]
         for name, reason in diagnosis.not_tried.items():
             lines += hanging(f"    {name}: ", reason, 0)
+    if diagnosis.negligible:
+        lines += ["", "Possible, negligible"]
+        lines += hanging("    ", ", ".join(diagnosis.negligible), 0)
     if diagnosis.unseen:
         lines += ["", "Could be there at a usual strength and hide in these runs"]
         lines += hanging("    ", ", ".join(diagnosis.unseen), 0)

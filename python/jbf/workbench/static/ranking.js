@@ -1,7 +1,7 @@
 // What could be missing: every effect that was tried, by its evidence, with the strength that these runs would show.
 import { h, number, put } from "./dom.js";
 
-const OUTCOME = { added: "leads", ties: "ties", rejected: "rejected", "no gain": "no gain", confounder: "confounder", replaced: "replaced" };
+const OUTCOME = { added: "leads", ties: "ties", rejected: "rejected", negligible: "negligible", "no gain": "no gain", confounder: "confounder", replaced: "replaced" };
 
 export function showRanking(page, place) {
   const { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length || (state.law === "auto" && !node);

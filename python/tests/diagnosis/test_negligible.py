@@ -1,0 +1,34 @@
+"""Effects that are significant and too small to be worth reporting."""
+
+import pytest
+from jbf import Diagnosis, Policy, Rig, diagnose
+from linear_campaigns import reversing_runs
+
+NOISE_N = 0.1
+
+
+def diagnosed(offset_n: float) -> Diagnosis:
+    """Six runs with an offset; an effect is worth reporting from 12 % of the noise on."""
+    runs = reversing_runs(
+        lambda i, t, f, random: f + offset_n + NOISE_N * random.standard_normal(len(t)),
+    )
+    return diagnose(Rig(), runs, law="coulomb", policy=Policy(indifference=0.12))
+
+
+@pytest.mark.parametrize(
+    ("share", "effects", "negligible"),
+    [
+        (0.0, (), ()),
+        (0.1, (), ("sensor_offset",)),
+        (0.5, ("sensor_offset",), ()),
+    ],
+)
+def test_effect_below_the_smallest_size_is_listed_and_not_named(
+    share: float, effects: tuple[str, ...], negligible: tuple[str, ...]
+) -> None:
+    found = diagnosed(share * NOISE_N)
+    assert found.effects == effects
+    assert set(negligible) <= set(found.negligible)
+    assert not set(effects) & set(found.negligible)
+    assert ("Possible, negligible" in found.summary()) == bool(found.negligible)
+    assert found.to_dict()["negligible"] == list(found.negligible)

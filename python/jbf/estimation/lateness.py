@@ -9,12 +9,12 @@ force is shifted along time; the parts of a run tell whether it grows.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage, special
+from scipy import special
 
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
@@ -67,45 +67,31 @@ class _Place:
     variance: float
 
 
-Tell = Callable[[Array, Array, int], _Place]
-"""Where the squares of so many samples are least over a grid."""
+def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> Lateness | None:
+    """How the delays of the runs differ; None if they do not differ beyond chance.
 
-
-def lateness(
-    problem: Problem,
-    solution: Solution,
-    look: int,
-    chance: float,
-    at_jumps: bool = False,
-) -> Lateness | None:
-    """How the lateness of the runs differs; None where it does not beyond chance.
-
-    A lateness that all runs have in common may be the instrument's: that is an effect's to tell. A
-    force that is early in all of them is none's.
+    All samples are used, those next to reversals as well: these determine a delay of less than a
+    sample if the friction is smooth in time, and determine it in steps. A delay common to all runs
+    may be that of the instrument, which is an effect; a force that is early in all runs is not.
 
     Parameters
     ----------
     look
-        0 at first; 1 where the runs were shifted before.
+        0 at first; 1 if the runs were shifted before.
     chance
-        Probability at which runs that differ, or grow later alike, are chance.
-    at_jumps
-        Whether the samples beside reversals are asked, too: they tell a lateness of less than a
-        sample where friction is smooth over time, and tell it in steps.
+        Probability at which runs that differ, or a common drift, are chance.
     """
     reach, step = RANGES[min(look, len(RANGES) - 1)]
     grid = np.arange(-reach, reach + 0.5 * step, step)
     whole, drifts = [], []
-    place = _valley if at_jumps else _place
-    for squares, time in _scans(problem, solution, grid, 0.0 if at_jumps else reach):
-        whole.append(place(grid, squares.sum(axis=1), squares.shape[1]))
-        drifts.append(_drift(grid, squares, time, place))
+    for squares, time in _scans(problem, solution, grid):
+        whole.append(_place(grid, squares.sum(axis=1), squares.shape[1]))
+        drifts.append(_drift(grid, squares, time))
     runs = problem.campaign.prepared
     by_run, drift = _spread(whole), _common(drifts)
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
     if not differ and not grows:
-        # No instrument is early: there the motion is late, and that is the recording's.
         early = _common(whole)
         if early is None or early[0] >= 0.0 or early[1] >= chance:
             return None
@@ -120,13 +106,11 @@ def lateness(
     return Lateness(late, share, by_run[0])
 
 
-def _scans(
-    problem: Problem, solution: Solution, grid: Array, reach: float
-) -> Iterator[tuple[Array, Array]]:
-    """Of each run its samples' squared residuals by lateness, (len(grid), n), and their times.
+def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[Array, Array]]:
+    """Of each run its samples' squared residuals by delay, (len(grid), n), and their times.
 
-    Not whitened: a filter that takes a late force for colour moves it, too. One run at a time: of a
-    recording of days all of them would fill a machine's memory.
+    The residuals are not whitened: a filter that takes the error of a late force for coloured noise
+    would shift it as well. One run at a time: a recording of days would fill the memory.
     """
     samples, runs = solution.samples, problem.campaign.prepared
     forces = [problem.chain.predict(solution.values, [fine_motion(p)])[0] for p in runs]
@@ -138,22 +122,17 @@ def _scans(
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
         instants = instants_of(p)
-        # A zero or a gain of the run's own is no lateness.
+        # An offset or a gain of the run is no delay.
         read = p.friction_n - (solution.residuals[i] - left_over[i])
-        # The same samples at every lateness: those no reversal comes nearer than the reach.
         kept = samples.counted[i]
-        if reach > 0.0:
-            width = int(np.ceil(reach / p.step_s))
-            kept = kept & ~ndimage.binary_dilation(~p.slides, iterations=width)
         rows = []
         for late in grid:
             shifted = np.interp(p.run.time_s - late, instants, force)
-            left = (read - shifted) * samples.weight[i]
-            rows.append(left[kept])
+            rows.append(((read - shifted) * samples.weight[i])[kept])
         e = np.array(rows)
         size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
         squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
-        # Of coloured residuals a sample tells less.
+        # A sample of coloured residuals counts for less.
         squares *= share
         yield squares, p.run.time_s[kept] - p.run.time_s[0]
 
@@ -190,23 +169,7 @@ def fine_motion(p: Prepared) -> Driven:
 
 
 def _place(grid: Array, costs: Array, count: int) -> _Place:
-    """Where the squares of some samples are least, and how surely."""
-    k = int(np.argmin(costs))
-    if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
-        return _Place(0.0, np.inf)
-    step = float(grid[1] - grid[0])
-    below, here, above = (float(c) for c in costs[k - 1 : k + 2])
-    bend = below - 2.0 * here + above
-    if bend <= 0.0:
-        return _Place(0.0, np.inf)
-    off = 0.5 * (below - above) / bend
-    # A mean square above one is a residual that is not noise alone.
-    return _Place(float(grid[k]) + off * step, 2.0 * step**2 / bend * max(here / count, 1.0))
-
-
-def _valley(grid: Array, costs: Array, count: int) -> _Place:
-    """The same where jumps tell it: squares fall and rise in steps, and the mean and the variance
-    of the likelihood on the grid say where."""
+    """Mean and variance of the likelihood on the grid: next to jumps squares change in steps."""
     k = int(np.argmin(costs))
     if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
         return _Place(0.0, np.inf)
@@ -218,13 +181,13 @@ def _valley(grid: Array, costs: Array, count: int) -> _Place:
     return _Place(mean, float(np.sum(likely * (grid - mean) ** 2)) + step**2 / 12.0)
 
 
-def _drift(grid: Array, squares: Array, time: Array, tell: Tell) -> _Place:
+def _drift(grid: Array, squares: Array, time: Array) -> _Place:
     """The slope of the lateness over the parts of a run."""
     edges = np.linspace(0.0, float(time[-1]) if len(time) else 0.0, PARTS + 1)
     middles, values, weights = [], [], []
     for low, high in itertools.pairwise(edges):
         here = (time >= low) & (time < high)
-        place = tell(grid, squares[:, here].sum(axis=1), int(here.sum()))
+        place = _place(grid, squares[:, here].sum(axis=1), int(here.sum()))
         if np.isfinite(place.variance):
             middles.append(0.5 * (low + high))
             values.append(place.value)

@@ -18,7 +18,6 @@ from delayed_runs import (
     fitted,
     one_way_acceleration,
     one_way_campaign,
-    one_way_speed,
     reversing_campaign,
     value,
 )
@@ -27,80 +26,25 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, drift_step, lateness_step
 from jbf.estimation.lateness import lateness
 from jbf.estimation.noise import WHITE
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from scipy import ndimage, optimize, stats
+from scipy import ndimage, stats
 
 CHANCE = DEFAULT.deviation_chance
 DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
 EXTENDED = pytest.mark.extended
 
 
-def scanned(problem: Problem, solution: Solution) -> tuple[Array, Array]:
-    """Delay of each one-way run and its variance, by least squares of `F_c + F_v v(t - d)`."""
-    dry, viscous = (value(problem, solution, name) for name in ("F_c_n", "F_v_n_s_m"))
-    delays, variances = [], []
-    for i, p in enumerate(problem.campaign.prepared):
-
-        def residual(delay_s: float, run: int = i, p: Prepared = p) -> Array:
-            v = one_way_speed(run, p.run.time_s - delay_s)
-            return p.friction_n - dry - viscous * v
-
-        best = optimize.minimize_scalar(
-            lambda d, r=residual: float(np.sum(r(d) ** 2)), bounds=(-0.03, 0.03), method="bounded"
-        ).x
-        slope = (residual(best + 1e-5) - residual(best - 1e-5)) / 2e-5
-        delays.append(best)
-        variances.append(float(np.mean(residual(best) ** 2) / np.sum(slope**2)))
-    return np.array(delays), np.array(variances)
-
-
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
-def test_run_delays_are_recovered_with_their_spread_if_they_differ(seed: int) -> None:
+def test_run_delays_are_found_within_half_a_grid_step_if_they_differ(seed: int) -> None:
+    """The search for start values has steps of 2 ms."""
     problem, solution = fitted(reversing_campaign(DELAYS_S, seed=seed), DELAY)
     found = lateness(problem, solution, 0, CHANCE)
     assert found.drift == 0.0
     # The delay of the model is the part that all runs share.
     total = np.array(found.late_s) + value(problem, solution, TAU)
-    np.testing.assert_allclose(total, DELAYS_S, atol=0.6e-3)
+    np.testing.assert_allclose(total, DELAYS_S, atol=1e-3)
     assert found.spread_s == pytest.approx(np.std(DELAYS_S, ddof=1), rel=0.15)
-
-
-def test_delays_and_their_spread_are_those_of_a_least_squares_scan() -> None:
-    problem, solution = fitted(one_way_campaign((4e-3, -3e-3, -5e-3, 4e-3), noise_n=0.02))
-    found = lateness(problem, solution, 0, CHANCE)
-    delays, variances = scanned(problem, solution)
-    np.testing.assert_allclose(found.late_s, delays, atol=0.25 * np.sqrt(variances.min()))
-    w = 1.0 / variances
-    q = np.sum(w * (delays - np.average(delays, weights=w)) ** 2)
-    spread = np.sqrt((q - 3.0) / (np.sum(w) - np.sum(w**2) / np.sum(w)))
-    assert found.spread_s == pytest.approx(spread, rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("delays_s", "noise_n", "seed"),
-    [((-3e-3,) * 4, 0.1, 1), ((3e-3, -2e-3, 2e-3, -1e-3), 0.06, 0)],
-    ids=["common early force", "spread between runs"],
-)
-def test_delays_are_reported_only_if_half_their_chi_square_is_significant(
-    delays_s: tuple[float, ...], noise_n: float, seed: int
-) -> None:
-    """Half, since residuals are never quite as white as the noise model assumes."""
-    problem, solution = fitted(one_way_campaign(delays_s, noise_n=noise_n, seed=seed))
-    delays, variances = scanned(problem, solution)
-    w = 1.0 / variances
-    mean = np.average(delays, weights=w)
-    q = np.sum(w * (delays - mean) ** 2)
-    p = stats.chi2.sf(0.5 * q, 3)
-    if min(delays_s) == max(delays_s):
-        p = stats.chi2.sf(0.5 * mean**2 * np.sum(w) / max(q / 3.0, 1.0), 1)
-    assert 1e-6 < p < 0.1
-    assert lateness(problem, solution, 0, 2.0 * p) is not None
-    assert lateness(problem, solution, 0, 0.5 * p) is None
-    # No spread is estimated from two runs.
-    if min(delays_s) < 0.0 < max(delays_s):
-        assert lateness(*fitted(problem.campaign.only([0, 1])), 0, 2.0 * p) is None
 
 
 @pytest.mark.parametrize("changed", ["outliers", "offsets"])
@@ -124,13 +68,13 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
 
 
 @pytest.mark.parametrize("drift", [1e-3, pytest.param(-6e-4, marks=EXTENDED)])
-def test_clock_drift_is_recovered_within_ten_percent_in_reversing_runs(drift: float) -> None:
+def test_clock_drift_is_found_within_15_percent_in_reversing_runs(drift: float) -> None:
     """A clock that was right at the start has half of its error in the middle of the run."""
     middle = (0.5 * drift * DURATION_S,) * 4
     found = lateness(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
-    assert found.drift == pytest.approx(drift, rel=0.1)
+    assert found.drift == pytest.approx(drift, rel=0.15)
     assert found.spread_s == 0.0
-    np.testing.assert_allclose(found.late_s, middle, rtol=0.1)
+    np.testing.assert_allclose(found.late_s, middle, rtol=0.15)
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
@@ -144,29 +88,6 @@ def test_no_delay_is_reported_if_common_to_all_runs(
 ) -> None:
     campaign = reversing_campaign((delay_s,) * 4, seed=seed)
     assert lateness(*fitted(campaign, effects), 0, CHANCE) is None
-
-
-def test_delay_outside_the_search_range_is_replaced_by_the_mean_of_the_others() -> None:
-    problem, solution = fitted(one_way_campaign((14e-3, -12e-3, 9e-3, 60e-3)))
-    found = lateness(problem, solution, 0, CHANCE)
-    *others, last = found.late_s
-    w = 1.0 / scanned(problem, solution)[1][:3]
-    assert last == pytest.approx(np.average(others, weights=w), abs=0.3e-3)
-
-
-def test_second_search_resolves_run_delays_below_one_millisecond() -> None:
-    """It searches within 8 ms in steps of 0.5 ms."""
-    small = (6e-4, -4e-4, 9e-4, 1e-4)
-    there = fitted(reversing_campaign(small, noise_n=3e-3), DELAY)
-    found = lateness(*there, 1, CHANCE)
-    total = np.array(found.late_s) + value(*there, TAU)
-    np.testing.assert_allclose(total, small, atol=0.06e-3)
-
-
-def test_delays_are_recovered_from_jumps_at_reversals_within_a_share_of_a_step() -> None:
-    found = lateness(*fitted(reversing_campaign(DELAYS_S)), 0, CHANCE, at_jumps=True)
-    np.testing.assert_allclose(found.late_s, DELAYS_S, atol=2.2e-3)
-    assert lateness(*fitted(reversing_campaign((0.0,) * 4)), 0, CHANCE, at_jumps=True) is None
 
 
 COVARIANCE = np.array([[4.0, 1.0], [1.0, 2.0]])

@@ -182,7 +182,7 @@ def searched(problem: Problem, solution: Solution, policy: Policy) -> Shifted | 
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.most_shifts):
-        found = lateness(problem, solution, look, policy.deviation_chance, True)
+        found = lateness(problem, solution, look, policy.deviation_chance)
         if found is None:
             break
         # If the runs differ in it, a delay that they share belongs to the recording as well.

@@ -199,9 +199,8 @@ class Policy:
     )
     motion_share: float = _number(
         0.08,
-        "share of the mean square that structure must have where errors of the motion are in the "
-        "residual, and that an effect or another law must explain where they exceed a tenth of "
-        "the variance: their covariance is an estimate",
+        "largest share of the mean square that an effect or a law must explain, and that structure "
+        "must have, because of the errors of the motion: below it, their share of the variance",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
     )
     noise_changes: float = _number(
@@ -305,6 +304,19 @@ class Policy:
     def tie(self) -> float:
         """The difference in evidence of an effect and one with that weight."""
         return 2.0 * math.log(1.0 / self.least_weight - 1.0)
+
+    def least_share(self, motion_share: float) -> float:
+        """Share of the mean square that an effect must explain.
+
+        An effect that filters a force or a motion explains as much as the errors of the motion
+        contribute, whose covariance is an estimate.
+
+        Parameters
+        ----------
+        motion_share
+            Mean share of the motion's errors in the variance.
+        """
+        return min(motion_share, self.motion_share)
 
     def to_dict(self) -> dict[str, float]:
         """For JSON."""

@@ -51,7 +51,8 @@ def find_remainder(
     steps_n = problem.campaign.steps_rms_n(solution.rms_n)
     found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]
     if samples.motion is not None:
-        found = [r for r in found if r.share >= policy.motion_share]
+        least = policy.least_share(problem.campaign.motion_share)
+        found = [r for r in found if r.share >= least]
     return tuple(sorted(found, key=lambda r: -r.share))
 
 

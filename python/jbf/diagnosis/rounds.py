@@ -223,7 +223,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         return ()
     rms, name = min(found)
     share = max(1.0 - (rms / base.rms_n) ** 2, 0.0)
-    if candidates.campaign.motion_uncertain and share < policy.motion_share:
+    if share < policy.least_share(candidates.campaign.motion_share):
         return ()
     unit = candidates.campaign.rig.quantities.force
     fits = f"{name} fits {base.rms_n:.3g} {unit} down to {rms:.3g} {unit}"

@@ -145,7 +145,7 @@ def _compared(
 ) -> list[LawTried]:
     """`compared` with what is known of the motion of a campaign."""
     errors, white = [h.errors for h in left], [h.white for h in left]
-    share = policy.motion_share if campaign.motion_uncertain else 0.0
+    share = policy.least_share(campaign.motion_share)
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 

@@ -29,9 +29,9 @@ from jbf.estimation.campaign import Campaign
 
 Names = tuple[str, ...]
 
-BETWEEN_RUNS: tuple[Term, ...] = (random_effect,)
-"""Terms that compete with the effects: the same deviation in all samples of a run resembles an
-effect of what differs between runs."""
+COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
+"""Terms that compete with the effects: errors of the motion, since effects that filter a force or a
+motion explain them; random effects, since an effect of what differs between runs resembles one."""
 TERMS: tuple[Term, ...] = (
     errors_of_motion,
     random_effect,
@@ -62,11 +62,11 @@ def changed_terms(
     Parameters
     ----------
     least
-        Evidence for the effect that is accepted, with which random effects between runs compete;
-        None if no effect is.
+        Evidence for the effect that is accepted, with which some terms compete; None if no effect
+        is.
     """
     whole = _model(candidates, present, present)
-    found = [(term(whole), whole) for term in (TERMS if least is None else BETWEEN_RUNS)]
+    found = [(term(whole), whole) for term in (TERMS if least is None else COMPETING)]
     explained = explained_by_delays(present)
     if explained and least is None:
         rest = _model(candidates, tuple(n for n in present if n not in explained), present)
